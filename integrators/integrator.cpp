@@ -1,0 +1,87 @@
+#include "integrators/integrator.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "integrators/method.hpp"
+
+namespace qddot {
+
+std::string_view name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::reached_end: return "reached_end";
+    case Outcome::diverged: return "diverged";
+    case Outcome::newton_failed: return "newton_failed";
+    case Outcome::indefinite_matrix: return "indefinite_matrix";
+    case Outcome::step_too_small: return "step_too_small";
+    case Outcome::singular_mass: return "singular_mass";
+    case Outcome::not_finite: return "not_finite";
+    case Outcome::solver_failed: return "solver_failed";
+    case Outcome::over_budget: return "over_budget";
+  }
+  return "unknown";
+}
+
+std::string_view advice(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::reached_end: return "";
+    case Outcome::diverged:
+      return "the motion grew without bound: take a smaller step or an implicit method";
+    case Outcome::newton_failed:
+      return "the nonlinear solve of a step did not converge: take a smaller step";
+    case Outcome::indefinite_matrix:
+      return "M - h^2 K is not positive definite, as compressed springs make it: take a smaller "
+             "step or an explicit method";
+    case Outcome::step_too_small:
+      return "the step is too small for the time to advance: take a larger step or tolerance";
+    case Outcome::singular_mass:
+      return "a massless node has no acceleration: give it a mass or take a method that accepts "
+             "massless nodes";
+    case Outcome::not_finite:
+      return "a force or velocity is not a finite number: take a smaller step, or look for extreme "
+             "values in the scene";
+    case Outcome::solver_failed: return "the solver gave up";
+    case Outcome::over_budget: return "the run was stopped because its time was up";
+  }
+  return "";
+}
+
+Summary Integrator::advance(State& state, double t_end, const Observer& observer,
+                            std::stop_token stop) {
+  counts_ = {};
+  message_.clear();
+  stop_ = std::move(stop);
+  Outcome outcome;
+  try {
+    outcome = run(state, t_end, observer);
+  } catch (const std::exception& error) {
+    outcome = Outcome::solver_failed;
+    explain(error.what());
+  }
+  if (outcome != Outcome::reached_end && message_.empty()) message_ = advice(outcome);
+  return {outcome, state.t, counts_, message_};
+}
+
+Outcome Integrator::run(State& state, double t_end, const Observer& observer) {
+  if (!state.q.allFinite() || !state.v.allFinite() || !std::isfinite(t_end)) {
+    explain("the start is not finite");
+    return Outcome::not_finite;
+  }
+  if (system_.has_massless() && !method_.accepts_massless) return Outcome::singular_mass;
+
+  const bool moves = system_.size() > 0 && t_end > state.t;
+  const auto go_to = [&](double t) {
+    const Outcome outcome = moves && t > state.t ? run_to(state, t) : Outcome::reached_end;
+    if (outcome == Outcome::reached_end) state.t = t;
+    return outcome;
+  };
+  if (moves) start(state);
+  for (const double t : observer.times) {
+    if (const Outcome outcome = go_to(t); outcome != Outcome::reached_end) return outcome;
+    observer.see(state);
+  }
+  return go_to(t_end);
+}
+
+}  // namespace qddot

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "integrators/integrator.hpp"
+
+namespace qddot {
+
+enum class Family { hand_written, sundials };
+enum class Knob { step_size, rtol };
+
+// What the registry knows of a method. Tables, tests and experiments are driven by this alone.
+struct Method {
+  std::string name;
+  std::string summary;  // one line
+  std::string source;   // where the formula is from
+  int order = 1;        // of the global error in q and v
+  Family family = Family::hand_written;
+  Knob knob = Knob::step_size;
+  bool implicit = false;
+  bool symplectic = false;
+  bool needs_stiffness = false;
+  bool accepts_massless = false;
+  std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
+};
+
+// For Method::make: constructs an integrator of class T.
+template <class T>
+std::unique_ptr<Integrator> create(const Method& method, const System& system,
+                                   const Knobs& knobs) {
+  return std::make_unique<T>(method, system, knobs);
+}
+
+}  // namespace qddot

@@ -1,0 +1,40 @@
+#include "integrators/registry.hpp"
+
+#include <algorithm>
+
+// One line a method; each is defined in the file of its name or of its family.
+#define QDDOT_METHODS(METHOD)   \
+  METHOD(explicit_euler)        \
+  METHOD(symplectic_euler)      \
+  METHOD(semi_implicit_euler)   \
+  METHOD(implicit_euler)        \
+  METHOD(verlet)                \
+  METHOD(kahan_li8)             \
+  METHOD(arkode_dirk2)          \
+  METHOD(arkode_dirk3)          \
+  METHOD(arkode_dirk4)          \
+  METHOD(arkode_dirk5)          \
+  METHOD(ida)
+
+namespace qddot {
+
+#define QDDOT_DECLARE(method) Method method();
+QDDOT_METHODS(QDDOT_DECLARE)
+
+const std::vector<Method>& methods() {
+#define QDDOT_CALL(method) method(),
+  static const std::vector<Method> all = {QDDOT_METHODS(QDDOT_CALL)};
+  return all;
+}
+
+const Method* find_method(std::string_view name) {
+  const auto found = std::ranges::find(methods(), name, &Method::name);
+  return found == methods().end() ? nullptr : &*found;
+}
+
+std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
+                                            const Knobs& knobs) {
+  return method.make(method, system, knobs);
+}
+
+}  // namespace qddot

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "integrators/method.hpp"
+
+namespace qddot {
+
+// Every method there is, in the order in which it is listed and drawn.
+const std::vector<Method>& methods();
+
+// The method of that name, or nullptr.
+const Method* find_method(std::string_view name);
+
+// An integrator for `system`, which must outlive it; allocates and analyses all it needs.
+std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
+                                            const Knobs& knobs);
+
+}  // namespace qddot

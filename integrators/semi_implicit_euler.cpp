@@ -1,0 +1,59 @@
+// Semi-implicit (linearly implicit) Euler, as in the lecture and in Baraff and Witkin, SIGGRAPH
+// 1998: implicit Euler with f linearised at q_n, one Newton step of it from v = 0:
+//   (M - h^2 K(q_n)) v_{n+1} = M v_n + h f(q_n)
+//   q_{n+1} = q_n + h v_{n+1}
+// Order 1, one factorisation a step (one a run where K is constant). Not to be confused with
+// symplectic_euler, which the literature calls semi-implicit as well. An indefinite matrix is
+// solved with as it stands, as the formula says; a singular one ends the run.
+#include "integrators/fixed_step.hpp"
+#include "integrators/registry.hpp"
+#include "src/algebra/effective_mass.hpp"
+
+namespace qddot {
+namespace {
+
+class SemiImplicitEuler final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  void start(const State&) override { factorized_h_ = 0; }
+
+  Outcome step(const State& now, double h, State& next) override {
+    force(now.q, f_);
+    if (!factorize(now.q, h)) return Outcome::indefinite_matrix;
+    b_ = system().mass().cwiseProduct(now.v) + h * f_;
+    matrix_.solve(b_, next.v);
+    ++counts().solves;
+    next.q = now.q + h * next.v;
+    return Outcome::reached_end;
+  }
+
+  // Makes the factors of M - h^2 K(q) unless the last ones are these.
+  bool factorize(const Vec& q, double h) {
+    if (system().stiffness_is_constant() && h == factorized_h_) return true;
+    stiffness(q, k_);
+    ++counts().factorizations;
+    factorized_h_ = h;
+    return matrix_.factorize(1, h * h, k_) != EffectiveMass::Definiteness::singular;
+  }
+
+  Vec f_{system().size()}, b_{system().size()};
+  SymmetricMatrix k_{system().stiffness_pattern()};
+  EffectiveMass matrix_{system()};
+  double factorized_h_ = 0;
+};
+
+}  // namespace
+
+Method semi_implicit_euler() {
+  return {.name = "semi_implicit_euler",
+          .summary = "linearly implicit Euler; one linear solve a step, damps",
+          .source = "Baraff and Witkin, Large Steps in Cloth Simulation, SIGGRAPH 1998, eq. 6",
+          .implicit = true,
+          .needs_stiffness = true,
+          .accepts_massless = true,
+          .make = create<SemiImplicitEuler>};
+}
+
+}  // namespace qddot

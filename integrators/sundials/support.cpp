@@ -1,0 +1,113 @@
+#include "integrators/sundials/support.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace qddot::sundials {
+namespace {
+
+// A run whose mean step is below this fraction of its length would never arrive.
+constexpr double smallest_mean_step = 1e-10;
+constexpr int steps_before_judging = 10000;
+
+Context make_context() {
+  SUNContext context = nullptr;
+  check(SUNContext_Create(nullptr, &context), "SUNContext_Create");
+  return Context(context);
+}
+
+Matrix make_matrix(const FirstOrderPattern& pattern, Index n, SUNContext context) {
+  const auto nonzeros = std::ssize(pattern.rows());
+  Matrix matrix(check(SUNSparseMatrix(2 * n, 2 * n, nonzeros, CSC_MAT, context)));
+  std::ranges::copy(pattern.column_starts(), SM_INDEXPTRS_S(matrix.get()));
+  std::ranges::copy(pattern.rows(), SM_INDEXVALS_S(matrix.get()));
+  return matrix;
+}
+
+}  // namespace
+
+void check(int flag, const char* call) {
+  if (flag < 0) throw std::runtime_error(fmt::format("{} failed with flag {}", call, flag));
+}
+
+Stock::Stock(const Method& method, const System& system, const Knobs& knobs)
+    : Integrator(method, system, knobs),
+      context_(make_context()),
+      pattern_(system),
+      y_(check(N_VNew_Serial(2 * system.size(), context()))),
+      matrix_(make_matrix(pattern_, system.size(), context())),
+      linear_solver_(check(SUNLinSol_KLU(y(), matrix(), context()))),
+      q_(system.size()),
+      f_(system.size()),
+      k_(system.stiffness_pattern()) {}
+
+void Stock::load(const State& state) {
+  Halves halves(y());
+  halves.q = state.q;
+  halves.v = state.v;
+}
+
+const Vec& Stock::force_at(const Eigen::Map<Vec>& q) {
+  q_ = q;
+  force(q_, f_);
+  return f_;
+}
+
+void Stock::fill(SUNMatrix target, const Eigen::Map<Vec>& q, double alpha, double beta,
+                 const Vec& s, const Vec& e) {
+  q_ = q;
+  stiffness(q_, k_);
+  // SUNDIALS may have zeroed the pattern along with the values.
+  std::ranges::copy(pattern_.column_starts(), SM_INDEXPTRS_S(target));
+  std::ranges::copy(pattern_.rows(), SM_INDEXVALS_S(target));
+  pattern_.fill(alpha, beta, s, k_, e, SM_DATA_S(target));
+}
+
+void Stock::keep_message(int, const char*, const char*, char* message, void* self) {
+  try {
+    static_cast<Stock*>(self)->said_ = message;
+  } catch (...) {  // out of memory for a message: the flag alone has to do
+  }
+}
+
+Outcome Stock::run_to(State& state, double t_stop) {
+  parked_ = nullptr;
+  said_.clear();
+  set_stop_time(t_stop);
+  const Outcome outcome = advance_steps(state, t_stop);
+  collect_counts();
+  return outcome;
+}
+
+Outcome Stock::advance_steps(State& state, double t_stop) {
+  const double t_start = state.t;
+  for (double steps = 1; state.t < t_stop; ++steps) {
+    if (must_stop()) return Outcome::over_budget;
+    double t = state.t;
+    const int flag = take_step(t_stop, t);
+    if (parked_) std::rethrow_exception(parked_);
+    if (flag < 0) return failure(flag, state.t);
+    const Halves halves(y());
+    if (!halves.q.allFinite() || !halves.v.allFinite()) return Outcome::not_finite;
+    state.q = halves.q;
+    state.v = halves.v;
+    state.t = t;
+    if (steps >= steps_before_judging &&
+        t - t_start < steps * smallest_mean_step * (t_stop - t_start)) {
+      return Outcome::step_too_small;
+    }
+  }
+  return Outcome::reached_end;
+}
+
+Outcome Stock::failure(int flag, double t) {
+  const Outcome outcome = outcome_of(flag);
+  std::ranges::replace(said_, '\n', ' ');
+  explain(fmt::format("{} at t = {:.6g} s: {}{}", flag_name(flag), t, advice(outcome),
+                      said_.empty() ? "" : fmt::format(" ({})", said_)));
+  return outcome;
+}
+
+}  // namespace qddot::sundials

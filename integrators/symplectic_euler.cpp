@@ -1,0 +1,37 @@
+// Symplectic Euler (often called semi-implicit Euler, a name that here belongs to the linearly
+// implicit method of the lecture):
+//   v_{n+1} = v_n + h M^-1 f(q_n)
+//   q_{n+1} = q_n + h v_{n+1}
+// Order 1, one force a step. Bounded on q'' = -w^2 q for h w < 2, unbounded above.
+#include "integrators/fixed_step.hpp"
+#include "integrators/registry.hpp"
+
+namespace qddot {
+namespace {
+
+class SymplecticEuler final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    force(now.q, f_);
+    next.v = now.v + h * f_.cwiseQuotient(system().mass());
+    next.q = now.q + h * next.v;
+    return Outcome::reached_end;
+  }
+
+  Vec f_{system().size()};
+};
+
+}  // namespace
+
+Method symplectic_euler() {
+  return {.name = "symplectic_euler",
+          .summary = "kick, then drift; energy error stays bounded below h = 2/w_max",
+          .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.9",
+          .symplectic = true,
+          .make = create<SymplecticEuler>};
+}
+
+}  // namespace qddot

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+
+#include "src/model/system.hpp"
+
+namespace qddot {
+
+// Solves (a M - s K) x = b: the n x n matrix of every implicit stage of M q'' = f(q).
+// The pattern is the system's, so the ordering and symbolic analysis are made once, here; each
+// factorize() is numeric only. By CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM TOMS 35:3, 2008):
+// supernodal LL' or simplicial LDL', whichever its flop count favours.
+class EffectiveMass {
+ public:
+  // Signs of the factorised matrix. `indefinite` (compressed springs outweigh the mass) can still
+  // be solved with; `singular` cannot.
+  enum class Definiteness { positive, indefinite, singular };
+
+  explicit EffectiveMass(const System& system);
+  ~EffectiveMass();
+
+  // Factorises a M - s K, a >= 0, s [s^2] >= 0, K with the system's pattern. An indefinite matrix
+  // is factorised as LDL' without pivoting. Throws std::runtime_error when out of memory.
+  Definiteness factorize(double a, double s, const SymmetricMatrix& k);
+
+  // x = (a M - s K)^-1 b with the last factors, which must not be singular; b, x: n.
+  void solve(const Vec& b, Vec& x);
+
+ private:
+  class Cholmod;
+  std::unique_ptr<Cholmod> cholmod_;
+};
+
+}  // namespace qddot

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "src/model/system.hpp"
+
+namespace qddot {
+
+// An upper bound of the largest natural frequency w_max [rad/s] of -K x = w^2 M x at q, by
+// Gershgorin's circles of M^-1 K: w^2 <= max_i sum_j |K_ij| / m_i. Zero where n = 0; infinite
+// where a massless node has stiffness.
+double frequency_bound(const System& system, const Vec& q);
+
+}  // namespace qddot

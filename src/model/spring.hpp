@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <complex>
+
+namespace qddot {
+
+// The law of one spring of length l >= 0: V(l) = 1/2 k (l - l0)^2 + 1/4 c (l - l0)^4.
+// k = 2 kappa / l0^2 gives the lecture's V = kappa (1 - l/l0)^2.
+struct SpringLaw {
+  double stiffness = 0;    // k [N/m], >= 0
+  double rest_length = 0;  // l0 [m], >= 0
+  double quartic = 0;      // c [N/m^3], >= 0
+
+  // Whether its force is linear in the difference of its ends.
+  bool is_linear() const { return rest_length == 0 && quartic == 0; }
+
+  // V(l) [J].
+  template <class Real>
+  Real energy(Real l) const {
+    const Real s = l - rest_length, s2 = s * s;
+    return s2 * (0.5 * stiffness + 0.25 * quartic * s2);
+  }
+  // tau = dV/dl [N], positive in tension.
+  template <class Real>
+  Real tension(Real l) const {
+    const Real s = l - rest_length;
+    return s * (stiffness + quartic * s * s);
+  }
+  // d tau / dl [N/m].
+  template <class Real>
+  Real tangent(Real l) const {
+    const Real s = l - rest_length;
+    return stiffness + 3.0 * quartic * s * s;
+  }
+};
+
+// One spring between x_i and x_j in D = 1, 2 or 3 dimensions, as functions of d = x_j - x_i [m],
+// l = |d|, n = d/l. Real is double, or std::complex<double> for complex-step differentiation.
+//
+// At l = 0 the direction n does not exist. With l0 = 0 everything below has a limit, and that is
+// what is returned. With l0 > 0 the energy has the tip of a cone there: the force is taken as zero
+// (the mean over all directions) and the stiffness as the longitudinal one in every direction, so
+// that both stay finite and K stays symmetric.
+
+template <class Real, int D>
+Real spring_length(const Eigen::Matrix<Real, D, 1>& d) {
+  using std::sqrt;
+  return sqrt((d.transpose() * d).value());  // no conjugation: analytic in d
+}
+
+// V [J].
+template <class Real, int D>
+Real spring_energy(const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d) {
+  return law.energy(spring_length(d));
+}
+
+// The force on x_i [N], tau n = -dV/dx_i; the force on x_j is its opposite.
+template <class Real, int D>
+Eigen::Matrix<Real, D, 1> spring_force(const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d) {
+  const Real l = spring_length(d);
+  return d * (std::abs(l) > 0 ? law.tension(l) / l : Real(0));
+}
+
+// The D x D block B = tau' nn' + (tau/l)(I - nn') [N/m]: K_ij = K_ji = B, K_ii and K_jj lose B.
+// Indefinite where the spring is compressed (tau < 0), which is how structures buckle.
+template <class Real, int D>
+Eigen::Matrix<Real, D, D> spring_stiffness(const SpringLaw& law,
+                                           const Eigen::Matrix<Real, D, 1>& d) {
+  using Block = Eigen::Matrix<Real, D, D>;
+  const Real l = spring_length(d);
+  if (std::abs(l) == 0) return Block::Identity() * law.tangent(l);
+  const Real along = law.tangent(l);
+  if constexpr (D == 1) return Block(along);
+  const Real across = law.tension(l) / l;
+  const Eigen::Matrix<Real, D, 1> n = d / l;
+  return Block::Identity() * across + (along - across) * (n * n.transpose());
+}
+
+}  // namespace qddot
