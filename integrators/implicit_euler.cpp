@@ -19,8 +19,9 @@ namespace {
 // The last correction may change the velocity by this fraction of the largest one; Newton's
 // convergence is quadratic, so what it leaves is about the square of it.
 constexpr double tolerance = 1e-6;
-constexpr int most_iterations = 50;
+constexpr int most_iterations = 100;
 constexpr int most_halvings = 30;
+constexpr double least_shift = 1.0 / 64;
 constexpr int most_shifts = 60;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -29,7 +30,7 @@ class ImplicitEuler final : public FixedStep {
   using FixedStep::FixedStep;
 
  private:
-  void start(const State&) override { factorized_h_ = 0; }
+  void start(const State&) override { factorized_h_ = shift_ = 0; }
 
   Outcome step(const State& now, double h, State& next) override {
     next.v = now.v;
@@ -40,7 +41,7 @@ class ImplicitEuler final : public FixedStep {
         return outcome;
       }
       ++counts().newton_iterations;
-      if (exact_ && (system().stiffness_is_constant() || is_small(h, now, next))) {
+      if (shift_ == 0 && (system().stiffness_is_constant() || is_small(h, now, next))) {
         next.v += p_;
         next.q = now.q + h * next.v;
         return Outcome::reached_end;
@@ -57,18 +58,19 @@ class ImplicitEuler final : public FixedStep {
     r_ = system().mass().cwiseProduct(next.v - now.v) - h * f_;
   }
 
-  // p = -(a M - h^2 K(q))^-1 r with a = 1 where that is positive definite; where it is not, the
-  // smallest a = 1 + 4^k / 64 tried that makes it so, which keeps p a direction of descent.
+  // p = -(a M - h^2 K(q))^-1 r with a = 1 where that is positive definite; where it is not, some
+  // a > 1 that makes it so, which keeps p a direction of descent. The last a is where the search
+  // for the next begins.
   Outcome direction(double h, const Vec& q) {
     if (!system().stiffness_is_constant() || h != factorized_h_) {
       stiffness(q, k_);
+      if (!k_.coeffs().allFinite()) return Outcome::not_finite;
       factorized_h_ = h;
-      double shift = 0;
-      for (int tries = 0; !is_positive(1 + shift, h * h); ++tries) {
-        if (tries == most_shifts || !k_.coeffs().allFinite()) return Outcome::indefinite_matrix;
-        shift = std::max(1.0 / 64, 4 * shift);
+      shift_ = shift_ > least_shift ? shift_ / 4 : 0;
+      for (int tries = 0; !is_positive(1 + shift_, h * h); ++tries) {
+        if (tries == most_shifts) return Outcome::indefinite_matrix;
+        shift_ = std::max(least_shift, 4 * shift_);
       }
-      exact_ = shift == 0;
     }
     matrix_.solve(r_, p_);
     ++counts().solves;
@@ -78,7 +80,7 @@ class ImplicitEuler final : public FixedStep {
 
   bool is_positive(double a, double s) {
     ++counts().factorizations;
-    return matrix_.factorize(a, s, k_) == EffectiveMass::Definiteness::positive;
+    return matrix_.factorize_positive(a, s, k_);
   }
 
   // Whether p is within the tolerance, or too small to move any node by more than rounding.
@@ -112,7 +114,7 @@ class ImplicitEuler final : public FixedStep {
   SymmetricMatrix k_{system().stiffness_pattern()};
   EffectiveMass matrix_{system()};
   double factorized_h_ = 0;
-  bool exact_ = false;  // whether the factors are those of M - h^2 K unshifted
+  double shift_ = 0;  // the factors are those of (1 + shift) M - h^2 K
 };
 
 }  // namespace

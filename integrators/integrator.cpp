@@ -1,8 +1,8 @@
 #include "integrators/integrator.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "integrators/method.hpp"
 
@@ -10,22 +10,32 @@ namespace qddot {
 
 std::string_view name(Outcome outcome) {
   switch (outcome) {
-    case Outcome::reached_end: return "reached_end";
-    case Outcome::diverged: return "diverged";
-    case Outcome::newton_failed: return "newton_failed";
-    case Outcome::indefinite_matrix: return "indefinite_matrix";
-    case Outcome::step_too_small: return "step_too_small";
-    case Outcome::singular_mass: return "singular_mass";
-    case Outcome::not_finite: return "not_finite";
-    case Outcome::solver_failed: return "solver_failed";
-    case Outcome::over_budget: return "over_budget";
+    case Outcome::reached_end:
+      return "reached_end";
+    case Outcome::diverged:
+      return "diverged";
+    case Outcome::newton_failed:
+      return "newton_failed";
+    case Outcome::indefinite_matrix:
+      return "indefinite_matrix";
+    case Outcome::step_too_small:
+      return "step_too_small";
+    case Outcome::singular_mass:
+      return "singular_mass";
+    case Outcome::not_finite:
+      return "not_finite";
+    case Outcome::solver_failed:
+      return "solver_failed";
+    case Outcome::over_budget:
+      return "over_budget";
   }
   return "unknown";
 }
 
 std::string_view advice(Outcome outcome) {
   switch (outcome) {
-    case Outcome::reached_end: return "";
+    case Outcome::reached_end:
+      return "";
     case Outcome::diverged:
       return "the motion grew without bound: take a smaller step or an implicit method";
     case Outcome::newton_failed:
@@ -41,8 +51,10 @@ std::string_view advice(Outcome outcome) {
     case Outcome::not_finite:
       return "a force or velocity is not a finite number: take a smaller step, or look for extreme "
              "values in the scene";
-    case Outcome::solver_failed: return "the solver gave up";
-    case Outcome::over_budget: return "the run was stopped because its time was up";
+    case Outcome::solver_failed:
+      return "the solver gave up";
+    case Outcome::over_budget:
+      return "the run was stopped because its time was up";
   }
   return "";
 }

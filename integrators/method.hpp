@@ -10,6 +10,14 @@ namespace qddot {
 enum class Family { hand_written, sundials };
 enum class Knob { step_size, rtol };
 
+// As they are written to tables.
+constexpr const char* family_name(Family family) {
+  return family == Family::hand_written ? "hand-written" : "sundials";
+}
+constexpr const char* knob_name(Knob knob) {
+  return knob == Knob::step_size ? "step_size" : "rtol";
+}
+
 // What the registry knows of a method. Tables, tests and experiments are driven by this alone.
 struct Method {
   std::string name;
@@ -27,8 +35,7 @@ struct Method {
 
 // For Method::make: constructs an integrator of class T.
 template <class T>
-std::unique_ptr<Integrator> create(const Method& method, const System& system,
-                                   const Knobs& knobs) {
+std::unique_ptr<Integrator> create(const Method& method, const System& system, const Knobs& knobs) {
   return std::make_unique<T>(method, system, knobs);
 }
 

@@ -3,17 +3,17 @@
 #include <algorithm>
 
 // One line a method; each is defined in the file of its name or of its family.
-#define QDDOT_METHODS(METHOD)   \
-  METHOD(explicit_euler)        \
-  METHOD(symplectic_euler)      \
-  METHOD(semi_implicit_euler)   \
-  METHOD(implicit_euler)        \
-  METHOD(verlet)                \
-  METHOD(kahan_li8)             \
-  METHOD(arkode_dirk2)          \
-  METHOD(arkode_dirk3)          \
-  METHOD(arkode_dirk4)          \
-  METHOD(arkode_dirk5)          \
+#define QDDOT_METHODS(METHOD) \
+  METHOD(explicit_euler)      \
+  METHOD(symplectic_euler)    \
+  METHOD(semi_implicit_euler) \
+  METHOD(implicit_euler)      \
+  METHOD(verlet)              \
+  METHOD(kahan_li8)           \
+  METHOD(arkode_dirk2)        \
+  METHOD(arkode_dirk3)        \
+  METHOD(arkode_dirk4)        \
+  METHOD(arkode_dirk5)        \
   METHOD(ida)
 
 namespace qddot {

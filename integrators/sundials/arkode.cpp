@@ -87,13 +87,18 @@ class Dirk : public sundials::Stock {
     switch (flag) {
       case ARK_ERR_FAILURE:
       case ARK_TOO_MUCH_ACC:
-      case ARK_TOO_CLOSE: return Outcome::step_too_small;
-      case ARK_CONV_FAILURE: return Outcome::newton_failed;
-      case ARK_LSETUP_FAIL: return Outcome::indefinite_matrix;
+      case ARK_TOO_CLOSE:
+        return Outcome::step_too_small;
+      case ARK_CONV_FAILURE:
+        return Outcome::newton_failed;
+      case ARK_LSETUP_FAIL:
+        return Outcome::indefinite_matrix;
       case ARK_FIRST_RHSFUNC_ERR:
       case ARK_REPTD_RHSFUNC_ERR:
-      case ARK_UNREC_RHSFUNC_ERR: return Outcome::not_finite;
-      default: return Outcome::solver_failed;
+      case ARK_UNREC_RHSFUNC_ERR:
+        return Outcome::not_finite;
+      default:
+        return Outcome::solver_failed;
     }
   }
 

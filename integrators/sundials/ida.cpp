@@ -89,14 +89,19 @@ class Ida final : public sundials::Stock {
   Outcome outcome_of(int flag) const override {
     switch (flag) {
       case IDA_ERR_FAIL:
-      case IDA_TOO_MUCH_ACC: return Outcome::step_too_small;
+      case IDA_TOO_MUCH_ACC:
+        return Outcome::step_too_small;
       case IDA_CONV_FAIL:
-      case IDA_NLS_FAIL: return Outcome::newton_failed;
-      case IDA_LSETUP_FAIL: return Outcome::indefinite_matrix;
+      case IDA_NLS_FAIL:
+        return Outcome::newton_failed;
+      case IDA_LSETUP_FAIL:
+        return Outcome::indefinite_matrix;
       case IDA_RES_FAIL:
       case IDA_REP_RES_ERR:
-      case IDA_FIRST_RES_FAIL: return Outcome::not_finite;
-      default: return Outcome::solver_failed;
+      case IDA_FIRST_RES_FAIL:
+        return Outcome::not_finite;
+      default:
+        return Outcome::solver_failed;
     }
   }
 

@@ -1,9 +1,9 @@
 #include "integrators/sundials/support.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <stdexcept>
+
+#include <fmt/format.h>
 
 namespace qddot::sundials {
 namespace {

@@ -1,13 +1,13 @@
 #pragma once
 
+#include <exception>
+#include <memory>
+#include <string>
+
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 #include <sunlinsol/sunlinsol_klu.h>
 #include <sunmatrix/sunmatrix_sparse.h>
-
-#include <exception>
-#include <memory>
-#include <string>
 
 #include "integrators/integrator.hpp"
 #include "src/model/first_order.hpp"

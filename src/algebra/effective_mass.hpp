@@ -23,6 +23,10 @@ class EffectiveMass {
   // is factorised as LDL' without pivoting. Throws std::runtime_error when out of memory.
   Definiteness factorize(double a, double s, const SymmetricMatrix& k);
 
+  // The same, but gives up (false, nothing to solve with) unless the matrix is positive definite:
+  // cheaper where an indefinite one is of no use.
+  bool factorize_positive(double a, double s, const SymmetricMatrix& k);
+
   // x = (a M - s K)^-1 b with the last factors, which must not be singular; b, x: n.
   void solve(const Vec& b, Vec& x);
 

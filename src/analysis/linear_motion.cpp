@@ -1,8 +1,9 @@
 #include "src/analysis/linear_motion.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
+
+#include <Eigen/Eigenvalues>
 
 namespace qddot {
 namespace {

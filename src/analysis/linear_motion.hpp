@@ -20,9 +20,9 @@ class LinearMotion {
 
  private:
   State initial_;
-  Vec root_mass_;       // M^1/2
-  Eigen::MatrixXd u_;   // modes, a column each
-  Vec omega_;           // [rad/s]
+  Vec root_mass_;        // M^1/2
+  Eigen::MatrixXd u_;    // modes, a column each
+  Vec omega_;            // [rad/s]
   Vec velocity_, push_;  // y'(0) and U'b
 };
 

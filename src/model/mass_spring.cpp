@@ -107,7 +107,8 @@ class MassSpring final : public System {
     pattern_.finalize();
     for (const auto& [i, j, law] : links_) {
       const auto& list = below[std::min(i, j)];
-      place_.push_back(static_cast<int>(std::ranges::lower_bound(list, std::max(i, j)) - list.begin()));
+      place_.push_back(
+          static_cast<int>(std::ranges::lower_bound(list, std::max(i, j)) - list.begin()));
     }
   }
 
@@ -124,10 +125,14 @@ class MassSpring final : public System {
 
 std::unique_ptr<System> make_mass_spring(const Network& network) {
   switch (network.dimension) {
-    case 1: return std::make_unique<MassSpring<1>>(network);
-    case 2: return std::make_unique<MassSpring<2>>(network);
-    case 3: return std::make_unique<MassSpring<3>>(network);
-    default: throw std::invalid_argument("a network has 1, 2 or 3 dimensions");
+    case 1:
+      return std::make_unique<MassSpring<1>>(network);
+    case 2:
+      return std::make_unique<MassSpring<2>>(network);
+    case 3:
+      return std::make_unique<MassSpring<3>>(network);
+    default:
+      throw std::invalid_argument("a network has 1, 2 or 3 dimensions");
   }
 }
 

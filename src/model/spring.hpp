@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
 #include <complex>
+
+#include <Eigen/Core>
 
 namespace qddot {
 

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "experiments/whole_file.hpp"
+
+namespace qddot {
+
+// A table as RFC 4180 has it, lines ended by a line feed: one header row, numbers with 17
+// significant digits (enough to read back the same double), what is not finite left empty.
+class Csv {
+ public:
+  explicit Csv(const std::vector<std::string>& header);
+
+  // Appends one row, a field for each argument: numbers, or text that is quoted where it must be.
+  template <class... Fields>
+  void row(const Fields&... fields) {
+    (field(fields), ...);
+    end_row();
+  }
+  void field(double value) {
+    separate();
+    if (std::isfinite(value)) fmt::format_to(std::back_inserter(text_), "{:.17g}", value);
+  }
+  template <std::integral Integer>
+  void field(Integer value) {
+    separate();
+    fmt::format_to(std::back_inserter(text_), "{}", value);
+  }
+  void field(std::string_view text);
+  void end_row();
+
+  std::string_view text() const { return {text_.data(), text_.size()}; }
+  void clear() { text_.clear(); }
+
+ private:
+  void separate() {
+    if (!row_is_empty_) text_.push_back(',');
+    row_is_empty_ = false;
+  }
+
+  fmt::memory_buffer text_;
+  bool row_is_empty_ = true;
+};
+
+// A Csv that goes to a file as it grows, and appears there on commit().
+class CsvFile : public Csv {
+ public:
+  CsvFile(const std::string& path, const std::vector<std::string>& header)
+      : Csv(header), file_(path) {}
+
+  const std::string& path() const { return file_.path(); }
+  // Writes out what has gathered, once that is worth a call.
+  void flush_if_large() {
+    if (text().size() > (1 << 20)) flush();
+  }
+  void commit() {
+    flush();
+    file_.commit();
+  }
+
+ private:
+  void flush() {
+    file_.write(text());
+    clear();
+  }
+
+  WholeFile file_;
+};
+
+}  // namespace qddot

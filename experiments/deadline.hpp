@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+namespace qddot {
+
+// Asks for a stop after a number of seconds, from a sleeping thread: the run that is timed only
+// reads a flag. Disarmed when destroyed.
+class Deadline {
+ public:
+  explicit Deadline(double seconds)
+      : watcher_([this, seconds](std::stop_token disarmed) {
+          std::unique_lock lock(mutex_);
+          wake_.wait_for(lock, disarmed, std::chrono::duration<double>(seconds),
+                         [] { return false; });
+          if (!disarmed.stop_requested()) source_.request_stop();
+        }) {}
+
+  std::stop_token token() const { return source_.get_token(); }
+  bool passed() const { return source_.stop_requested(); }
+
+ private:
+  std::stop_source source_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread watcher_;  // last: starts when all else is there, and joins first
+};
+
+}  // namespace qddot

@@ -1,0 +1,75 @@
+#include "experiments/front.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace qddot {
+namespace {
+
+void keep_faster(const Point*& fastest, const Point& point) {
+  if (!fastest || point.time < fastest->time) fastest = &point;
+}
+
+std::string in_words(double seconds) {
+  if (seconds < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
+  if (seconds < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
+  if (seconds < 1) return fmt::format("{:.3g} ms", seconds * 1e3);
+  return fmt::format("{:.3g} s", seconds);
+}
+
+std::string knob_in_words(const Point& point) {
+  return point.method->knob == Knob::step_size ? fmt::format("h = {:.3g} s", point.value)
+                                               : fmt::format("rtol = {:.0e}", point.value);
+}
+
+// The other family's best, and how many times slower it is.
+std::string rival(const FrontRow& row) {
+  const Point* other =
+      row.fastest == row.fastest_sundials ? row.fastest_hand_written : row.fastest_sundials;
+  if (!other) return "";
+  return fmt::format("{} {}, {:.3g} x", other->method->name, in_words(other->time),
+                     other->time / row.fastest->time);
+}
+
+}  // namespace
+
+std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
+                                               const Reference& reference) {
+  std::vector<FrontRow> rows;
+  for (int digit = 1; digit <= 9; ++digit) {
+    FrontRow row{.accuracy = std::pow(10.0, -digit)};
+    for (const Point& point : points) {
+      const bool reached = point.outcome == Outcome::reached_end &&
+                           point.errors.position <= row.accuracy &&
+                           reference.certified.position <= row.accuracy;
+      if (!reached) continue;
+      keep_faster(row.fastest, point);
+      keep_faster(point.method->family == Family::sundials ? row.fastest_sundials
+                                                           : row.fastest_hand_written,
+                  point);
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void print_front(const std::string& scene, double until, const std::vector<FrontRow>& front,
+                 const Reference& reference) {
+  fmt::print("{} to t = {:g} s; reference certified to {:.1e} ({})\n\n", scene, until,
+             reference.certified.position, reference.made_by);
+  fmt::print("{:<9} {:<20} {:<16} {:>8}  {:>9}   {}\n", "accuracy", "fastest method", "knob",
+             "error", "time", "fastest of the other family");
+  for (const FrontRow& row : front) {
+    if (const Point* p = row.fastest) {
+      fmt::print("{:<9.0e} {:<20} {:<16} {:>8.1e}  {:>9}   {}\n", row.accuracy, p->method->name,
+                 knob_in_words(*p), p->errors.position, in_words(p->time), rival(row));
+    } else {
+      fmt::print("{:<9.0e} {}\n", row.accuracy,
+                 reference.certified.position > row.accuracy ? "beyond what the reference certifies"
+                                                             : "no method reached it");
+    }
+  }
+}
+
+}  // namespace qddot

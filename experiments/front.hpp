@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/measurement.hpp"
+
+namespace qddot {
+
+// The answer at one accuracy: the fastest point whose position error is at most that, and the
+// fastest of each family; nullptr where there is none, or where the reference is not that certain.
+struct FrontRow {
+  double accuracy = 0;
+  const Point* fastest = nullptr;
+  const Point* fastest_hand_written = nullptr;
+  const Point* fastest_sundials = nullptr;
+};
+
+// Rows for the accuracies 1e-1, 1e-2, ... 1e-9; pointers into `points`.
+std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
+                                               const Reference& reference);
+
+// Prints the rows as a table for people.
+void print_front(const std::string& scene, double until, const std::vector<FrontRow>& front,
+                 const Reference& reference);
+
+}  // namespace qddot

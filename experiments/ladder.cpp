@@ -1,0 +1,108 @@
+#include "experiments/ladder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "src/analysis/frequency_bound.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr int most_rungs = 60;
+
+// Values of the knob, finer with the rung. Rung 0 of a step size is h w = 4 for explicit methods,
+// beyond the stability limit of most, and half the horizon for implicit ones.
+class Rungs {
+ public:
+  Rungs(const Method& method, const ReducedScene& scene, double until)
+      : method_(method), until_(until) {
+    const double w = frequency_bound(scene.system(), scene.initial().q);
+    steps_ = method.implicit ? 2 : std::max(1.0, std::ceil(until * w / 4));
+  }
+
+  // Nothing where the ladder has no such rung.
+  std::optional<double> value(int rung) const {
+    if (std::abs(rung) > most_rungs) return {};
+    if (method_.knob == Knob::rtol) {
+      const double rtol = std::pow(10.0, -1 - rung);
+      return rtol <= 0.1 && rtol >= 1e-15 ? std::optional(rtol) : std::nullopt;
+    }
+    const double steps =
+        std::round(steps_ * std::pow(4.0, static_cast<double>(rung) / method_.order));
+    return steps >= 1 ? std::optional(until_ / steps) : std::nullopt;
+  }
+
+ private:
+  const Method& method_;
+  double until_, steps_;
+};
+
+// Whether the error has come to where a finer knob changes nothing.
+class Stagnation {
+ public:
+  bool after(const Point& point) {
+    if (point.outcome != Outcome::reached_end) return false;
+    const double error = point.errors.position;
+    idle_ = error > 0.8 * best_ ? idle_ + 1 : 0;
+    best_ = std::min(best_, error);
+    return idle_ >= 2 && best_ < 1e-4;
+  }
+
+ private:
+  double best_ = std::numeric_limits<double>::infinity();
+  int idle_ = 0;
+};
+
+// A run of fixed steps takes time in proportion to their number, so a hopeless one need not be
+// begun.
+bool is_hopeless(const Method& method, const Point& last, double value, const Effort& effort) {
+  return method.knob == Knob::step_size && last.outcome == Outcome::reached_end &&
+         last.time * last.value / value > 1.5 * effort.seconds;
+}
+
+bool is_good(const Point& point) {
+  return point.outcome == Outcome::reached_end && point.errors.position < 1;
+}
+
+}  // namespace
+
+std::vector<Point> climb(const Method& method, const ReducedScene& scene, double until,
+                         const Reference& reference, const Effort& effort,
+                         const std::function<void(const Point&)>& report) {
+  const Rungs rungs(method, scene, until);
+  std::vector<Point> points;
+  const auto take = [&](double value) -> const Point& {
+    points.push_back(!points.empty() && is_hopeless(method, points.back(), value, effort)
+                         ? Point{.method = &method, .value = value, .outcome = Outcome::over_budget}
+                         : measure(method, value, scene, until, reference, effort));
+    report(points.back());
+    return points.back();
+  };
+
+  for (int rung = 0; const auto value = rungs.value(rung); --rung) {
+    if (!points.empty() && points.back().value == *value) continue;
+    if (!is_good(take(*value))) break;
+  }
+  std::ranges::reverse(points);
+
+  Stagnation stagnation;
+  for (const Point& point : points) stagnation.after(point);
+  int unfinished = 0;
+  for (int rung = 1; const auto value = rungs.value(rung); ++rung) {
+    const Point& last = points.back();
+    if (last.outcome == Outcome::reached_end &&
+        (last.errors.position <= reference.certified.position || stagnation.after(last))) {
+      break;
+    }
+    // Where Newton struggles at the coarse end, finer may be faster: one such point is forgiven.
+    unfinished += last.outcome == Outcome::over_budget;
+    const bool has_worked = std::ranges::any_of(points, is_good);
+    if (last.outcome == Outcome::singular_mass || unfinished > (has_worked ? 0 : 2)) break;
+    if (last.value != *value) take(*value);
+  }
+  return points;
+}
+
+}  // namespace qddot

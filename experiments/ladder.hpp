@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "experiments/measurement.hpp"
+
+namespace qddot {
+
+// Measures one method along the ladder of its knob: up to where it fails or is a whole motion off,
+// down to the certified floor of the reference, to where rounding stops it, or to where a run takes
+// longer than the effort allows (that row is over_budget). Rungs divide the expected error by four
+// (step sizes: h by 4^(1/order)) or by ten (tolerances). Points from coarse to fine; `report` sees
+// each as it comes.
+std::vector<Point> climb(const Method& method, const ReducedScene& scene, double until,
+                         const Reference& reference, const Effort& effort,
+                         const std::function<void(const Point&)>& report);
+
+}  // namespace qddot

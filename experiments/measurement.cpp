@@ -1,0 +1,75 @@
+#include "experiments/measurement.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "experiments/deadline.hpp"
+#include "integrators/registry.hpp"
+
+namespace qddot {
+namespace {
+
+// Shorter than this, a run is timed together with others like it: the clock's own cost (some tens
+// of ns) stays below a thousandth.
+constexpr double shortest_sample = 1e-4;
+
+template <class Work>
+double seconds_of(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+}  // namespace
+
+Knobs knobs_for(const Method& method, double value) {
+  return method.knob == Knob::step_size ? Knobs{.step_size = value} : Knobs{.rtol = value};
+}
+
+Point measure(const Method& method, double value, const ReducedScene& scene, double until,
+              const Reference& reference, const Effort& effort) {
+  Point point{.method = &method, .value = value};
+  std::unique_ptr<Integrator> integrator;
+  point.setup = seconds_of(
+      [&] { integrator = make_integrator(method, scene.system(), knobs_for(method, value)); });
+
+  State state = scene.initial();
+  const Deadline deadline(effort.seconds);
+  Summary summary;
+  const double first =
+      seconds_of([&] { summary = integrator->advance(state, until, {}, deadline.token()); });
+  point.outcome = summary.outcome;
+  point.t_reached = summary.t_reached;
+  point.counts = summary.counts;
+  if (summary.outcome != Outcome::reached_end) return point;
+  point.errors = errors_between(scene, state, reference.end, reference.energy, reference.scales);
+
+  const int batch = static_cast<int>(std::ceil(std::min(shortest_sample / first, 1e5)));
+  std::vector<double> times;
+  double spent = 0;
+  while (std::ssize(times) < effort.repeats &&
+         (times.empty() || spent + first < effort.seconds / 2)) {
+    const double sample = seconds_of([&] {
+      for (int i = 0; i < batch; ++i) {
+        state = scene.initial();
+        integrator->advance(state, until);
+      }
+    });
+    spent += sample;
+    times.push_back(sample / batch);
+  }
+  point.time = median(times);
+  point.time_min = std::ranges::min(times);
+  point.timed_runs = static_cast<int>(times.size());
+  return point;
+}
+
+}  // namespace qddot

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "experiments/reference.hpp"
+#include "integrators/method.hpp"
+
+namespace qddot {
+
+// One point of the work-precision chart: a method at one value of its knob.
+struct Point {
+  const Method* method = nullptr;
+  double value = 0;      // of the knob: h [s] or rtol
+  Outcome outcome{};     // errors and times below mean something only where it is reached_end
+  double t_reached = 0;  // [s]
+  Errors errors{};
+  double time = 0, time_min = 0;  // median and least wall time of a run [s], set-up left out
+  double setup = 0;               // wall time of allocation and symbolic analysis [s]
+  int timed_runs = 0;
+  Counts counts{};
+};
+
+// How long a point may take, and how often it is timed.
+struct Effort {
+  double seconds = 10;  // for one run; slower ones become over_budget
+  int repeats = 5;      // timed runs; fewer, but one, where they would take half of that together
+};
+
+// What the user turns, as the method's kind takes it.
+Knobs knobs_for(const Method& method, double value);
+
+// Runs the method once untimed and then up to `repeats` times, at least once. Runs too short for
+// the clock are timed in batches. Single thread.
+Point measure(const Method& method, double value, const ReducedScene& scene, double until,
+              const Reference& reference, const Effort& effort);
+
+}  // namespace qddot

@@ -1,0 +1,240 @@
+"""The axes of a work-precision chart: lines, front, certified floor and the labels."""
+
+from itertools import groupby
+
+from matplotlib import ticker
+from matplotlib.text import Text
+
+import measurements
+from labels import LEADER_FROM, Ink, place_labels
+from sheet import DPI
+from style import FAINT, FRONT, number, power_of_ten, seconds, widened
+
+FONT_SIZE = 9.5
+FRONT_INK = 0.5
+BELOW_TICKS = -28
+
+
+class Chart:
+    """The runs of one experiment in axes of error and time."""
+
+    def __init__(self, axes, runs, certified, looks):
+        self.axes = axes
+        self.certified = certified
+        self.sweeps = measurements.sweeps(runs)
+        self.good = [run for run in runs if not run.failure]
+        self.looks = looks
+        self.set_limits()
+        self.style_axes()
+
+    def set_limits(self):
+        """The ranges of error and time; the certified floor is in them where the errors come
+        near."""
+        # An error below the certified floor is not known to be that small.
+        measured = [run.error for run in self.good if run.error > 0]
+        self.smallest = self.certified or min(measured, default=1e-16)
+        errors = [self.position(run)[0] for run in self.good] or [1e-9, 1.0]
+        times = [run.time for run in self.good] or [1e-3, 1.0]
+        self.floor_visible = bool(self.certified) and min(errors) < 1e3 * self.certified
+        left = self.certified / 5 if self.floor_visible else min(errors) / 3
+        right = max(errors) * 3
+        self.axes.set_xscale("log")
+        self.axes.set_yscale("log")
+        self.axes.set_xlim(*widened(left, right, 2))
+        self.axes.set_ylim(*widened(min(times) / 2.2, max(times) * 2, 2))
+
+    def style_axes(self):
+        """Grid, ticks and the directions in which a method is better."""
+        for axis, words in ((self.axes.xaxis, power_of_ten), (self.axes.yaxis, seconds)):
+            axis.set_major_locator(ticker.LogLocator(numticks=12))
+            axis.set_minor_locator(ticker.LogLocator(numticks=50))
+            axis.set_major_formatter(ticker.FuncFormatter(lambda v, _, words=words: words(v)))
+            axis.set_minor_formatter(ticker.NullFormatter())
+        self.axes.grid(True, which="both")
+        self.axes.tick_params(length=3, color=FAINT, labelsize=FONT_SIZE)
+        self.axes.tick_params(which="minor", length=0)
+        self.axes.set_ylabel("time of one run, median", fontsize=10)
+        self.note("relative position error", 0.5, (0, BELOW_TICKS), ha="center", va="center")
+        self.note("◀ more accurate", 0, (0, BELOW_TICKS), va="center", weight="bold")
+        self.note("◀ faster", 0, (-51, 0), rotation=90, ha="center", va="bottom", weight="bold")
+
+    def note(self, words, x, offset, **style):
+        """Words at the foot of the axes: at a share of their width, moved by an offset in
+        points."""
+        self.axes.annotate(
+            words,
+            (x, 0),
+            offset,
+            xycoords="axes fraction",
+            textcoords="offset points",
+            **{"size": 10, **style},
+        )
+
+    def position(self, run):
+        """Where a run is drawn: one below the certified floor stands on it."""
+        return max(run.error, self.smallest), run.time
+
+    def draw(self):
+        """Draws everything; the labels come last, when all they must not hide is known."""
+        self.draw_floor()
+        self.draw_front()
+        for sweep in self.sweeps:
+            self.draw_sweep(sweep)
+        if self.good:
+            self.draw_labels()
+        else:
+            words = "no run gave a point"
+            middle = {"transform": self.axes.transAxes, "ha": "center", "va": "center"}
+            self.axes.text(0.5, 0.5, words, size=13, color=FAINT, **middle)
+
+    def draw_floor(self):
+        """The region of errors below what the reference solution can tell, or a note that it lies
+        beyond the axes."""
+        if not self.certified:
+            return
+        words = f"reference certified to {number(self.certified)}"
+        if any(run.error < self.certified for run in self.good):
+            words += ", smaller errors stand on the line"
+        style = {"size": 9.5, "color": FAINT, "ha": "right"}
+        if not self.floor_visible:
+            self.note(words, 1, (0, BELOW_TICKS), va="center", **style)
+            return
+        left = self.axes.get_xlim()[0]
+        self.axes.axvspan(
+            left, self.certified, facecolor="none", edgecolor="#BBBBBB", hatch="////", linewidth=0
+        )
+        self.axes.axvline(self.certified, color=FAINT, linewidth=1.0)
+        self.axes.annotate(
+            words,
+            (self.certified, 0),
+            (-8, 6),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            rotation=90,
+            va="bottom",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
+            **style,
+        )
+
+    def front_corners(self):
+        """The staircase of the shortest time that reaches each error or a smaller one."""
+        corners = []
+        for error, time in sorted(map(self.position, self.good)):
+            if not corners or time < corners[-1][1]:
+                corners += [(error, corners[-1][1])] if corners else []
+                corners.append((error, time))
+        return corners + [(self.axes.get_xlim()[1], corners[-1][1])] if corners else []
+
+    def draw_front(self):
+        """The front as a wide stroke under the lines."""
+        corners = self.front_corners()
+        if corners:
+            self.axes.plot(
+                *zip(*corners),
+                color=FRONT,
+                alpha=0.75,
+                linewidth=9,
+                solid_joinstyle="round",
+                solid_capstyle="round",
+                zorder=1.5,
+            )
+
+    def pieces(self, sweep):
+        """The points of a sweep, parted where runs between them failed."""
+        for failed, runs in groupby(sweep, key=lambda run: bool(run.failure)):
+            if not failed:
+                yield [self.position(run) for run in runs]
+
+    def draw_sweep(self, sweep):
+        """The line of one method, a hairline where runs between its points failed."""
+        look = self.looks[sweep[0].method]
+        pieces = list(self.pieces(sweep))
+        for piece in pieces:
+            self.axes.plot(
+                *zip(*piece),
+                color=look.color,
+                linestyle=look.family.line,
+                linewidth=1.6,
+                zorder=3,
+                **look.marker_style(),
+            )
+        for before, after in zip(pieces, pieces[1:]):
+            self.axes.plot(*zip(before[-1], after[0]), color=look.color, linewidth=0.6, zorder=2)
+
+    def pixels(self, position):
+        """A point of the axes in pixels."""
+        return tuple(self.axes.transData.transform(position))
+
+    def ink(self, bounds):
+        """What the labels should not hide; the front bears a label better than a line does."""
+        ink = Ink(bounds)
+        corners = [self.pixels(corner) for corner in self.front_corners()]
+        for start, end in zip(corners, corners[1:]):
+            ink.add_line(start, end, FRONT_INK)
+        for sweep in self.sweeps:
+            for piece in self.pieces(sweep):
+                points = [self.pixels(position) for position in piece]
+                for point in points:
+                    ink.add_marker(point)
+                for start, end in zip(points, points[1:]):
+                    ink.add_line(start, end)
+        return ink
+
+    def label_of(self, sweep):
+        """The name of a line: the method, with the knob where the method has several."""
+        method, knob = sweep[0].method, sweep[0].knob
+        several = sum(other[0].method == method for other in self.sweeps) > 1
+        return f"{method} ({knob})" if several else method
+
+    def label_bounds(self):
+        """The pixels the labels may take: the axes without the floor."""
+        box = self.axes.bbox
+        left = self.pixels((self.smallest, 1))[0] + 3 if self.floor_visible else box.x0 + 3
+        return left, box.y0 + 3, box.x1 - 3, box.y1 - 3
+
+    def draw_labels(self):
+        """Names the lines at one of their ends."""
+        lines = [sweep for sweep in self.sweeps if any(not run.failure for run in sweep)]
+        ends, texts = [], []
+        for sweep in lines:
+            good = [self.position(run) for run in sweep if not run.failure]
+            ends.append({self.pixels(end): end for end in (good[0], good[-1])})
+            texts.append(self.draw_label(sweep, good[0]))
+        # The extent of an annotation counts its leader in; that of its text is wanted here.
+        extents = [Text.get_window_extent(text) for text in texts]
+        sizes = [(extent.width, extent.height) for extent in extents]
+        bounds = self.label_bounds()
+        places = place_labels([list(end) for end in ends], sizes, bounds, self.ink(bounds))
+        for text, end, place in zip(texts, ends, places):
+            move_label(text, end[place.anchor], place)
+
+    def draw_label(self, sweep, end):
+        """The name of a line on one of its ends, not yet in its place."""
+        look = self.looks[sweep[0].method]
+        return self.axes.annotate(
+            self.label_of(sweep),
+            end,
+            (0, 0),
+            textcoords="offset points",
+            size=FONT_SIZE,
+            color=look.text_color,
+            ha="center",
+            va="center",
+            zorder=6,
+            bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.8},
+            arrowprops={
+                "arrowstyle": "-",
+                "color": look.color,
+                "linewidth": 0.8,
+                "shrinkA": 0,
+                "shrinkB": 4,
+            },
+        )
+
+
+def move_label(text, position, place):
+    """Puts a label into its place, with a leader where it stands apart from its line."""
+    text.xy = position
+    offset = [(c - a) * 72 / DPI for c, a in zip(place.center, place.anchor)]
+    text.set_position(offset)
+    text.arrow_patch.set_visible(place.length > LEADER_FROM)

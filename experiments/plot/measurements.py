@@ -1,0 +1,144 @@
+"""Reads the measurements of one experiment: its runs, its front and its reference solution."""
+
+import csv
+import json
+import math
+from dataclasses import dataclass
+
+# A relative error above this says only that the solution is lost.
+WORST_ERROR = 3.0
+
+
+class BadInput(Exception):
+    """A measurement file that cannot be read; the message is one sentence."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One method at one value of its knob; error and time are NaN where they were not measured."""
+
+    scene: str
+    method: str
+    family: str
+    knob: str
+    value: float
+    outcome: str
+    error: float
+    time: float
+
+    @property
+    def failure(self):
+        """Why the run is no point of the picture, in words; empty for a good run."""
+        if self.outcome != "reached_end":
+            return self.outcome.replace("_", " ").replace("newton", "Newton")
+        if math.isnan(self.error):
+            return "error not measured"
+        if self.error > WORST_ERROR:
+            return f"error above {WORST_ERROR:g}"
+        return "" if 0 < self.time < math.inf else "not timed"
+
+
+@dataclass(frozen=True)
+class FrontPoint:
+    """The fastest run whose error is at most the accuracy."""
+
+    accuracy: float
+    method: str
+    error: float
+    time: float
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What is known of the reference solution; None where nothing is."""
+
+    scene: str | None
+    until: float | None
+    certified: float | None
+
+
+def read_rows(path, columns):
+    """The rows of a CSV file with a header, each with its line number."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            reader = csv.DictReader(file)
+            missing = [name for name in columns if name not in (reader.fieldnames or [])]
+            if missing:
+                raise BadInput(f"{path} has no column {missing[0]}.")
+            return [(reader.line_num, row) for row in reader]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise BadInput(f"{path} cannot be read: {reason}.") from error
+
+
+def parse(path, line, row, column, required):
+    """The number in a cell: NaN for an empty cell, and required ones are positive and finite."""
+    text = row[column] or ""
+    try:
+        value = float(text) if text.strip() else math.nan
+    except ValueError as error:
+        raise BadInput(f"{path}, line {line}: {column} is {text!r}, not a number.") from error
+    if required and not 0 < value < math.inf:
+        raise BadInput(f"{path}, line {line}: {column} must be a positive number.")
+    return value
+
+
+def read_runs(path):
+    """All runs in the order of the file."""
+    texts = ("scene", "method", "family", "knob", "outcome")
+    runs = []
+    for line, row in read_rows(path, (*texts, "value", "error_position", "time_s")):
+        if not all(row[name] for name in ("method", "knob", "outcome")):
+            raise BadInput(f"{path}, line {line}: method, knob and outcome must not be empty.")
+        runs.append(
+            Run(
+                **{name: row[name] for name in texts},
+                value=parse(path, line, row, "value", True),
+                error=parse(path, line, row, "error_position", False),
+                time=parse(path, line, row, "time_s", False),
+            )
+        )
+    return runs
+
+
+def read_front(path, runs):
+    """The points of the front, the coarsest accuracy first; accuracies no method reached are left
+    out."""
+    methods = {run.method for run in runs}
+    points = []
+    for line, row in read_rows(path, ("accuracy", "method", "error_position", "time_s")):
+        if row["method"] and row["method"] not in methods:
+            raise BadInput(f"{path}, line {line}: there are no runs of {row['method']}.")
+        if row["method"]:
+            accuracy = parse(path, line, row, "accuracy", True)
+            error = parse(path, line, row, "error_position", False)
+            time = parse(path, line, row, "time_s", True)
+            if math.isnan(error):
+                raise BadInput(f"{path}, line {line}: error_position must not be empty.")
+            points.append(FrontPoint(accuracy, row["method"], error, time))
+    return sorted(points, key=lambda point: -point.accuracy)
+
+
+def read_reference(path):
+    """What the file says of the reference solution; a file that is not there says nothing."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            content = json.load(file)
+        until, certified = content.get("until"), content.get("certified_position")
+        return Reference(
+            content.get("scene"),
+            None if until is None else float(until),
+            float(certified) if certified is not None and float(certified) > 0 else None,
+        )
+    except FileNotFoundError:
+        return Reference(None, None, None)
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise BadInput(f"{path} cannot be read: {error}.") from error
+
+
+def sweeps(runs):
+    """The runs of each method over each of its knobs, sorted by the value of the knob."""
+    groups = {}
+    for run in runs:
+        groups.setdefault((run.method, run.knob), []).append(run)
+    return [sorted(group, key=lambda run: run.value) for group in groups.values()]

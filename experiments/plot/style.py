@@ -1,0 +1,137 @@
+"""Colours, markers, line styles and number words shared by the pictures of the experiments."""
+
+import math
+from dataclasses import dataclass
+
+import matplotlib
+from matplotlib.colors import to_hex, to_rgb
+
+# Warm against cool: the two families differ in hue as well as in line and marker, and inside
+# either list neighbours differ in lightness, so that colour-blind readers can tell them apart.
+WARM = ("#D55E00", "#000000", "#E69F00", "#882255", "#CC79A7", "#7F6A1F")
+COOL = ("#0072B2", "#009E73", "#56B4E9", "#332288", "#44AA99", "#5D7A99")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+
+INK = "#222222"
+FAINT = "#666666"
+GRID = "#E4E4E4"
+FRONT = "#F5E663"
+
+SETTINGS = {
+    # Verdana is as wide as DejaVu Sans and stands in for it where an SVG is shown without it.
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans", "Verdana"],
+    "font.size": 10,
+    "text.color": INK,
+    "axes.edgecolor": FAINT,
+    "axes.labelcolor": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "grid.color": GRID,
+    "grid.linewidth": 0.6,
+    "hatch.linewidth": 0.6,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    # Text stays text, and the same numbers give the same file.
+    "svg.fonttype": "none",
+    "svg.hashsalt": "qddot",
+}
+
+
+@dataclass(frozen=True)
+class Family:
+    """How all methods of one family are drawn."""
+
+    title: str
+    colors: tuple
+    line: object
+    filled: bool
+
+
+FAMILIES = {
+    "hand-written": Family("hand-written", WARM, "-", True),
+    "sundials": Family("SUNDIALS", COOL, (0, (4, 1.8)), False),
+}
+
+
+def family_look(name):
+    """The look of a family; a family that is not known yet is dotted, under its own name."""
+    return FAMILIES.get(name) or Family(name or "other", COOL[::-1], (0, (1, 1.5)), True)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How one method is drawn."""
+
+    color: str
+    marker: str
+    family: Family
+
+    @property
+    def text_color(self):
+        """The colour for letters: dark enough to be read on white."""
+        rgb = to_rgb(self.color)
+        luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+        return to_hex([c * min(1.0, 0.42 / max(luminance, 1e-9)) for c in rgb])
+
+    def marker_style(self, size=5.5):
+        """The keyword arguments of a matplotlib line that draw the marker."""
+        face = self.color if self.family.filled else "white"
+        return {
+            "marker": self.marker,
+            "markersize": size,
+            "markerfacecolor": face,
+            "markeredgecolor": self.color,
+            "markeredgewidth": 1.2,
+        }
+
+
+def assign_looks(family_of_method):
+    """A look for each method, by its place among the methods of its family.
+
+    Colours and markers advance together; their counts have no common divisor, so a pair comes
+    back only after their product (42 methods of one family).
+    """
+    seen = {}
+    looks = {}
+    for method, name in family_of_method.items():
+        index = seen.get(name, 0)
+        seen[name] = index + 1
+        family = family_look(name)
+        color = family.colors[index % len(family.colors)]
+        looks[method] = Look(color, MARKERS[index % len(MARKERS)], family)
+    return looks
+
+
+def use_style():
+    """Sets matplotlib up for a picture written to a file."""
+    matplotlib.use("Agg")
+    matplotlib.rcParams.update(SETTINGS)
+
+
+def number(value):
+    """A number in few characters: 2e-3, 0.5, 3.3e-14."""
+    if 0.1 <= abs(value) < 1000:
+        return f"{value:.3g}"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def power_of_ten(value):
+    """The number at a decade tick: 1e-3, 1, 10."""
+    exponent = round(math.log10(value))
+    return {0: "1", 1: "10"}.get(exponent, f"1e{exponent}")
+
+
+def widened(low, high, decades):
+    """A range of positive numbers, widened to both sides where it is shorter than that."""
+    factor = 10 ** (max(0.0, decades - math.log10(high / low)) / 2)
+    return low / factor, high * factor
+
+
+def seconds(value):
+    """A duration with its unit: 20 µs, 5 ms, 3 s."""
+    for unit, scale in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)):
+        if value >= 0.9999 * scale or unit == "ns":
+            return f"{value / scale:.3g} {unit}"

@@ -1,0 +1,97 @@
+#include "experiments/program.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "integrators/registry.hpp"
+#include "src/scene/invalid_input.hpp"
+
+namespace qddot {
+namespace {
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+int complain(const CLI::App& app, const char* sentence, ExitStatus status) {
+  fmt::print(stderr, "{}: {}\n", app.get_name(), first_line(sentence));
+  return status;
+}
+
+}  // namespace
+
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  try {
+    app.parse(argc, argv);
+    return body();
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return complain(app, error.what(), bad_input);
+  } catch (const InvalidInput& error) {
+    return complain(app, error.what(), bad_input);
+  } catch (const std::exception& error) {
+    return complain(app, error.what(), failed);
+  }
+}
+
+void require_positive(double value, const std::string& option, const std::string& meaning) {
+  if (std::isfinite(value) && value > 0) return;
+  throw InvalidInput(fmt::format("{} {} is not allowed; it is {}, finite and greater than 0",
+                                 option, value, meaning));
+}
+
+void require_given(const std::string& text, const std::string& option, const std::string& meaning) {
+  if (text.empty()) throw InvalidInput(fmt::format("{} is missing; it is {}", option, meaning));
+}
+
+std::vector<const Method*> select_methods(const std::vector<std::string>& list) {
+  std::vector<const Method*> selected;
+  if (list.empty()) {
+    for (const Method& method : methods()) selected.push_back(&method);
+  }
+  for (const std::string& name : list) {
+    const Method* method = find_method(name);
+    if (!method) {
+      std::vector<std::string> names;
+      for (const Method& known : methods()) names.push_back(known.name);
+      throw InvalidInput(fmt::format("--methods: {} is not a method; allowed are {}", name,
+                                     fmt::join(names, ", ")));
+    }
+    if (std::ranges::find(selected, method) != selected.end()) {
+      throw InvalidInput(fmt::format("--methods: {} is named twice; allowed is once", name));
+    }
+    selected.push_back(method);
+  }
+  return selected;
+}
+
+double horizon(double asked, bool is_asked, const Scene& scene) {
+  if (is_asked) {
+    require_positive(asked, "--until", "the horizon in s");
+    return asked;
+  }
+  if (!scene.until) {
+    throw InvalidInput(
+        fmt::format("--until is missing, and scene {} has no horizon of its own; it is the time to "
+                    "run to in s, greater than 0",
+                    scene.name));
+  }
+  return *scene.until;
+}
+
+void require_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw InvalidInput(
+        fmt::format("--out {}: no folder can be made there ({}); allowed is a folder "
+                    "that exists or whose parent can be written",
+                    folder, error ? error.message() : "it is a file"));
+  }
+}
+
+}  // namespace qddot

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "integrators/method.hpp"
+#include "src/scene/scene.hpp"
+
+namespace qddot {
+
+// What an experiment's process tells its caller.
+enum ExitStatus { done = 0, failed = 1, bad_input = 2, end_not_reached = 3 };
+
+// Parses the command line into what `app` binds and runs `body`. --help prints and returns 0; a
+// wrong option or an InvalidInput prints one sentence, "program: ...", and returns bad_input; any
+// other exception prints one and returns failed.
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+
+// Throws InvalidInput unless `value` is finite and greater than zero.
+void require_positive(double value, const std::string& option, const std::string& meaning);
+
+// Throws InvalidInput, naming what is missing, if `text` is empty.
+void require_given(const std::string& text, const std::string& option, const std::string& meaning);
+
+// The methods named in `list` (a,b,...), all of them if it is empty; throws InvalidInput for an
+// unknown or repeated name.
+std::vector<const Method*> select_methods(const std::vector<std::string>& list);
+
+// The horizon [s]: what the user asked for, else the scene's own. Throws InvalidInput if there is
+// neither or it is not positive.
+double horizon(double asked, bool is_asked, const Scene& scene);
+
+// Creates the folder and its parents; throws InvalidInput if that cannot be done.
+void require_folder(const std::string& folder);
+
+}  // namespace qddot

@@ -1,0 +1,68 @@
+#include "experiments/provenance.hpp"
+
+#include <array>
+#include <fstream>
+
+#include <Eigen/Core>
+#include <boost/version.hpp>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <suitesparse/cholmod.h>
+#include <sundials/sundials_version.h>
+
+#include "experiments/build_info.hpp"
+#include "experiments/whole_file.hpp"
+
+namespace qddot {
+namespace {
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+std::string sundials_version() {
+  std::array<char, 32> version{};
+  return SUNDIALSGetVersion(version.data(), version.size()) == 0 ? version.data() : "unknown";
+}
+
+}  // namespace
+
+std::string code_hash() { return build_info::source_hash; }
+
+nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& scene) {
+  return {{"command_line", command_line},
+          {"scene",
+           {{"name", scene.name},
+            {"hash", content_hash(scene)},
+            {"dimension", scene.dimension},
+            {"nodes", scene.nodes.size()},
+            {"springs", scene.springs.size()}}},
+          {"version", build_info::version},
+          {"source_hash", build_info::source_hash},
+          {"compiler", build_info::compiler},
+          {"flags", build_info::flags},
+          {"cpu", processor()},
+          {"libraries",
+           {{"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+                                  EIGEN_MINOR_VERSION)},
+            {"sundials", sundials_version()},
+            {"cholmod", fmt::format("{}.{}.{}", CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION,
+                                    CHOLMOD_SUBSUB_VERSION)},
+            {"boost", BOOST_LIB_VERSION}}},
+          {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
+}
+
+void write_sidecar(const std::string& csv_path, const nlohmann::json& provenance) {
+  const bool is_csv = csv_path.ends_with(".csv");
+  WholeFile file((is_csv ? csv_path.substr(0, csv_path.size() - 4) : csv_path) + ".json");
+  // A path in the command line may hold bytes that are no UTF-8.
+  file.write(provenance.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  file.commit();
+}
+
+}  // namespace qddot

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "src/scene/scene.hpp"
+
+namespace qddot {
+
+// Where a result comes from: command line, scene and its content hash, version of the code,
+// compiler and flags, processor, libraries, date (UTC).
+nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& scene);
+
+// Writes it as the sidecar X.json of the table X.csv.
+void write_sidecar(const std::string& csv_path, const nlohmann::json& provenance);
+
+// Hash of all sources that decide a motion; changes when the code does.
+std::string code_hash();
+
+}  // namespace qddot

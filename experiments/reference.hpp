@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "experiments/error.hpp"
+
+namespace qddot {
+
+// The motion that errors are measured against, at time `until`, and how far it can be trusted:
+// `certified` is by how much two unlike ways of computing it differ, in the units of Errors. No
+// error below that means anything.
+struct Reference {
+  State end;
+  double energy = 0;  // E(0) [J], which the exact motion keeps
+  Scales scales;
+  Errors certified;
+  std::string made_by;  // the two ways, with their knobs
+  double seconds = 0;   // what it took
+};
+
+// Makes the reference of a scene without massless nodes, in about `seconds` at most. The two ways:
+//   linear motion (constant K):  modal, exact  -  Kahan and Li's order-8 composition;
+//   else:  Kahan and Li's composition (symplectic, fixed step)  -  Fehlberg's 7(8) pair of
+//          Boost.odeint (adaptive).
+// Each is refined until refining it changes nothing more, or time is up. Throws std::runtime_error
+// if either never reaches the end.
+Reference make_reference(const ReducedScene& scene, double until, double seconds);
+
+// As JSON, numbers exact, with `certified_position`, `certified_velocity`, `certified_energy` and
+// their decimal digits; and back. from_json throws nlohmann::json::exception for anything else.
+nlohmann::json to_json(const Reference& reference);
+Reference reference_from_json(const nlohmann::json& json);
+
+// The reference in the file, if that holds the same `key` (whatever decides the result); else
+// makes it and writes the file with `key` and `origin`.
+Reference cached_reference(const std::string& file, const nlohmann::json& key,
+                           const nlohmann::json& origin, const std::function<Reference()>& make);
+
+}  // namespace qddot

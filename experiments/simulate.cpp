@@ -1,0 +1,237 @@
+// One run of one method on one scene: where it ends, how it gets there, what its energy does.
+//
+//   simulate --scene cloth --method verlet --step-size 5e-4 --until 0.1 --final end.csv
+//   simulate --scene cloth --method arkode_dirk4 --rtol 1e-5 --trajectory path.csv --every 0.01
+//   simulate --list-methods
+//   simulate --list-scenes
+#include <array>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/catalogue.hpp"
+#include "experiments/csv.hpp"
+#include "experiments/program.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/samples.hpp"
+#include "integrators/registry.hpp"
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/reduce.hpp"
+#include "src/scene/scene_file.hpp"
+
+namespace qddot {
+namespace {
+
+struct Arguments {
+  std::string scene, method, final_path, trajectory_path, energy_path;
+  double step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0, energy_every = 0;
+  std::vector<double> every;
+  bool list_methods = false, list_scenes = false, csv = false;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("--scene", a.scene, "a generator's name or a scene file");
+  app.add_option("--method", a.method, "a method's name (--list-methods)");
+  app.add_option("--step-size", a.step_size, "h in s, for methods of fixed step");
+  app.add_option("--rtol", a.rtol, "relative tolerance, for adaptive methods");
+  app.add_option("--atol", a.atol, "absolute tolerance in m and m/s (default: the same as --rtol)");
+  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  app.add_option("--final", a.final_path, "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
+  app.add_option("--trajectory", a.trajectory_path, "CSV of all nodes over time: t,node,x,...");
+  app.add_option("--energy", a.energy_path, "CSV of t,kinetic,potential,total");
+  app.add_option("--every", a.every,
+                 "the time between samples in s; steps land on them. Stands behind the output it "
+                 "is for, or once for both")
+      ->expected(1)
+      ->take_all();
+  app.add_flag("--list-methods", a.list_methods, "print the methods there are");
+  app.add_flag("--list-scenes", a.list_scenes, "print the scene generators and their parameters");
+  app.add_flag("--csv", a.csv, "lists as CSV");
+}
+
+// Each --every belongs to the output option before it; the only one belongs to both outputs.
+void assign_every(const CLI::App& app, Arguments& a) {
+  double* owner = nullptr;
+  std::size_t next = 0;
+  for (const CLI::Option* option : app.parse_order()) {
+    const std::string name = option->get_name();
+    if (name == "--trajectory") owner = &a.trajectory_every;
+    if (name == "--energy") owner = &a.energy_every;
+    if (name == "--every") {
+      require_positive(a.every[next], "--every", "the time between samples in s");
+      if (owner) *owner = a.every[next];
+      ++next;
+    }
+  }
+  if (a.every.size() == 1) a.trajectory_every = a.energy_every = a.every[0];
+  const auto require = [](const std::string& path, double every, const char* option) {
+    if (!path.empty() && every == 0) {
+      throw InvalidInput(
+          fmt::format("--every is missing behind {}; it is the time between samples "
+                      "in s, greater than 0",
+                      option));
+    }
+  };
+  require(a.trajectory_path, a.trajectory_every, "--trajectory");
+  require(a.energy_path, a.energy_every, "--energy");
+  if (!a.every.empty() && a.trajectory_path.empty() && a.energy_path.empty()) {
+    throw InvalidInput("--every is given without --trajectory or --energy, which it belongs to");
+  }
+}
+
+const Method& require_method(const std::string& name) {
+  require_given(name, "--method", "a method's name (simulate --list-methods prints them)");
+  if (const Method* method = find_method(name)) return *method;
+  throw InvalidInput(
+      fmt::format("--method: {} is not a method; allowed are {}", name, method_names()));
+}
+
+Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& method) {
+  const bool fixed = method.knob == Knob::step_size;
+  const char* wanted = fixed ? "--step-size" : "--rtol";
+  for (const char* other : {"--step-size", "--rtol", "--atol"}) {
+    const bool allowed =
+        fixed ? other == std::string("--step-size") : other != std::string("--step-size");
+    if (app.count(other) > 0 && !allowed) {
+      throw InvalidInput(
+          fmt::format("{} is not for {}, which takes {}", other, method.name, wanted));
+    }
+  }
+  if (app.count(wanted) == 0) {
+    throw InvalidInput(
+        fmt::format("{} is missing; {} needs it, greater than 0", wanted, method.name));
+  }
+  if (fixed) require_positive(a.step_size, "--step-size", "h in s");
+  if (!fixed) require_positive(a.rtol, "--rtol", "a relative tolerance");
+  if (app.count("--atol") > 0) require_positive(a.atol, "--atol", "an absolute tolerance");
+  return {a.step_size, a.rtol, a.atol};
+}
+
+std::vector<std::string> node_header(int dimension, std::vector<std::string> header) {
+  constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
+  header.emplace_back("node");
+  for (int d = 0; d < dimension; ++d) header.emplace_back(axes[d]);
+  for (int d = 0; d < dimension; ++d) header.emplace_back(fmt::format("v{}", axes[d]));
+  return header;
+}
+
+void write_node(Csv& csv, std::size_t index, const Node& node, int dimension) {
+  csv.field(index);
+  for (int d = 0; d < dimension; ++d) csv.field(node.position[d]);
+  for (int d = 0; d < dimension; ++d) csv.field(node.velocity[d]);
+  csv.end_row();
+}
+
+class Output {
+ public:
+  Output(const Arguments& a, const ReducedScene& scene, double until)
+      : scene_(scene),
+        trajectory_times_(samples(a.trajectory_every, until)),
+        energy_times_(samples(a.energy_every, until)) {
+    const int d = scene.dimension();
+    if (!a.final_path.empty()) {
+      final_ = std::make_unique<CsvFile>(a.final_path, node_header(d, {}));
+    }
+    if (!a.trajectory_path.empty()) {
+      trajectory_ = std::make_unique<CsvFile>(a.trajectory_path, node_header(d, {"t"}));
+    }
+    if (!a.energy_path.empty()) {
+      energy_ = std::make_unique<CsvFile>(
+          a.energy_path, std::vector<std::string>{"t", "kinetic", "potential", "total"});
+    }
+  }
+
+  Observer observer() {
+    return {merged(trajectory_times_, energy_times_), [this](const State& state) { see(state); }};
+  }
+
+  // Takes a state at time 0 or one that the observer asked for.
+  void see(const State& state) {
+    if (trajectory_ && is_sample(trajectory_times_, state.t)) {
+      const auto nodes = scene_.expand(state);
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        trajectory_->field(state.t);
+        write_node(*trajectory_, i, nodes[i], scene_.dimension());
+      }
+      trajectory_->flush_if_large();
+    }
+    if (energy_ && is_sample(energy_times_, state.t)) {
+      const double kinetic = scene_.system().kinetic(state.v);
+      const double potential = scene_.system().potential(state.q);
+      energy_->row(state.t, kinetic, potential, kinetic + potential);
+      energy_->flush_if_large();
+    }
+  }
+
+  void finish(const State& state, const nlohmann::json& origin) {
+    if (final_) {
+      const auto nodes = scene_.expand(state);
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        write_node(*final_, i, nodes[i], scene_.dimension());
+      }
+    }
+    for (auto* file : {final_.get(), trajectory_.get(), energy_.get()}) {
+      if (!file) continue;
+      file->commit();
+      write_sidecar(file->path(), origin);
+    }
+  }
+
+ private:
+  const ReducedScene& scene_;
+  std::vector<double> trajectory_times_, energy_times_;
+  std::unique_ptr<CsvFile> final_, trajectory_, energy_;
+};
+
+int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& command_line) {
+  if (a.list_methods) {
+    print_methods(a.csv);
+    return done;
+  }
+  if (a.list_scenes) {
+    print_generators(a.csv);
+    return done;
+  }
+  require_given(a.scene, "--scene", "a generator's name or a scene file");
+  const Method& method = require_method(a.method);
+  const Knobs knobs = require_knobs(app, a, method);
+  assign_every(app, a);
+  const Scene drawn = load_scene(a.scene);
+  const double until = horizon(a.until, app.count("--until") > 0, drawn);
+
+  const ReducedScene scene(drawn);
+  Output output(a, scene, until);
+  State state = scene.initial();
+  output.see(state);
+  const Summary summary =
+      make_integrator(method, scene.system(), knobs)->advance(state, until, output.observer());
+
+  nlohmann::json origin = provenance(command_line, drawn);
+  origin["outcome"] = name(summary.outcome);
+  origin["t_reached"] = summary.t_reached;
+  output.finish(state, origin);
+  const Counts& c = summary.counts;
+  fmt::print(
+      "{} on {}: {} at t = {:.17g} s after {} steps, {} force and {} stiffness evaluations, "
+      "{} factorisations\n",
+      method.name, drawn.name, name(summary.outcome), summary.t_reached, c.steps,
+      c.force_evaluations, c.stiffness_evaluations, c.factorizations);
+  if (summary.outcome == Outcome::reached_end) return done;
+  fmt::print(stderr, "simulate: {} of {} s reached: {}\n", summary.t_reached, until,
+             summary.message);
+  return end_not_reached;
+}
+
+}  // namespace
+}  // namespace qddot
+
+int main(int argc, char** argv) {
+  CLI::App app("Runs one integrator on one scene.", "simulate");
+  qddot::Arguments arguments;
+  qddot::declare(app, arguments);
+  return qddot::run_program(app, argc, argv, [&] {
+    return qddot::simulate(app, arguments, {argv, argv + argc});
+  });
+}

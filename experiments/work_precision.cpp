@@ -1,0 +1,170 @@
+// Speed against accuracy: every method, down the ladder of its knob, on one scene.
+//
+//   work_precision --scene cloth --until 0.1 --out results/cloth
+//   work_precision --scene my.toml --methods verlet,ida --repeats 9 --out results/my
+//
+//  1. A reference is made by two unlike methods of high order, or exactly where the motion is
+//     linear; what they agree to is the certified floor (reference.json, kept for the next time).
+//  2. Each method runs from coarse to fine: once untimed, then timed several times, one thread.
+//  3. points.csv holds every point, the failed ones with the reason; front.csv, for each accuracy
+//     from 1e-1 to 1e-9, the fastest method that reached it.
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/csv.hpp"
+#include "experiments/front.hpp"
+#include "experiments/ladder.hpp"
+#include "experiments/program.hpp"
+#include "experiments/provenance.hpp"
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/scene_file.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr double reference_seconds = 60;
+
+struct Arguments {
+  std::string scene, out;
+  double until = 0;
+  std::vector<std::string> methods;
+  Effort effort;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("--scene", a.scene, "a generator's name or a scene file");
+  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  app.add_option("--methods", a.methods, "a,b,... (default: all)")->delimiter(',');
+  app.add_option("--repeats", a.effort.repeats, "timed runs of each point")->capture_default_str();
+  app.add_option("--point-limit", a.effort.seconds,
+                 "seconds that one run of a point may take; slower ones become over_budget")
+      ->capture_default_str();
+  app.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
+}
+
+void write_points(const std::string& path, const std::string& scene,
+                  const std::vector<Point>& points, const nlohmann::json& origin) {
+  CsvFile csv(path, {"scene",
+                     "method",
+                     "knob",
+                     "value",
+                     "outcome",
+                     "t_reached",
+                     "error_position",
+                     "error_velocity",
+                     "error_energy",
+                     "time_s",
+                     "time_min_s",
+                     "setup_s",
+                     "steps",
+                     "rejected",
+                     "force_evaluations",
+                     "stiffness_evaluations",
+                     "factorizations",
+                     "solves",
+                     "newton_iterations",
+                     "timed_runs",
+                     "family",
+                     "order"});
+  for (const Point& p : points) {
+    // What was not measured is an empty field.
+    const auto measured = [&](double x) {
+      return p.outcome == Outcome::reached_end ? x : std::numeric_limits<double>::quiet_NaN();
+    };
+    const Counts& c = p.counts;
+    csv.row(scene, p.method->name, knob_name(p.method->knob), p.value, name(p.outcome), p.t_reached,
+            measured(p.errors.position), measured(p.errors.velocity), measured(p.errors.energy),
+            measured(p.time), measured(p.time_min), measured(p.setup), c.steps, c.rejected,
+            c.force_evaluations, c.stiffness_evaluations, c.factorizations, c.solves,
+            c.newton_iterations, p.timed_runs, family_name(p.method->family), p.method->order);
+  }
+  csv.commit();
+  write_sidecar(path, origin);
+}
+
+void write_front(const std::string& path, const std::string& scene,
+                 const std::vector<FrontRow>& front, const nlohmann::json& origin) {
+  CsvFile csv(path, {"scene", "accuracy", "method", "knob", "value", "error_position", "time_s"});
+  for (const FrontRow& row : front) {
+    if (const Point* p = row.fastest) {
+      csv.row(scene, row.accuracy, p->method->name, knob_name(p->method->knob), p->value,
+              p->errors.position, p->time);
+    } else {
+      csv.row(scene, row.accuracy, "", "", "", "", "");
+    }
+  }
+  csv.commit();
+  write_sidecar(path, origin);
+}
+
+// One line on a terminal that is written over; nothing where the output is kept.
+void show_progress(const std::string& what) {
+  if (::isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K{}", what);
+}
+
+std::string describe(const Point& p) {
+  return p.outcome == Outcome::reached_end
+             ? fmt::format("{} {} {:.3g}: error {:.1e} in {:.3g} s", p.method->name,
+                           knob_name(p.method->knob), p.value, p.errors.position, p.time)
+             : fmt::format("{} {} {:.3g}: {}", p.method->name, knob_name(p.method->knob), p.value,
+                           name(p.outcome));
+}
+
+int work_precision(const CLI::App& app, const Arguments& a,
+                   const std::vector<std::string>& command_line) {
+  require_given(a.scene, "--scene", "a generator's name or a scene file");
+  require_given(a.out, "--out", "the folder for the results");
+  require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
+  if (a.effort.repeats < 1 || a.effort.repeats > 1000) {
+    throw InvalidInput(fmt::format(
+        "--repeats {} is not allowed; it is a whole number from 1 to 1000", a.effort.repeats));
+  }
+  const auto selected = select_methods(a.methods);
+  const Scene drawn = load_scene(a.scene);
+  const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  const ReducedScene scene(drawn);
+  if (scene.system().has_massless()) {
+    throw InvalidInput(
+        fmt::format("{}: a node that is not pinned has mass 0, for which no reference "
+                    "is made; allowed are masses greater than 0",
+                    a.scene));
+  }
+  require_folder(a.out);
+
+  nlohmann::json origin = provenance(command_line, drawn);
+  origin["until"] = until;
+  show_progress("making the reference ...");
+  const Reference reference = cached_reference(
+      a.out + "/reference.json",
+      {{"scene_hash", content_hash(drawn)}, {"until", until}, {"source_hash", code_hash()}}, origin,
+      [&] { return make_reference(scene, until, reference_seconds); });
+
+  std::vector<Point> points;
+  for (const Method* method : selected) {
+    const auto more = climb(*method, scene, until, reference, a.effort,
+                            [](const Point& point) { show_progress(describe(point)); });
+    points.insert(points.end(), more.begin(), more.end());
+  }
+  show_progress("");
+
+  const auto front = fastest_at_each_accuracy(points, reference);
+  write_points(a.out + "/points.csv", drawn.name, points, origin);
+  write_front(a.out + "/front.csv", drawn.name, front, origin);
+  print_front(drawn.name, until, front, reference);
+  return done;
+}
+
+}  // namespace
+}  // namespace qddot
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures speed against accuracy of every integrator on one scene.",
+               "work_precision");
+  qddot::Arguments arguments;
+  qddot::declare(app, arguments);
+  return qddot::run_program(app, argc, argv, [&] {
+    return qddot::work_precision(app, arguments, {argv, argv + argc});
+  });
+}

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <stdexcept>
+
+namespace qddot {
+
+// Something the user wrote cannot be taken. what() is one sentence that names the file or option,
+// the entry and field, the value, and what is allowed; programs print it and exit with status 2.
+class InvalidInput : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace qddot

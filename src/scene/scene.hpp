@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/model/spring.hpp"
+
+namespace qddot {
+
+// A point mass. Coordinates beyond the scene's dimension are zero.
+struct Node {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // [m]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // [m/s]
+  double mass = 0;                                     // [kg], 0 = massless; ignored where pinned
+  bool pinned = false;                                 // stays at its position for ever
+};
+
+// A spring between two nodes, by their indices.
+struct Spring {
+  std::array<std::size_t, 2> nodes{};
+  SpringLaw law;
+};
+
+// What the user drew: nodes, springs, gravity; nothing derived and nothing left out.
+struct Scene {
+  std::string name{};
+  int dimension = 3;                                  // 1, 2 or 3
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // [m/s^2]
+  std::optional<double> until{};                       // [s], the horizon if none is asked for
+  std::vector<Node> nodes{};
+  std::vector<Spring> springs{};
+};
+
+// Throws InvalidInput, in a sentence that starts with `source` and names node or spring and field,
+// unless every number is finite, dimension is 1, 2 or 3, masses, stiffnesses and rest lengths are
+// not negative, each spring joins two different existing nodes, and no spring with rest_length > 0
+// starts with coincident ends (its direction would be undefined).
+void validate(const Scene& scene, const std::string& source);
+
+// Hash of everything in the scene that decides its motion, its name left out; the same on every
+// machine. 64-bit FNV-1a over the numbers' bytes, as 16 hexadecimal digits.
+std::string content_hash(const Scene& scene);
+
+}  // namespace qddot
