@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -34,9 +33,12 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
 nlohmann::json to_json(const Reference& reference);
 Reference reference_from_json(const nlohmann::json& json);
 
-// The reference in the file, if that holds the same `key` (whatever decides the result); else
-// makes it and writes the file with `key` and `origin`.
-Reference cached_reference(const std::string& file, const nlohmann::json& key,
-                           const nlohmann::json& origin, const std::function<Reference()>& make);
+// Throws InvalidInput if no reference can be made of the scene, since a free node has no mass.
+void require_reference_exists(const ReducedScene& scene, const std::string& source);
+
+// The reference of the scene at `until` that `folder`/reference.json holds, if it was made of the
+// same scene content by the same code; else a new one, which is written there with `origin`.
+Reference reference_for(const Scene& drawn, const ReducedScene& scene, double until,
+                        const std::string& folder, const nlohmann::json& origin);
 
 }  // namespace qddot

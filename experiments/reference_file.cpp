@@ -1,13 +1,18 @@
 #include <cmath>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/provenance.hpp"
 #include "experiments/reference.hpp"
 #include "experiments/whole_file.hpp"
+#include "src/scene/invalid_input.hpp"
 
 namespace qddot {
 namespace {
+
+constexpr double longest_making = 60;  // [s]
 
 std::vector<double> list(const Vec& x) { return {x.begin(), x.end()}; }
 
@@ -56,8 +61,19 @@ Reference reference_from_json(const nlohmann::json& json) {
       json.at("seconds")};
 }
 
-Reference cached_reference(const std::string& file, const nlohmann::json& key,
-                           const nlohmann::json& origin, const std::function<Reference()>& make) {
+void require_reference_exists(const ReducedScene& scene, const std::string& source) {
+  if (!scene.system().has_massless()) return;
+  throw InvalidInput(
+      fmt::format("{}: a node that is not pinned has mass 0, for which no reference "
+                  "is made; allowed are masses greater than 0",
+                  source));
+}
+
+Reference reference_for(const Scene& drawn, const ReducedScene& scene, double until,
+                        const std::string& folder, const nlohmann::json& origin) {
+  const std::string file = folder + "/reference.json";
+  const nlohmann::json key = {
+      {"scene_hash", content_hash(drawn)}, {"until", until}, {"source_hash", code_hash()}};
   const nlohmann::json stored = read(file);
   if (stored.is_object() && stored.value("key", nlohmann::json()) == key) {
     try {
@@ -66,12 +82,14 @@ Reference cached_reference(const std::string& file, const nlohmann::json& key,
       // A file that somebody else wrote or cut short: made anew below.
     }
   }
-  const Reference reference = make();
+  const Reference reference = make_reference(scene, until, longest_making);
   nlohmann::json json = origin;
   json.update(to_json(reference));
   json["key"] = key;
+  json["scene"] = drawn.name;
+  json["until"] = until;
   WholeFile whole(file);
-  whole.write(json.dump(1) + "\n");
+  whole.write(json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   whole.commit();
   return reference;
 }

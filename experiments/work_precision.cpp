@@ -24,8 +24,6 @@
 namespace qddot {
 namespace {
 
-constexpr double reference_seconds = 60;
-
 struct Arguments {
   std::string scene, out;
   double until = 0;
@@ -37,9 +35,12 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--scene", a.scene, "a generator's name or a scene file");
   app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
   app.add_option("--methods", a.methods, "a,b,... (default: all)")->delimiter(',');
-  app.add_option("--repeats", a.effort.repeats, "timed runs of each point")->capture_default_str();
+  app.add_option("--repeats", a.effort.repeats, "timed runs of each point")
+      ->take_last()
+      ->capture_default_str();
   app.add_option("--point-limit", a.effort.seconds,
                  "seconds that one run of a point may take; slower ones become over_budget")
+      ->take_last()
       ->capture_default_str();
   app.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
 }
@@ -125,21 +126,13 @@ int work_precision(const CLI::App& app, const Arguments& a,
   const Scene drawn = load_scene(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
   const ReducedScene scene(drawn);
-  if (scene.system().has_massless()) {
-    throw InvalidInput(
-        fmt::format("{}: a node that is not pinned has mass 0, for which no reference "
-                    "is made; allowed are masses greater than 0",
-                    a.scene));
-  }
+  require_reference_exists(scene, a.scene);
   require_folder(a.out);
 
   nlohmann::json origin = provenance(command_line, drawn);
   origin["until"] = until;
   show_progress("making the reference ...");
-  const Reference reference = cached_reference(
-      a.out + "/reference.json",
-      {{"scene_hash", content_hash(drawn)}, {"until", until}, {"source_hash", code_hash()}}, origin,
-      [&] { return make_reference(scene, until, reference_seconds); });
+  const Reference reference = reference_for(drawn, scene, until, a.out, origin);
 
   std::vector<Point> points;
   for (const Method* method : selected) {

@@ -1,0 +1,118 @@
+// Observed order of convergence: each fixed-step method at h, h/2, h/4, ... on one scene.
+//
+//   convergence --scene pendulum --until 1 --out results/pendulum
+//   convergence --scene cloth --methods verlet,implicit_euler --out results/cloth
+//
+//  1. The reference is work_precision's (reference.json, shared with it).
+//  2. h starts where it resolves the fastest frequency at the start (h w = 1; a 16th of the horizon
+//     for implicit methods) and is halved until the error nears what the reference certifies, or
+//     a run takes longer than ten seconds.
+//  3. order.csv holds the errors and log2 of the ratio of successive position errors, which tends
+//     to the order of the method as h -> 0.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/csv.hpp"
+#include "experiments/measurement.hpp"
+#include "experiments/program.hpp"
+#include "experiments/provenance.hpp"
+#include "src/analysis/frequency_bound.hpp"
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/scene_file.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr int most_halvings = 12;
+constexpr double longest_run = 10;  // [s]
+
+struct Arguments {
+  std::string scene, out;
+  double until = 0;
+  std::vector<std::string> methods;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("--scene", a.scene, "a generator's name or a scene file");
+  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  app.add_option("--methods", a.methods, "a,b,... (default: all of fixed step)")->delimiter(',');
+  app.add_option("--out", a.out, "the folder for order.csv and reference.json");
+}
+
+// The fixed-step methods among those asked for; an adaptive one that was named is refused.
+std::vector<const Method*> select_fixed_step(const std::vector<std::string>& list) {
+  std::vector<const Method*> selected;
+  for (const Method* method : select_methods(list)) {
+    if (method->knob == Knob::step_size) {
+      selected.push_back(method);
+    } else if (!list.empty()) {
+      throw InvalidInput(
+          fmt::format("--methods: {} chooses its steps by itself; allowed are "
+                      "methods of fixed step",
+                      method->name));
+    }
+  }
+  return selected;
+}
+
+// One method down its halvings, a row each; what failed or was not comparable is left empty.
+void tabulate(Csv& csv, const Method& method, const ReducedScene& scene, double until,
+              const Reference& reference) {
+  const double w = frequency_bound(scene.system(), scene.initial().q);
+  const double coarsest = method.implicit ? 16 : std::max(16.0, std::ceil(until * w));
+  double last_error = 0;
+  for (int halving = 0; halving <= most_halvings; ++halving) {
+    const double h = until / (coarsest * std::exp2(halving));
+    const Point point =
+        measure(method, h, scene, until, reference, {.seconds = longest_run, .repeats = 1});
+    if (point.outcome == Outcome::over_budget) return;
+    const bool reached = point.outcome == Outcome::reached_end;
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    const double error = reached ? point.errors.position : nothing;
+    const double order = reached && last_error > 0 ? std::log2(last_error / error) : nothing;
+    csv.row(method.name, h, error, reached ? point.errors.velocity : nothing, order);
+    fmt::print("{:<20} {:>5}  {:>10.3e}  {:>10.3e}  {:>8.3f}\n", method.name, method.order, h,
+               error, order);
+    if (reached && error < 100 * reference.certified.position) return;
+    last_error = reached ? error : 0;
+  }
+}
+
+int convergence(const CLI::App& app, const Arguments& a,
+                const std::vector<std::string>& command_line) {
+  require_given(a.scene, "--scene", "a generator's name or a scene file");
+  require_given(a.out, "--out", "the folder for the results");
+  const auto selected = select_fixed_step(a.methods);
+  const Scene drawn = load_scene(a.scene);
+  const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  const ReducedScene scene(drawn);
+  require_reference_exists(scene, a.scene);
+  require_folder(a.out);
+
+  const nlohmann::json origin = provenance(command_line, drawn);
+  const Reference reference = reference_for(drawn, scene, until, a.out, origin);
+  CsvFile csv(a.out + "/order.csv",
+              {"method", "h", "error_position", "error_velocity", "observed_order"});
+  fmt::print("{} to t = {:g} s; reference certified to {:.1e}\n\n", drawn.name, until,
+             reference.certified.position);
+  fmt::print("{:<20} {:>5}  {:>10}  {:>10}  {:>8}\n", "method", "order", "h in s", "error",
+             "observed");
+  for (const Method* method : selected) tabulate(csv, *method, scene, until, reference);
+  csv.commit();
+  write_sidecar(csv.path(), origin);
+  return done;
+}
+
+}  // namespace
+}  // namespace qddot
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures the order of convergence of every fixed-step integrator.", "convergence");
+  qddot::Arguments arguments;
+  qddot::declare(app, arguments);
+  return qddot::run_program(app, argc, argv, [&] {
+    return qddot::convergence(app, arguments, {argv, argv + argc});
+  });
+}
