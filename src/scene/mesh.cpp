@@ -1,0 +1,100 @@
+#include "src/scene/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/mesh_formats.hpp"
+#include "src/scene/text_file.hpp"
+
+namespace qddot {
+namespace {
+
+bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && c != '\n'; }
+
+void keep_distinct(std::vector<std::array<std::size_t, 2>>& edges) {
+  for (auto& [i, j] : edges) {
+    if (i > j) std::swap(i, j);
+  }
+  // A face may name a corner twice in a row; that is no edge.
+  std::erase_if(edges, [](const auto& edge) { return edge[0] == edge[1]; });
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+}
+
+}  // namespace
+
+std::string_view Words::in_line() {
+  while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+  if (at_ < text_.size() && text_[at_] == '#') at_ = std::min(text_.find('\n', at_), text_.size());
+  const std::size_t start = at_;
+  while (at_ < text_.size() && text_[at_] != '\n' && !is_blank(text_[at_])) ++at_;
+  return text_.substr(start, at_ - start);
+}
+
+std::string_view Words::next() {
+  std::string_view word = in_line();
+  while (word.empty() && next_line()) word = in_line();
+  return word;
+}
+
+bool Words::next_line() {
+  at_ = text_.find('\n', at_);
+  if (at_ == text_.npos) {
+    at_ = text_.size();
+    return false;
+  }
+  ++at_;
+  ++line_;
+  return true;
+}
+
+void Words::refuse(std::string_view field, std::string_view value, std::string_view allowed,
+                   int line) const {
+  const std::string what =
+      value.empty() ? "ends too early" : fmt::format("{} is not allowed", shown(value));
+  throw InvalidInput(fmt::format("{}:{}: {}: {}; allowed {}", file_, line, field, what, allowed));
+}
+
+double Words::number(std::string_view field, std::string_view word) const {
+  const auto value = number_in<double>(word);
+  if (!value || !std::isfinite(*value)) refuse(field, word, "are finite numbers");
+  return *value;
+}
+
+Mesh read_mesh(const std::filesystem::path& file) {
+  const std::string name = file.string(), ending = file.extension().string();
+  if (ending != ".obj" && ending != ".mesh")
+    throw InvalidInput(fmt::format(
+        "{}: the ending \"{}\" is not allowed; allowed are .obj and .mesh", name, ending));
+  const std::string text = read_text(name);
+  Mesh mesh = ending == ".obj" ? read_obj(text, name) : read_medit(text, name);
+  if (mesh.vertices.empty())
+    throw InvalidInput(fmt::format("{}: it has no vertices; allowed are meshes with some", name));
+  keep_distinct(mesh.edges);
+  return mesh;
+}
+
+std::vector<std::array<std::size_t, 2>> opposite_vertices(const Mesh& mesh) {
+  std::vector<std::array<std::size_t, 3>> sides;  // the two ends of an edge, the corner opposite
+  for (const auto& [a, b, c] : mesh.triangles) {
+    for (const auto& [i, j, k] : {std::array{a, b, c}, std::array{b, c, a}, std::array{c, a, b}})
+      sides.push_back({std::min(i, j), std::max(i, j), k});
+  }
+  std::sort(sides.begin(), sides.end());
+
+  std::vector<std::array<std::size_t, 2>> pairs;
+  const auto edge = [](const auto& side) { return std::pair(side[0], side[1]); };
+  for (auto first = sides.begin(); first != sides.end();) {
+    const auto last = std::find_if(first, sides.end(),
+                                   [&](const auto& side) { return edge(side) != edge(*first); });
+    if (last - first == 2 && first[0][2] != first[1][2])
+      pairs.push_back({first[0][2], first[1][2]});
+    first = last;
+  }
+  return pairs;
+}
+
+}  // namespace qddot

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+
+#include "src/scene/scene.hpp"
+#include "src/scene/toml_table.hpp"
+
+namespace qddot {
+
+// The nodes and springs of a scene file's [mesh] table, in three dimensions: every vertex a node,
+// every edge a spring at its own length, vertices in the [[mesh.pin]] boxes pinned. The mesh file
+// is sought from `folder`.
+void add_mesh(const Table& table, const std::filesystem::path& folder, Scene& scene);
+
+}  // namespace qddot

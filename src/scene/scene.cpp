@@ -1,0 +1,121 @@
+#include "src/scene/scene.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "src/scene/invalid_input.hpp"
+
+namespace qddot {
+namespace {
+
+// One entry of a scene, so that a refusal can name it: `index` of the nodes or springs, or the
+// scene itself where `list` is empty.
+struct Entry {
+  const std::string& source;
+  const char* list = "";
+  std::size_t index = 0;
+
+  [[noreturn]] void refuse(const char* field, const std::string& why) const {
+    const std::string place = *list ? fmt::format("{}[{}].", list, index) : "";
+    throw InvalidInput(fmt::format("{}: {}{}: {}", source, place, field, why));
+  }
+  void check_finite(const char* field, const Eigen::Vector3d& x) const {
+    if (x.allFinite()) return;
+    refuse(field, fmt::format("[{}, {}, {}] is not allowed; allowed are finite numbers", x[0], x[1],
+                              x[2]));
+  }
+  void check_not_negative(const char* field, double x) const {
+    if (std::isfinite(x) && x >= 0) return;
+    refuse(field, fmt::format("{} is not allowed; allowed are finite numbers from 0", x));
+  }
+};
+
+void check_node(const Entry& entry, const Node& node) {
+  entry.check_finite("position", node.position);
+  entry.check_finite("velocity", node.velocity);
+  entry.check_not_negative("mass", node.mass);
+}
+
+void check_spring(const Entry& entry, const Spring& spring, const std::vector<Node>& nodes) {
+  const auto [i, j] = spring.nodes;
+  for (const std::size_t node : {i, j}) {
+    if (node >= nodes.size())
+      entry.refuse("nodes",
+                   fmt::format("{} is not a node; allowed are 0 to {}", node, nodes.size() - 1));
+  }
+  if (i == j)
+    entry.refuse(
+        "nodes",
+        fmt::format("[{}, {}] joins a node to itself; allowed are two different nodes from "
+                    "0 to {}",
+                    i, j, nodes.size() - 1));
+  entry.check_not_negative("stiffness", spring.law.stiffness);
+  entry.check_not_negative("rest_length", spring.law.rest_length);
+  entry.check_not_negative("quartic", spring.law.quartic);
+  if (spring.law.rest_length > 0 && (nodes[j].position - nodes[i].position).norm() == 0)
+    entry.refuse("rest_length",
+                 fmt::format("{} is not allowed as nodes {} and {} coincide; allowed is 0",
+                             spring.law.rest_length, i, j));
+}
+
+// 64-bit FNV-1a.
+class Hash {
+ public:
+  // Least significant byte first, whatever the machine's own order.
+  void add(std::uint64_t bits) {
+    for (int byte = 0; byte < 8; ++byte, bits >>= 8) {
+      hash_ = (hash_ ^ (bits & 0xff)) * 0x00000100000001b3ULL;
+    }
+  }
+  // Adding zero turns -0 into 0: equal numbers, equal hashes.
+  void add(double x) { add(std::bit_cast<std::uint64_t>(x + 0.0)); }
+  void add(const Eigen::Vector3d& x) {
+    for (const double component : x) add(component);
+  }
+  std::string digits() const { return fmt::format("{:016x}", hash_); }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
+};
+
+}  // namespace
+
+void validate(const Scene& scene, const std::string& source) {
+  const Entry whole{source};
+  if (scene.dimension < 1 || scene.dimension > 3)
+    whole.refuse("dimension",
+                 fmt::format("{} is not allowed; allowed are 1, 2 and 3", scene.dimension));
+  whole.check_finite("gravity", scene.gravity);
+  if (scene.until && !(std::isfinite(*scene.until) && *scene.until > 0))
+    whole.refuse("until", fmt::format("{} is not allowed; allowed are finite numbers above 0",
+                                      *scene.until));
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i)
+    check_node({source, "nodes", i}, scene.nodes[i]);
+  for (std::size_t i = 0; i < scene.springs.size(); ++i)
+    check_spring({source, "springs", i}, scene.springs[i], scene.nodes);
+}
+
+std::string content_hash(const Scene& scene) {
+  Hash hash;
+  hash.add(std::uint64_t(scene.dimension));
+  hash.add(scene.gravity);
+  hash.add(scene.nodes.size());
+  for (const Node& node : scene.nodes) {
+    hash.add(std::uint64_t(node.pinned));
+    hash.add(node.position);
+    if (node.pinned) continue;  // its mass and velocity move nothing
+    hash.add(node.velocity);
+    hash.add(node.mass);
+  }
+  for (const Spring& spring : scene.springs) {
+    for (const std::size_t node : spring.nodes) hash.add(node);
+    hash.add(spring.law.stiffness);
+    hash.add(spring.law.rest_length);
+    hash.add(spring.law.quartic);
+  }
+  return hash.digits();
+}
+
+}  // namespace qddot

@@ -1,0 +1,147 @@
+#include "src/scene/scene_file.hpp"
+
+#include <cctype>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "src/scene/generators.hpp"
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/mesh_scene.hpp"
+#include "src/scene/text_file.hpp"
+#include "src/scene/toml_table.hpp"
+
+namespace qddot {
+namespace {
+
+// toml++ nests a table for each part of a dotted key and destroys them recursively: a key of a
+// hundred thousand parts would exhaust the stack. So a line's dots are bounded before it is parsed,
+// those left out that cannot part keys: the first in a number, and all but the first in a row.
+void refuse_deep_keys(const std::string& text, const std::string& path) {
+  constexpr int most = 50;
+  const auto digit_at = [&](std::size_t i) {
+    return i < text.size() && text[i] >= '0' && text[i] <= '9';
+  };
+  int line = 1, dots = 0;
+  bool word_has_dot = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const unsigned char c = text[i];
+    if (c == '\n') {
+      ++line;
+      dots = 0;
+    }
+    if (c != '.') {
+      word_has_dot = word_has_dot && (std::isalnum(c) || c == '_' || c == '-' || c == '+');
+      continue;
+    }
+    const bool decimal = !word_has_dot && digit_at(i - 1) && digit_at(i + 1);
+    const bool repeated = i > 0 && text[i - 1] == '.';
+    word_has_dot = true;
+    dots += !decimal && !repeated;
+    if (dots > most)
+      throw InvalidInput(
+          fmt::format("{}:{}: the line has too many dots; allowed are {} beside those of numbers",
+                      path, line, most));
+  }
+}
+
+toml::table parse(const std::string& path) {
+  const std::string text = read_text(path);
+  refuse_deep_keys(text, path);
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const auto& place = error.source().begin;
+    throw InvalidInput(fmt::format("{}:{}:{}: this is not TOML: {}", path, place.line, place.column,
+                                   shown(error.description(), 200)));
+  }
+}
+
+Node node_in(const Table& table, int dimension) {
+  table.allow_keys({"position", "velocity", "mass", "pinned"});
+  Node node;
+  node.position = table.vector("position", dimension);
+  node.velocity = table.vector_or_zero("velocity", dimension);
+  node.pinned = table.flag_or_false("pinned");
+  if (!node.pinned || table.has("mass")) node.mass = table.number("mass", not_negative);
+  return node;
+}
+
+Spring spring_in(const Table& table, const std::vector<Node>& nodes) {
+  table.allow_keys({"nodes", "stiffness", "rest_length", "quartic"});
+  const auto [i, j] = table.node_pair("nodes", nodes.size());
+  const double distance = (nodes[j].position - nodes[i].position).norm();
+  return {.nodes = {i, j},
+          .law = {.stiffness = table.number("stiffness", not_negative),
+                  .rest_length = table.number_or(distance, "rest_length", not_negative),
+                  .quartic = table.number_or(0, "quartic", not_negative)}};
+}
+
+void add_nodes_and_springs(const Table& file, Scene& scene) {
+  file.allow_keys({"name", "dimension", "gravity", "until", "nodes", "springs"});
+  scene.dimension = file.integer("dimension", 1, 3);
+  for (const Table& table : file.tables("nodes"))
+    scene.nodes.push_back(node_in(table, scene.dimension));
+  if (scene.nodes.empty()) file.refuse("nodes", "lists of at least one node");
+  for (const Table& table : file.tables("springs"))
+    scene.springs.push_back(spring_in(table, scene.nodes));
+}
+
+std::string generator_names() {
+  std::vector<std::string> names;
+  for (const Generator& generator : generators()) names.push_back(generator.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+Scene generated(const Table& table) {
+  const std::string kind = table.text("kind");
+  const Generator* generator = find_generator(kind);
+  if (!generator) table.refuse("kind", generator_names());
+  GeneratorValues values;
+  for (const std::string& key : table.keys()) {
+    if (key != "kind") values[key] = table.number(key);
+  }
+  return generate(*generator, values, table.place());
+}
+
+Scene scene_in(const Table& file, const std::filesystem::path& path) {
+  if (file.has("nodes") + file.has("mesh") + file.has("generator") != 1)
+    throw InvalidInput(fmt::format(
+        "{}: a scene needs nodes; allowed is exactly one of [[nodes]], [mesh] and [generator]",
+        path.string()));
+  Scene scene;
+  if (file.has("generator")) {
+    file.allow_keys({"name", "until", "generator"});
+    scene = generated(file.table("generator"));
+  } else if (file.has("mesh")) {
+    file.allow_keys({"name", "dimension", "gravity", "until", "mesh"});
+    if (file.has("dimension")) file.integer("dimension", 3, 3);
+    add_mesh(file.table("mesh"), path.parent_path(), scene);
+  } else {
+    add_nodes_and_springs(file, scene);
+  }
+  scene.name = file.has("name") ? file.text("name") : path.stem().string();
+  if (file.has("until")) scene.until = file.number("until", positive);
+  if (file.has("gravity")) scene.gravity = file.vector("gravity", scene.dimension);
+  return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& path) {
+  const toml::table file = parse(path);
+  Scene scene = scene_in(Table(file, path), path);
+  validate(scene, path);
+  return scene;
+}
+
+Scene load_scene(const std::string& name_or_path) {
+  if (const Generator* generator = find_generator(name_or_path))
+    return generate(*generator, {}, name_or_path);
+  std::error_code ignored;
+  if (std::filesystem::exists(name_or_path, ignored)) return read_scene(name_or_path);
+  throw InvalidInput(fmt::format("{}: it is neither a file nor a generator; allowed are {}",
+                                 name_or_path, generator_names()));
+}
+
+}  // namespace qddot

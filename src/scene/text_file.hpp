@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace qddot {
+
+// The whole of a file that the user named. Throws InvalidInput, in a sentence that starts with
+// `path`, where it cannot be read or holds more than 256 MB.
+std::string read_text(const std::string& path);
+
+// `text` made fit for a one-line message: at most `most` characters, unprintable ones as '?'.
+std::string shown(std::string_view text, std::size_t most = 60);
+
+}  // namespace qddot

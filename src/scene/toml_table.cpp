@@ -1,0 +1,142 @@
+#include "src/scene/toml_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/text_file.hpp"
+
+namespace qddot {
+namespace {
+
+std::optional<double> finite_number(const toml::node& node) {
+  if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
+  const auto* number = node.as_floating_point();
+  return number && std::isfinite(number->get()) ? std::optional(number->get()) : std::nullopt;
+}
+
+std::string written(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  if (const auto* number = node.as_floating_point()) return fmt::format("{:#}", number->get());
+  if (const auto* array = node.as_array()) {
+    std::vector<std::string> entries;
+    for (const toml::node& entry : *array) entries.push_back(written(entry));
+    return fmt::format("[{}]", fmt::join(entries, ", "));
+  }
+  std::ostringstream out;
+  node.visit([&](const auto& value) { out << value; });
+  return out.str();
+}
+
+}  // namespace
+
+std::vector<std::string> Table::keys() const {
+  std::vector<std::string> all;
+  for (const auto& [key, value] : table_) all.emplace_back(key.str());
+  return all;
+}
+
+void Table::allow_keys(std::initializer_list<std::string_view> keys) const {
+  for (const auto& [key, value] : table_) {
+    if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
+      fail(key, fmt::format("it is an unknown key; allowed are {}", fmt::join(keys, ", ")));
+  }
+}
+
+double Table::number(std::string_view key, const Range& range) const {
+  const toml::node* node = table_.get(key);
+  const auto value = node ? finite_number(*node) : std::nullopt;
+  if (!value || !range.holds(*value)) refuse(key, range.words);
+  return *value;
+}
+
+Eigen::Vector3d Table::vector(std::string_view key, int size) const {
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  const toml::array* array = table_[key].as_array();
+  bool good = array && array->size() == static_cast<std::size_t>(size);
+  for (int k = 0; good && k < size; ++k) {
+    const auto value = finite_number((*array)[static_cast<std::size_t>(k)]);
+    x[k] = value.value_or(0);
+    good = value.has_value();
+  }
+  if (!good) refuse(key, fmt::format("arrays of {} finite number{}", size, size == 1 ? "" : "s"));
+  return x;
+}
+
+int Table::integer(std::string_view key, int low, int high) const {
+  const auto* value = table_[key].as_integer();
+  if (!value || value->get() < low || value->get() > high)
+    refuse(key, fmt::format("integers from {} to {}", low, high));
+  return static_cast<int>(value->get());
+}
+
+std::array<std::size_t, 2> Table::node_pair(std::string_view key, std::size_t count) const {
+  const toml::array* array = table_[key].as_array();
+  if (!array || array->size() != 2 || !array->is_homogeneous<std::int64_t>())
+    refuse(key, fmt::format("pairs of nodes from 0 to {}", count - 1));
+  std::array<std::size_t, 2> pair{};
+  for (std::size_t end : {0, 1}) {
+    const std::int64_t node = (*array)[end].as_integer()->get();
+    if (node < 0 || static_cast<std::size_t>(node) >= count)
+      fail(key, fmt::format("{} is not a node; allowed are 0 to {}", node, count - 1));
+    pair[end] = static_cast<std::size_t>(node);
+  }
+  return pair;
+}
+
+bool Table::flag_or_false(std::string_view key) const {
+  if (!has(key)) return false;
+  const auto* flag = table_[key].as_boolean();
+  if (!flag) refuse(key, "true and false");
+  return flag->get();
+}
+
+std::string Table::text(std::string_view key) const {
+  const auto* text = table_[key].as_string();
+  if (!text) refuse(key, "quoted texts");
+  return text->get();
+}
+
+Table Table::table(std::string_view key) const {
+  const auto* table = table_[key].as_table();
+  if (!table) refuse(key, fmt::format("tables, written [{}]", key));
+  return {*table, file_, name_of(key)};
+}
+
+std::vector<Table> Table::tables(std::string_view key) const {
+  if (!has(key)) return {};
+  const toml::array* array = table_[key].as_array();
+  if (!array || !(array->empty() || array->is_array_of_tables()))
+    refuse(key, fmt::format("arrays of tables, written [[{}]]", name_of(key)));
+  std::vector<Table> all;
+  all.reserve(array->size());
+  for (const toml::node& node : *array)
+    all.emplace_back(*node.as_table(), file_, fmt::format("{}[{}]", name_of(key), all.size()));
+  return all;
+}
+
+void Table::refuse(std::string_view key, std::string_view allowed) const {
+  const toml::node* node = table_.get(key);
+  const std::string what = node ? shown(written(*node)) + " is not allowed" : "it is missing";
+  fail(key, fmt::format("{}; allowed are {}", what, allowed));
+}
+
+void Table::fail(std::string_view key, std::string_view what) const {
+  const toml::node* node = table_.get(key);
+  throw InvalidInput(fmt::format("{}:{}: {}: {}", file_,
+                                 (node ? *node : table_).source().begin.line, name_of(key), what));
+}
+
+std::string Table::place() const {
+  return fmt::format("{}:{}: {}", file_, table_.source().begin.line, entry_);
+}
+
+std::string Table::name_of(std::string_view key) const {
+  return entry_.empty() ? shown(key) : fmt::format("{}.{}", entry_, shown(key));
+}
+
+}  // namespace qddot

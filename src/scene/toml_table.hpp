@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+#include <toml++/toml.h>
+
+namespace qddot {
+
+// Which numbers a key takes, and how a message names them.
+struct Range {
+  bool (*holds)(double);
+  std::string_view words;
+};
+inline constexpr Range any_number{[](double) { return true; }, "finite numbers"};
+inline constexpr Range not_negative{[](double x) { return x >= 0; }, "finite numbers from 0"};
+inline constexpr Range positive{[](double x) { return x > 0; }, "finite numbers above 0"};
+
+// A table of a TOML file and its place there. Whatever it does not hold as asked for is refused:
+// InvalidInput with file, line, entry, key, value and what is allowed. Integers serve as numbers.
+class Table {
+ public:
+  // `table` and `file` must outlive this; `entry` is empty for the file's top level.
+  Table(const toml::table& table, const std::string& file, std::string entry = "")
+      : table_(table), file_(file), entry_(std::move(entry)) {}
+
+  bool has(std::string_view key) const { return table_.contains(key); }
+  std::vector<std::string> keys() const;
+  void allow_keys(std::initializer_list<std::string_view> keys) const;
+
+  double number(std::string_view key, const Range& range = any_number) const;
+  double number_or(double standard, std::string_view key, const Range& range = any_number) const {
+    return has(key) ? number(key, range) : standard;
+  }
+  // `size` finite numbers, the rest of the three zero.
+  Eigen::Vector3d vector(std::string_view key, int size) const;
+  Eigen::Vector3d vector_or_zero(std::string_view key, int size) const {
+    return has(key) ? vector(key, size) : Eigen::Vector3d::Zero();
+  }
+  // An integer in [low, high].
+  int integer(std::string_view key, int low, int high) const;
+  // Two of `count` nodes, by their indices.
+  std::array<std::size_t, 2> node_pair(std::string_view key, std::size_t count) const;
+  bool flag_or_false(std::string_view key) const;
+  std::string text(std::string_view key) const;
+  Table table(std::string_view key) const;
+  // The tables of an array of tables; none where the key is missing.
+  std::vector<Table> tables(std::string_view key) const;
+
+  // Refuses what stands at `key`, or that nothing does. `allowed` completes "allowed are".
+  [[noreturn]] void refuse(std::string_view key, std::string_view allowed) const;
+  // Throws InvalidInput: `what`, after the file, line and name of `key`.
+  [[noreturn]] void fail(std::string_view key, std::string_view what) const;
+  // "file:line: entry" of this table.
+  std::string place() const;
+
+ private:
+  std::string name_of(std::string_view key) const;
+
+  const toml::table& table_;
+  const std::string& file_;
+  std::string entry_;
+};
+
+}  // namespace qddot

@@ -1,0 +1,299 @@
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
+
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/mesh.hpp"
+
+namespace fs = std::filesystem;
+using namespace qddot;
+
+namespace {
+
+using Pairs = std::vector<std::array<std::size_t, 2>>;
+
+// A fresh folder for a test's files, gone at its end.
+class Folder {
+ public:
+  Folder() { fs::create_directories(path_); }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+  Mesh read(const std::string& name, const std::string& text) const {
+    return read_mesh(write(name, text));
+  }
+  // What read_mesh says of the text; empty where it takes it.
+  std::string refusal(const std::string& name, const std::string& text) const {
+    try {
+      read(name, text);
+      return "";
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+  }
+
+ private:
+  fs::path path_ = fs::temp_directory_path() /
+                   fmt::format("qddot_mesh_{}_{:x}", getpid(), std::random_device{}());
+};
+
+bool names_all(const std::string& message, const std::vector<std::string>& fragments) {
+  for (const std::string& fragment : fragments) {
+    if (message.find(fragment) == message.npos) return false;
+  }
+  return !message.empty() && message.find('\n') == message.npos;
+}
+
+const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+// Two tetrahedra that share the triangle 1 2 3.
+const std::string glued =
+    "MeshVersionFormatted 2\n"
+    "# a comment\n"
+    "Dimension 3\n"
+    "Vertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 -1.5e0 0\n"
+    "Corners\n2\n1\n2\n"
+    "Triangles 1\n1 2 3 7\n"
+    "Tetrahedra\n2\n1 2 3 4 0\n1 3 2 5 0\n"
+    "End\n";
+
+std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
+  const std::size_t at = text.find(old_part);
+  BOOST_REQUIRE(at != text.npos);
+  return text.replace(at, old_part.size(), new_part);
+}
+
+void check_mutations(const std::string& name, const std::string& good) {
+  const Folder folder;
+  std::mt19937 random(2);
+  const std::string spice = "\n \t#-+/0919eanf" + std::string(1, '\0');
+  for (int round = 0; round < 3000; ++round) {
+    std::string text = good;
+    for (unsigned edits = 1 + random() % 4; edits > 0; --edits) {
+      const std::size_t at = random() % text.size();
+      switch (random() % 3) {
+        case 0:
+          text[at] = static_cast<char>(random());
+          break;
+        case 1:
+          text.insert(at, 1, spice[random() % spice.size()]);
+          break;
+        default:
+          text.erase(at, std::min<std::size_t>(random() % 20, text.size() - 1));
+      }
+    }
+    BOOST_TEST(folder.refusal(name, text).find('\n') == std::string::npos, text);
+  }
+}
+
+void check_truncations(const std::string& name, const std::string& good) {
+  const Folder folder;
+  std::size_t loaded = 0;
+  for (std::size_t length = 0; length <= good.size(); ++length)
+    loaded += folder.refusal(name, good.substr(0, length)).empty();
+  BOOST_TEST(loaded > 0);
+  BOOST_TEST(loaded < good.size());
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(mesh)
+
+BOOST_AUTO_TEST_CASE(all_forms_of_a_face_give_the_same_edges) {
+  const Folder folder;
+  const Pairs expected{{0, 1}, {0, 2}, {1, 2}};
+  for (const std::string face :
+       {"f 1 2 3", "f 1/1 2/2 3/3", "f 1//1 2//2 3//3", "f 1/4/1 2/5/1 3/6/1", "f -4 -3 -2",
+        "f -4/1/-1 -3//2 3", "f 3 1 2 # turned", "\tf  1 2\t3 \r", "f 1 2 3\nf 3 2 1", "l 1 2 3 1",
+        "f 1 1 2 3"}) {
+    const Mesh mesh = folder.read("a.obj", "vt 0 0\nvn 0 0 1\n" + square + face + "\n");
+    BOOST_TEST((mesh.edges == expected), face);
+    BOOST_TEST(mesh.vertices.size() == 4);  // the fourth in no face
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_polygon_has_its_boundary_for_edges) {
+  const Folder folder;
+  const Mesh mesh = folder.read("a.obj", square + "f 1 2 3 4");
+  BOOST_TEST((mesh.edges == Pairs{{0, 1}, {0, 3}, {1, 2}, {2, 3}}));
+  BOOST_TEST(mesh.triangles.empty());
+}
+
+BOOST_AUTO_TEST_CASE(negative_indices_count_from_the_last_vertex_so_far) {
+  const Folder folder;
+  const Mesh mesh =
+      folder.read("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf -1 -2 -3\n" + square + "f -1 -2 -3 -4\n");
+  BOOST_TEST((mesh.edges == Pairs{{0, 1}, {0, 2}, {1, 2}, {3, 4}, {3, 6}, {4, 5}, {5, 6}}));
+}
+
+BOOST_AUTO_TEST_CASE(vertices_are_read_exactly) {
+  const Folder folder;
+  const Mesh mesh = folder.read("a.obj", "v 0.1 -2.5e-3 +3\nv 1 2 3 1.0\nv 1 2 3 .5 .5 .5");
+  BOOST_TEST((mesh.vertices[0] == Eigen::Vector3d(0.1, -2.5e-3, 3)));
+  BOOST_TEST((mesh.vertices[2] == Eigen::Vector3d(1, 2, 3)));
+}
+
+BOOST_AUTO_TEST_CASE(tetrahedra) {
+  const Folder folder;
+  const Mesh two = folder.read("a.mesh", glued);
+  BOOST_TEST(two.vertices.size() == 5);
+  BOOST_TEST(two.edges.size() == 9);
+  BOOST_TEST((two.vertices[4] == Eigen::Vector3d(0, 0, -1.5)));
+  BOOST_TEST(two.triangles.size() == 1);
+  const Mesh one =
+      folder.read("a.mesh", replaced(glued, "2\n1 2 3 4 0\n1 3 2 5 0", "1\n1 2 3 4 0"));
+  BOOST_TEST((one.edges == Pairs{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
+}
+
+BOOST_AUTO_TEST_CASE(medit_sections_in_any_order) {
+  const Folder folder;
+  const Mesh mesh = folder.read("a.mesh",
+                                "MeshVersionFormatted 1 Quadrilaterals 1 1 2 3 4 0 Edges 1\n"
+                                "1 3 0 Dimension 2 Vertices 4 0 0 0 1 0 0 1 1 0 0 1 0");
+  BOOST_TEST((mesh.edges == Pairs{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}}));
+  BOOST_TEST((mesh.vertices[2] == Eigen::Vector3d(1, 1, 0)));
+}
+
+BOOST_AUTO_TEST_CASE(a_hexahedron_has_twelve_edges) {
+  const Folder folder;
+  std::string text = "MeshVersionFormatted 1\nDimension 3\nVertices 8\n";
+  for (const char* xy : {"0 0", "1 0", "1 1", "0 1"}) text += fmt::format("{} 0 0\n", xy);
+  for (const char* xy : {"0 0", "1 0", "1 1", "0 1"}) text += fmt::format("{} 1 0\n", xy);
+  const Mesh mesh = folder.read("a.mesh", text + "Hexahedra 1\n1 2 3 4 5 6 7 8 0\nEnd\n");
+  BOOST_TEST(mesh.edges.size() == 12);
+  for (const auto& [i, j] : mesh.edges)
+    BOOST_TEST((mesh.vertices[i] - mesh.vertices[j]).norm() == 1);
+}
+
+BOOST_AUTO_TEST_CASE(bending_pairs_lie_opposite_to_shared_edges) {
+  const Folder folder;
+  BOOST_TEST(
+      (opposite_vertices(folder.read("a.obj", square + "f 1 2 3\nf 1 3 4")) == Pairs{{1, 3}}));
+  // A boundary, a triangle given twice and an edge of three triangles bend nothing.
+  BOOST_TEST(opposite_vertices(folder.read("a.obj", square + "f 1 2 3\nf 3 2 1")).empty());
+  BOOST_TEST(opposite_vertices(folder.read("a.obj", square + "v 5 5 5\nf 1 2 3\nf 1 2 4\nf 1 2 5"))
+                 .empty());
+  BOOST_TEST(opposite_vertices(folder.read("a.obj", square + "f 1 2 3 4")).empty());
+}
+
+BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
+  const std::string medit = "MeshVersionFormatted 1\nDimension 3\n";
+  const std::vector<std::array<std::string, 2>> cases = {
+      {"a.obj", ""},
+      {"a.obj", "f 1 2 3\n"},
+      {"a.obj", "v 1 2\n"},
+      {"a.obj", "v 1 2 nan\n"},
+      {"a.obj", "v 1 inf 3\n"},
+      {"a.obj", "v 1 1e999 3\n"},
+      {"a.obj", "v 1 2 3x\n"},
+      {"a.obj", square + "f 1 2\n"},
+      {"a.obj", square + "f 0 1 2\n"},
+      {"a.obj", square + "f 1 2 5\n"},
+      {"a.obj", square + "f 1 2 -5\n"},
+      {"a.obj", square + "f 1 2 99999999999999999999\n"},
+      {"a.obj", square + "f 1 2 3/x\n"},
+      {"a.obj", square + "f 1 2 1.5\n"},
+      {"a.obj", square + "f /1 /2 /3\n"},
+      {"a.obj", std::string(10'000'000, 'v')},
+      {"a.obj", "v " + std::string(10'000'000, '1')},
+      {"a.obj", std::string("\0\x01\xff v\n\x80", 7)},
+      {"a.mesh", ""},
+      {"a.mesh", std::string(10'000'000, '1')},
+      {"a.mesh", std::string("\0\x01\xff v\n\x80", 7)},
+      {"a.mesh", "Vertices 1\n0 0 0 0\n"},
+      {"a.mesh", medit},
+      {"a.mesh", medit + "Vertices -1\n"},
+      {"a.mesh", medit + "Vertices 999999999\n0 0 0 0\n"},
+      {"a.mesh", medit + "Vertices 99999999999999999999\n"},
+      {"a.mesh", medit + "Vertices 1\n0 nan 0 0\n"},
+      {"a.mesh", medit + "Vertices 1\n0 0 0\nEnd\n"},
+      {"a.mesh", "MeshVersionFormatted 1\nDimension 4\n"},
+      {"a.mesh", replaced(glued, "1 3 2 5 0", "1 3 2 6 0")},
+      {"a.mesh", replaced(glued, "1 3 2 5 0", "0 3 2 5 0")},
+      {"a.mesh", replaced(glued, "1 3 2 5 0", "-1 3 2 5 0")},
+      {"a.mesh", replaced(glued, "1 3 2 5 0\nEnd\n", "1 3")},
+      {"a.msh", square},
+      {"a", square}};
+  const Folder folder;
+  for (const auto& [name, text] : cases) {
+    const std::string message = folder.refusal(name, text);
+    BOOST_CHECK_MESSAGE(names_all(message, {name, "allowed"}) && message.size() < 400,
+                        text.substr(0, 80) << " gives: " << message);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(messages_name_line_value_and_range) {
+  const Folder folder;
+  BOOST_TEST(names_all(folder.refusal("a.obj", square + "f 1 2 5\n"),
+                       {"a.obj:5:", "face", "5", "from 1 to 4", "-4"}));
+  BOOST_TEST(
+      names_all(folder.refusal("a.obj", "\nv 1 x 3\n"), {"a.obj:2:", "vertex", "x", "finite"}));
+  BOOST_TEST(names_all(folder.refusal("a.mesh", replaced(glued, "1 3 2 5", "1 3 2 6")),
+                       {"a.mesh:20:", "6", "1 to 5"}));
+  BOOST_TEST(names_all(folder.refusal("a.mesh", replaced(glued, "0 0 1 0", "0 0 y 0")),
+                       {"a.mesh:9:", "Vertices", "y", "finite"}));
+}
+
+BOOST_AUTO_TEST_CASE(the_message_check_can_fail) {
+  BOOST_TEST(!names_all("a.obj:1: vertex: x", {"a.obj", "face"}));
+  BOOST_TEST(!names_all("two\nlines", {}));
+}
+
+BOOST_AUTO_TEST_CASE(unreadable_paths_are_named) {
+  const Folder folder;
+  const fs::path here = folder.write("a.obj", square);
+  BOOST_CHECK_EXCEPTION(read_mesh(here.parent_path() / "none.obj"), InvalidInput,
+                        [](const InvalidInput& error) {
+                          return names_all(error.what(), {"none.obj", "No such file", "allowed"});
+                        });
+  fs::create_directory(here.parent_path() / "folder.obj");
+  BOOST_CHECK_EXCEPTION(read_mesh(here.parent_path() / "folder.obj"), InvalidInput,
+                        [](const InvalidInput& error) {
+                          return names_all(error.what(), {"folder.obj", "folder", "allowed"});
+                        });
+}
+
+BOOST_AUTO_TEST_CASE(truncated_files_load_or_are_refused) {
+  check_truncations("a.obj", square + "f 1/1/1 2//1 -1\nf 1 2 3 4\n");
+  check_truncations("a.mesh", glued);
+}
+
+BOOST_AUTO_TEST_CASE(mutated_files_load_or_are_refused) {
+  check_mutations("a.obj", square + "f 1/1/1 2//1 -1\nf 1 2 3 4\n");
+  check_mutations("a.mesh", glued);
+}
+
+// A grid of n x n vertices in triangles has 3 n^2 - 4 n + 1 edges.
+BOOST_AUTO_TEST_CASE(a_large_mesh) {
+  const std::size_t n = 317;  // 100,489 vertices
+  std::string text;
+  for (std::size_t i = 0; i < n * n; ++i)
+    text += fmt::format("v {} {} {}\n", 0.1 * double(i / n), 0.1 * double(i % n), 1.0 / 3);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    for (std::size_t j = 1; j < n; ++j) {
+      const std::size_t a = i * n + j;
+      text += fmt::format("f {0} {1} {2}\nf {0} {2} {3}\n", a, a + 1, a + n + 1, a + n);
+    }
+  }
+  const Folder folder;
+  const fs::path file = folder.write("large.obj", text);
+  const Mesh mesh = read_mesh(file);
+  BOOST_TEST(mesh.vertices.size() == n * n);
+  BOOST_TEST(mesh.edges.size() == 3 * n * n - 4 * n + 1);
+  BOOST_TEST(opposite_vertices(mesh).size() == mesh.edges.size() - 4 * (n - 1));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
