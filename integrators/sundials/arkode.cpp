@@ -77,10 +77,7 @@ class Dirk : public sundials::Stock {
     check(ARKStepGetNumStepSolveFails(ark(), &failed_solves), "ARKStepGetNumStepSolveFails");
     check(ARKStepGetNumLinSolvSetups(ark(), &setups), "ARKStepGetNumLinSolvSetups");
     check(ARKStepGetNumNonlinSolvIters(ark(), &iterations), "ARKStepGetNumNonlinSolvIters");
-    counts().steps = steps;
-    counts().rejected = failed_tests + failed_solves;
-    counts().factorizations = setups;
-    counts().newton_iterations = counts().solves = iterations;
+    set_counts({steps, failed_tests, failed_solves, setups, iterations});
   }
 
   Outcome outcome_of(int flag) const override {

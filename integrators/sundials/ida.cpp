@@ -80,10 +80,7 @@ class Ida final : public sundials::Stock {
     check(IDAGetNumStepSolveFails(ida(), &failed_solves), "IDAGetNumStepSolveFails");
     check(IDAGetNumLinSolvSetups(ida(), &setups), "IDAGetNumLinSolvSetups");
     check(IDAGetNumNonlinSolvIters(ida(), &iterations), "IDAGetNumNonlinSolvIters");
-    counts().steps = steps;
-    counts().rejected = failed_tests + failed_solves;
-    counts().factorizations = setups;
-    counts().newton_iterations = counts().solves = iterations;
+    set_counts({steps, failed_tests, failed_solves, setups, iterations});
   }
 
   Outcome outcome_of(int flag) const override {

@@ -49,6 +49,13 @@ void Stock::load(const State& state) {
   halves.v = state.v;
 }
 
+void Stock::set_counts(const OwnCounts& own) {
+  counts().steps = own.steps;
+  counts().rejected = own.failed_tests + own.failed_solves;
+  counts().factorizations = own.setups;
+  counts().newton_iterations = counts().solves = own.iterations;
+}
+
 const Vec& Stock::force_at(const Eigen::Map<Vec>& q) {
   q_ = q;
   force(q_, f_);

@@ -59,7 +59,7 @@ class Stock : public Integrator {
   // One internal step that does not pass the stop time; sets t [s] to the time reached.
   virtual int take_step(double t_stop, double& t) = 0;
   virtual void set_stop_time(double t_stop) = 0;
-  // Writes SUNDIALS' own counters into counts().
+  // Asks SUNDIALS for its own counters and gives them to set_counts.
   virtual void collect_counts() = 0;
   virtual Outcome outcome_of(int flag) const = 0;
   virtual std::string flag_name(int flag) const = 0;
@@ -72,6 +72,13 @@ class Stock : public Integrator {
   // One SI unit times rtol unless the user gave it: 1 m for q, 1 m/s for v.
   double atol() const { return knobs().atol > 0 ? knobs().atol : knobs().rtol; }
   void load(const State& state);
+
+  // What SUNDIALS counts by itself; forces and stiffnesses are counted where they are evaluated.
+  struct OwnCounts {
+    long steps, failed_tests, failed_solves, setups, iterations;
+  };
+  // Into counts(): each iteration of Newton's method is one solve, each set-up one factorisation.
+  void set_counts(const OwnCounts& own);
 
   // Runs the body of a C callback: 0 done, 1 recoverable (a result is not finite, so that SUNDIALS
   // tries a smaller step), -1 with the exception parked until SUNDIALS has returned.
