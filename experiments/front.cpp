@@ -58,6 +58,12 @@ void print_front(const std::string& scene, double until, const std::vector<Front
                  const Reference& reference) {
   fmt::print("{} to t = {:g} s; reference certified to {:.1e} ({})\n\n", scene, until,
              reference.certified.position, reference.made_by);
+  if (reference.is_chaotic()) {
+    fmt::print(
+        "The motion is chaotic: one rounding of the start grows {:.0e} times and moves the end "
+        "by {:.0e};\nerrors below that depend on how a method rounds.\n\n",
+        reference.perturbation_growth, reference.rounding_effect);
+  }
   fmt::print("{:<9} {:<20} {:<16} {:>8}  {:>9}   {}\n", "accuracy", "fastest method", "knob",
              "error", "time", "fastest of the other family");
   for (const FrontRow& row : front) {

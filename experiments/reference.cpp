@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <random>
 #include <stdexcept>
 
 #include <boost/numeric/odeint.hpp>
@@ -27,6 +29,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 struct Solution {
   State end;
   Scales scales;
+  double knob;
   std::string made_by;
 };
 
@@ -58,11 +61,11 @@ Solution refine(const ReducedScene& scene, double seconds, const Solve& solve) {
   return *best;
 }
 
-std::optional<Solution> composition(const ReducedScene& scene, double until, double h,
-                                    double seconds) {
+std::optional<Solution> composition(const ReducedScene& scene, const State& initial, double until,
+                                    double h, double seconds) {
   const Method& method = *find_method("kahan_li8");
   const auto integrator = make_integrator(method, scene.system(), {.step_size = h});
-  Solution solution{scene.initial(), {}, fmt::format("kahan_li8 at h = {:.6g} s", h)};
+  Solution solution{initial, {}, h, fmt::format("kahan_li8 at h = {:.6g} s", h)};
   Deadline deadline(seconds);
   Observer each_step{{}, [&](const State& state) { extend(solution.scales, scene, state); }};
   const auto steps = static_cast<std::int64_t>(std::round(until / h));
@@ -81,7 +84,8 @@ Solution best_composition(const ReducedScene& scene, double until, double second
   const double bound = frequency_bound(scene.system(), scene.initial().q);
   const double coarsest = std::max(16.0, std::ceil(until * bound / 2));
   return refine(scene, seconds, [&](int level) {
-    return composition(scene, until, until / (coarsest * std::exp2(level)), seconds);
+    return composition(scene, scene.initial(), until, until / (coarsest * std::exp2(level)),
+                       seconds);
   });
 }
 
@@ -121,6 +125,7 @@ std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double
   return Solution{{until, initial.q + length * Eigen::Map<const Vec>(y.data(), n),
                    speed * Eigen::Map<const Vec>(y.data() + n, n)},
                   scales,
+                  tolerance,
                   fmt::format("Boost.odeint Fehlberg 7(8) at tolerance {:.0e}", tolerance)};
 }
 
@@ -143,8 +148,30 @@ Reference joined(const ReducedScene& scene, const Solution& one, const Solution&
   for (double* part : {&certified.position, &certified.velocity, &certified.energy}) {
     *part = std::max(*part, std::numeric_limits<double>::epsilon());
   }
-  return {one.end, energy, one.scales, certified,
-          fmt::format("{}; {}", one.made_by, other.made_by)};
+  Reference reference{.end = one.end,
+                      .energy = energy,
+                      .scales = one.scales,
+                      .certified = certified,
+                      .made_by = fmt::format("{}; {}", one.made_by, other.made_by)};
+  return reference;
+}
+
+// Repeats the composition from a start that is one rounding away.
+void measure_rounding(Reference& reference, const ReducedScene& scene, const Solution& composed,
+                      double until, double seconds) {
+  State start = scene.initial();
+  if (start.q.size() == 0) return;
+  const double rounding =
+      std::numeric_limits<double>::epsilon() * start.q.lpNorm<Eigen::Infinity>();
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> part(-1, 1);
+  for (double& x : start.q) x += rounding * part(random);
+  const auto moved = composition(scene, start, until, composed.knob, seconds);
+  if (!moved || rounding == 0) return;
+  const Vec difference = moved->end.q - composed.end.q;
+  reference.perturbation_growth = difference.lpNorm<Eigen::Infinity>() / rounding;
+  reference.rounding_effect =
+      errors_between(scene, moved->end, composed.end, 0, composed.scales).position;
 }
 
 }  // namespace
@@ -155,12 +182,13 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
   Reference reference;
   if (scene.system().stiffness_is_constant() && scene.system().size() <= largest_modal_size) {
     const Solution modal{LinearMotion(scene.system(), scene.initial()).at(until), composed.scales,
-                         "modal, exact"};
+                         0, "modal, exact"};
     reference = joined(scene, modal, composed);
   } else {
     reference =
         joined(scene, composed, best_fehlberg(scene, until, composed.scales, 0.4 * seconds));
   }
+  measure_rounding(reference, scene, composed, until, seconds);
   reference.seconds = seconds_since(start);
   return reference;
 }

@@ -16,8 +16,18 @@ struct Reference {
   double energy = 0;  // E(0) [J], which the exact motion keeps
   Scales scales;
   Errors certified;
+  // What one rounding of the start (a random displacement of up to 2^-52 of the scene's extent)
+  // does to the positions at the end, as a position error; and by what factor it has grown. Where
+  // that is far above `certified` the motion is chaotic: it is known, but to no one who rounds
+  // differently.
+  double rounding_effect = 0, perturbation_growth = 0;
   std::string made_by;  // the two ways, with their knobs
   double seconds = 0;   // what it took
+
+  // Regular motions grow with time, not exponentially: by some thousands over their runs.
+  bool is_chaotic() const {
+    return perturbation_growth > 1e6 && rounding_effect > 10 * certified.position;
+  }
 };
 
 // Makes the reference of a scene without massless nodes, in about `seconds` at most. The two ways:

@@ -40,6 +40,9 @@ nlohmann::json to_json(const Reference& r) {
            {{"position", digits(r.certified.position)},
             {"velocity", digits(r.certified.velocity)},
             {"energy", digits(r.certified.energy)}}},
+          {"rounding_effect", r.rounding_effect},
+          {"perturbation_growth", r.perturbation_growth},
+          {"chaotic", r.is_chaotic()},
           {"scales",
            {{"displacement", r.scales.displacement},
             {"speed", r.scales.speed},
@@ -52,13 +55,15 @@ nlohmann::json to_json(const Reference& r) {
 
 Reference reference_from_json(const nlohmann::json& json) {
   const auto& scales = json.at("scales");
-  return {
-      {json.at("t"), vector(json.at("q")), vector(json.at("v"))},
-      json.at("energy"),
-      {scales.at("displacement"), scales.at("speed"), scales.at("kinetic")},
-      {json.at("certified_position"), json.at("certified_velocity"), json.at("certified_energy")},
-      json.at("made_by"),
-      json.at("seconds")};
+  return {.end = {json.at("t"), vector(json.at("q")), vector(json.at("v"))},
+          .energy = json.at("energy"),
+          .scales = {scales.at("displacement"), scales.at("speed"), scales.at("kinetic")},
+          .certified = {json.at("certified_position"), json.at("certified_velocity"),
+                        json.at("certified_energy")},
+          .rounding_effect = json.at("rounding_effect"),
+          .perturbation_growth = json.at("perturbation_growth"),
+          .made_by = json.at("made_by"),
+          .seconds = json.at("seconds")};
 }
 
 void require_reference_exists(const ReducedScene& scene, const std::string& source) {

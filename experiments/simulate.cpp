@@ -214,7 +214,7 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   output.finish(state, origin);
   const Counts& c = summary.counts;
   fmt::print(
-      "{} on {}: {} at t = {:.17g} s after {} steps, {} force and {} stiffness evaluations, "
+      "{} on {}: {} at t = {:g} s after {} steps, {} force and {} stiffness evaluations, "
       "{} factorisations\n",
       method.name, drawn.name, name(summary.outcome), summary.t_reached, c.steps,
       c.force_evaluations, c.stiffness_evaluations, c.factorizations);

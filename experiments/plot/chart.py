@@ -18,9 +18,10 @@ BELOW_TICKS = -28
 class Chart:
     """The runs of one experiment in axes of error and time."""
 
-    def __init__(self, axes, runs, certified, looks):
+    def __init__(self, axes, runs, reference, looks):
         self.axes = axes
-        self.certified = certified
+        self.certified = reference.certified
+        self.chaotic_below = reference.chaotic_below
         self.sweeps = measurements.sweeps(runs)
         self.good = [run for run in runs if not run.failure]
         self.looks = looks
@@ -77,6 +78,7 @@ class Chart:
     def draw(self):
         """Draws everything; the labels come last, when all they must not hide is known."""
         self.draw_floor()
+        self.draw_chaos()
         self.draw_front()
         for sweep in self.sweeps:
             self.draw_sweep(sweep)
@@ -114,6 +116,25 @@ class Chart:
             va="bottom",
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
             **style,
+        )
+
+    def draw_chaos(self):
+        """The line below which errors depend on how a method rounds, where the motion is
+        chaotic."""
+        if not self.chaotic_below:
+            return
+        self.axes.axvline(self.chaotic_below, color=FAINT, linewidth=1.0, linestyle=":")
+        self.axes.annotate(
+            "chaotic: one rounding of the start moves the end this far",
+            (self.chaotic_below, 1),
+            (-8, -6),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            rotation=90,
+            size=9.5,
+            color=FAINT,
+            ha="right",
+            va="top",
         )
 
     def front_corners(self):

@@ -55,6 +55,9 @@ class Reference:
     scene: str | None
     until: float | None
     certified: float | None
+    # The error below which runs differ by their roundings alone; None where that is no more than
+    # the reference's own.
+    chaotic_below: float | None
 
 
 def read_rows(path, columns):
@@ -129,10 +132,11 @@ def read_reference(path):
             content.get("scene"),
             None if until is None else float(until),
             float(certified) if certified is not None and float(certified) > 0 else None,
+            float(content["rounding_effect"]) if content.get("chaotic") else None,
         )
     except FileNotFoundError:
-        return Reference(None, None, None)
-    except (OSError, ValueError, TypeError, AttributeError) as error:
+        return Reference(None, None, None, None)
+    except (OSError, LookupError, ValueError, TypeError, AttributeError) as error:
         raise BadInput(f"{path} cannot be read: {error}.") from error
 
 

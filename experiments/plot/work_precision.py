@@ -88,7 +88,7 @@ def draw(runs, front, reference, fallback_scene):
     draw_header(sheet, scene, reference.until)
     draw_key(sheet, runs)
     axes = sheet.axes(LEFT, axes_top, WIDTH - LEFT - RIGHT, axes_height(runs))
-    chart = Chart(axes, runs, reference.certified, looks)
+    chart = Chart(axes, runs, reference, looks)
     chart.draw()
     rectangle = (LEFT, HEADER, WIDTH - LEFT - RIGHT, BAND)
     if front:
