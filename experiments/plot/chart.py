@@ -125,16 +125,18 @@ class Chart:
             return
         self.axes.axvline(self.chaotic_below, color=FAINT, linewidth=1.0, linestyle=":")
         self.axes.annotate(
-            "chaotic: one rounding of the start moves the end this far",
-            (self.chaotic_below, 1),
-            (-8, -6),
+            "chaotic: rounding decides",
+            (self.chaotic_below, 0),
+            (-8, 6),
             xycoords=("data", "axes fraction"),
             textcoords="offset points",
             rotation=90,
             size=9.5,
             color=FAINT,
             ha="right",
-            va="top",
+            va="bottom",
+            zorder=4,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
         )
 
     def front_corners(self):

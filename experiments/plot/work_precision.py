@@ -36,7 +36,7 @@ def axes_height(runs):
 
 def draw_header(sheet, scene, until):
     """Title and subtitle."""
-    end = "" if until is None else f" at T = {number(until)}"
+    end = "" if until is None else f" at T = {number(until)} s"
     title = f"{scene}: time of a run against its error{end}"
     subtitle = "position error at t = T: max over nodes, divided by the largest displacement"
     sheet.text(MARGIN, 0.25, title, size=14, weight="bold", va="center")
