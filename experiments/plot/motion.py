@@ -1,0 +1,250 @@
+"""Draws one motion as several methods make it at one step size: its path or shape, and its energy.
+
+Call: motion.py VIEW SCENE H T OUT.png, with the step size H and the end T in seconds.
+
+VIEW is phase (x against v / omega of one mass in 1D), path (one mass in the plane of its motion)
+or cloth (the shape of a square cloth). The motion called exact is made by kahan_li8 at H / 20.
+build/bin/simulate must be there.
+"""
+
+import csv
+import io
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib import ticker
+from matplotlib.collections import LineCollection
+from matplotlib.text import Text
+
+from chart import move_label
+from labels import Ink, place_labels
+from sheet import Sheet
+from style import FAINT, Look, assign_looks, family_look, use_style
+
+SIMULATE = Path(__file__).absolute().parents[2] / "build/bin/simulate"
+METHODS = ("explicit_euler", "symplectic_euler", "semi_implicit_euler", "implicit_euler", "verlet")
+EXACT = "kahan_li8"
+EXACT_STEPS = 20
+EXACT_SAMPLES = 4
+EXACT_LOOK = Look("#C8C8C8", "", family_look("exact"))
+
+WIDTH, HEIGHT = 10.0, 5.1
+TOP, SIDE = 0.8, 3.7
+FONT_SIZE = 9.5
+LINE_INK = 2.0
+FARTHEST = 1.5
+THREADS = 11
+
+
+@dataclass(frozen=True)
+class Run:
+    """A motion: positions and velocities by time, node and axis, and the total energy by time."""
+
+    name: str
+    look: Look
+    times: np.ndarray
+    positions: np.ndarray
+    velocities: np.ndarray
+    energy: np.ndarray
+    failed: bool
+
+
+def call_simulate(*words):
+    """Runs simulate; returns whether it reached the end, and what it printed."""
+    done = subprocess.run([SIMULATE, *map(str, words)], capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 3):
+        sys.exit(done.stderr.strip())
+    return done.returncode == 0, done.stdout
+
+
+def method_looks():
+    """The look of every method, as in the charts."""
+    table = io.StringIO(call_simulate("--list-methods", "--csv")[1])
+    return assign_looks({row["name"]: row["family"] for row in csv.DictReader(table)})
+
+
+def simulate(name, look, method, scene, h, every, until):
+    """One run, sampled at the interval `every`."""
+    with tempfile.TemporaryDirectory() as folder:
+        path, energy = f"{folder}/path.csv", f"{folder}/energy.csv"
+        run = ("--scene", scene, "--method", method, "--step-size", h, "--until", until)
+        outputs = ("--trajectory", path, "--energy", energy, "--every", every)
+        reached_end, _ = call_simulate(*run, *outputs)
+        rows = np.loadtxt(path, delimiter=",", skiprows=1)
+        total = np.loadtxt(energy, delimiter=",", skiprows=1)[:, 3]
+    samples = rows.reshape(len(total), -1, rows.shape[1])
+    positions, velocities = np.split(samples[:, :, 2:], 2, axis=2)
+    return Run(name, look, samples[:, 0, 0], positions, velocities, total, not reached_end)
+
+
+def same(a, b):
+    """Whether two runs are one motion, as those of the implicit methods where it is linear."""
+    return a.positions.shape == b.positions.shape and np.allclose(a.positions, b.positions)
+
+
+def draw_curves(axes, runs, curves, mark=""):
+    """One curve for each run with its name, a mark at each step where wanted."""
+    for i, (run, points) in enumerate(zip(runs, curves)):
+        style = {"linewidth": 1.6, "zorder": 3, "marker": mark, "markersize": 2.6}
+        if run.look is EXACT_LOOK:
+            style = {"linewidth": 5, "zorder": 1.5}
+        elif any(same(run, other) for other in runs[:i]):
+            # So that the curve below is seen as well.
+            style |= {"linestyle": (0, (3, 3)), "marker": ""}
+        axes.plot(*points.T, color=run.look.color, **style)
+    axes.grid(True)
+    axes.tick_params(length=3, color=FAINT, labelsize=FONT_SIZE)
+    label_curves(axes, runs, curves)
+
+
+def label_curves(axes, runs, curves):
+    """Names every curve at one of its points."""
+    box = axes.bbox
+    bounds = (box.x0 + 3, box.y0 + 3, box.x1 - 3, box.y1 - 3)
+    ink = Ink(bounds)
+    pieces = [in_view(axes.transData.transform(points), bounds) for points in curves]
+    for piece in pieces:
+        for start, end in zip(piece, piece[1:]):
+            ink.add_line(start, end, LINE_INK)
+    texts = [draw_label(axes, run) for run in runs]
+    sizes = [Text.get_window_extent(text).size for text in texts]
+    places = place_labels([anchors(piece) for piece in pieces], sizes, bounds, ink)
+    for text, place in zip(texts, places):
+        move_label(text, axes.transData.inverted().transform(place.anchor), place)
+
+
+def in_view(pixels, bounds):
+    """The points of a curve up to where it first leaves the bounds, that point included."""
+    low, high = np.array(bounds[:2]), np.array(bounds[2:])
+    pixels[0] = np.clip(pixels[0], low, high)
+    outside = np.any((pixels < low - 3) | (pixels > high + 3), axis=1)
+    if not outside.any():
+        return np.clip(pixels, low, high)
+    first = np.argmax(outside)
+    start, step = pixels[first - 1], pixels[first] - pixels[first - 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(step > 0, (high - start) / step, (low - start) / step)
+    # Several points, so that a label finds its place along the last straight line.
+    last = np.linspace(0, np.nanmin(np.abs(shares)), 8)[1:, None] * step
+    return np.vstack([pixels[:first], start + last])
+
+
+def anchors(piece):
+    """A dozen points of the later part of a curve, where the methods have parted."""
+    chosen = np.unique(np.linspace(len(piece) / 2, len(piece) - 1, 12).astype(int))
+    return [tuple(piece[i]) for i in chosen]
+
+
+def draw_label(axes, run):
+    """The name of a run and how it failed, not yet in its place."""
+    words = run.name + (f" blew up by t = {run.times[-1]:g} s" if run.failed else "")
+    style = {"size": FONT_SIZE, "color": run.look.text_color, "ha": "center", "va": "center"}
+    style["bbox"] = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.8}
+    style["arrowprops"] = {"arrowstyle": "-", "color": run.look.color, "lw": 0.8, "shrinkA": 0}
+    return axes.annotate(words, (0, 0), (0, 0), textcoords="offset points", zorder=6, **style)
+
+
+def draw_plane(sheet, runs, curves, words):
+    """Curves around the origin of a plane; the axes reach little farther than the exact one."""
+    axes = sheet.axes(0.75, TOP, SIDE, SIDE)
+    reach = FARTHEST * np.linalg.norm(curves[0], axis=1).max()
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel=words[0])
+    axes.set_ylabel(words[1], labelpad=0)
+    draw_curves(axes, runs, curves, mark="o")
+
+
+def draw_phase(sheet, runs):
+    """x against v / omega, where the exact motion of a harmonic oscillator is a circle."""
+    omega = np.abs(runs[0].velocities).max() / np.abs(runs[0].positions).max()
+    curves = [np.hstack([run.positions[:, 1], run.velocities[:, 1] / omega]) for run in runs]
+    draw_plane(sheet, runs, curves, ("x in m", "v / ω in m"))
+
+
+def draw_path(sheet, runs):
+    """The path of node 1 around node 0, in the plane of its first position and velocity."""
+    arm = runs[0].positions[0, 1] - runs[0].positions[0, 0]
+    speed = runs[0].velocities[0, 1]
+    across = speed - arm * (arm @ speed) / (arm @ arm)
+    plane = np.stack([arm / np.linalg.norm(arm), across / np.linalg.norm(across)], 1)
+    curves = [(run.positions[:, 1] - run.positions[:, 0]) @ plane for run in runs]
+    draw_plane(sheet, runs, curves, ("along the first radius in m", "across it in m"))
+
+
+def draw_threads(axes, positions, look):
+    """Some threads of a square cloth along both its sides, in an oblique view."""
+    count = round(len(positions) ** 0.5)
+    x, y, z = np.moveaxis(positions.reshape(count, count, 3), 2, 0)
+    seen = np.stack([0.62 * y - 0.75 * x, z - 0.3 * y - 0.25 * x], 2)
+    shown = np.linspace(0, count - 1, THREADS).round().astype(int)
+    lines = [*seen[shown], *seen[:, shown].swapaxes(0, 1)]
+    axes.add_collection(LineCollection(lines, colors=look.color, linewidths=0.6))
+
+
+def draw_cloth(sheet, runs):
+    """A panel for each run: its last shape over the exact one or, of a run that blew up, the first
+    that is too large."""
+    reach = FARTHEST * np.abs(runs[0].positions).max()
+    for i, run in enumerate(sorted(runs, key=lambda run: run.failed)):
+        too_large = np.abs(run.positions).max((1, 2)) > reach
+        shown = np.argmax(too_large) if too_large.any() else -1
+        axes = sheet.axes(0.1 + 1.7 * (i % 3), TOP + 0.38 + 2.07 * (i // 3), 1.6, 1.5)
+        axes.set_axis_off()
+        axes.set(xlim=(-0.9, 0.7), ylim=(-1.3, 0.2), aspect="equal")
+        if not run.failed:
+            draw_threads(axes, runs[0].positions[-1], EXACT_LOOK)
+        draw_threads(axes, run.positions[shown], run.look)
+        state = f"{'blowing up at ' if run.failed else ''}t = {run.times[shown]:g} s"
+        axes.set_title(f"{run.name}\n{state}", size=9, color=run.look.text_color)
+
+
+def draw_energy(sheet, runs):
+    """The energy over time: its ratio to the first where all is positive, else the difference."""
+    axes = sheet.axes(5.9, TOP, WIDTH - 6.1, SIDE)
+    first = runs[0].energy[0]
+    if all(run.energy.min() > 0 for run in runs):
+        energies = [run.energy / first for run in runs]
+        axes.set(yscale="log", ylabel="energy / first energy")
+        axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axes.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.yaxis.set_minor_locator(ticker.NullLocator())
+    else:
+        energies = [run.energy - first for run in runs]
+        axes.set_ylabel("energy − first energy in J")
+    # A run that blows up leaves the axes above, where its name needs room.
+    room = 0.4 if any(run.failed for run in runs) else 0.05
+    tame = np.concatenate([energy for run, energy in zip(runs, energies) if not run.failed])
+    low, high = axes.transData.transform([(0, tame.min()), (0, tame.max())])
+    limits = (low - 0.05 * (high - low), high + room * (high - low))
+    axes.set_ylim(*axes.transData.inverted().transform(limits)[:, 1])
+    axes.set(xlim=(0, runs[0].times[-1]), xlabel="t in s")
+    draw_curves(axes, runs, [np.stack([r.times, e], 1) for r, e in zip(runs, energies)])
+
+
+VIEWS = {"phase": draw_phase, "path": draw_path, "cloth": draw_cloth}
+
+
+def main(view, scene, h, until, out):
+    """Draws the picture."""
+    use_style()
+    looks, step, end = method_looks(), float(h), float(until)
+    fine, every = step / EXACT_STEPS, step / EXACT_SAMPLES
+    runs = [simulate("exact", EXACT_LOOK, EXACT, scene, fine, every, end)]
+    runs += [simulate(name, looks[name], name, scene, step, step, end) for name in METHODS]
+    sheet = Sheet(WIDTH, HEIGHT)
+    title = f"{scene}: {len(METHODS)} methods at one step size, h = {h} s"
+    sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
+    exact = f"exact: {EXACT} at h / {EXACT_STEPS}"
+    sheet.text(0.15, 0.54, exact, size=10, color=FAINT, va="center")
+    VIEWS[view](sheet, runs)
+    draw_energy(sheet, runs)
+    sheet.save(out)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 6 or sys.argv[1] not in VIEWS:
+        sys.exit("Usage: motion.py phase|path|cloth SCENE H T OUT.png")
+    main(*sys.argv[1:])
