@@ -92,16 +92,15 @@ int convergence(const CLI::App& app, const Arguments& a,
   require_folder(a.out);
 
   const nlohmann::json origin = provenance(command_line, drawn);
-  const Reference reference = reference_for(drawn, scene, until, a.out, origin);
   CsvFile csv(a.out + "/order.csv",
               {"method", "h", "error_position", "error_velocity", "observed_order"});
+  const Reference reference = reference_for(drawn, scene, until, a.out, origin);
   fmt::print("{} to t = {:g} s; reference certified to {:.1e}\n\n", drawn.name, until,
              reference.certified.position);
   fmt::print("{:<20} {:>5}  {:>10}  {:>10}  {:>8}\n", "method", "order", "h in s", "error",
              "observed");
   for (const Method* method : selected) tabulate(csv, *method, scene, until, reference);
-  csv.commit();
-  write_sidecar(csv.path(), origin);
+  csv.commit(origin);
   return done;
 }
 

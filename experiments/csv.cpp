@@ -1,5 +1,7 @@
 #include "experiments/csv.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace qddot {
 
 Csv::Csv(const std::vector<std::string>& header) {
@@ -24,6 +26,25 @@ void Csv::field(std::string_view text) {
 void Csv::end_row() {
   text_.push_back('\n');
   row_is_empty_ = true;
+}
+
+namespace {
+
+std::string sidecar_of(const std::string& path) {
+  return (path.ends_with(".csv") ? path.substr(0, path.size() - 4) : path) + ".json";
+}
+
+}  // namespace
+
+CsvFile::CsvFile(const std::string& path, const std::vector<std::string>& header)
+    : Csv(header), file_(path), sidecar_(sidecar_of(path)) {}
+
+void CsvFile::commit(const nlohmann::json& origin) {
+  flush();
+  // A path in a command line may hold bytes that are no UTF-8.
+  sidecar_.write(origin.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  file_.commit();
+  sidecar_.commit();
 }
 
 }  // namespace qddot

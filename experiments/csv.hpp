@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json_fwd.hpp>
 
 #include "experiments/whole_file.hpp"
 
@@ -50,21 +51,19 @@ class Csv {
   bool row_is_empty_ = true;
 };
 
-// A Csv that goes to a file as it grows, and appears there on commit().
+// A Csv that goes to a file X.csv as it grows, and appears there on commit(), together with its
+// sidecar X.json. Throws InvalidInput at once if either place cannot be written.
 class CsvFile : public Csv {
  public:
-  CsvFile(const std::string& path, const std::vector<std::string>& header)
-      : Csv(header), file_(path) {}
+  CsvFile(const std::string& path, const std::vector<std::string>& header);
 
   const std::string& path() const { return file_.path(); }
   // Writes out what has gathered, once that is worth a call.
   void flush_if_large() {
     if (text().size() > (1 << 20)) flush();
   }
-  void commit() {
-    flush();
-    file_.commit();
-  }
+  // `origin`: how the table was made (see provenance.hpp).
+  void commit(const nlohmann::json& origin);
 
  private:
   void flush() {
@@ -72,7 +71,7 @@ class CsvFile : public Csv {
     clear();
   }
 
-  WholeFile file_;
+  WholeFile file_, sidecar_;
 };
 
 }  // namespace qddot

@@ -47,7 +47,7 @@ class Stagnation {
     const double error = point.errors.position;
     idle_ = error > 0.8 * best_ ? idle_ + 1 : 0;
     best_ = std::min(best_, error);
-    return idle_ >= 2 && best_ < 1e-4;
+    return idle_ >= 3 && best_ < 1e-4;
   }
 
  private:
@@ -88,10 +88,11 @@ std::vector<Point> climb(const Method& method, const ReducedScene& scene, double
   std::ranges::reverse(points);
 
   Stagnation stagnation;
-  for (const Point& point : points) stagnation.after(point);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) stagnation.after(points[i]);
   int unfinished = 0;
   for (int rung = 1; const auto value = rungs.value(rung); ++rung) {
     const Point& last = points.back();
+    if (last.value == *value) continue;
     if (last.outcome == Outcome::reached_end &&
         (last.errors.position <= reference.certified.position || stagnation.after(last))) {
       break;
@@ -100,7 +101,7 @@ std::vector<Point> climb(const Method& method, const ReducedScene& scene, double
     unfinished += last.outcome == Outcome::over_budget;
     const bool has_worked = std::ranges::any_of(points, is_good);
     if (last.outcome == Outcome::singular_mass || unfinished > (has_worked ? 0 : 2)) break;
-    if (last.value != *value) take(*value);
+    take(*value);
   }
   return points;
 }

@@ -14,10 +14,11 @@
 namespace qddot {
 namespace {
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-int complain(const CLI::App& app, const char* sentence, ExitStatus status) {
-  fmt::print(stderr, "{}: {}\n", app.get_name(), first_line(sentence));
+// In one line, whatever a name in it holds.
+int complain(const CLI::App& app, std::string sentence, ExitStatus status) {
+  std::ranges::replace_if(
+      sentence, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  fmt::print(stderr, "{}: {}\n", app.get_name(), sentence);
   return status;
 }
 
@@ -29,6 +30,8 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return body();
   } catch (const CLI::Success& help) {
     return app.exit(help);
+  } catch (const CLI::ConversionError& error) {
+    return complain(app, fmt::format("{}; allowed is a number", error.what()), bad_input);
   } catch (const CLI::ParseError& error) {
     return complain(app, error.what(), bad_input);
   } catch (const InvalidInput& error) {

@@ -12,7 +12,6 @@
 #include <sundials/sundials_version.h>
 
 #include "experiments/build_info.hpp"
-#include "experiments/whole_file.hpp"
 
 namespace qddot {
 namespace {
@@ -55,14 +54,6 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
                                     CHOLMOD_SUBSUB_VERSION)},
             {"boost", BOOST_LIB_VERSION}}},
           {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
-}
-
-void write_sidecar(const std::string& csv_path, const nlohmann::json& provenance) {
-  const bool is_csv = csv_path.ends_with(".csv");
-  WholeFile file((is_csv ? csv_path.substr(0, csv_path.size() - 4) : csv_path) + ".json");
-  // A path in the command line may hold bytes that are no UTF-8.
-  file.write(provenance.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  file.commit();
 }
 
 }  // namespace qddot

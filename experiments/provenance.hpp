@@ -13,9 +13,6 @@ namespace qddot {
 // compiler and flags, processor, libraries, date (UTC).
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& scene);
 
-// Writes it as the sidecar X.json of the table X.csv.
-void write_sidecar(const std::string& csv_path, const nlohmann::json& provenance);
-
 // Hash of all sources that decide a motion; changes when the code does.
 std::string code_hash();
 

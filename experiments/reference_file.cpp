@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -24,8 +25,15 @@ Vec vector(const nlohmann::json& json) {
 double digits(double certified) { return std::floor(-std::log10(certified) * 10) / 10; }
 
 nlohmann::json read(const std::string& file) {
+  if (std::filesystem::is_directory(file)) return {};
   std::ifstream stream(file);
   return nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
+}
+
+bool fits(const Reference& reference, const ReducedScene& scene) {
+  const Index n = scene.system().size();
+  return reference.end.q.size() == n && reference.end.v.size() == n &&
+         reference.certified.position > 0;
 }
 
 }  // namespace
@@ -82,18 +90,19 @@ Reference reference_for(const Scene& drawn, const ReducedScene& scene, double un
   const nlohmann::json stored = read(file);
   if (stored.is_object() && stored.value("key", nlohmann::json()) == key) {
     try {
-      return reference_from_json(stored);
+      Reference reference = reference_from_json(stored);
+      if (fits(reference, scene)) return reference;
     } catch (const nlohmann::json::exception&) {
       // A file that somebody else wrote or cut short: made anew below.
     }
   }
+  WholeFile whole(file);
   const Reference reference = make_reference(scene, until, longest_making);
   nlohmann::json json = origin;
   json.update(to_json(reference));
   json["key"] = key;
   json["scene"] = drawn.name;
   json["until"] = until;
-  WholeFile whole(file);
   whole.write(json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   whole.commit();
   return reference;

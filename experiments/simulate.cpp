@@ -5,8 +5,9 @@
 //   simulate --list-methods
 //   simulate --list-scenes
 #include <array>
-#include <map>
+#include <filesystem>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -78,6 +79,22 @@ void assign_every(const CLI::App& app, Arguments& a) {
   require(a.energy_path, a.energy_every, "--energy");
   if (!a.every.empty() && a.trajectory_path.empty() && a.energy_path.empty()) {
     throw InvalidInput("--every is given without --trajectory or --energy, which it belongs to");
+  }
+}
+
+void require_distinct_outputs(const CLI::App& app, const Arguments& a) {
+  std::set<std::filesystem::path> taken;
+  for (const auto& [option, path] :
+       {std::pair("--final", a.final_path), std::pair("--trajectory", a.trajectory_path),
+        std::pair("--energy", a.energy_path)}) {
+    if (app.count(option) == 0) continue;
+    require_given(path, option, "the name of a CSV file");
+    if (!taken.insert(std::filesystem::absolute(path).lexically_normal()).second) {
+      throw InvalidInput(
+          fmt::format("{} {}: another output goes to that file; allowed is a file "
+                      "for each",
+                      option, path));
+    }
   }
 }
 
@@ -174,8 +191,7 @@ class Output {
     }
     for (auto* file : {final_.get(), trajectory_.get(), energy_.get()}) {
       if (!file) continue;
-      file->commit();
-      write_sidecar(file->path(), origin);
+      file->commit(origin);
     }
   }
 
@@ -198,6 +214,7 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   const Method& method = require_method(a.method);
   const Knobs knobs = require_knobs(app, a, method);
   assign_every(app, a);
+  require_distinct_outputs(app, a);
   const Scene drawn = load_scene(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
 

@@ -45,30 +45,32 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
 }
 
-void write_points(const std::string& path, const std::string& scene,
-                  const std::vector<Point>& points, const nlohmann::json& origin) {
-  CsvFile csv(path, {"scene",
-                     "method",
-                     "knob",
-                     "value",
-                     "outcome",
-                     "t_reached",
-                     "error_position",
-                     "error_velocity",
-                     "error_energy",
-                     "time_s",
-                     "time_min_s",
-                     "setup_s",
-                     "steps",
-                     "rejected",
-                     "force_evaluations",
-                     "stiffness_evaluations",
-                     "factorizations",
-                     "solves",
-                     "newton_iterations",
-                     "timed_runs",
-                     "family",
-                     "order"});
+const std::vector<std::string> point_columns = {"scene",
+                                                "method",
+                                                "knob",
+                                                "value",
+                                                "outcome",
+                                                "t_reached",
+                                                "error_position",
+                                                "error_velocity",
+                                                "error_energy",
+                                                "time_s",
+                                                "time_min_s",
+                                                "setup_s",
+                                                "steps",
+                                                "rejected",
+                                                "force_evaluations",
+                                                "stiffness_evaluations",
+                                                "factorizations",
+                                                "solves",
+                                                "newton_iterations",
+                                                "timed_runs",
+                                                "family",
+                                                "order"};
+const std::vector<std::string> front_columns = {"scene", "accuracy",       "method", "knob",
+                                                "value", "error_position", "time_s"};
+
+void tabulate(Csv& csv, const std::string& scene, const std::vector<Point>& points) {
   for (const Point& p : points) {
     // What was not measured is an empty field.
     const auto measured = [&](double x) {
@@ -81,13 +83,9 @@ void write_points(const std::string& path, const std::string& scene,
             c.force_evaluations, c.stiffness_evaluations, c.factorizations, c.solves,
             c.newton_iterations, p.timed_runs, family_name(p.method->family), p.method->order);
   }
-  csv.commit();
-  write_sidecar(path, origin);
 }
 
-void write_front(const std::string& path, const std::string& scene,
-                 const std::vector<FrontRow>& front, const nlohmann::json& origin) {
-  CsvFile csv(path, {"scene", "accuracy", "method", "knob", "value", "error_position", "time_s"});
+void tabulate(Csv& csv, const std::string& scene, const std::vector<FrontRow>& front) {
   for (const FrontRow& row : front) {
     if (const Point* p = row.fastest) {
       csv.row(scene, row.accuracy, p->method->name, knob_name(p->method->knob), p->value,
@@ -96,8 +94,6 @@ void write_front(const std::string& path, const std::string& scene,
       csv.row(scene, row.accuracy, "", "", "", "", "");
     }
   }
-  csv.commit();
-  write_sidecar(path, origin);
 }
 
 // One line on a terminal that is written over; nothing where the output is kept.
@@ -128,6 +124,8 @@ int work_precision(const CLI::App& app, const Arguments& a,
   const ReducedScene scene(drawn);
   require_reference_exists(scene, a.scene);
   require_folder(a.out);
+  CsvFile points_csv(a.out + "/points.csv", point_columns);
+  CsvFile front_csv(a.out + "/front.csv", front_columns);
 
   nlohmann::json origin = provenance(command_line, drawn);
   origin["until"] = until;
@@ -143,8 +141,10 @@ int work_precision(const CLI::App& app, const Arguments& a,
   show_progress("");
 
   const auto front = fastest_at_each_accuracy(points, reference);
-  write_points(a.out + "/points.csv", drawn.name, points, origin);
-  write_front(a.out + "/front.csv", drawn.name, front, origin);
+  tabulate(points_csv, drawn.name, points);
+  tabulate(front_csv, drawn.name, front);
+  points_csv.commit(origin);
+  front_csv.commit(origin);
   print_front(drawn.name, until, front, reference);
   return done;
 }

@@ -1,6 +1,7 @@
 #include "integrators/fixed_step.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace qddot {
 namespace {
@@ -21,9 +22,11 @@ FixedStep::FixedStep(const Method& method, const System& system, const Knobs& kn
 
 Outcome FixedStep::run_to(State& state, double t_stop) {
   const double h = knobs().step_size, t_start = state.t;
-  // Time is t_start + i h and never a running sum; a step count that a double cannot hold, or a
-  // step that rounding swallows, would never arrive.
-  const double steps = std::max(1.0, std::ceil((t_stop - t_start) / h - 1e-9));
+  // Time is t_start + i h and never a running sum. What the rounding of the two times adds to their
+  // distance is no step; a step count that a double cannot hold, or a step that rounding swallows,
+  // would never arrive.
+  const double slack = 1e-9 + 4 * std::numeric_limits<double>::epsilon() * std::abs(t_stop) / h;
+  const double steps = std::max(1.0, std::ceil((t_stop - t_start) / h - slack));
   if (!(h > 0) || !(steps < 1e15) || t_stop - h == t_stop) return Outcome::step_too_small;
   // The last step lands on t_stop; where only rounding parts it from h it is h, so that
   // factorisations for h serve it too.

@@ -114,13 +114,15 @@ struct Table {
   const char* name;
   const char* source;
 };
+// Of SUNDIALS 6.4.1's tables those whose errors follow the tolerance on vibrations. Not all do: on
+// the oscillator of the scenes ARK548L2SA and ESDIRK437L2SA end with a larger error at rtol = 1e-5
+// or 1e-7 than at a looser one.
 constexpr std::array<Table, 4> tables = {{
     {2, "ARKODE_SDIRK_2_1_2", "SUNDIALS 6.4.1 ARKODE guide, table SDIRK_2_1_2"},
-    {3, "ARKODE_ARK324L2SA_DIRK_4_2_3",
-     "Kennedy and Carpenter, Applied Numerical Mathematics 44 (2003), ARK3(2)4L[2]SA"},
+    {3, "ARKODE_KVAERNO_4_2_3", "Kvaerno, BIT Numerical Mathematics 44 (2004) 489-502"},
     {4, "ARKODE_SDIRK_5_3_4", "Hairer and Wanner, Solving ODEs II, table IV.6.5, SDIRK4(3)5"},
-    {5, "ARKODE_ARK548L2SA_DIRK_8_4_5",
-     "Kennedy and Carpenter, Applied Numerical Mathematics 44 (2003), ARK5(4)8L[2]SA"},
+    {5, "ARKODE_ESDIRK547L2SA_7_4_5",
+     "Kennedy and Carpenter, Applied Numerical Mathematics 146 (2019), ESDIRK5(4)7L[2]SA"},
 }};
 
 template <std::size_t which>

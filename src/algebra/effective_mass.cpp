@@ -28,7 +28,7 @@ class EffectiveMass::Cholmod {
     view_.xtype = CHOLMOD_REAL;
     view_.dtype = CHOLMOD_DOUBLE;
     view_.sorted = view_.packed = 1;
-    factor_ = analyze(CHOLMOD_AUTO);
+    if (matrix_.rows() > 0) factor_ = analyze(CHOLMOD_AUTO);  // it does not take an empty matrix
   }
 
   ~Cholmod() {
@@ -36,13 +36,14 @@ class EffectiveMass::Cholmod {
     cholmod_free_dense(&y_, &common_);
     cholmod_free_dense(&e_, &common_);
     if (indefinite_factor_) cholmod_free_factor(&indefinite_factor_, &common_);
-    cholmod_free_factor(&factor_, &common_);
+    if (factor_) cholmod_free_factor(&factor_, &common_);
     cholmod_finish(&common_);
   }
   Cholmod(const Cholmod&) = delete;
   Cholmod& operator=(const Cholmod&) = delete;
 
   Definiteness factorize(double a, double s, const SymmetricMatrix& k) {
+    if (!factor_) return Definiteness::positive;
     assemble(a, s, k);
     if (numeric(factor_)) return signs(factor_);
     if (!factor_->is_super) return Definiteness::singular;
@@ -52,11 +53,13 @@ class EffectiveMass::Cholmod {
   }
 
   bool factorize_positive(double a, double s, const SymmetricMatrix& k) {
+    if (!factor_) return true;
     assemble(a, s, k);
     return numeric(factor_) && signs(factor_) == Definiteness::positive;
   }
 
   void solve(const Vec& b, Vec& x) {
+    if (!factor_) return;
     cholmod_dense right{};
     right.nrow = right.nzmax = right.d = static_cast<std::size_t>(b.size());
     right.ncol = 1;

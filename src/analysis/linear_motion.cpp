@@ -18,6 +18,7 @@ LinearMotion::LinearMotion(const System& system, const State& initial)
   if (!system.stiffness_is_constant() || system.has_massless()) {
     throw std::invalid_argument("the exact motion needs a constant K and positive masses");
   }
+  if (system.size() == 0) return;
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(initial.q, k);
   Vec f(system.size());
@@ -34,6 +35,7 @@ LinearMotion::LinearMotion(const System& system, const State& initial)
 
 State LinearMotion::at(double time) const {
   const double t = time - initial_.t;
+  if (omega_.size() == 0) return {time, initial_.q, initial_.v};
   Vec y(omega_.size()), rate(omega_.size());
   for (Index j = 0; j < omega_.size(); ++j) {
     const double wt = omega_[j] * t, half = sinc(wt / 2);

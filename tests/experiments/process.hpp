@@ -1,0 +1,172 @@
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace qddot {
+
+// The names of what stands in a folder, in order and each followed by a space.
+inline std::string listing(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  std::string all;
+  for (const std::string& name : names) all += name + ' ';
+  return all;
+}
+
+// A fresh folder for a test's files, gone at its end.
+class Folder {
+ public:
+  Folder() { std::filesystem::create_directories(path_); }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::string path() const { return path_.string(); }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return *this / name;
+  }
+  std::string listing() const { return qddot::listing(path()); }
+
+ private:
+  std::filesystem::path path_ =
+      std::filesystem::temp_directory_path() /
+      fmt::format("qddot_experiments_{}_{:x}", getpid(), std::random_device{}());
+};
+
+inline std::string read_all(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// How a program ended; a signal counts as 128 + its number.
+struct Run {
+  int status = -1;
+  std::string out, err;
+};
+
+// Runs one of the programs to its end.
+inline Run run(const std::string& program, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), PROGRAM_FOLDER "/" + program);
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  std::FILE *out = std::tmpfile(), *err = std::tmpfile();
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(fileno(out), STDOUT_FILENO);
+    dup2(fileno(err), STDERR_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child) throw std::runtime_error("no process");
+  const auto take = [](std::FILE* file) {
+    std::string text(static_cast<std::size_t>(lseek(fileno(file), 0, SEEK_END)), '\0');
+    if (pread(fileno(file), text.data(), text.size(), 0) != std::ssize(text)) text.clear();
+    std::fclose(file);
+    return text;
+  };
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), take(out), take(err)};
+}
+
+inline bool contains(const std::string& text, const std::vector<std::string>& fragments) {
+  for (const std::string& fragment : fragments) {
+    if (text.find(fragment) == text.npos) return false;
+  }
+  return true;
+}
+
+// Whether a program complained as it should: its status, and on stderr one line that starts with
+// its name and holds the fragments.
+inline bool complains(const Run& run, int status, const std::string& program,
+                      const std::vector<std::string>& fragments) {
+  return run.status == status && run.err.starts_with(program + ": ") &&
+         run.err.find('\n') + 1 == run.err.size() && contains(run.err, fragments);
+}
+
+inline std::string in_words(const Run& run, const std::vector<std::string>& arguments) {
+  std::string text;
+  for (const std::string& argument : arguments) text += argument + ' ';
+  return fmt::format("{}gives {}: {}", text, run.status, run.err);
+}
+
+// The number that is all of the text; throws where it is none.
+inline double number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw std::runtime_error("not a number: \"" + text + "\"");
+  }
+  return value;
+}
+
+// A CSV file. Reading it throws unless it is RFC 4180 with as many fields in each row as in the
+// header, lines ended by a line feed.
+struct Table {
+  std::string header;  // as it is written
+  std::vector<std::string> names;
+  std::vector<std::vector<std::string>> rows;
+
+  std::size_t column(const std::string& name) const {
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) throw std::runtime_error("no column " + name);
+    return static_cast<std::size_t>(found - names.begin());
+  }
+  const std::string& text(std::size_t row, const std::string& name) const {
+    return rows.at(row).at(column(name));
+  }
+  double value(std::size_t row, const std::string& name) const { return number(text(row, name)); }
+};
+
+inline Table parse_csv(const std::string& text) {
+  Table table;
+  std::vector<std::string> row(1);
+  const auto malformed = [&] { throw std::runtime_error("not RFC 4180: " + text); };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') {
+      if (!row.back().empty()) malformed();
+      for (++i; text.at(i) != '"' || (i + 1 < text.size() && text[i + 1] == '"'); ++i) {
+        if (text[i] == '"') ++i;
+        row.back() += text[i];
+      }
+      if (i + 1 == text.size() || (text[i + 1] != ',' && text[i + 1] != '\n')) malformed();
+    } else if (text[i] == ',') {
+      row.emplace_back();
+    } else if (text[i] == '\n') {
+      if (table.names.empty()) {
+        table.names = row;
+        table.header = text.substr(0, i);
+      } else {
+        table.rows.push_back(row);
+      }
+      if (row.size() != table.names.size()) malformed();
+      row = {""};
+    } else {
+      row.back() += text[i];
+    }
+  }
+  if (text.empty() || text.back() != '\n') malformed();
+  return table;
+}
+
+inline Table read_csv(const std::string& path) { return parse_csv(read_all(path)); }
+
+}  // namespace qddot

@@ -1,0 +1,101 @@
+#include <cmath>
+#include <limits>
+
+#include <boost/test/unit_test.hpp>
+
+#include "experiments/front.hpp"
+#include "integrators/registry.hpp"
+
+using namespace qddot;
+
+namespace {
+
+Point point(const char* method, double error, double time) {
+  return {.method = find_method(method),
+          .value = 0.1,
+          .outcome = Outcome::reached_end,
+          .errors = {.position = error},
+          .time = time};
+}
+
+std::vector<FrontRow> front_of(const std::vector<Point>& points, double certified = 1e-15) {
+  Reference reference;
+  reference.certified.position = certified;
+  return fastest_at_each_accuracy(points, reference);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(front)
+
+BOOST_AUTO_TEST_CASE(there_is_a_row_for_each_of_nine_accuracies) {
+  const auto rows = front_of({});
+  BOOST_TEST_REQUIRE(rows.size() == 9u);
+  for (int i = 0; i < 9; ++i) {
+    const FrontRow& row = rows[static_cast<std::size_t>(i)];
+    BOOST_TEST(row.accuracy == std::pow(10, -1 - i), boost::test_tools::tolerance(1e-15));
+    BOOST_TEST(!row.fastest);
+    BOOST_TEST(!row.fastest_hand_written);
+    BOOST_TEST(!row.fastest_sundials);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_fastest_point_that_is_accurate_enough_is_taken) {
+  const std::vector<Point> points = {point("verlet", 5e-2, 1), point("verlet", 5e-4, 4),
+                                     point("implicit_euler", 5e-4, 3), point("verlet", 5e-6, 2),
+                                     point("verlet", 5e-8, 9)};
+  const auto rows = front_of(points);
+  const std::array<const Point*, 9> expected = {&points[0], &points[3], &points[3],
+                                                &points[3], &points[3], &points[4],
+                                                &points[4], nullptr,    nullptr};
+  for (std::size_t i = 0; i < 9; ++i) BOOST_TEST(rows[i].fastest == expected[i], "row " << i);
+}
+
+BOOST_AUTO_TEST_CASE(each_family_has_its_own_fastest) {
+  const std::vector<Point> points = {point("verlet", 1e-3, 2), point("ida", 1e-3, 1),
+                                     point("arkode_dirk4", 1e-5, 7), point("verlet", 1e-5, 5)};
+  const auto rows = front_of(points);
+  BOOST_TEST(rows[1].fastest == &points[1]);
+  BOOST_TEST(rows[1].fastest_sundials == &points[1]);
+  BOOST_TEST(rows[1].fastest_hand_written == &points[0]);
+  BOOST_TEST(rows[3].fastest == &points[3]);
+  BOOST_TEST(rows[3].fastest_sundials == &points[2]);
+}
+
+BOOST_AUTO_TEST_CASE(an_error_equal_to_the_accuracy_has_reached_it) {
+  const double accuracy = front_of({})[4].accuracy;
+  const std::vector<Point> points = {point("verlet", accuracy, 1)};
+  BOOST_TEST(front_of(points)[4].fastest == points.data());
+  BOOST_TEST(!front_of(points)[5].fastest);
+  const std::vector<Point> beyond = {point("verlet", std::nextafter(accuracy, 1.0), 1)};
+  BOOST_TEST(!front_of(beyond)[4].fastest);
+}
+
+BOOST_AUTO_TEST_CASE(no_row_claims_more_than_the_reference_certifies) {
+  const std::vector<Point> points = {point("verlet", 0, 1)};
+  const auto rows = front_of(points, 2e-5);
+  for (std::size_t i = 0; i < 9; ++i) {
+    BOOST_TEST(rows[i].fastest == (i < 4 ? points.data() : nullptr), "row " << i);
+    BOOST_TEST(rows[i].fastest_hand_written == rows[i].fastest);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(points_that_failed_do_not_count) {
+  std::vector<Point> points;
+  for (int outcome = 0; outcome <= static_cast<int>(Outcome::over_budget); ++outcome) {
+    if (outcome == static_cast<int>(Outcome::reached_end)) continue;
+    points.push_back(point("verlet", 0, 0));
+    points.back().outcome = static_cast<Outcome>(outcome);
+  }
+  points.push_back(point("ida", std::numeric_limits<double>::quiet_NaN(), 0));
+  for (const FrontRow& row : front_of(points)) BOOST_TEST(!row.fastest);
+}
+
+BOOST_AUTO_TEST_CASE(negative_control_a_faster_point_displaces_the_row) {
+  std::vector<Point> points = {point("verlet", 1e-3, 2), point("ida", 1e-3, 3)};
+  BOOST_TEST(front_of(points)[2].fastest->method->name == "verlet");
+  points[1].time = 1;
+  BOOST_TEST(front_of(points)[2].fastest->method->name == "ida");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

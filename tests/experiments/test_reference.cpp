@@ -1,0 +1,218 @@
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <boost/test/unit_test.hpp>
+
+#include "experiments/reference.hpp"
+#include "integrators/registry.hpp"
+#include "src/scene/generators.hpp"
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/scene_file.hpp"
+#include "tests/experiments/process.hpp"
+
+using namespace qddot;
+
+namespace {
+
+constexpr double seconds = 1;  // for a reference
+// By what factor a certified bound may be missed; and what it is at best.
+constexpr double slack = 10;
+constexpr double tight = 1e-12;
+
+// A 1D row of equal masses on equal springs of zero rest length between two walls, displaced by
+// two of its modes: x_i(t) = i L/(N+1) + sum_j a_j sin(j pi i/(N+1)) cos(w_j t + b_j),
+// w_j = 2 sqrt(k/m) sin(j pi / (2 (N+1))).
+struct Row {
+  int count = 12;
+  long double stiffness = 500, mass = 0.5L;
+
+  long double omega(int mode) const {
+    return 2 * std::sqrt(stiffness / mass) * std::sin(mode * M_PIl / (2 * (count + 1)));
+  }
+  std::pair<long double, long double> node(int i, long double t) const {
+    long double x = i / static_cast<long double>(count + 1), v = 0;
+    for (const auto& [mode, amplitude, phase] : modes) {
+      const long double shape = amplitude * std::sin(mode * M_PIl * i / (count + 1));
+      x += shape * std::cos(omega(mode) * t + phase);
+      v -= shape * omega(mode) * std::sin(omega(mode) * t + phase);
+    }
+    return {x, v};
+  }
+  Scene scene() const {
+    Scene scene{.name = "row", .dimension = 1};
+    for (int i = 0; i <= count + 1; ++i) {
+      const auto [x, v] = node(i, 0);
+      scene.nodes.push_back({.position = {static_cast<double>(x), 0, 0},
+                             .velocity = {static_cast<double>(v), 0, 0},
+                             .mass = static_cast<double>(mass),
+                             .pinned = i == 0 || i == count + 1});
+    }
+    for (std::size_t i = 0; i + 1 < scene.nodes.size(); ++i) {
+      scene.springs.push_back({{i, i + 1}, {.stiffness = static_cast<double>(stiffness)}});
+    }
+    return scene;
+  }
+
+  struct Mode {
+    int number;
+    long double amplitude, phase;
+  };
+  std::array<Mode, 2> modes = {{{1, 0.3L, 0.2L}, {7, 0.05L, -1}}};
+};
+
+double length(const Eigen::Vector3d& x) { return x.norm(); }
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(reference)
+
+BOOST_AUTO_TEST_CASE(the_oscillator_ends_where_its_closed_form_does) {
+  const Generator& oscillator = *find_generator("oscillator");
+  for (const double until : {0.01, 2.0, 10.0}) {
+    const ReducedScene scene(
+        generate(oscillator, {{"mass", 4}, {"stiffness", 25}, {"velocity", -3}}, "here"));
+    const Reference made = make_reference(scene, until, seconds);
+    const long double w = 2.5, t = until;
+    const double x = static_cast<double>(std::cos(w * t) - 3 / w * std::sin(w * t));
+    const double v = static_cast<double>(-w * std::sin(w * t) - 3 * std::cos(w * t));
+    BOOST_TEST(made.end.t == until);
+    BOOST_TEST(made.certified.position < tight);
+    BOOST_TEST(made.certified.velocity < tight);
+    BOOST_TEST(std::abs(made.end.q[0] - x) <=
+               slack * made.certified.position * made.scales.displacement);
+    BOOST_TEST(std::abs(made.end.v[0] - v) <= slack * made.certified.velocity * made.scales.speed);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_linear_network_ends_where_its_modes_do) {
+  const Row row;
+  const ReducedScene scene(row.scene());
+  const Reference made = make_reference(scene, 1.5, seconds);
+  BOOST_TEST(made.certified.position < tight);
+  BOOST_TEST(made.certified.velocity < tight);
+  BOOST_TEST(made.certified.energy < tight);
+  for (int i = 1; i <= row.count; ++i) {
+    const auto [x, v] = row.node(i, 1.5L);
+    BOOST_TEST(std::abs(made.end.q[i - 1] - static_cast<double>(x)) <=
+               slack * made.certified.position * made.scales.displacement);
+    BOOST_TEST(std::abs(made.end.v[i - 1] - static_cast<double>(v)) <=
+               slack * made.certified.velocity * made.scales.speed);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_nonlinear_motion_ends_where_a_third_method_sees_it) {
+  for (const char* name : {"pair", "orbit", "pendulum"}) {
+    const ReducedScene scene(load_scene(name));
+    const Reference made = make_reference(scene, 0.5, seconds);
+    BOOST_TEST(made.certified.position < tight, name);
+    const auto error_at = [&](double rtol) {
+      State state = scene.initial();
+      const auto third =
+          make_integrator(*find_method("arkode_dirk5"), scene.system(), {.rtol = rtol});
+      BOOST_TEST((third->advance(state, 0.5).outcome == Outcome::reached_end));
+      return errors_between(scene, state, made.end, made.energy, made.scales);
+    };
+    // Local errors of 1e-12 add up over the steps, of which there are some hundreds.
+    const Errors fine = error_at(1e-12), coarse = error_at(1e-9);
+    BOOST_TEST(fine.position < 5e-10, name);
+    BOOST_TEST(fine.velocity < 5e-10, name);
+    BOOST_TEST(fine.position < coarse.position, name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_a_free_pair_keeps_is_kept) {
+  const Scene drawn = generate(*find_generator("pair"), {{"spin", 5}, {"stretch", 1.5}}, "here");
+  const ReducedScene scene(drawn);
+  const Reference made = make_reference(scene, 2, seconds);
+  const auto moments = [&](const State& state) {
+    Eigen::Vector3d centre = {0, 0, 0}, spin = {0, 0, 0};
+    const auto nodes = scene.expand(state);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      centre += drawn.nodes[i].mass * nodes[i].position;
+      spin += drawn.nodes[i].mass * nodes[i].position.cross(nodes[i].velocity);
+    }
+    return std::pair(centre, spin);
+  };
+  const auto [centre, spin] = moments(scene.initial());
+  const auto [later_centre, later_spin] = moments(made.end);
+  BOOST_TEST(length(later_centre - centre) < 1e-13);
+  BOOST_TEST(length(later_spin - spin) < 1e-12 * length(spin));
+}
+
+BOOST_AUTO_TEST_CASE(energy_is_that_of_the_start_and_is_kept) {
+  for (const char* name : {"oscillator", "pair", "pendulum"}) {
+    const ReducedScene scene(load_scene(name));
+    const Reference made = make_reference(scene, 0.7, seconds);
+    BOOST_TEST(made.energy == total_energy(scene.system(), scene.initial()), name);
+    BOOST_TEST(made.certified.energy < tight, name);
+    BOOST_TEST(std::abs(total_energy(scene.system(), made.end) - made.energy) <=
+                   made.certified.energy * made.scales.kinetic,
+               name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(scales_are_the_extremes_of_the_whole_motion) {
+  // x = cos 10 t: from 1 to -1 and back, with the speed 10 between.
+  const ReducedScene scene(load_scene("oscillator"));
+  const Scales scales = make_reference(scene, 2, seconds).scales;
+  constexpr double sampling = 1e-2;  // extremes are seen at steps
+  BOOST_TEST(scales.displacement == 2, boost::test_tools::tolerance(sampling));
+  BOOST_TEST(scales.speed == 10, boost::test_tools::tolerance(sampling));
+  BOOST_TEST(scales.kinetic == 50, boost::test_tools::tolerance(sampling));
+  // A tenth of a turn reaches none of them.
+  const double t = M_PI / 50;
+  const Scales early = make_reference(scene, t, seconds).scales;
+  BOOST_TEST(early.displacement == 1 - std::cos(10 * t), boost::test_tools::tolerance(1e-9));
+  BOOST_TEST(early.speed == 10 * std::sin(10 * t), boost::test_tools::tolerance(1e-9));
+}
+
+BOOST_AUTO_TEST_CASE(both_ways_are_named) {
+  const auto made_by = [](const char* name) {
+    return make_reference(ReducedScene(load_scene(name)), 0.1, seconds).made_by;
+  };
+  BOOST_TEST(contains(made_by("oscillator"), {"modal", "kahan_li8 at h = "}));
+  BOOST_TEST(contains(made_by("pair"), {"kahan_li8 at h = ", "Fehlberg"}));
+}
+
+BOOST_AUTO_TEST_CASE(free_flight_without_springs_is_a_parabola) {
+  Scene scene{.name = "thrown", .dimension = 2, .gravity = {0, -8, 0}};
+  scene.nodes = {{.velocity = {3, 4, 0}, .mass = 2}};
+  const Reference made = make_reference(ReducedScene(scene), 0.5, seconds);
+  BOOST_TEST(made.end.q[0] == 1.5, boost::test_tools::tolerance(1e-14));
+  BOOST_TEST(made.end.q[1] == 1.0, boost::test_tools::tolerance(1e-14));
+  BOOST_TEST(made.end.v[0] == 3.0, boost::test_tools::tolerance(1e-14));
+  BOOST_TEST(std::abs(made.end.v[1]) < 1e-14);
+}
+
+BOOST_AUTO_TEST_CASE(one_rounding_of_the_start_does_little_to_a_regular_motion) {
+  for (const char* name : {"oscillator", "pair", "orbit", "pendulum"}) {
+    const Reference made = make_reference(ReducedScene(load_scene(name)), 0.5, seconds);
+    BOOST_TEST(made.rounding_effect < 1e-13, name);
+    BOOST_TEST((made.perturbation_growth > 0 && made.perturbation_growth < 1e3), name);
+    BOOST_TEST(!made.is_chaotic(), name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_massless_node_has_no_reference) {
+  Scene scene{.name = "massless", .dimension = 1};
+  scene.nodes = {{.pinned = true}, {.position = {1, 0, 0}}};
+  scene.springs = {{{0, 1}, {.stiffness = 1}}};
+  BOOST_CHECK_THROW(require_reference_exists(ReducedScene(scene), "here"), InvalidInput);
+  scene.nodes[1].mass = 1;
+  BOOST_CHECK_NO_THROW(require_reference_exists(ReducedScene(scene), "here"));
+}
+
+BOOST_AUTO_TEST_CASE(negative_control_another_motion_is_not_within_the_bound) {
+  const Row row;
+  Row softer = row;
+  softer.stiffness *= 1 + 1e-9L;
+  const Reference made = make_reference(ReducedScene(row.scene()), 1.5, seconds);
+  double largest = 0;
+  for (int i = 1; i <= row.count; ++i) {
+    const double x = static_cast<double>(softer.node(i, 1.5L).first);
+    largest = std::max(largest, std::abs(made.end.q[i - 1] - x));
+  }
+  BOOST_TEST(largest > slack * made.certified.position * made.scales.displacement);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

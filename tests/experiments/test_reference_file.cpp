@@ -1,0 +1,92 @@
+#include <cmath>
+
+#include <boost/test/unit_test.hpp>
+#include <nlohmann/json.hpp>
+
+#include "experiments/reference.hpp"
+#include "src/scene/scene_file.hpp"
+#include "tests/experiments/process.hpp"
+
+using namespace qddot;
+
+namespace {
+
+constexpr double until = 0.1;
+
+// The reference of a scene that the folder keeps or gets.
+Reference kept(const std::string& name, double horizon, const Folder& folder) {
+  const Scene drawn = load_scene(name);
+  return reference_for(drawn, ReducedScene(drawn), horizon, folder.path(), {{"made", "here"}});
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(reference_file)
+
+BOOST_AUTO_TEST_CASE(json_brings_back_every_bit) {
+  const Reference made = make_reference(ReducedScene(load_scene("pair")), 0.3, 1);
+  const nlohmann::json written = nlohmann::json::parse(to_json(made).dump());
+  const Reference read = reference_from_json(written);
+  BOOST_TEST((read.end.q == made.end.q && read.end.v == made.end.v));
+  BOOST_TEST(read.end.t == made.end.t);
+  BOOST_TEST(read.energy == made.energy);
+  BOOST_TEST(read.scales.displacement == made.scales.displacement);
+  BOOST_TEST(read.scales.speed == made.scales.speed);
+  BOOST_TEST(read.scales.kinetic == made.scales.kinetic);
+  BOOST_TEST(read.certified.position == made.certified.position);
+  BOOST_TEST(read.certified.velocity == made.certified.velocity);
+  BOOST_TEST(read.certified.energy == made.certified.energy);
+  BOOST_TEST(read.rounding_effect == made.rounding_effect);
+  BOOST_TEST(read.perturbation_growth == made.perturbation_growth);
+  BOOST_TEST(made.perturbation_growth > 0);
+  BOOST_TEST(read.made_by == made.made_by);
+  BOOST_TEST(read.seconds == made.seconds);
+  for (const char* part : {"position", "velocity", "energy"}) {
+    const double certified = written.at(fmt::format("certified_{}", part));
+    const double digits = written.at("certified_digits").at(part);
+    BOOST_TEST(std::abs(digits + std::log10(certified)) <= 0.1 + 1e-9);
+    BOOST_TEST(digits <= -std::log10(certified));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(json_that_is_no_reference_is_refused) {
+  Reference made;
+  made.end = {1, Vec::Ones(2), Vec::Ones(2)};
+  made.certified = {1e-9, 1e-9, 1e-9};
+  const nlohmann::json good = to_json(made);
+  BOOST_CHECK_NO_THROW(reference_from_json(good));
+  for (const char* key :
+       {"t", "q", "v", "energy", "scales", "certified_position", "certified_velocity",
+        "certified_energy", "rounding_effect", "perturbation_growth", "made_by", "seconds"}) {
+    nlohmann::json without = good, spoiled = good;
+    without.erase(key);
+    spoiled[key] = nullptr;
+    BOOST_CHECK_THROW(reference_from_json(without), nlohmann::json::exception);
+    BOOST_CHECK_THROW(reference_from_json(spoiled), nlohmann::json::exception);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_the_file_keeps_is_what_was_made) {
+  const Folder folder;
+  const Reference made = kept("orbit", until, folder);
+  BOOST_TEST(folder.listing() == "reference.json ");
+  const auto json = nlohmann::json::parse(read_all(folder / "reference.json"));
+  BOOST_TEST(json.at("made") == "here");
+  BOOST_TEST(json.at("scene") == "orbit");
+  BOOST_TEST(json.at("until") == until);
+  const Reference again = kept("orbit", until, folder);
+  BOOST_TEST(again.seconds == made.seconds);  // no other making takes as long to the last bit
+  BOOST_TEST((again.end.q == made.end.q && again.end.v == made.end.v));
+}
+
+BOOST_AUTO_TEST_CASE(negative_control_another_motion_has_another_file) {
+  const Folder folder;
+  const Reference orbit = kept("orbit", until, folder);
+  const Reference pair = kept("pair", until, folder);
+  BOOST_TEST(pair.end.q.size() == 6);
+  BOOST_TEST(orbit.end.q.size() == 3);
+  const auto json = nlohmann::json::parse(read_all(folder / "reference.json"));
+  BOOST_TEST(json.at("scene") == "pair");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

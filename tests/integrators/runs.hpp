@@ -1,0 +1,121 @@
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <utility>
+
+#include "integrators/registry.hpp"
+#include "src/scene/generators.hpp"
+#include "src/scene/reduce.hpp"
+#include "tests/measure.hpp"
+#include "tests/problems.hpp"
+
+namespace qddot {
+
+struct Run {
+  Summary summary;
+  State state;
+};
+
+// A run by a new integrator.
+inline Run run(const Method& method, const System& system, State state, double t_end,
+               const Knobs& knobs, const Observer& observer = {}, std::stop_token stop = {}) {
+  const auto integrator = make_integrator(method, system, knobs);
+  Summary summary = integrator->advance(state, t_end, observer, std::move(stop));
+  return {std::move(summary), std::move(state)};
+}
+
+// What `method` takes of the two.
+inline Knobs knobs_of(const Method& method, double step_size, double rtol) {
+  return method.knob == Knob::step_size ? Knobs{.step_size = step_size} : Knobs{.rtol = rtol};
+}
+
+// Of methods that a test names; an unknown name throws.
+inline const Method& method_named(std::string_view name) {
+  const Method* found = find_method(name);
+  if (!found) throw std::invalid_argument("no method is named " + std::string(name));
+  return *found;
+}
+
+inline std::vector<Method> methods_of(Family family) {
+  std::vector<Method> list;
+  for (const Method& method : methods()) {
+    if (method.family == family) list.push_back(method);
+  }
+  return list;
+}
+inline std::vector<Method> methods_of(Knob knob) {
+  std::vector<Method> list;
+  for (const Method& method : methods()) {
+    if (method.knob == knob) list.push_back(method);
+  }
+  return list;
+}
+
+// The larger of the errors in q and in v.
+inline double distance(const State& a, const State& b) {
+  return std::max(distance(a.q, b.q), distance(a.v, b.v));
+}
+
+inline bool is_finite(const State& state) {
+  return std::isfinite(state.t) && state.q.allFinite() && state.v.allFinite();
+}
+
+// To the last bit.
+inline bool same(const State& a, const State& b) { return a.t == b.t && a.q == b.q && a.v == b.v; }
+
+inline bool same(const Counts& a, const Counts& b) {
+  return a.steps == b.steps && a.rejected == b.rejected &&
+         a.force_evaluations == b.force_evaluations &&
+         a.stiffness_evaluations == b.stiffness_evaluations &&
+         a.factorizations == b.factorizations && a.solves == b.solves &&
+         a.newton_iterations == b.newton_iterations;
+}
+
+// Speaks for another system, and lets a test see or change what it says.
+class Relay final : public System {
+ public:
+  explicit Relay(const System& system) : System(system.mass()), system_(system) {}
+
+  double potential(const Vec& q) const override { return system_.potential(q); }
+  void force(const Vec& q, Vec& f) const override {
+    system_.force(q, f);
+    if (after_force) after_force(q, f);
+  }
+  void stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    system_.stiffness(q, k);
+    if (after_stiffness) after_stiffness(q, k);
+  }
+  const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
+  bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
+
+  std::function<void(const Vec& q, Vec& f)> after_force;
+  std::function<void(const Vec& q, SymmetricMatrix& k)> after_stiffness;
+
+ private:
+  const System& system_;
+};
+
+// The hammock with every spring of zero rest length: K is constant, no two nodes or directions
+// alike.
+inline Problem linear_hammock(int dimension) {
+  Problem p = hammock(dimension);
+  const auto straighten = [](auto& springs) {
+    for (auto& spring : springs) spring.law.rest_length = spring.law.quartic = 0;
+  };
+  straighten(p.network.links);
+  straighten(p.network.anchors);
+  return p;
+}
+
+// n masses in 1D between two pins at 0 and n + 1, on n + 1 equal springs of zero rest length. Its
+// frequencies are 2 sqrt(k/m) sin(j pi / (2 (n + 1))), j = 1 ... n, with mode shapes
+// sin(i j pi / (n + 1)), i = 1 ... n.
+inline Network linear_chain(int n, double mass, double stiffness) {
+  Network network{.dimension = 1, .node_mass = Vec::Constant(n, mass)};
+  for (int i = 0; i + 1 < n; ++i) network.links.push_back({i, i + 1, {stiffness}});
+  network.anchors = {{0, {0, 0, 0}, {stiffness}}, {n - 1, {n + 1.0, 0, 0}, {stiffness}}};
+  return network;
+}
+
+}  // namespace qddot

@@ -1,0 +1,153 @@
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/fixed_step.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(massless)
+
+namespace {
+
+constexpr double mass = 2, k1 = 200, k2 = 300, l1 = 0.8, l2 = 0.9;
+constexpr double g = 9.81;
+constexpr double position_m = 0.95, position = 1.95;  // m, along the line; both springs in tension
+
+// The line on which all hangs: along x in 1D, none of the axes in 3D.
+Eigen::Vector3d line(int dimension) {
+  return dimension == 1 ? Eigen::Vector3d(1, 0, 0) : Eigen::Vector3d(1, 2, 2) / 3;
+}
+
+// A mass under two springs with a massless node between them. Gravity keeps it in tension: it
+// swings by 0.09 m about a stretch of 0.16 m.
+Problem two_springs(int dimension) {
+  const Eigen::Vector3d u = line(dimension);
+  Problem p{{.dimension = dimension, .gravity = g * u, .node_mass = Eigen::Vector2d(0, mass)}, {}};
+  p.network.anchors = {{0, {0, 0, 0}, {k1, l1}}};
+  p.network.links = {{0, 1, {k2, l2}}};
+  p.initial = {0, Vec(2 * dimension), Vec::Zero(2 * dimension)};
+  p.initial.q << position_m * u.head(dimension), position * u.head(dimension);
+  return p;
+}
+
+// The same mass under the one spring that two in series are.
+Problem one_spring(int dimension) {
+  const Eigen::Vector3d u = line(dimension);
+  Problem p{{.dimension = dimension, .gravity = g * u, .node_mass = Vec::Constant(1, mass)}, {}};
+  p.network.anchors = {{0, {0, 0, 0}, {k1 * k2 / (k1 + k2), l1 + l2}}};
+  p.initial = {0, position * u.head(dimension), Vec::Zero(dimension)};
+  return p;
+}
+
+struct Verdict {
+  double force = INFINITY;       // N, on the massless node at the end
+  double difference = INFINITY;  // m or m/s, of the mass from its motion under one spring
+};
+
+Verdict judge(const Method& method, int dimension) {
+  const Problem two = two_springs(dimension), one = one_spring(dimension);
+  const auto series = make_mass_spring(two.network), single = make_mass_spring(one.network);
+  const Knobs knobs = knobs_of(method, 0.01, 1e-6);
+  const Run a = run(method, *series, two.initial, 1, knobs);
+  const Run b = run(method, *single, one.initial, 1, knobs);
+  BOOST_REQUIRE(b.summary.message == "");
+  if (a.summary.outcome != Outcome::reached_end || !is_finite(a.state)) return {};
+  return {force_at(*series, a.state.q).head(dimension).norm(),
+          std::max(distance(a.state.q.tail(dimension), b.state.q),
+                   distance(a.state.v.tail(dimension), b.state.v))};
+}
+
+// Says that it accepts massless nodes, and divides by their mass.
+class Boaster final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    force(now.q, f_);
+    next.v = now.v + h * f_.cwiseQuotient(system().mass());
+    next.q = now.q + h * next.v;
+    return Outcome::reached_end;
+  }
+
+  Vec f_{system().size()};
+};
+
+// Says it too, and leaves massless nodes where they are.
+class Sleeper final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    force(now.q, f_);
+    next.v = now.v;
+    for (Index i = 0; i < system().size(); ++i) {
+      if (system().mass()[i] > 0) next.v[i] += h * f_[i] / system().mass()[i];
+    }
+    next.q = now.q + h * next.v;
+    return Outcome::reached_end;
+  }
+
+  Vec f_{system().size()};
+};
+
+template <class T>
+Method boasting() {
+  Method method = method_named("symplectic_euler");
+  method.accepts_massless = true;
+  method.make = create<T>;
+  return method;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(two_springs_with_a_massless_node_between_are_the_one_in_series) {
+  for (const Method& method : methods()) {
+    if (!method.accepts_massless) continue;
+    for (const int dimension : {1, 3}) {
+      BOOST_TEST_CONTEXT(method.name << " in dimension " << dimension) {
+        const Verdict verdict = judge(method, dimension);
+        // On the line forces are linear, so that even one Newton step finds balance: rounding of
+        // 100 steps with forces of 100 N and a matrix of condition 1e3.
+        BOOST_TEST(verdict.force < 1e-9);
+        BOOST_TEST(verdict.difference < 1e-11);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(implicit_euler_balances_massless_nodes_off_the_line_too) {
+  Problem p = hammock(2);
+  p.network.node_mass[1] = 0;
+  for (auto& link : p.network.links) link.law.rest_length *= 0.7;  // in tension
+  const auto system = make_mass_spring(p.network);
+  const Run r = run(method_named("implicit_euler"), *system, p.initial, 1, {.step_size = 0.01});
+  BOOST_TEST(r.summary.message == "");
+  // The last Newton correction is below 1e-6 |v| = 1e-5 m/s, or 1e-7 m in a step; what it leaves
+  // is of second order, about k 1e-14 m, and forces of 100 N round by 1e-14 of them.
+  BOOST_TEST(force_at(*system, r.state.q).segment<2>(2).norm() < 1e-10);
+}
+
+BOOST_AUTO_TEST_CASE(methods_that_divide_by_the_mass_refuse_at_once) {
+  const Problem p = two_springs(1);
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : methods()) {
+    if (method.accepts_massless) continue;
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *system, p.initial, 1, knobs_of(method, 0.01, 1e-6));
+      BOOST_TEST(name(r.summary.outcome) == "singular_mass");
+      BOOST_TEST(r.summary.message == advice(Outcome::singular_mass));
+      BOOST_TEST(same(r.state, p.initial));
+      BOOST_TEST(same(r.summary.counts, Counts{}));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_method_that_promises_too_much_is_noticed) {
+  BOOST_TEST(judge(boasting<Boaster>(), 1).difference == INFINITY);
+  BOOST_TEST(judge(boasting<Sleeper>(), 1).force > 0.1);
+  BOOST_TEST(judge(boasting<Sleeper>(), 1).difference > 1e-2);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,156 @@
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(newton)
+
+namespace {
+
+using Eigen::MatrixXd;
+
+constexpr int masses = 5;
+constexpr double mass = 0.1, stiffness = 1e4;
+
+// A chain along x in 2D between pins at 0 and 6 m whose springs are 1/0.7 of their room long. It is
+// at rest, bent by `bend` m to one side and the other.
+Problem strut(double bend) {
+  Problem p{{.dimension = 2, .node_mass = Vec::Constant(masses, mass)}, {}};
+  const SpringLaw law{.stiffness = stiffness, .rest_length = 1 / 0.7};
+  p.network.anchors = {{0, {0, 0, 0}, law}, {masses - 1, {masses + 1, 0, 0}, law}};
+  for (int i = 0; i + 1 < masses; ++i) p.network.links.push_back({i, i + 1, law});
+  p.initial = {0, Vec(2 * masses), Vec::Zero(2 * masses)};
+  for (int i = 0; i < masses; ++i) {
+    p.initial.q.segment<2>(2 * i) << i + 1, (i % 2 == 0 ? bend : -bend) * (1 + 0.1 * i);
+  }
+  return p;
+}
+
+// One implicit Euler step as a minimisation over v.
+class Minimisation {
+ public:
+  Minimisation(const Problem& p, double h)
+      : h_(h), initial_(p.initial), system_(make_mass_spring(p.network)) {}
+
+  double objective(const Vec& v) const {
+    return system_->kinetic(v - initial_.v) + system_->potential(q(v));
+  }
+  Vec gradient(const Vec& v) const {
+    return system_->mass().cwiseProduct(v - initial_.v) - h_ * force_at(*system_, q(v));
+  }
+  // Of the smallest eigenvalue of M - h^2 K, in units of the mass.
+  double least_curvature(const Vec& v) const {
+    return Eigen::SelfAdjointEigenSolver<MatrixXd>(hessian(v)).eigenvalues()[0] / mass;
+  }
+  Vec plain_newton(int iterations) const {
+    Vec v = initial_.v;
+    for (int i = 0; i < iterations; ++i) v -= hessian(v).fullPivLu().solve(gradient(v));
+    return v;
+  }
+  const Vec& start() const { return initial_.v; }
+  Run step(double t_end) const {
+    return run(method_named("implicit_euler"), *system_, initial_, t_end, {.step_size = h_});
+  }
+  const System& system() const { return *system_; }
+
+ private:
+  Vec q(const Vec& v) const { return initial_.q + h_ * v; }
+  MatrixXd hessian(const Vec& v) const {
+    return MatrixXd(system_->mass().asDiagonal()) - h_ * h_ * dense(stiffness_at(*system_, q(v)));
+  }
+
+  double h_;
+  State initial_;
+  std::unique_ptr<System> system_;
+};
+
+// A minimum, below the start.
+bool is_solved(const Minimisation& problem, const Vec& v) {
+  // Newton leaves about the square of its tolerance of 1e-6: a gradient of 1e-9 of the first.
+  return problem.gradient(v).norm() < 1e-9 * problem.gradient(problem.start()).norm() &&
+         problem.least_curvature(v) > 0 &&
+         problem.objective(v) < problem.objective(problem.start());
+}
+
+bool is_named_failure(const Run& r) {
+  return (r.summary.outcome == Outcome::newton_failed ||
+          r.summary.outcome == Outcome::indefinite_matrix) &&
+         !r.summary.message.empty();
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_bent_strut_is_solved_where_compression_outweighs_the_mass) {
+  for (const double bend : {0.001, 0.01, 0.1}) {
+    for (const double h : {0.01, 0.03, 0.1}) {
+      BOOST_TEST_CONTEXT("bend " << bend << " m, h = " << h << " s") {
+        const Minimisation problem(strut(bend), h);
+        BOOST_TEST(problem.least_curvature(problem.start()) < -1);  // indefinite at the start
+        const Run r = problem.step(h);
+        BOOST_TEST(r.summary.message == "");
+        BOOST_TEST(is_solved(problem, r.state.v));
+        BOOST_TEST(total_energy(problem.system(), r.state) <
+                   total_energy(problem.system(), {0, strut(bend).initial.q, problem.start()}));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(newton_without_a_shift_does_not_solve_it) {
+  const Minimisation problem(strut(0.01), 0.03);
+  for (const int iterations : {1, 5, 100}) {
+    BOOST_TEST(!is_solved(problem, problem.plain_newton(iterations)));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_bent_strut_buckles_and_comes_to_rest_without_compression) {
+  const Problem p = strut(0.01);
+  const Minimisation problem(p, 0.03);
+  const Run r = problem.step(3);
+  BOOST_TEST(r.summary.message == "");
+  // Springs of rest length in the room there is make the energy zero; what is left after 100
+  // strongly damped steps is far below the 6 springs' first 1/2 k (0.43 m)^2 = 900 J each.
+  BOOST_TEST(total_energy(problem.system(), r.state) < 1);
+  BOOST_TEST(total_energy(problem.system(), p.initial) > 5000);
+}
+
+BOOST_AUTO_TEST_CASE(a_straight_strut_is_solved_or_refused_by_name_after_few_iterations) {
+  // Its straightness is an equilibrium, though no stable one.
+  for (const double h : {0.01, 0.1, 1.0}) {
+    const Minimisation problem(strut(0), h);
+    const Run r = problem.step(h);
+    if (r.summary.outcome == Outcome::reached_end) {
+      BOOST_TEST(problem.gradient(r.state.v).norm() < 1e-9);
+    } else {
+      BOOST_TEST(is_named_failure(r));
+      BOOST_TEST(r.state.t == 0);
+      BOOST_TEST(r.state.v.norm() == 0);
+    }
+    BOOST_TEST(r.summary.counts.newton_iterations <= 100);
+    BOOST_TEST(r.summary.counts.factorizations <= 400);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(compressed_random_networks_end_lower_or_refused_by_name) {
+  std::mt19937 random(8);
+  int solved = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    Problem p = random_network(random, 2 + trial % 2, 2 + trial % 5, 0.6);
+    const double stiffer = std::pow(10, trial % 4), h = std::pow(10, -1 - trial % 3);
+    for (auto& link : p.network.links) link.law.stiffness *= stiffer;
+    for (auto& anchor : p.network.anchors) anchor.law.stiffness *= stiffer;
+    const Minimisation problem(p, h);
+    const Run r = problem.step(h);
+    if (r.summary.outcome == Outcome::reached_end) {
+      ++solved;
+      BOOST_TEST(is_solved(problem, r.state.v));
+    } else {
+      BOOST_TEST(is_named_failure(r));
+      BOOST_TEST(same(r.state, p.initial));
+    }
+  }
+  BOOST_TEST(solved >= 190);  // in practice it solves nearly all
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,156 @@
+#include <boost/numeric/odeint.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/fixed_step.hpp"
+#include "src/analysis/linear_motion.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(order)
+
+namespace {
+
+// Errors of the end below these are rounding (some 1e-14 m and 1e-13 m/s), not truncation.
+constexpr double floor_q = 1e-13, floor_v = 1e-12;
+
+// A motion from t = 0, and where it ends after two to three periods of its fastest mode.
+struct Case {
+  std::unique_ptr<System> system;
+  State initial, end;
+};
+
+Case oscillating() {
+  const Oscillator o;
+  const Problem p = o.problem();
+  const double t = 2.4;
+  return {make_mass_spring(p.network),
+          p.initial,
+          {t, Vec::Constant(1, o.position(t)), Vec::Constant(1, o.velocity(t))}};
+}
+
+Case linear(int dimension) {
+  const Problem p = linear_hammock(dimension);
+  auto system = make_mass_spring(p.network);
+  State end = LinearMotion(*system, p.initial).at(1);
+  return {std::move(system), p.initial, std::move(end)};
+}
+
+// 512 steps of order 8: truncation is far below rounding (96 steps leave 2e-12 m/s).
+Case nonlinear(int dimension) {
+  const Problem p = hammock(dimension);
+  auto system = make_mass_spring(p.network);
+  State end = run(method_named("kahan_li8"), *system, p.initial, 1, {.step_size = 1. / 512}).state;
+  return {std::move(system), p.initial, std::move(end)};
+}
+
+// The same motion by an explicit Runge-Kutta method of the first-order form, which shares nothing
+// with the methods under test.
+State by_fehlberg(const Case& c) {
+  using Y = std::vector<double>;
+  namespace odeint = boost::numeric::odeint;
+  const Index n = c.system->size();
+  Y y(c.initial.q.begin(), c.initial.q.end());
+  y.insert(y.end(), c.initial.v.begin(), c.initial.v.end());
+  const auto rate = [&](const Y& at, Y& change, double) {
+    change.assign(at.begin() + n, at.end());
+    const Vec f = force_at(*c.system, Eigen::Map<const Vec>(at.data(), n));
+    for (Index i = 0; i < n; ++i) change.push_back(f[i] / c.system->mass()[i]);
+  };
+  const auto stepper = odeint::make_controlled<odeint::runge_kutta_fehlberg78<Y>>(1e-15, 1e-15);
+  odeint::integrate_adaptive(stepper, rate, y, 0.0, c.end.t, 1e-3);
+  return {c.end.t, Eigen::Map<Vec>(y.data(), n), Eigen::Map<Vec>(y.data() + n, n)};
+}
+
+struct Orders {
+  double q, v;
+};
+
+// The orders seen in q and v over the last four halvings before rounding shows. The first order
+// needs the most steps to be where its higher terms (h w / 2 of it) do not matter.
+Orders observed_orders(const Method& method, const Case& c) {
+  std::vector<double> q, v;
+  for (int steps = 6; steps <= 6 << 12; steps *= 2) {
+    const Run r = run(method, *c.system, c.initial, c.end.t, {.step_size = c.end.t / steps});
+    const double error_q = distance(r.state.q, c.end.q), error_v = distance(r.state.v, c.end.v);
+    if (error_q < floor_q || error_v < floor_v) break;
+    q.push_back(error_q);
+    v.push_back(error_v);
+  }
+  BOOST_REQUIRE(q.size() >= 5);
+  return {observed_order(std::span(q).last(5)), observed_order(std::span(v).last(5))};
+}
+
+bool is_of_order(int p, const Orders& observed) {
+  return std::abs(observed.q - p) <= 0.1 && std::abs(observed.v - p) <= 0.1;
+}
+
+void check_orders(const Case& c) {
+  for (const Method& method : methods_of(Knob::step_size)) {
+    const Orders observed = observed_orders(method, c);
+    BOOST_TEST_CONTEXT(method.name << " in q " << observed.q << ", in v " << observed.v) {
+      BOOST_TEST(is_of_order(method.order, observed));
+    }
+  }
+}
+
+// Verlet with its second kick longer by so many thousandths.
+template <int thousandths>
+class FaultyVerlet final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    force(now.q, f_);
+    next.v = now.v + h / 2 * f_.cwiseQuotient(system().mass());
+    next.q = now.q + h * next.v;
+    force(next.q, f_);
+    next.v += (1 + thousandths * 1e-3) * h / 2 * f_.cwiseQuotient(system().mass());
+    return Outcome::reached_end;
+  }
+
+  Vec f_{system().size()};
+};
+
+template <int thousandths>
+Method verlet_with() {
+  Method method = method_named("verlet");
+  method.make = create<FaultyVerlet<thousandths>>;
+  return method;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(two_unlike_methods_agree_on_the_nonlinear_reference) {
+  for (const int dimension : {2, 3}) {
+    const Case c = nonlinear(dimension);
+    const State other = by_fehlberg(c);
+    // Half of the smallest errors that an order is drawn from.
+    BOOST_TEST(distance(c.end.q, other.q) < floor_q / 2);
+    BOOST_TEST(distance(c.end.v, other.v) < floor_v / 2);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(every_fixed_step_method_has_its_order_on_the_oscillator) {
+  check_orders(oscillating());
+}
+
+BOOST_AUTO_TEST_CASE(every_fixed_step_method_has_its_order_on_a_linear_network) {
+  for (const int dimension : {1, 2, 3}) check_orders(linear(dimension));
+}
+
+BOOST_AUTO_TEST_CASE(every_fixed_step_method_has_its_order_on_a_nonlinear_network) {
+  for (const int dimension : {2, 3}) check_orders(nonlinear(dimension));
+}
+
+BOOST_AUTO_TEST_CASE(a_coefficient_wrong_by_a_thousandth_is_noticed) {
+  const Method right = verlet_with<0>();
+  const Method wrong = verlet_with<1>();
+  for (const Case& c : {linear(2), nonlinear(2)}) {
+    BOOST_TEST(is_of_order(2, observed_orders(right, c)));
+    BOOST_TEST(!is_of_order(2, observed_orders(wrong, c)));
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,200 @@
+#include <limits>
+
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(outcomes)
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Hammock {
+  Problem problem = hammock(2);
+  std::unique_ptr<System> system = make_mass_spring(problem.network);
+};
+
+// What has to hold of any run: a time and a state that are numbers, the time told twice the same
+// and not beyond the end, the end reached exactly where that is said, and words where it is not.
+bool is_sound(const Run& r, double t_end) {
+  const bool reached = r.summary.outcome == Outcome::reached_end;
+  return is_finite(r.state) && r.state.t == r.summary.t_reached && r.state.t <= t_end &&
+         (r.state.t == t_end || !reached) && r.summary.message.empty() == reached;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_scene_without_unknowns_reaches_its_end) {
+  const auto system = make_mass_spring({.node_mass = Vec(0)});
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      try {
+        const Run r = run(method, *system, {0, Vec(0), Vec(0)}, 1, knobs_of(method, 0.01, 1e-4));
+        BOOST_TEST(name(r.summary.outcome) == "reached_end");
+        BOOST_TEST(r.state.t == 1);
+      } catch (const std::exception& error) {
+        BOOST_ERROR(error.what());
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_start_or_an_end_that_is_no_number_is_refused) {
+  const Hammock h;
+  for (const Method& method : methods()) {
+    for (const double bad : {nan, infinity, -infinity}) {
+      BOOST_TEST_CONTEXT(method.name << " " << bad) {
+        const Knobs knobs = knobs_of(method, 0.01, 1e-4);
+        State bad_q = h.problem.initial, bad_v = bad_q;
+        bad_q.q[3] = bad;
+        bad_v.v[0] = bad;
+        for (const State& start : {bad_q, bad_v}) {
+          const Run r = run(method, *h.system, start, 1, knobs);
+          BOOST_TEST(name(r.summary.outcome) == "not_finite");
+          BOOST_TEST(r.summary.message == "the start is not finite");
+          BOOST_TEST(r.state.t == 0);
+        }
+        const Run endless = run(method, *h.system, h.problem.initial, bad, knobs);
+        BOOST_TEST(name(endless.summary.outcome) == "not_finite");
+        BOOST_TEST(same(endless.state, h.problem.initial));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_start_at_a_time_that_is_no_number_is_refused) {
+  Hammock h;
+  h.problem.initial.t = nan;
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *h.system, h.problem.initial, 1, knobs_of(method, 0.01, 1e-4));
+      BOOST_TEST(name(r.summary.outcome) == "not_finite");
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_step_that_rounding_swallows_is_refused) {
+  const Hammock h;
+  struct {
+    double t_start, t_end, step_size;
+  } const cases[] = {
+      {0, 1, 1e-20}, {1e9, 1e9 + 1, 1e-8}, {-1e9, -1e9 + 1, 1e-8},
+      {0, 1, 0},     {0, 1, -0.1},         {0, 1, nan},
+  };
+  for (const Method& method : methods_of(Knob::step_size)) {
+    for (const auto& [t_start, t_end, step_size] : cases) {
+      BOOST_TEST_CONTEXT(method.name << " with h = " << step_size << " from " << t_start) {
+        const State start{t_start, h.problem.initial.q, h.problem.initial.v};
+        const Run r = run(method, *h.system, start, t_end, {.step_size = step_size});
+        BOOST_TEST(name(r.summary.outcome) == "step_too_small");
+        BOOST_TEST(r.summary.message == advice(Outcome::step_too_small));
+        BOOST_TEST(same(r.state, start));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_step_that_rounding_just_does_not_swallow_is_taken) {
+  // At t = 1e9 times are 1.2e-7 apart.
+  const Hammock h;
+  for (const Method& method : methods_of(Knob::step_size)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const State start{1e9, h.problem.initial.q, h.problem.initial.v};
+      const double t_end = 1e9 + 1e-3;
+      const Run r = run(method, *h.system, start, t_end, {.step_size = 1e-6});
+      BOOST_TEST(r.summary.message == "");
+      BOOST_TEST(r.state.t == t_end);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_stopped_before_it_starts_leaves_its_state) {
+  const Hammock h;
+  std::stop_source budget;
+  budget.request_stop();
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *h.system, h.problem.initial, 1, knobs_of(method, 0.01, 1e-4), {},
+                        budget.get_token());
+      BOOST_TEST(name(r.summary.outcome) == "over_budget");
+      BOOST_TEST(r.summary.message == advice(Outcome::over_budget));
+      BOOST_TEST(same(r.state, h.problem.initial));
+      BOOST_TEST(r.summary.counts.steps == 0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_stopped_on_its_way_ends_there) {
+  const Hammock h;
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      std::stop_source budget;
+      const Observer observer{{0.5}, [&](const State&) { budget.request_stop(); }};
+      const Knobs knobs = knobs_of(method, 0.01, 1e-4);
+      const Run r =
+          run(method, *h.system, h.problem.initial, 1, knobs, observer, budget.get_token());
+      BOOST_TEST(name(r.summary.outcome) == "over_budget");
+      BOOST_TEST(is_sound(r, 1));
+      BOOST_TEST(r.state.t == 0.5);
+      BOOST_TEST(same(r.state, run(method, *h.system, h.problem.initial, 0.5, knobs).state));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(explicit_methods_far_above_their_limit_diverge_with_a_finite_state) {
+  const Oscillator o;
+  const Problem p = o.problem();
+  const auto system = make_mass_spring(p.network);
+  const double h = 100 / o.omega();
+  for (const Method& method : methods_of(Knob::step_size)) {
+    if (method.implicit) continue;
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *system, p.initial, 1000 * h, {.step_size = h});
+      BOOST_TEST(name(r.summary.outcome) == "diverged");
+      BOOST_TEST(r.summary.message == advice(Outcome::diverged));
+      BOOST_TEST(is_sound(r, 1000 * h));
+      BOOST_TEST(r.state.t == static_cast<double>(r.summary.counts.steps) * h);
+      BOOST_TEST(r.state.t < 1000 * h);
+      BOOST_TEST(r.state.v.norm() < 1e30);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(any_knob_however_coarse_ends_in_a_sound_state) {
+  for (const Problem& p : {hammock(2), hammock(3), linear_hammock(2)}) {
+    const auto system = make_mass_spring(p.network);
+    for (const Method& method : methods()) {
+      for (const double coarse : {0.3, 3., 100., 1e6}) {
+        BOOST_TEST_CONTEXT(method.name << " " << coarse) {
+          const double t_end = 50 * coarse;
+          std::stop_source budget;  // 1e5 forces are hundreds a step
+          Relay relay(*system);
+          relay.after_force = [&, calls = 0](const Vec&, Vec&) mutable {
+            if (++calls == 100000) budget.request_stop();
+          };
+          const Run r = run(method, relay, p.initial, t_end, knobs_of(method, coarse, coarse), {},
+                            budget.get_token());
+          BOOST_TEST(is_sound(r, t_end), r.summary.message);
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_state_that_is_no_number_or_an_end_not_reached_is_noticed) {
+  const Hammock h;
+  const Run good =
+      run(method_named("verlet"), *h.system, h.problem.initial, 1, {.step_size = 0.01});
+  BOOST_TEST(is_sound(good, 1));
+  Run spoilt = good, early = good, silent = good;
+  spoilt.state.v[1] = nan;
+  early.state.t = early.summary.t_reached = 0.5;
+  silent.summary.outcome = Outcome::diverged;
+  for (const Run& bad : {spoilt, early, silent}) BOOST_TEST(!is_sound(bad, 1));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

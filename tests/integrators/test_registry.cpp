@@ -1,0 +1,171 @@
+#include <set>
+
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(registry)
+
+namespace {
+
+bool names_are_unique(const std::vector<Method>& list) {
+  std::set<std::string> names;
+  for (const Method& method : list) names.insert(method.name);
+  return names.size() == list.size();
+}
+
+// The derivative of one step, (q, v) -> (q, v), by central differences.
+Eigen::MatrixXd step_derivative(const Method& method, const System& system, const State& at,
+                                double h) {
+  const Index n = system.size();
+  const auto map = [&](const Vec& y) -> Vec {
+    const Run r = run(method, system, {0, y.head(n), y.tail(n)}, h, knobs_of(method, h, 0));
+    Vec z(2 * n);
+    z << r.state.q, r.state.v;
+    return z;
+  };
+  Vec y(2 * n);
+  y << at.q, at.v;
+  return finite_difference_jacobian(map, y, 1e-4);
+}
+
+// How far `method` is from keeping the form dq ^ M dv: |D'SD - S| / |S|, S = [[0, M], [-M, 0]].
+double symplectic_defect(const Method& method) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  const Index n = system->size();
+  Eigen::MatrixXd s = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  s.topRightCorner(n, n) = system->mass().asDiagonal();
+  s.bottomLeftCorner(n, n) = -s.topRightCorner(n, n);
+  const Eigen::MatrixXd d = step_derivative(method, *system, p.initial, 0.05);
+  return distance(d.transpose() * s * d, s) / system->mass().maxCoeff();
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(names_are_unique_and_lower_case) {
+  BOOST_TEST(names_are_unique(methods()));
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      BOOST_TEST(!method.name.empty());
+      BOOST_TEST(method.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+                 std::string::npos);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_name_twice_is_noticed) {
+  std::vector<Method> list = methods();
+  list.push_back(list.front());
+  BOOST_TEST(!names_are_unique(list));
+}
+
+BOOST_AUTO_TEST_CASE(every_method_says_what_it_is_in_one_line_and_where_it_is_from) {
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      for (const std::string& text : {method.summary, method.source}) {
+        BOOST_TEST(!text.empty());
+        BOOST_TEST(text.find('\n') == std::string::npos);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(find_method_finds_each_and_nothing_else) {
+  for (const Method& method : methods()) BOOST_TEST(find_method(method.name) == &method);
+  for (const char* name : {"", "verle", "verlet ", "Verlet", "verlet2"}) {
+    BOOST_TEST(find_method(name) == nullptr);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_methods_asked_for_are_there_with_their_orders) {
+  const std::vector<std::pair<const char*, int>> orders = {{"explicit_euler", 1},
+                                                           {"symplectic_euler", 1},
+                                                           {"semi_implicit_euler", 1},
+                                                           {"implicit_euler", 1},
+                                                           {"verlet", 2},
+                                                           {"kahan_li8", 8},
+                                                           {"arkode_dirk2", 2},
+                                                           {"arkode_dirk3", 3},
+                                                           {"arkode_dirk4", 4},
+                                                           {"arkode_dirk5", 5},
+                                                           {"ida", 5}};
+  for (const auto& [name, order] : orders) {
+    BOOST_TEST_CONTEXT(name) {
+      BOOST_REQUIRE(find_method(name));
+      BOOST_TEST(find_method(name)->order == order);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(facts_about_a_method_fit_together) {
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      BOOST_TEST(method.order >= 1);
+      BOOST_TEST(method.order <= 12);
+      // SUNDIALS chooses its steps itself; without implicitness a massless node has no equation.
+      if (method.family == Family::sundials) BOOST_TEST((method.knob == Knob::rtol));
+      if (method.accepts_massless) BOOST_TEST(method.implicit);
+    }
+  }
+  BOOST_TEST(family_name(Family::hand_written) != family_name(Family::sundials));
+  BOOST_TEST(knob_name(Knob::step_size) == "step_size");
+  BOOST_TEST(knob_name(Knob::rtol) == "rtol");
+}
+
+BOOST_AUTO_TEST_CASE(every_method_can_be_made_and_has_not_run_by_then) {
+  const auto system = make_mass_spring(hammock(3).network);
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      BOOST_TEST(make_integrator(method, *system, knobs_of(method, 1e-3, 1e-3)) != nullptr);
+    }
+  }
+  const Summary summary;
+  BOOST_TEST(name(summary.outcome) == "solver_failed");
+  BOOST_TEST(summary.message == "advance was not called");
+}
+
+BOOST_AUTO_TEST_CASE(exactly_the_implicit_methods_factorise_and_those_that_need_it_ask_for_k) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *system, p.initial, 0.1, knobs_of(method, 0.01, 1e-4));
+      BOOST_TEST(r.summary.message == "");
+      BOOST_TEST((r.summary.counts.stiffness_evaluations > 0) == method.needs_stiffness);
+      BOOST_TEST((r.summary.counts.factorizations > 0) == method.implicit);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(one_step_keeps_the_symplectic_form_exactly_where_the_registry_says_so) {
+  for (const Method& method : methods_of(Knob::step_size)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const double defect = symplectic_defect(method);
+      // Differences of step s = 1e-4 err by s^2 |third derivative|, about 1e-8; a method that is
+      // not symplectic misses by about (h w)^2 with h w = 1 here.
+      if (method.symplectic) {
+        BOOST_TEST(defect < 1e-6);
+      } else {
+        BOOST_TEST(defect > 1e-2);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(every_outcome_has_a_name_and_every_failure_its_advice) {
+  std::set<std::string_view> names;
+  for (const Outcome outcome :
+       {Outcome::reached_end, Outcome::diverged, Outcome::newton_failed, Outcome::indefinite_matrix,
+        Outcome::step_too_small, Outcome::singular_mass, Outcome::not_finite,
+        Outcome::solver_failed, Outcome::over_budget}) {
+    names.insert(name(outcome));
+    BOOST_TEST(name(outcome) != "unknown");
+    BOOST_TEST(advice(outcome).empty() == (outcome == Outcome::reached_end));
+  }
+  BOOST_TEST(names.size() == 9);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,159 @@
+#include <map>
+
+#include <boost/test/unit_test.hpp>
+
+#include "src/analysis/linear_motion.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(sundials)
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// The tolerance holds for the estimated error of each step in the root mean square over q and v;
+// over the two to three periods of these motions the largest error of any entry comes to between
+// 1 and 500 times as much. A Newton iteration that stops too early shows as 1e4 and more.
+constexpr double largest_factor = 1000;
+
+// Errors at rtol = 1e-3, 1e-5, 1e-7 as multiples of rtol, and whether they fall.
+struct Accuracy {
+  double worst_factor = 0;
+  bool falls = true;
+};
+
+Accuracy accuracy(const Method& method, const System& system, const State& start,
+                  const State& end) {
+  Accuracy result;
+  double last = INFINITY;
+  for (const double rtol : {1e-3, 1e-5, 1e-7}) {
+    const Run r = run(method, system, start, end.t, {.rtol = rtol});
+    BOOST_REQUIRE(r.summary.message == "");
+    const double error = distance(r.state, end);
+    result.worst_factor = std::max(result.worst_factor, error / rtol);
+    result.falls = result.falls && error < last;
+    last = error;
+  }
+  return result;
+}
+
+void check_accuracy(const System& system, const State& start, const State& end) {
+  for (const Method& method : methods_of(Family::sundials)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Accuracy a = accuracy(method, system, start, end);
+      BOOST_TEST(a.falls);
+      BOOST_TEST(a.worst_factor < largest_factor);
+    }
+  }
+}
+
+void check_accuracy_where_linear(const Problem& p, double until) {
+  const auto system = make_mass_spring(p.network);
+  check_accuracy(*system, p.initial, LinearMotion(*system, p.initial).at(until));
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(the_oscillator_is_as_exact_as_the_tolerance_asks) {
+  check_accuracy_where_linear(Oscillator{}.problem(), 2.4);
+}
+
+BOOST_AUTO_TEST_CASE(linear_networks_are_as_exact_as_the_tolerance_asks) {
+  for (const int dimension : {1, 2, 3}) check_accuracy_where_linear(linear_hammock(dimension), 1);
+}
+
+BOOST_AUTO_TEST_CASE(nonlinear_networks_are_as_exact_as_the_tolerance_asks) {
+  for (const int dimension : {2, 3}) {
+    const Problem p = hammock(dimension);
+    const auto system = make_mass_spring(p.network);
+    // Exact to 1e-12, see the suite `order`.
+    const Run exact =
+        run(method_named("kahan_li8"), *system, p.initial, 1, {.step_size = 1. / 512});
+    check_accuracy(*system, p.initial, exact.state);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_force_wrong_by_a_thousandth_is_noticed) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  Relay wrong(*system);
+  wrong.after_force = [](const Vec&, Vec& f) { f *= 1.001; };
+  const Run exact = run(method_named("kahan_li8"), *system, p.initial, 1, {.step_size = 1. / 512});
+  for (const Method& method : methods_of(Family::sundials)) {
+    BOOST_TEST(accuracy(method, wrong, p.initial, exact.state).worst_factor > largest_factor);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_steps_of_arkode_show_the_order_of_its_table) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  const Run exact = run(method_named("kahan_li8"), *system, p.initial, 1, {.step_size = 1. / 512});
+  for (const Method& method : methods_of(Family::sundials)) {
+    if (method.name == "ida") continue;  // its order varies
+    const auto at = [&](double rtol) {
+      const Run r = run(method, *system, p.initial, 1, {.rtol = rtol});
+      return std::pair(std::log(r.summary.counts.steps), std::log(distance(r.state, exact.state)));
+    };
+    // Each step is as long as its own error allows, so that errors go with steps^-p; a few per cent
+    // of the steps are spent before that. For order 5 some tens of steps decide, which tells 5 from
+    // 4 but hardly from 6.
+    const double rtol = method.order == 2 ? 1e-4 : 1e-8;
+    const auto [steps, error] = at(rtol);
+    const auto [more_steps, less_error] = at(rtol / 1000);
+    const double order = (error - less_error) / (more_steps - steps);
+    BOOST_TEST(std::abs(order - method.order) < (method.order < 5 ? 0.2 : 0.9),
+               method.name << order);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(our_counts_and_those_of_sundials_fit_together) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  // Besides one force for each Newton iteration ARKODE takes one at each implicit stage's solution
+  // and at each explicit stage, and at the end of a step unless the last stage is there; IDA takes
+  // none. We count forces and stiffnesses, SUNDIALS steps, iterations and factorisations.
+  const std::map<std::string, std::int64_t> forces_a_step = {{"arkode_dirk2", 3},
+                                                             {"arkode_dirk3", 4},
+                                                             {"arkode_dirk4", 5},
+                                                             {"arkode_dirk5", 8},
+                                                             {"ida", 0}};
+  for (const Method& method : methods_of(Family::sundials)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Counts c = run(method, *system, p.initial, 1, {.rtol = 1e-7}).summary.counts;
+      const auto attempts = c.steps + c.rejected;
+      const auto rest =
+          c.force_evaluations - c.newton_iterations - forces_a_step.at(method.name) * attempts;
+      // The first force, and the few of the first step size; less where an attempt ended early.
+      BOOST_TEST(rest >= 1 - 8 * c.rejected);
+      BOOST_TEST(rest <= 6);
+      BOOST_TEST(c.steps >= 40);
+      BOOST_TEST(c.solves == c.newton_iterations);
+      BOOST_TEST(c.newton_iterations >= c.steps);
+      BOOST_TEST(c.factorizations >= c.stiffness_evaluations);
+      BOOST_TEST(c.stiffness_evaluations > 0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_summary_of_a_method_names_its_library_and_table) {
+  const std::map<std::string, std::string> tables = {
+      {"arkode_dirk2", "ARKODE_SDIRK_2_1_2"},
+      {"arkode_dirk3", "ARKODE_ARK324L2SA_DIRK_4_2_3"},
+      {"arkode_dirk4", "ARKODE_SDIRK_5_3_4"},
+      {"arkode_dirk5", "ARKODE_ARK548L2SA_DIRK_8_4_5"},
+      {"ida", "BDF of order 1 to 5"}};
+  for (const auto& [method, table] : tables) {
+    BOOST_TEST_CONTEXT(method) {
+      const Method& m = method_named(method);
+      BOOST_TEST(contains(m.summary, table));
+      BOOST_TEST(contains(m.summary, "SUNDIALS"));
+      BOOST_TEST(contains(m.summary, std::to_string(m.order)));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

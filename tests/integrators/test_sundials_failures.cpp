@@ -1,0 +1,131 @@
+#include <stdexcept>
+#include <stop_token>
+
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(sundials_failures)
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// From the 40th force or the third stiffness on, all of them fail.
+void break_forces(Relay& relay) {
+  relay.after_force = [calls = 0](const Vec&, Vec&) mutable {
+    if (++calls >= 40) throw std::runtime_error("the spring broke");
+  };
+}
+void break_stiffnesses(Relay& relay) {
+  relay.after_stiffness = [calls = 0](const Vec&, SymmetricMatrix&) mutable {
+    if (++calls >= 3) throw std::runtime_error("the spring broke");
+  };
+}
+
+// A method's run to 1 s on a hammock that breaks.
+struct BrokenRun {
+  BrokenRun(const Method& method, void (*break_it)(Relay&))
+      : integrator(make_integrator(method, relay, {.rtol = 1e-6})) {
+    break_it(relay);
+    summary = integrator->advance(state, 1);
+  }
+  Problem problem = hammock(2);
+  std::unique_ptr<System> system = make_mass_spring(problem.network);
+  Relay relay{*system};
+  std::unique_ptr<Integrator> integrator;
+  State state = problem.initial;
+  Summary summary;
+};
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(an_exception_in_the_system_becomes_a_failure_with_its_words) {
+  for (const Method& method : methods_of(Family::sundials)) {
+    for (const auto break_it : {break_forces, break_stiffnesses}) {
+      BOOST_TEST_CONTEXT(method.name) {
+        const BrokenRun r(method, break_it);
+        BOOST_TEST(name(r.summary.outcome) == "solver_failed");
+        BOOST_TEST(r.summary.message == "the spring broke");
+        BOOST_TEST(r.summary.t_reached == r.state.t);
+        BOOST_TEST(r.state.t > 0);
+        BOOST_TEST(r.state.t < 1);
+        BOOST_TEST(is_finite(r.state));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_exception_leaves_the_counts_of_what_was_done) {
+  for (const Method& method : methods_of(Family::sundials)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const BrokenRun r(method, break_forces);
+      BOOST_TEST(r.summary.counts.force_evaluations == 40);
+      BOOST_TEST(r.summary.counts.steps > 0);
+      BOOST_TEST(r.summary.counts.newton_iterations > 0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(after_an_exception_the_same_integrator_runs_again) {
+  for (const Method& method : methods_of(Family::sundials)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      BrokenRun r(method, break_forces);
+      r.relay.after_force = nullptr;
+      State state = r.problem.initial;
+      BOOST_TEST(r.integrator->advance(state, 1).message == "");
+      BOOST_TEST(same(state, run(method, *r.system, r.problem.initial, 1, {.rtol = 1e-6}).state));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_force_that_becomes_no_number_ends_the_run_at_the_last_accepted_state) {
+  const Oscillator o;
+  const Problem p = o.problem();
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : methods_of(Family::sundials)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      // The oscillator passes 0.2 m at about 0.2 s, and there is no force beyond. 1e5 forces are
+      // thousands of times what it takes to get there.
+      std::stop_source budget;
+      Relay relay(*system);
+      relay.after_force = [&, calls = 0](const Vec& q, Vec& f) mutable {
+        if (q[0] < 0.2) f[0] = NAN;
+        if (++calls == 100000) budget.request_stop();
+      };
+      const Run r = run(method, relay, p.initial, 1, {.rtol = 1e-6}, {}, budget.get_token());
+      const auto outcome = r.summary.outcome;
+      BOOST_TEST((outcome == Outcome::not_finite || outcome == Outcome::step_too_small),
+                 r.summary.message);
+      BOOST_TEST(is_finite(r.state));
+      BOOST_TEST(r.state.t == r.summary.t_reached);
+      BOOST_TEST(r.state.t > 0.15);
+      BOOST_TEST(r.state.q[0] >= 0.2);
+      // Accepted states are on the motion, to 1000 times the tolerance (see the suite `sundials`).
+      BOOST_TEST(std::abs(r.state.q[0] - o.position(r.state.t)) < 1e-3);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_message_of_sundials_reaches_the_summary_in_one_line) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  Relay relay(*system);
+  relay.after_force = [](const Vec&, Vec& f) { f[0] = NAN; };
+  for (const Method& method : methods_of(Family::sundials)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, relay, p.initial, 1, {.rtol = 1e-6});
+      BOOST_TEST(name(r.summary.outcome) == "not_finite");
+      BOOST_TEST(contains(r.summary.message, "t = 0 s"));
+      BOOST_TEST(contains(r.summary.message, std::string(advice(Outcome::not_finite))));
+      BOOST_TEST(!contains(r.summary.message, "\n"));
+      BOOST_TEST(same(r.state, p.initial));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cmath>
+#include <span>
+
+#include <Eigen/Dense>
+
+#include "src/model/system.hpp"
+
+namespace qddot {
+
+// The order p of errors ~ C h^p at h, h/2, h/4, ...: the slope of log2(error) over log2(h), by
+// least squares over all of them, so that no single pair decides.
+inline double observed_order(std::span<const double> errors) {
+  const auto count = static_cast<double>(errors.size());
+  const double middle = (count - 1) / 2;
+  double product = 0, square = 0;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double halvings = static_cast<double>(i) - middle;
+    product -= halvings * std::log2(errors[i]);
+    square += halvings * halvings;
+  }
+  return product / square;
+}
+
+// dg/dq of g: Vec -> Vec, column by column, from the central differences of fourth order
+//   g' = (8 (g(q+h) - g(q-h)) - (g(q+2h) - g(q-2h))) / 12 h.
+// A gradient is the one row of a g that gives a Vec of length 1. An entry is wrong by
+// h^4 |g^(5)| / 30 from truncation and about eps |g| / h from rounding.
+template <class Function>
+Eigen::MatrixXd finite_difference_jacobian(const Function& g, const Vec& q, double h) {
+  const auto beside = [&](Index j, double distance) -> Vec {
+    Vec moved = q;
+    moved[j] += distance;
+    return g(moved);
+  };
+  Eigen::MatrixXd jacobian(g(q).size(), q.size());
+  for (Index j = 0; j < q.size(); ++j) {
+    jacobian.col(j) =
+        (8 * (beside(j, h) - beside(j, -h)) - (beside(j, 2 * h) - beside(j, -2 * h))) / (12 * h);
+  }
+  return jacobian;
+}
+
+// The symmetric matrix of which `lower` holds the lower triangle.
+inline Eigen::MatrixXd dense(const SymmetricMatrix& lower) {
+  return Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
+}
+
+// f(q) and K(q) by value.
+inline Vec force_at(const System& system, const Vec& q) {
+  Vec f(system.size());
+  system.force(q, f);
+  return f;
+}
+inline SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
+  SymmetricMatrix k = system.stiffness_pattern();
+  system.stiffness(q, k);
+  return k;
+}
+
+// The largest absolute difference of two vectors or matrices of the same size; 0 where empty and
+// infinite where a difference is not a number, so that no comparison passes on it.
+template <class A, class B>
+double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  if (a.size() == 0) return 0;
+  const double largest = (a - b).template lpNorm<Eigen::Infinity>();
+  return (a - b).allFinite() ? largest : INFINITY;
+}
+
+}  // namespace qddot

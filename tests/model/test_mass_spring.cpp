@@ -1,0 +1,250 @@
+#include <limits>
+#include <random>
+#include <set>
+#include <utility>
+
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+
+#include "src/model/mass_spring.hpp"
+#include "tests/measure.hpp"
+#include "tests/problems.hpp"
+
+using namespace qddot;
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+// Balances the truncation h^4 |g^(5)| / 30 with the rounding eps |g| / h for what random_network
+// gives: springs of 0.4 to 7 m, whose fifth derivatives are at most some 1e3 times V and f.
+constexpr double step = 1e-3;
+
+// Relative error of differences with that step: 1e-12 * 1e3 / 30 from truncation, ten eps / 1e-3
+// from rounding; both well below this.
+constexpr double difference_error = 1e-9;
+
+// Networks in each dimension, all springs stretched, all compressed, all at rest.
+template <class Check>
+void for_random_networks(const Check& check) {
+  std::mt19937 random(1);
+  for (const int dimension : {1, 2, 3}) {
+    for (const double stretch : {1.4, 0.7, 1.0}) {
+      for (int sample = 0; sample < 3; ++sample)
+        check(random_network(random, dimension, 6, stretch));
+    }
+  }
+}
+
+Problem without_pins(Problem p) {
+  p.network.anchors.clear();
+  p.network.gravity.setZero();
+  return p;
+}
+
+// One move of all nodes together along axis d.
+Vec translation(const Problem& p, int d) {
+  return Vec::Unit(p.network.dimension, d).replicate(p.network.node_mass.size(), 1);
+}
+
+// Of the full K against the differences of f: only if they are symmetric can it agree with them.
+double stiffness_error(const Problem& p, const SymmetricMatrix& k) {
+  const auto system = make_mass_spring(p.network);
+  const auto force = [&](const Vec& q) { return force_at(*system, q); };
+  const Eigen::MatrixXd differences = finite_difference_jacobian(force, p.initial.q, step);
+  return distance(dense(k), differences) / dense(k).cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(mass_spring)
+
+BOOST_AUTO_TEST_CASE(force_is_minus_the_gradient_of_the_potential) {
+  for_random_networks([](const Problem& p) {
+    const auto system = make_mass_spring(p.network);
+    const auto v = [&](const Vec& q) { return Vec::Constant(1, system->potential(q)); };
+    const Vec gradient = finite_difference_jacobian(v, p.initial.q, step).transpose();
+    const double scale = std::abs(system->potential(p.initial.q)) + gradient.cwiseAbs().maxCoeff();
+    BOOST_TEST(distance(force_at(*system, p.initial.q), -gradient) < difference_error * scale);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(stiffness_is_the_symmetric_jacobian_of_the_force) {
+  for_random_networks([](const Problem& p) {
+    const auto system = make_mass_spring(p.network);
+    BOOST_TEST(stiffness_error(p, stiffness_at(*system, p.initial.q)) < difference_error);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(differences_see_an_entry_of_the_stiffness_off_by_1e_6) {
+  for_random_networks([](const Problem& p) {
+    const auto system = make_mass_spring(p.network);
+    SymmetricMatrix k = stiffness_at(*system, p.initial.q);
+    k.coeffs()[k.nonZeros() / 2] += 1e-6 * k.coeffs().abs().maxCoeff();
+    BOOST_TEST(stiffness_error(p, k) > 100 * difference_error);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(pattern_holds_the_lower_blocks_of_nodes_and_linked_pairs_and_no_more) {
+  for_random_networks([](const Problem& p) {
+    const int dimension = p.network.dimension;
+    std::set<std::pair<int, int>> expected;  // column, row: in the order of storage
+    const auto add_block = [&](int i, int j) {
+      for (int row = dimension * i; row < dimension * (i + 1); ++row) {
+        for (int column = dimension * j; column < dimension * (j + 1); ++column) {
+          if (row >= column) expected.insert({column, row});
+        }
+      }
+    };
+    for (int i = 0; i < p.network.node_mass.size(); ++i) add_block(i, i);
+    for (const auto& link : p.network.links) {
+      add_block(link.i, link.j);
+      add_block(link.j, link.i);
+    }
+    const auto system = make_mass_spring(p.network);
+    const SymmetricMatrix& pattern = system->stiffness_pattern();
+    std::vector<std::pair<int, int>> stored;
+    for (int column = 0; column < pattern.cols(); ++column) {
+      for (SymmetricMatrix::InnerIterator entry(pattern, column); entry; ++entry) {
+        stored.push_back({column, static_cast<int>(entry.row())});
+        BOOST_TEST(entry.value() == 0);
+      }
+    }
+    BOOST_TEST(pattern.isCompressed());
+    BOOST_TEST((stored == std::vector(expected.begin(), expected.end())));
+  });
+}
+
+BOOST_AUTO_TEST_CASE(stiffness_does_not_depend_on_what_the_matrix_held) {
+  for_random_networks([](const Problem& p) {
+    const auto system = make_mass_spring(p.network);
+    SymmetricMatrix used = stiffness_at(*system, 1.5 * p.initial.q);
+    system->stiffness(p.initial.q, used);
+    BOOST_TEST(distance(dense(used), dense(stiffness_at(*system, p.initial.q))) == 0);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(without_pins_a_translation_changes_no_force_and_forces_cancel) {
+  for_random_networks([](const Problem& pinned) {
+    const Problem p = without_pins(pinned);
+    const auto system = make_mass_spring(p.network);
+    const Eigen::MatrixXd k = dense(stiffness_at(*system, p.initial.q));
+    const Vec f = force_at(*system, p.initial.q);
+    for (int d = 0; d < p.network.dimension; ++d) {
+      const Vec shift = translation(p, d);
+      // Sums of up to 20 terms, each rounded.
+      BOOST_TEST((k * shift).cwiseAbs().maxCoeff() < 20 * eps * k.cwiseAbs().maxCoeff());
+      BOOST_TEST(std::abs(f.dot(shift)) <= 20 * eps * f.cwiseAbs().maxCoeff());
+    }
+  });
+}
+
+BOOST_AUTO_TEST_CASE(rotation_keeps_the_potential_and_turns_the_force) {
+  for_random_networks([](const Problem& pinned) {
+    const Problem p = without_pins(pinned);
+    const auto system = make_mass_spring(p.network);
+    const int dimension = p.network.dimension;
+    // A reflection in 1D, a rotation in 2D and 3D, as a product of two reflections.
+    const auto reflection = [&](const Vec& x) -> Eigen::MatrixXd {
+      const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(dimension, dimension);
+      return identity - 2 * x * x.transpose() / x.squaredNorm();
+    };
+    Eigen::MatrixXd turn = reflection(Vec::Ones(dimension));
+    if (dimension > 1) turn *= reflection(Vec::LinSpaced(dimension, -1, 2));
+    const auto turned = [&](const Vec& x) -> Vec {
+      return (turn * x.reshaped(dimension, x.size() / dimension)).reshaped();
+    };
+    // Lengths near 1 m keep 16 digits; k of 200 and c of 50 at strains of 3 m turn that into at
+    // most 1e4 eps of energy and force.
+    BOOST_TEST(std::abs(system->potential(turned(p.initial.q)) - system->potential(p.initial.q)) <=
+               1e4 * eps);
+    BOOST_TEST(distance(force_at(*system, turned(p.initial.q)),
+                        turned(force_at(*system, p.initial.q))) <= 1e4 * eps);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(gravity_alone_pulls_each_mass_down) {
+  const Network network = {.dimension = 2, .gravity = {1, -9.5, 0}, .node_mass = Vec{{2, 3}}};
+  const auto system = make_mass_spring(network);
+  const Vec q{{0.5, 4, -1, 2}};
+  BOOST_TEST((force_at(*system, q) == Vec{{2, -19, 3, -28.5}}));
+  BOOST_TEST(system->potential(q) == -(2 * (0.5 - 38) + 3 * (-1 - 19)));
+  BOOST_TEST(dense(stiffness_at(*system, q)).cwiseAbs().maxCoeff() == 0);
+  BOOST_TEST(system->stiffness_is_constant());
+}
+
+BOOST_AUTO_TEST_CASE(energies_of_the_oscillator_are_those_of_the_closed_form) {
+  const Oscillator o;
+  const auto [network, initial] = o.problem();
+  const auto system = make_mass_spring(network);
+  BOOST_TEST(system->kinetic(initial.v) == 0.5 * 2 * 1.5 * 1.5);
+  for (const double t : {0.0, 0.3, 1.7}) {
+    const State state = {t, Vec::Constant(1, o.position(t)), Vec::Constant(1, o.velocity(t))};
+    BOOST_TEST(std::abs(total_energy(*system, state) - o.energy()) < 10 * eps * o.energy());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(anchor_acts_as_a_link_to_a_node_that_stands_there) {
+  const SpringLaw law = {.stiffness = 30, .rest_length = 0.8, .quartic = 4};
+  const auto two = make_mass_spring({.node_mass = Vec::Ones(2), .links = {{0, 1, law}}});
+  const auto one = make_mass_spring({.node_mass = Vec::Ones(1), .anchors = {{0, {1, 2, 3}, law}}});
+  const Vec x{{0.4, 1.1, 2.5}}, q{{0.4, 1.1, 2.5, 1, 2, 3}};
+  BOOST_TEST(one->potential(x) == two->potential(q));
+  BOOST_TEST((force_at(*one, x) == force_at(*two, q).head(3)));
+  BOOST_TEST((dense(stiffness_at(*one, x)) == dense(stiffness_at(*two, q)).topLeftCorner(3, 3)));
+}
+
+BOOST_AUTO_TEST_CASE(stiffness_is_constant_exactly_where_every_law_is_linear) {
+  const SpringLaw linear = {.stiffness = 3};
+  const auto is_constant = [&](const SpringLaw& link, const SpringLaw& anchor) {
+    const Network network = {.node_mass = Vec::Ones(2),
+                             .links = {{0, 1, linear}, {1, 0, link}},
+                             .anchors = {{0, {1, 0, 0}, anchor}, {1, {0, 1, 0}, linear}}};
+    const auto system = make_mass_spring(network);
+    const Vec a = Vec::LinSpaced(6, 0, 1), b = Vec::LinSpaced(6, 3, -1).cwiseAbs2();
+    const auto there = dense(stiffness_at(*system, a)), here = dense(stiffness_at(*system, b));
+    // k nn' + k (I - nn') is k I to round-off.
+    BOOST_TEST(system->stiffness_is_constant() == (distance(here, there) < 30 * eps));
+    return system->stiffness_is_constant();
+  };
+  const SpringLaw at_rest = {.stiffness = 3, .rest_length = 0.5}, quartic = {.quartic = 1};
+  BOOST_TEST(is_constant(linear, linear));
+  for (const SpringLaw& law : {at_rest, quartic}) {
+    BOOST_TEST(!is_constant(law, linear));
+    BOOST_TEST(!is_constant(linear, law));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(constant_energy_adds_to_the_potential_alone) {
+  Problem p = hammock(2);
+  const auto before = make_mass_spring(p.network);
+  p.network.constant_energy = 64;
+  const auto after = make_mass_spring(p.network);
+  const double v = before->potential(p.initial.q);
+  BOOST_TEST(std::abs(after->potential(p.initial.q) - v - 64) < 64 * 10 * eps);
+  BOOST_TEST((force_at(*after, p.initial.q) == force_at(*before, p.initial.q)));
+}
+
+BOOST_AUTO_TEST_CASE(network_without_nodes_has_only_its_constant_energy) {
+  for (const int dimension : {1, 2, 3}) {
+    const auto system = make_mass_spring({.dimension = dimension, .constant_energy = 2});
+    BOOST_TEST(system->size() == 0);
+    BOOST_TEST(system->potential(Vec()) == 2);
+    BOOST_TEST(system->kinetic(Vec()) == 0);
+    BOOST_TEST(force_at(*system, Vec()).size() == 0);
+    BOOST_TEST(stiffness_at(*system, Vec()).size() == 0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(massless_node_has_springs_but_no_weight_and_no_kinetic_energy) {
+  const auto system = make_mass_spring({.dimension = 2,
+                                        .gravity = {0, -9.81, 0},
+                                        .node_mass = Vec{{0, 2}},
+                                        .links = {{0, 1, {.stiffness = 7}}}});
+  BOOST_TEST(system->has_massless());
+  BOOST_TEST((system->mass() == Vec{{0, 0, 2, 2}}));
+  BOOST_TEST(system->kinetic(Vec{{100, 100, 3, 4}}) == 25);
+  BOOST_TEST((force_at(*system, Vec{{0, 0, 1, 0}}).head(2) == Vec{{7, 0}}));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
