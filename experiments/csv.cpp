@@ -28,13 +28,9 @@ void Csv::end_row() {
   row_is_empty_ = true;
 }
 
-namespace {
-
 std::string sidecar_of(const std::string& path) {
   return (path.ends_with(".csv") ? path.substr(0, path.size() - 4) : path) + ".json";
 }
-
-}  // namespace
 
 CsvFile::CsvFile(const std::string& path, const std::vector<std::string>& header)
     : Csv(header), file_(path), sidecar_(sidecar_of(path)) {}

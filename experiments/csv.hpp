@@ -51,6 +51,9 @@ class Csv {
   bool row_is_empty_ = true;
 };
 
+// The sidecar X.json of a table X.csv.
+std::string sidecar_of(const std::string& path);
+
 // A Csv that goes to a file X.csv as it grows, and appears there on commit(), together with its
 // sidecar X.json. Throws InvalidInput at once if either place cannot be written.
 class CsvFile : public Csv {

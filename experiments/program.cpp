@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "experiments/reference.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
 
@@ -36,6 +37,8 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return complain(app, error.what(), bad_input);
   } catch (const InvalidInput& error) {
     return complain(app, error.what(), bad_input);
+  } catch (const NoReference& error) {
+    return complain(app, error.what(), end_not_reached);
   } catch (const std::exception& error) {
     return complain(app, error.what(), failed);
   }

@@ -56,8 +56,7 @@ Solution refine(const ReducedScene& scene, double seconds, const Solve& solve) {
     if (next) best = next;
     if (change == 0 || seconds_since(start) + 2 * seconds_since(begin) > seconds) break;
   }
-  if (!best)
-    throw std::runtime_error("no reference: the high-accuracy methods did not reach the end");
+  if (!best) throw NoReference("no reference: the high-accuracy methods did not reach the end");
   return *best;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -30,11 +31,17 @@ struct Reference {
   }
 };
 
+// The high-accuracy methods did not reach the end.
+class NoReference : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // Makes the reference of a scene without massless nodes, in about `seconds` at most. The two ways:
 //   linear motion (constant K):  modal, exact  -  Kahan and Li's order-8 composition;
 //   else:  Kahan and Li's composition (symplectic, fixed step)  -  Fehlberg's 7(8) pair of
 //          Boost.odeint (adaptive).
-// Each is refined until refining it changes nothing more, or time is up. Throws std::runtime_error
+// Each is refined until refining it changes nothing more, or time is up. Throws NoReference
 // if either never reaches the end.
 Reference make_reference(const ReducedScene& scene, double until, double seconds);
 

@@ -62,6 +62,12 @@ void assign_every(const CLI::App& app, Arguments& a) {
     if (name == "--energy") owner = &a.energy_every;
     if (name == "--every") {
       require_positive(a.every[next], "--every", "the time between samples in s");
+      if (a.every.size() > 1 && (!owner || *owner != 0)) {
+        throw InvalidInput(
+            fmt::format("--every {}: of several, each stands behind the --trajectory "
+                        "or --energy that it is for, one for each",
+                        a.every[next]));
+      }
       if (owner) *owner = a.every[next];
       ++next;
     }
@@ -89,11 +95,12 @@ void require_distinct_outputs(const CLI::App& app, const Arguments& a) {
         std::pair("--energy", a.energy_path)}) {
     if (app.count(option) == 0) continue;
     require_given(path, option, "the name of a CSV file");
-    if (!taken.insert(std::filesystem::absolute(path).lexically_normal()).second) {
+    for (const std::string& file : {path, sidecar_of(path)}) {
+      if (taken.insert(std::filesystem::absolute(file).lexically_normal()).second) continue;
       throw InvalidInput(
-          fmt::format("{} {}: another output goes to that file; allowed is a file "
-                      "for each",
-                      option, path));
+          fmt::format("{} {}: another output or its sidecar goes to {}; allowed is a "
+                      "file for each",
+                      option, path, file));
     }
   }
 }

@@ -15,8 +15,9 @@ namespace qddot {
 
 WholeFile::WholeFile(const std::string& path)
     : path_(path), beside_(fmt::format("{}.{}.part", path, ::getpid())) {
-  if (std::filesystem::is_directory(path)) {
-    throw InvalidInput(fmt::format("{}: is a folder; allowed is the name of a file", path));
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
+    throw InvalidInput(
+        fmt::format("{}: is a folder or a device; allowed is the name of a file", path));
   }
   file_ = std::fopen(beside_.c_str(), "w");
   if (!file_) {

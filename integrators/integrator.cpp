@@ -76,7 +76,8 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
 }
 
 Outcome Integrator::run(State& state, double t_end, const Observer& observer) {
-  if (!state.q.allFinite() || !state.v.allFinite() || !std::isfinite(t_end)) {
+  if (!std::isfinite(state.t) || !state.q.allFinite() || !state.v.allFinite() ||
+      !std::isfinite(t_end)) {
     explain("the start is not finite");
     return Outcome::not_finite;
   }

@@ -8,9 +8,10 @@
 namespace qddot::sundials {
 namespace {
 
-// A run whose mean step is below this fraction of its length would never arrive.
-constexpr double smallest_mean_step = 1e-10;
-constexpr int steps_before_judging = 10000;
+// A run whose steps, so many in a row, are on the mean below this fraction of its length creeps up
+// to a point that it will not pass.
+constexpr int steps_in_a_row = 1000;
+constexpr double smallest_mean_step = 1e-12;
 
 Context make_context() {
   SUNContext context = nullptr;
@@ -83,14 +84,20 @@ Outcome Stock::run_to(State& state, double t_stop) {
   parked_ = nullptr;
   said_.clear();
   set_stop_time(t_stop);
-  const Outcome outcome = advance_steps(state, t_stop);
-  collect_counts();
-  return outcome;
+  try {
+    const Outcome outcome = advance_steps(state, t_stop);
+    collect_counts();
+    return outcome;
+  } catch (...) {
+    collect_counts();
+    throw;
+  }
 }
 
 Outcome Stock::advance_steps(State& state, double t_stop) {
-  const double t_start = state.t;
-  for (double steps = 1; state.t < t_stop; ++steps) {
+  const double creep = steps_in_a_row * smallest_mean_step * (t_stop - state.t);
+  double t_mark = state.t;
+  for (std::int64_t steps = 1; state.t < t_stop; ++steps) {
     if (must_stop()) return Outcome::over_budget;
     double t = state.t;
     const int flag = take_step(t_stop, t);
@@ -101,10 +108,9 @@ Outcome Stock::advance_steps(State& state, double t_stop) {
     state.q = halves.q;
     state.v = halves.v;
     state.t = t;
-    if (steps >= steps_before_judging &&
-        t - t_start < steps * smallest_mean_step * (t_stop - t_start)) {
-      return Outcome::step_too_small;
-    }
+    if (steps % steps_in_a_row != 0) continue;
+    if (t - t_mark < creep) return Outcome::step_too_small;
+    t_mark = t;
   }
   return Outcome::reached_end;
 }

@@ -15,10 +15,11 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// The tolerance holds for the estimated error of each step in the root mean square over q and v;
-// over the two to three periods of these motions the largest error of any entry comes to between
-// 1 and 500 times as much. A Newton iteration that stops too early shows as 1e4 and more.
-constexpr double largest_factor = 1000;
+// The tolerance holds for the estimated error of each step in the root mean square over q and v.
+// Over the two to three periods of these motions the largest error of any entry comes to between
+// 0.1 and 25 times as much; IDA, whose order rises and falls, is known for more. A Newton iteration
+// that stops too early shows as 1e4 and more.
+double largest_factor(const Method& method) { return method.name == "ida" ? 1000 : 50; }
 
 // Errors at rtol = 1e-3, 1e-5, 1e-7 as multiples of rtol, and whether they fall.
 struct Accuracy {
@@ -46,7 +47,7 @@ void check_accuracy(const System& system, const State& start, const State& end) 
     BOOST_TEST_CONTEXT(method.name) {
       const Accuracy a = accuracy(method, system, start, end);
       BOOST_TEST(a.falls);
-      BOOST_TEST(a.worst_factor < largest_factor);
+      BOOST_TEST(a.worst_factor < largest_factor(method));
     }
   }
 }
@@ -84,7 +85,8 @@ BOOST_AUTO_TEST_CASE(a_force_wrong_by_a_thousandth_is_noticed) {
   wrong.after_force = [](const Vec&, Vec& f) { f *= 1.001; };
   const Run exact = run(method_named("kahan_li8"), *system, p.initial, 1, {.step_size = 1. / 512});
   for (const Method& method : methods_of(Family::sundials)) {
-    BOOST_TEST(accuracy(method, wrong, p.initial, exact.state).worst_factor > largest_factor);
+    BOOST_TEST(accuracy(method, wrong, p.initial, exact.state).worst_factor >
+               largest_factor(method));
   }
 }
 
@@ -99,14 +101,12 @@ BOOST_AUTO_TEST_CASE(the_steps_of_arkode_show_the_order_of_its_table) {
       return std::pair(std::log(r.summary.counts.steps), std::log(distance(r.state, exact.state)));
     };
     // Each step is as long as its own error allows, so that errors go with steps^-p; a few per cent
-    // of the steps are spent before that. For order 5 some tens of steps decide, which tells 5 from
-    // 4 but hardly from 6.
+    // of some hundred steps are spent before that.
     const double rtol = method.order == 2 ? 1e-4 : 1e-8;
     const auto [steps, error] = at(rtol);
     const auto [more_steps, less_error] = at(rtol / 1000);
     const double order = (error - less_error) / (more_steps - steps);
-    BOOST_TEST(std::abs(order - method.order) < (method.order < 5 ? 0.2 : 0.9),
-               method.name << order);
+    BOOST_TEST(std::abs(order - method.order) < 0.2, method.name << order);
   }
 }
 
@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(our_counts_and_those_of_sundials_fit_together) {
   const std::map<std::string, std::int64_t> forces_a_step = {{"arkode_dirk2", 3},
                                                              {"arkode_dirk3", 4},
                                                              {"arkode_dirk4", 5},
-                                                             {"arkode_dirk5", 8},
+                                                             {"arkode_dirk5", 7},
                                                              {"ida", 0}};
   for (const Method& method : methods_of(Family::sundials)) {
     BOOST_TEST_CONTEXT(method.name) {
@@ -140,12 +140,11 @@ BOOST_AUTO_TEST_CASE(our_counts_and_those_of_sundials_fit_together) {
 }
 
 BOOST_AUTO_TEST_CASE(the_summary_of_a_method_names_its_library_and_table) {
-  const std::map<std::string, std::string> tables = {
-      {"arkode_dirk2", "ARKODE_SDIRK_2_1_2"},
-      {"arkode_dirk3", "ARKODE_ARK324L2SA_DIRK_4_2_3"},
-      {"arkode_dirk4", "ARKODE_SDIRK_5_3_4"},
-      {"arkode_dirk5", "ARKODE_ARK548L2SA_DIRK_8_4_5"},
-      {"ida", "BDF of order 1 to 5"}};
+  const std::map<std::string, std::string> tables = {{"arkode_dirk2", "ARKODE_SDIRK_2_1_2"},
+                                                     {"arkode_dirk3", "ARKODE_KVAERNO_4_2_3"},
+                                                     {"arkode_dirk4", "ARKODE_SDIRK_5_3_4"},
+                                                     {"arkode_dirk5", "ARKODE_ESDIRK547L2SA_7_4_5"},
+                                                     {"ida", "BDF of order 1 to 5"}};
   for (const auto& [method, table] : tables) {
     BOOST_TEST_CONTEXT(method) {
       const Method& m = method_named(method);
