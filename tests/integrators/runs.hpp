@@ -1,12 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <stop_token>
+#include <string>
 #include <utility>
 
 #include "integrators/registry.hpp"
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

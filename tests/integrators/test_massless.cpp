@@ -14,28 +14,28 @@ constexpr double g = 9.81;
 constexpr double position_m = 0.95, position = 1.95;  // m, along the line; both springs in tension
 
 // The line on which all hangs: along x in 1D, none of the axes in 3D.
-Eigen::Vector3d line(int dimension) {
-  return dimension == 1 ? Eigen::Vector3d(1, 0, 0) : Eigen::Vector3d(1, 2, 2) / 3;
-}
+Vec line(int dimension) { return dimension == 1 ? Vec{{1}} : Vec{{1 / 3., 2 / 3., 2 / 3.}}; }
 
 // A mass under two springs with a massless node between them. Gravity keeps it in tension: it
 // swings by 0.09 m about a stretch of 0.16 m.
 Problem two_springs(int dimension) {
-  const Eigen::Vector3d u = line(dimension);
-  Problem p{{.dimension = dimension, .gravity = g * u, .node_mass = Eigen::Vector2d(0, mass)}, {}};
+  const Vec u = line(dimension);
+  Problem p{{.dimension = dimension, .gravity = g * in_space(u)}, {}};
+  p.network.node_mass = Eigen::Vector2d(0, mass);
   p.network.anchors = {{0, {0, 0, 0}, {k1, l1}}};
   p.network.links = {{0, 1, {k2, l2}}};
   p.initial = {0, Vec(2 * dimension), Vec::Zero(2 * dimension)};
-  p.initial.q << position_m * u.head(dimension), position * u.head(dimension);
+  p.initial.q << position_m * u, position * u;
   return p;
 }
 
 // The same mass under the one spring that two in series are.
 Problem one_spring(int dimension) {
-  const Eigen::Vector3d u = line(dimension);
-  Problem p{{.dimension = dimension, .gravity = g * u, .node_mass = Vec::Constant(1, mass)}, {}};
+  const Vec u = line(dimension);
+  Problem p{{.dimension = dimension, .gravity = g * in_space(u)}, {}};
+  p.network.node_mass = Vec::Constant(1, mass);
   p.network.anchors = {{0, {0, 0, 0}, {k1 * k2 / (k1 + k2), l1 + l2}}};
-  p.initial = {0, position * u.head(dimension), Vec::Zero(dimension)};
+  p.initial = {0, position * u, Vec::Zero(dimension)};
   return p;
 }
 

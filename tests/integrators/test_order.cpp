@@ -1,9 +1,8 @@
 #include <boost/numeric/odeint.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/fixed_step.hpp"
 #include "src/analysis/linear_motion.hpp"
-#include "tests/integrators/runs.hpp"
+#include "tests/integrators/faulty_verlet.hpp"
 
 using namespace qddot;
 
@@ -94,32 +93,6 @@ void check_orders(const Case& c) {
   }
 }
 
-// Verlet with its second kick longer by so many thousandths.
-template <int thousandths>
-class FaultyVerlet final : public FixedStep {
- public:
-  using FixedStep::FixedStep;
-
- private:
-  Outcome step(const State& now, double h, State& next) override {
-    force(now.q, f_);
-    next.v = now.v + h / 2 * f_.cwiseQuotient(system().mass());
-    next.q = now.q + h * next.v;
-    force(next.q, f_);
-    next.v += (1 + thousandths * 1e-3) * h / 2 * f_.cwiseQuotient(system().mass());
-    return Outcome::reached_end;
-  }
-
-  Vec f_{system().size()};
-};
-
-template <int thousandths>
-Method verlet_with() {
-  Method method = method_named("verlet");
-  method.make = create<FaultyVerlet<thousandths>>;
-  return method;
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(two_unlike_methods_agree_on_the_nonlinear_reference) {
@@ -145,8 +118,8 @@ BOOST_AUTO_TEST_CASE(every_fixed_step_method_has_its_order_on_a_nonlinear_networ
 }
 
 BOOST_AUTO_TEST_CASE(a_coefficient_wrong_by_a_thousandth_is_noticed) {
-  const Method right = verlet_with<0>();
-  const Method wrong = verlet_with<1>();
+  const Method right = faulty_verlet<0>();
+  const Method wrong = faulty_verlet<1>();
   for (const Case& c : {linear(2), nonlinear(2)}) {
     BOOST_TEST(is_of_order(2, observed_orders(right, c)));
     BOOST_TEST(!is_of_order(2, observed_orders(wrong, c)));

@@ -1,7 +1,8 @@
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/fixed_step.hpp"
-#include "tests/integrators/runs.hpp"
+#include "src/scene/generators.hpp"
+#include "src/scene/reduce.hpp"
+#include "tests/integrators/faulty_verlet.hpp"
 
 using namespace qddot;
 
@@ -97,30 +98,6 @@ Vec change_of_momenta(const Method& method) {
   return momenta(scene.system(), r.state) - momenta(scene.system(), start);
 }
 
-// Verlet with its second kick longer by a thousandth.
-class FaultyVerlet final : public FixedStep {
- public:
-  using FixedStep::FixedStep;
-
- private:
-  Outcome step(const State& now, double h, State& next) override {
-    force(now.q, f_);
-    next.v = now.v + h / 2 * f_.cwiseQuotient(system().mass());
-    next.q = now.q + h * next.v;
-    force(next.q, f_);
-    next.v += 1.001 * h / 2 * f_.cwiseQuotient(system().mass());
-    return Outcome::reached_end;
-  }
-
-  Vec f_{system().size()};
-};
-
-Method faulty_verlet() {
-  Method method = method_named("verlet");
-  method.make = create<FaultyVerlet>;
-  return method;
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(explicit_euler_grows_by_its_factor_at_every_step_size) {
@@ -204,7 +181,7 @@ BOOST_AUTO_TEST_CASE(methods_that_are_not_reversible_do_not_return) {
   for (const char* method : {"symplectic_euler", "implicit_euler"}) {
     BOOST_TEST(return_distance(method_named(method)) > 1e-3);
   }
-  BOOST_TEST(return_distance(faulty_verlet()) > 1e-5);
+  BOOST_TEST(return_distance(faulty_verlet<1>()) > 1e-5);
 }
 
 BOOST_AUTO_TEST_CASE(every_fixed_step_method_keeps_the_momentum_of_free_masses) {

@@ -17,9 +17,11 @@ bool contains(const std::string& text, const std::string& part) {
 
 // The tolerance holds for the estimated error of each step in the root mean square over q and v.
 // Over the two to three periods of these motions the largest error of any entry comes to between
-// 0.1 and 25 times as much; IDA, whose order rises and falls, is known for more. A Newton iteration
-// that stops too early shows as 1e4 and more.
-double largest_factor(const Method& method) { return method.name == "ida" ? 1000 : 50; }
+// 0.1 and 25 times as much with ARKODE, and to some hundred times with multistep methods, whose
+// order rises and falls. A Newton iteration that stops too early shows as 1e4 and more.
+double largest_factor(const Method& method) {
+  return method.name.starts_with("arkode") ? 50 : 1000;
+}
 
 // Errors at rtol = 1e-3, 1e-5, 1e-7 as multiples of rtol, and whether they fall.
 struct Accuracy {
@@ -95,7 +97,7 @@ BOOST_AUTO_TEST_CASE(the_steps_of_arkode_show_the_order_of_its_table) {
   const auto system = make_mass_spring(p.network);
   const Run exact = run(method_named("kahan_li8"), *system, p.initial, 1, {.step_size = 1. / 512});
   for (const Method& method : methods_of(Family::sundials)) {
-    if (method.name == "ida") continue;  // its order varies
+    if (!method.name.starts_with("arkode")) continue;  // the order varies
     const auto at = [&](double rtol) {
       const Run r = run(method, *system, p.initial, 1, {.rtol = rtol});
       return std::pair(std::log(r.summary.counts.steps), std::log(distance(r.state, exact.state)));
@@ -106,7 +108,7 @@ BOOST_AUTO_TEST_CASE(the_steps_of_arkode_show_the_order_of_its_table) {
     const auto [steps, error] = at(rtol);
     const auto [more_steps, less_error] = at(rtol / 1000);
     const double order = (error - less_error) / (more_steps - steps);
-    BOOST_TEST(std::abs(order - method.order) < 0.2, method.name << order);
+    BOOST_TEST(std::abs(order - method.order) < 0.2, method.name << " shows " << order);
   }
 }
 
@@ -121,12 +123,12 @@ BOOST_AUTO_TEST_CASE(our_counts_and_those_of_sundials_fit_together) {
                                                              {"arkode_dirk4", 5},
                                                              {"arkode_dirk5", 7},
                                                              {"ida", 0}};
-  for (const Method& method : methods_of(Family::sundials)) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const Counts c = run(method, *system, p.initial, 1, {.rtol = 1e-7}).summary.counts;
+  for (const auto& [method, forces] : forces_a_step) {
+    BOOST_TEST_CONTEXT(method) {
+      const Counts c =
+          run(method_named(method), *system, p.initial, 1, {.rtol = 1e-7}).summary.counts;
       const auto attempts = c.steps + c.rejected;
-      const auto rest =
-          c.force_evaluations - c.newton_iterations - forces_a_step.at(method.name) * attempts;
+      const auto rest = c.force_evaluations - c.newton_iterations - forces * attempts;
       // The first force, and the few of the first step size; less where an attempt ended early.
       BOOST_TEST(rest >= 1 - 8 * c.rejected);
       BOOST_TEST(rest <= 6);
