@@ -1,10 +1,10 @@
 #include "src/scene/generators.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "src/scene/invalid_input.hpp"
 

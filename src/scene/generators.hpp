@@ -11,8 +11,8 @@ namespace qddot {
 // A number that a scene generator takes. `whole` asks for an integer.
 struct GeneratorParameter {
   std::string name;
-  double standard;  // the value where none is given
-  double low, high;  // both allowed
+  double standard;      // the value where none is given
+  double low, high;     // both allowed
   std::string meaning;  // with its unit
   bool whole = false;
 };

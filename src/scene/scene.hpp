@@ -1,10 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "src/model/spring.hpp"
 
@@ -29,7 +30,7 @@ struct Scene {
   std::string name{};
   int dimension = 3;                                  // 1, 2 or 3
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // [m/s^2]
-  std::optional<double> until{};                       // [s], the horizon if none is asked for
+  std::optional<double> until{};                      // [s], the horizon if none is asked for
   std::vector<Node> nodes{};
   std::vector<Spring> springs{};
 };
