@@ -98,8 +98,8 @@ std::vector<Point> climb(const Method& method, const ReducedScene& scene, double
         (last.errors.position <= reference.certified.position || stagnation.after(last))) {
       break;
     }
-    // Where Newton struggles at the coarse end, finer may be faster: one such point is forgiven.
-    unfinished += last.outcome == Outcome::over_budget;
+    // Where Newton struggles at the coarse end, finer may be faster: two such points are forgiven.
+    unfinished = last.outcome == Outcome::over_budget ? unfinished + 1 : 0;
     const bool has_worked = std::ranges::any_of(points, is_good);
     if (last.outcome == Outcome::singular_mass || unfinished > (has_worked ? 0 : 2)) break;
     take(*value);
