@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstdint>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,9 @@ struct Scene {
   std::optional<double> until{};                      // [s], the horizon if none is asked for
   std::vector<Node> nodes{};
   std::vector<Spring> springs{};
+  // Whether its motion begins with the nodes not where they are drawn but at the stable equilibrium
+  // that is reached from there, with the velocities as drawn.
+  bool starts_at_equilibrium = false;
 };
 
 // Throws InvalidInput, in a sentence that starts with `source` and names node or spring and field,
