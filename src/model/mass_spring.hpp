@@ -15,6 +15,13 @@ struct Network {
     int i, j;
     SpringLaw law;
   };
+  // A spring between node i and the mirror image of node j, diag(mirror) x_j with entries 1 and -1;
+  // i = j is a spring that crosses the mirror at a right angle.
+  struct ImageLink {
+    int i, j;
+    Eigen::Vector3d mirror;
+    SpringLaw law;
+  };
   // A spring between a free node and a fixed point [m].
   struct Anchor {
     int i;
@@ -27,13 +34,19 @@ struct Network {
   Vec node_mass{};                                    // [kg], length N, entries >= 0
   std::vector<Link> links{};
   std::vector<Anchor> anchors{};
-  double constant_energy = 0;  // [J], of springs between fixed points
+  double constant_energy = 0;  // [J], of whatever does not move
+  std::vector<ImageLink> image_links{};
+  // Coordinates that stay zero, a bit d for coordinate d of each node, and are no unknowns; empty
+  // where there are none.
+  std::vector<unsigned> zero_coordinates{};
+  Vec load{};                           // constant forces beside the weight [N], D N; empty = none
+  bool uses_constant_stiffness = true;  // false: K counts as varying even where it is constant
 };
 
-// The network as a System with n = D N unknowns:
-//   V(q) = sum over springs of V_spring - sum over nodes of m g.x,
-// f and K summed spring by spring (see spring.hpp). K's pattern is made once: a D x D block for
-// each node and for each pair of nodes that a link joins. K is constant where every law is linear.
+// The network as a System with an unknown for each of the D N coordinates that may move, in order:
+//   V(q) = constant + sum over springs of V_spring - sum over nodes of (m g + load).x,
+// f and K summed spring by spring (see spring.hpp). K's pattern is made once: a block for each node
+// and for each pair of nodes that a link joins. K is constant where every law is linear.
 std::unique_ptr<System> make_mass_spring(const Network& network);
 
 }  // namespace qddot

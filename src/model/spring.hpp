@@ -13,6 +13,9 @@ struct SpringLaw {
   double stiffness = 0;    // k [N/m], >= 0
   double rest_length = 0;  // l0 [m], >= 0
   double quartic = 0;      // c [N/m^3], >= 0
+  // Whether it stands for something that it is equal to only while it is not compressed, l >= l0:
+  // springs in series through massless nodes, which fold up where this one would push.
+  bool holds_in_tension_only = false;
 
   // Whether its force is linear in the difference of its ends.
   bool is_linear() const { return rest_length == 0 && quartic == 0; }

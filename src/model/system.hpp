@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <span>
+
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
@@ -49,6 +52,13 @@ class System {
   virtual const SymmetricMatrix& stiffness_pattern() const = 0;
   // True only where K is the same at every q, so that the motion is linear.
   virtual bool stiffness_is_constant() const = 0;
+
+  // Whether this system is, at q, still what it stands for (see SpringLaw::holds_in_tension_only).
+  // Integrators ask after each step and go no further where it is not.
+  virtual bool holds_at(const Vec&) const { return true; }
+  // The systems that this one is made of where no force couples them, each with its own run of
+  // consecutive unknowns, in order; empty where it is one whole.
+  virtual std::span<const std::unique_ptr<System>> parts() const { return {}; }
 
  private:
   Vec mass_;

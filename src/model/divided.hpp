@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "src/model/system.hpp"
+
+namespace qddot {
+
+// Systems that no force couples, one after the other as one: M and K are block diagonal, V is the
+// sum. What runs through time may take each part by itself (System::parts), so an evaluation of the
+// whole may allocate.
+class Divided final : public System {
+ public:
+  explicit Divided(std::vector<std::unique_ptr<System>> parts);
+
+  double potential(const Vec& q) const override;
+  void force(const Vec& q, Vec& f) const override;
+  void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
+  bool stiffness_is_constant() const override;
+  bool holds_at(const Vec& q) const override;
+  std::span<const std::unique_ptr<System>> parts() const override { return parts_; }
+
+ private:
+  std::vector<std::unique_ptr<System>> parts_;
+  SymmetricMatrix pattern_;
+};
+
+}  // namespace qddot

@@ -1,0 +1,26 @@
+#include "src/model/held.hpp"
+
+namespace qddot {
+
+Held::Held(std::unique_ptr<System> system, std::vector<bool> is_held)
+    : System(system->mass()), system_(std::move(system)) {
+  Index entry = 0;
+  for (Index column = 0; column < size(); ++column) {
+    if (is_held[column]) unknowns_.push_back(column);
+    for (SymmetricMatrix::InnerIterator at(stiffness_pattern(), column); at; ++at, ++entry) {
+      if (is_held[column] || is_held[at.row()]) entries_.push_back(entry);
+    }
+  }
+}
+
+void Held::force(const Vec& q, Vec& f) const {
+  system_->force(q, f);
+  for (const Index i : unknowns_) f[i] = 0;
+}
+
+void Held::stiffness(const Vec& q, SymmetricMatrix& k) const {
+  system_->stiffness(q, k);
+  for (const Index entry : entries_) k.valuePtr()[entry] = 0;
+}
+
+}  // namespace qddot

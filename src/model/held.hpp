@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "src/model/system.hpp"
+
+namespace qddot {
+
+// A system in which some unknowns are held where they are: their forces, and the rows and columns
+// of K that belong to them, are zero, as if whatever holds them always pushed back. Where such an
+// unknown starts at rest it stays at rest. What remains of pinned nodes that are unknowns all the
+// same, for comparison with the system that does without them.
+class Held final : public System {
+ public:
+  // `is_held`: for each unknown of `system`.
+  Held(std::unique_ptr<System> system, std::vector<bool> is_held);
+
+  double potential(const Vec& q) const override { return system_->potential(q); }
+  void force(const Vec& q, Vec& f) const override;
+  void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
+  bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
+  bool holds_at(const Vec& q) const override { return system_->holds_at(q); }
+
+ private:
+  std::unique_ptr<System> system_;
+  std::vector<Index> unknowns_;  // the held ones
+  std::vector<Index> entries_;   // of the pattern, those in a row or column of a held one
+};
+
+}  // namespace qddot
