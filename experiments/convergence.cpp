@@ -18,9 +18,9 @@
 #include "experiments/measurement.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scene_choice.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/scene/invalid_input.hpp"
-#include "src/scene/scene_file.hpp"
 
 namespace qddot {
 namespace {
@@ -29,29 +29,32 @@ constexpr int most_halvings = 12;
 constexpr double longest_run = 10;  // [s]
 
 struct Arguments {
-  std::string scene, out;
+  SceneChoice scene;
+  std::string out;
   double until = 0;
   std::vector<std::string> methods;
 };
 
 void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--scene", a.scene, "a generator's name or a scene file");
+  add_scene_options(app, a.scene);
   app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
   app.add_option("--methods", a.methods, "a,b,... (default: all of fixed step)")->delimiter(',');
   app.add_option("--out", a.out, "the folder for order.csv and reference.json");
 }
 
-// The fixed-step methods among those asked for; an adaptive one that was named is refused.
-std::vector<const Method*> select_fixed_step(const std::vector<std::string>& list) {
+// The methods among those asked for whose error depends on a step size; others that were named are
+// refused.
+std::vector<const Method*> select_fixed_step(const std::vector<std::string>& list,
+                                             const ReducedScene& scene, const std::string& source) {
   std::vector<const Method*> selected;
-  for (const Method* method : select_methods(list)) {
-    if (method->knob == Knob::step_size) {
+  for (const Method* method : select_methods(list, scene, source)) {
+    if (method->knob == Knob::step_size && method->order > 0) {
       selected.push_back(method);
     } else if (!list.empty()) {
-      throw InvalidInput(
-          fmt::format("--methods: {} chooses its steps by itself; allowed are "
-                      "methods of fixed step",
-                      method->name));
+      throw InvalidInput(fmt::format("--methods: {} {}; allowed are methods of fixed step",
+                                     method->name,
+                                     method->order > 0 ? "chooses its steps by itself"
+                                                       : "has no error that depends on a step"));
     }
   }
   return selected;
@@ -82,13 +85,12 @@ void tabulate(Csv& csv, const Method& method, const ReducedScene& scene, double 
 
 int convergence(const CLI::App& app, const Arguments& a,
                 const std::vector<std::string>& command_line) {
-  require_given(a.scene, "--scene", "a generator's name or a scene file");
   require_given(a.out, "--out", "the folder for the results");
-  const auto selected = select_fixed_step(a.methods);
-  const Scene drawn = load_scene(a.scene);
+  const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
-  const ReducedScene scene(drawn);
-  require_reference_exists(scene, a.scene);
+  const ReducedScene scene(drawn, reductions_of(a.scene));
+  require_reference_exists(scene, a.scene.name);
+  const auto selected = select_fixed_step(a.methods, scene, a.scene.name);
   require_folder(a.out);
 
   const nlohmann::json origin = provenance(command_line, drawn);

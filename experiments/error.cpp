@@ -8,26 +8,34 @@ namespace {
 
 double divided(double error, double scale) { return scale > 0 ? error / scale : error; }
 
-}  // namespace
-
-double largest_norm(const Vec& x, int dimension) {
-  return x.size() == 0 ? 0
-                       : x.reshaped(dimension, x.size() / dimension).colwise().norm().maxCoeff();
+// The largest |a_i - b_i| of the nodes' positions or velocities.
+double largest_difference(const std::vector<Node>& a, const std::vector<Node>& b,
+                          Eigen::Vector3d Node::*vector) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = (a[i].*vector - b[i].*vector).norm();
+    // So that one that is no number is not lost.
+    if (!(difference <= largest)) largest = difference;
+  }
+  return largest;
 }
 
+}  // namespace
+
 void extend(Scales& scales, const ReducedScene& scene, const State& state) {
-  const int d = scene.dimension();
-  scales.displacement = std::max(scales.displacement, largest_norm(state.q - scene.initial().q, d));
-  scales.speed = std::max(scales.speed, largest_norm(state.v, d));
-  scales.kinetic = std::max(scales.kinetic, scene.system().kinetic(state.v));
+  const auto start = scene.expand(scene.initial()), now = scene.expand(state);
+  scales.displacement =
+      std::max(scales.displacement, largest_difference(now, start, &Node::position));
+  for (const Node& node : now) scales.speed = std::max(scales.speed, node.velocity.norm());
+  scales.kinetic = std::max(scales.kinetic, scene.kinetic(state));
 }
 
 Errors errors_between(const ReducedScene& scene, const State& state, const State& reference,
                       double energy, const Scales& scales) {
-  const int d = scene.dimension();
-  return {divided(largest_norm(state.q - reference.q, d), scales.displacement),
-          divided(largest_norm(state.v - reference.v, d), scales.speed),
-          divided(std::abs(total_energy(scene.system(), state) - energy), scales.kinetic)};
+  const auto nodes = scene.expand(state), expected = scene.expand(reference);
+  return {divided(largest_difference(nodes, expected, &Node::position), scales.displacement),
+          divided(largest_difference(nodes, expected, &Node::velocity), scales.speed),
+          divided(std::abs(scene.energy(state) - energy), scales.kinetic)};
 }
 
 }  // namespace qddot

@@ -11,16 +11,13 @@ struct Scales {
   double kinetic = 0;       // largest kinetic energy [J]
 };
 
-// Errors of a state against another at the same time; each divided by its scale, or as it is where
-// that is zero (nothing moves).
+// Errors of a state against another at the same time, over all nodes of the scene, whatever its
+// unknowns are; each divided by its scale, or as it is where that is zero (nothing moves).
 struct Errors {
   double position = 0;  // max over nodes of |x - x_ref|
   double velocity = 0;  // max over nodes of |v - v_ref|
   double energy = 0;    // |E - E_ref|
 };
-
-// The largest length of the D-vectors that `x` (length n = D N) is made of.
-double largest_norm(const Vec& x, int dimension);
 
 // Takes one more state of the motion from `initial` into the scales.
 void extend(Scales& scales, const ReducedScene& scene, const State& state);

@@ -25,6 +25,8 @@ class Rungs {
   // Nothing where the ladder has no such rung.
   std::optional<double> value(int rung) const {
     if (std::abs(rung) > most_rungs) return {};
+    // Without step error one step is as good as many.
+    if (method_.order == 0) return rung == 0 ? std::optional(until_) : std::nullopt;
     if (method_.knob == Knob::rtol) {
       const double rtol = std::pow(10.0, -1 - rung);
       return rtol <= 0.1 && rtol >= 1e-15 ? std::optional(rtol) : std::nullopt;

@@ -6,10 +6,8 @@
 #include <filesystem>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "experiments/reference.hpp"
-#include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
 
 namespace qddot {
@@ -52,27 +50,6 @@ void require_positive(double value, const std::string& option, const std::string
 
 void require_given(const std::string& text, const std::string& option, const std::string& meaning) {
   if (text.empty()) throw InvalidInput(fmt::format("{} is missing; it is {}", option, meaning));
-}
-
-std::vector<const Method*> select_methods(const std::vector<std::string>& list) {
-  std::vector<const Method*> selected;
-  if (list.empty()) {
-    for (const Method& method : methods()) selected.push_back(&method);
-  }
-  for (const std::string& name : list) {
-    const Method* method = find_method(name);
-    if (!method) {
-      std::vector<std::string> names;
-      for (const Method& known : methods()) names.push_back(known.name);
-      throw InvalidInput(fmt::format("--methods: {} is not a method; allowed are {}", name,
-                                     fmt::join(names, ", ")));
-    }
-    if (std::ranges::find(selected, method) != selected.end()) {
-      throw InvalidInput(fmt::format("--methods: {} is named twice; allowed is once", name));
-    }
-    selected.push_back(method);
-  }
-  return selected;
 }
 
 double horizon(double asked, bool is_asked, const Scene& scene) {

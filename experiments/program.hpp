@@ -2,11 +2,9 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "integrators/method.hpp"
 #include "src/scene/scene.hpp"
 
 namespace qddot {
@@ -24,10 +22,6 @@ void require_positive(double value, const std::string& option, const std::string
 
 // Throws InvalidInput, naming what is missing, if `text` is empty.
 void require_given(const std::string& text, const std::string& option, const std::string& meaning);
-
-// The methods named in `list` (a,b,...), all of them if it is empty; throws InvalidInput for an
-// unknown or repeated name.
-std::vector<const Method*> select_methods(const std::vector<std::string>& list);
 
 // The horizon [s]: what the user asked for, else the scene's own. Throws InvalidInput if there is
 // neither or it is not positive.

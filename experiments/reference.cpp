@@ -138,9 +138,8 @@ Solution best_fehlberg(const ReducedScene& scene, double until, const Scales& sc
 }
 
 Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other) {
-  const double energy = total_energy(scene.system(), scene.initial());
-  Errors certified = errors_between(scene, one.end, other.end,
-                                    total_energy(scene.system(), other.end), one.scales);
+  const double energy = scene.energy(scene.initial());
+  Errors certified = errors_between(scene, one.end, other.end, scene.energy(other.end), one.scales);
   const Errors drift = errors_between(scene, one.end, one.end, energy, one.scales);
   certified.energy = std::max(certified.energy, drift.energy);
   // Two roundings of the same number may agree by chance.
@@ -180,8 +179,8 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
   Solution composed = best_composition(scene, until, 0.6 * seconds);
   Reference reference;
   if (scene.system().stiffness_is_constant() && scene.system().size() <= largest_modal_size) {
-    const Solution modal{LinearMotion(scene.system(), scene.initial()).at(until), composed.scales,
-                         0, "modal, exact"};
+    const Solution modal{LinearMotion(scene.system()).after(scene.initial(), until),
+                         composed.scales, 0, "modal, exact"};
     reference = joined(scene, modal, composed);
   } else {
     reference =

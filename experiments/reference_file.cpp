@@ -75,18 +75,21 @@ Reference reference_from_json(const nlohmann::json& json) {
 }
 
 void require_reference_exists(const ReducedScene& scene, const std::string& source) {
-  if (!scene.system().has_massless()) return;
-  throw InvalidInput(
-      fmt::format("{}: a node that is not pinned has mass 0, for which no reference "
-                  "is made; allowed are masses greater than 0",
-                  source));
+  const auto massless = scene.massless_nodes();
+  if (massless.empty()) return;
+  throw InvalidInput(fmt::format(
+      "{}: nodes[{}].mass: 0 is not allowed where a reference is needed, unless the node "
+      "joins two springs in tension; allowed are masses above 0",
+      source, massless.front()));
 }
 
 Reference reference_for(const Scene& drawn, const ReducedScene& scene, double until,
                         const std::string& folder, const nlohmann::json& origin) {
   const std::string file = folder + "/reference.json";
-  const nlohmann::json key = {
-      {"scene_hash", content_hash(drawn)}, {"until", until}, {"source_hash", code_hash()}};
+  const nlohmann::json key = {{"scene_hash", content_hash(drawn)},
+                              {"unknowns", scene.system().size()},
+                              {"until", until},
+                              {"source_hash", code_hash()}};
   const nlohmann::json stored = read(file);
   if (stored.is_object() && stored.value("key", nlohmann::json()) == key) {
     try {

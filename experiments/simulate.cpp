@@ -17,23 +17,24 @@
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
+#include "experiments/scene_choice.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/reduce.hpp"
-#include "src/scene/scene_file.hpp"
 
 namespace qddot {
 namespace {
 
 struct Arguments {
-  std::string scene, method, final_path, trajectory_path, energy_path;
+  SceneChoice scene;
+  std::string method, final_path, trajectory_path, energy_path;
   double step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0, energy_every = 0;
   std::vector<double> every;
   bool list_methods = false, list_scenes = false, csv = false;
 };
 
 void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--scene", a.scene, "a generator's name or a scene file");
+  add_scene_options(app, a.scene);
   app.add_option("--method", a.method, "a method's name (--list-methods)");
   app.add_option("--step-size", a.step_size, "h in s, for methods of fixed step");
   app.add_option("--rtol", a.rtol, "relative tolerance, for adaptive methods");
@@ -182,8 +183,8 @@ class Output {
       trajectory_->flush_if_large();
     }
     if (energy_ && is_sample(energy_times_, state.t)) {
-      const double kinetic = scene_.system().kinetic(state.v);
-      const double potential = scene_.system().potential(state.q);
+      const double kinetic = scene_.kinetic(state);
+      const double potential = scene_.potential(state);
       energy_->row(state.t, kinetic, potential, kinetic + potential);
       energy_->flush_if_large();
     }
@@ -217,15 +218,19 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
     print_generators(a.csv);
     return done;
   }
-  require_given(a.scene, "--scene", "a generator's name or a scene file");
+  require_given(a.scene.name, "--scene", "a generator's name or a scene file");
   const Method& method = require_method(a.method);
   const Knobs knobs = require_knobs(app, a, method);
   assign_every(app, a);
   require_distinct_outputs(app, a);
-  const Scene drawn = load_scene(a.scene);
+  const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  Reductions reductions = reductions_of(a.scene);
+  // Springs in series are one in tension only: who takes the node between them need not care.
+  if (method.accepts_massless) reductions = reductions.without(Reduction::massless);
+  const ReducedScene scene(drawn, reductions);
+  require_fit(method, scene, a.scene.name);
 
-  const ReducedScene scene(drawn);
   Output output(a, scene, until);
   State state = scene.initial();
   output.see(state);

@@ -18,21 +18,22 @@
 #include "experiments/ladder.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scene_choice.hpp"
 #include "src/scene/invalid_input.hpp"
-#include "src/scene/scene_file.hpp"
 
 namespace qddot {
 namespace {
 
 struct Arguments {
-  std::string scene, out;
+  SceneChoice scene;
+  std::string out;
   double until = 0;
   std::vector<std::string> methods;
   Effort effort;
 };
 
 void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--scene", a.scene, "a generator's name or a scene file");
+  add_scene_options(app, a.scene);
   app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
   app.add_option("--methods", a.methods, "a,b,... (default: all)")->delimiter(',');
   app.add_option("--repeats", a.effort.repeats, "timed runs of each point")
@@ -111,18 +112,17 @@ std::string describe(const Point& p) {
 
 int work_precision(const CLI::App& app, const Arguments& a,
                    const std::vector<std::string>& command_line) {
-  require_given(a.scene, "--scene", "a generator's name or a scene file");
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
   if (a.effort.repeats < 1 || a.effort.repeats > 1000) {
     throw InvalidInput(fmt::format(
         "--repeats {} is not allowed; it is a whole number from 1 to 1000", a.effort.repeats));
   }
-  const auto selected = select_methods(a.methods);
-  const Scene drawn = load_scene(a.scene);
+  const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
-  const ReducedScene scene(drawn);
-  require_reference_exists(scene, a.scene);
+  const ReducedScene scene(drawn, reductions_of(a.scene));
+  require_reference_exists(scene, a.scene.name);
+  const auto selected = select_methods(a.methods, scene, a.scene.name);
   require_folder(a.out);
   CsvFile points_csv(a.out + "/points.csv", point_columns);
   CsvFile front_csv(a.out + "/front.csv", front_columns);

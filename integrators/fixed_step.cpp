@@ -9,10 +9,11 @@ namespace {
 // Beyond |v| = 1e30 m/s nothing of a motion is left, and numbers are still far from overflow.
 constexpr double largest_speed_squared = 1e60;
 
-Outcome judge(const State& state) {
+Outcome judge(const System& system, const State& state) {
   const double speed_squared = state.v.squaredNorm();
-  if (speed_squared < largest_speed_squared) return Outcome::reached_end;
-  return std::isnan(speed_squared) ? Outcome::not_finite : Outcome::diverged;
+  if (std::isnan(speed_squared)) return Outcome::not_finite;
+  if (!(speed_squared < largest_speed_squared)) return Outcome::diverged;
+  return system.holds_at(state.q) ? Outcome::reached_end : Outcome::went_slack;
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ Outcome FixedStep::run_to(State& state, double t_stop) {
   for (double i = 1; i <= steps; ++i) {
     if (must_stop()) return Outcome::over_budget;
     Outcome outcome = step(state, i < steps ? h : last_h, next_);
-    if (outcome == Outcome::reached_end) outcome = judge(next_);
+    if (outcome == Outcome::reached_end) outcome = judge(system(), next_);
     if (outcome != Outcome::reached_end) return outcome;
     next_.t = i < steps ? t_start + i * h : t_stop;
     std::swap(state, next_);

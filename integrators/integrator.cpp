@@ -28,6 +28,10 @@ std::string_view name(Outcome outcome) {
       return "solver_failed";
     case Outcome::over_budget:
       return "over_budget";
+    case Outcome::stiffness_varies:
+      return "stiffness_varies";
+    case Outcome::went_slack:
+      return "went_slack";
   }
   return "unknown";
 }
@@ -55,6 +59,12 @@ std::string_view advice(Outcome outcome) {
       return "the solver gave up";
     case Outcome::over_budget:
       return "the run was stopped because its time was up";
+    case Outcome::stiffness_varies:
+      return "K changes with the positions, and this method is for constant K: take another one";
+    case Outcome::went_slack:
+      return "springs in series through a massless node came under compression, where they are no "
+             "longer equal to one spring: keep the node (--no-reduce massless) and take a method "
+             "that accepts massless nodes";
   }
   return "";
 }
@@ -82,6 +92,7 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer) {
     return Outcome::not_finite;
   }
   if (system_.has_massless() && !method_.accepts_massless) return Outcome::singular_mass;
+  if (!applies_to(method_, system_)) return Outcome::stiffness_varies;
 
   const bool moves = system_.size() > 0 && t_end > state.t;
   const auto go_to = [&](double t) {

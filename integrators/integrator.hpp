@@ -24,6 +24,8 @@ enum class Outcome {
   not_finite,         // a force, energy or start value is no number
   solver_failed,      // a library gave up for another reason
   over_budget,        // stopped from outside
+  stiffness_varies,   // a method for constant K, and a system whose K is not
+  went_slack,         // the system no longer is what it stands for (System::holds_at)
 };
 
 std::string_view name(Outcome outcome);    // as above
@@ -95,6 +97,8 @@ class Integrator {
   }
 
  private:
+  friend class Parts;  // which runs several as one
+
   Outcome run(State& state, double t_end, const Observer& observer);
 
   const Method& method_;

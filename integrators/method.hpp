@@ -23,15 +23,21 @@ struct Method {
   std::string name;
   std::string summary;  // one line
   std::string source;   // where the formula is from
-  int order = 1;        // of the global error in q and v
+  int order = 1;        // of the global error in q and v; 0: there is none, whatever the step
   Family family = Family::hand_written;
   Knob knob = Knob::step_size;
   bool implicit = false;
   bool symplectic = false;
   bool needs_stiffness = false;
   bool accepts_massless = false;
+  bool needs_constant_stiffness = false;
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
 };
+
+// Whether the method can be used on the system at all, as far as K decides.
+inline bool applies_to(const Method& method, const System& system) {
+  return !method.needs_constant_stiffness || system.stiffness_is_constant();
+}
 
 // For Method::make: constructs an integrator of class T.
 template <class T>

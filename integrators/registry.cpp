@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "integrators/parts.hpp"
+
 // One line a method; each is defined in the file of its name or of its family.
 #define QDDOT_METHODS(METHOD) \
   METHOD(explicit_euler)      \
@@ -10,6 +12,7 @@
   METHOD(implicit_euler)      \
   METHOD(verlet)              \
   METHOD(kahan_li8)           \
+  METHOD(exact)               \
   METHOD(arkode_dirk2)        \
   METHOD(arkode_dirk3)        \
   METHOD(arkode_dirk4)        \
@@ -48,6 +51,7 @@ const Method* find_method(std::string_view name) {
 std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
                                             const Knobs& knobs) {
   if (system.size() == 0) return std::make_unique<Rest>(method, system, knobs);
+  if (!system.parts().empty()) return std::make_unique<Parts>(method, system, knobs);
   return method.make(method, system, knobs);
 }
 

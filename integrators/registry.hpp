@@ -13,7 +13,8 @@ const std::vector<Method>& methods();
 // The method of that name, or nullptr.
 const Method* find_method(std::string_view name);
 
-// An integrator for `system`, which must outlive it; allocates and analyses all it needs.
+// An integrator for `system`, which must outlive it; allocates and analyses all it needs. Of a
+// system that consists of parts, each gets an integrator of its own.
 std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
                                             const Knobs& knobs);
 

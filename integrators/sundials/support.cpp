@@ -105,7 +105,9 @@ Outcome Stock::advance_steps(State& state, double t_stop) {
     if (flag < 0) return failure(flag, state.t);
     const Halves halves(y());
     if (!halves.q.allFinite() || !halves.v.allFinite()) return Outcome::not_finite;
-    state.q = halves.q;
+    q_ = halves.q;
+    if (!system().holds_at(q_)) return Outcome::went_slack;
+    state.q = q_;
     state.v = halves.v;
     state.t = t;
     if (steps % steps_in_a_row != 0) continue;

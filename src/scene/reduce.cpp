@@ -1,69 +1,157 @@
 #include "src/scene/reduce.hpp"
 
-#include "src/model/mass_spring.hpp"
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "src/model/divided.hpp"
+#include "src/scene/reduce/springs.hpp"
+#include "src/scene/reduce/words.hpp"
 
 namespace qddot {
-namespace {
 
-constexpr int pinned = -1;
-
-// The number of each node among the free ones, or `pinned`.
-std::vector<int> free_numbers(const std::vector<Node>& nodes) {
-  std::vector<int> number;
-  int next = 0;
-  for (const Node& node : nodes) number.push_back(node.pinned ? pinned : next++);
-  return number;
+ReducedScene::ReducedScene(const Scene& scene, const Reductions& reductions)
+    : nodes_(scene.nodes), dimension_(scene.dimension), gravity_(scene.gravity) {
+  for (Node& node : nodes_) {
+    if (node.pinned) node.velocity.setZero();
+  }
+  if (reductions.has(Reduction::pins)) leave_out_pins();
+  std::vector<Spring> springs = scene.springs;
+  if (reductions.has(Reduction::duplicates)) merge(springs);
+  if (reductions.has(Reduction::massless)) condense(springs);
+  leave_out_static_springs(springs);
+  build(divide(springs, reductions), springs, reductions);
 }
 
-void add_spring(Network& network, const Scene& scene, const std::vector<int>& number,
-                const Spring& spring) {
-  const auto [a, b] = spring.nodes;
-  const auto& [at_a, at_b] = std::tie(scene.nodes[a].position, scene.nodes[b].position);
-  if (number[a] != pinned && number[b] != pinned) {
-    network.links.push_back({number[a], number[b], spring.law});
-  } else if (number[a] != pinned) {
-    network.anchors.push_back({number[a], at_b, spring.law});
-  } else if (number[b] != pinned) {
-    network.anchors.push_back({number[b], at_a, spring.law});
+void ReducedScene::leave_out_pins() {
+  const auto pins = static_cast<std::size_t>(std::ranges::count(nodes_, true, &Node::pinned));
+  if (pins > 0) report(Reduction::pins, pinned_sentence(pins));
+}
+
+void ReducedScene::merge(std::vector<Spring>& springs) {
+  const std::size_t before = springs.size();
+  springs = merged_springs(springs);
+  if (springs.size() < before) {
+    report(Reduction::duplicates, merged_sentence(before - springs.size(), springs.size()));
+  }
+}
+
+void ReducedScene::condense(std::vector<Spring>& springs) {
+  series_ = condense_series(nodes_, springs);
+  if (series_.empty()) return;
+  std::vector<std::size_t> condensed;
+  for (const Series& series : series_) {
+    series.place(nodes_);
+    for (const auto& joint : series.joints) condensed.push_back(joint.node);
+  }
+  report(Reduction::massless, condensed_sentence(condensed, series_.size()));
+}
+
+void ReducedScene::leave_out_static_springs(const std::vector<Spring>& springs) {
+  for (const auto& [ends, law] : springs) {
+    const Node &a = nodes_[ends[0]], &b = nodes_[ends[1]];
+    if (a.pinned && b.pinned) static_energy_ += law.energy((b.position - a.position).norm());
+  }
+}
+
+std::vector<Component> ReducedScene::divide(const std::vector<Spring>& springs,
+                                            const Reductions& reductions) {
+  std::vector<bool> is_condensed(nodes_.size(), false);
+  for (const Series& series : series_) {
+    for (const auto& joint : series.joints) is_condensed[joint.node] = true;
+  }
+  std::vector<Component> components;
+  for (Component& component : components_of(nodes_, springs)) {
+    const std::size_t first = component.nodes.front();
+    if (is_condensed[first]) continue;  // on no spring any more
+    if (component.springs.empty() && reductions.has(Reduction::free_flight)) {
+      flying_.push_back(first);
+    } else {
+      components.push_back(std::move(component));
+    }
+  }
+  if (!flying_.empty()) report(Reduction::free_flight, flying_sentence(flying_));
+  if (!reductions.has(Reduction::parts)) return joined(components);
+  if (components.size() > 1) report(Reduction::parts, parts_sentence(components.size()));
+  return components;
+}
+
+void ReducedScene::build(const std::vector<Component>& components,
+                         const std::vector<Spring>& springs, const Reductions& reductions) {
+  std::vector<std::unique_ptr<System>> systems;
+  Index n = 0;
+  for (const Component& component : components) {
+    const Body body = make_body(component, nodes_, springs, gravity_);
+    Part& part = parts_.emplace_back(body, dimension_, reductions);
+    systems.push_back(part.take_system());
+    n += part.initial().q.size();
+  }
+  initial_ = {0, Vec(n), Vec(n)};
+  Index at = 0;
+  for (const Part& part : parts_) {
+    const Index own = part.initial().q.size();
+    initial_.q.segment(at, own) = part.initial().q;
+    initial_.v.segment(at, own) = part.initial().v;
+    at += own;
+  }
+  for (Finding& finding : findings_of(parts_, systems, dimension_)) {
+    findings_.push_back(std::move(finding));
+  }
+  if (systems.empty()) {
+    system_ = make_mass_spring({.dimension = dimension_});
+  } else if (systems.size() == 1) {
+    system_ = std::move(systems.front());
   } else {
-    network.constant_energy += spring.law.energy((at_b - at_a).norm());
+    system_ = std::make_unique<Divided>(std::move(systems));
   }
 }
 
-}  // namespace
-
-ReducedScene::ReducedScene(const Scene& scene) : nodes_(scene.nodes), dimension_(scene.dimension) {
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (!nodes_[i].pinned) free_.push_back(i);
-  }
-  const auto count = std::ssize(free_);
-
-  Network network{.dimension = scene.dimension, .gravity = scene.gravity};
-  network.node_mass.resize(count);
-  initial_.q.resize(dimension_ * count);
-  initial_.v.resize(dimension_ * count);
-  for (Index i = 0; i < count; ++i) {
-    const Node& node = nodes_[free_[i]];
-    network.node_mass[i] = node.mass;
-    initial_.q.segment(dimension_ * i, dimension_) = node.position.head(dimension_);
-    initial_.v.segment(dimension_ * i, dimension_) = node.velocity.head(dimension_);
-  }
-  const auto number = free_numbers(nodes_);
-  for (const Spring& spring : scene.springs) add_spring(network, scene, number, spring);
-  system_ = make_mass_spring(network);
+Node ReducedScene::flying(std::size_t node, double t) const {
+  Node moved = nodes_[node];
+  const Eigen::Vector3d g = moved.mass > 0 ? gravity_ : Eigen::Vector3d::Zero();
+  moved.position += t * moved.velocity + (0.5 * t * t) * g;
+  moved.velocity += t * g;
+  return moved;
 }
 
 std::vector<Node> ReducedScene::expand(const State& state) const {
   std::vector<Node> nodes = nodes_;
-  for (Node& node : nodes) {
-    if (node.pinned) node.velocity.setZero();
+  Index at = 0;
+  for (const Part& part : parts_) {
+    const Index n = part.initial().q.size();
+    part.expand(state.q.segment(at, n), state.v.segment(at, n), nodes);
+    at += n;
   }
-  for (Index i = 0; i < std::ssize(free_); ++i) {
-    Node& node = nodes[free_[i]];
-    node.position.head(dimension_) = state.q.segment(dimension_ * i, dimension_);
-    node.velocity.head(dimension_) = state.v.segment(dimension_ * i, dimension_);
-  }
+  for (const std::size_t node : flying_) nodes[node] = flying(node, state.t);
+  for (const Series& series : series_) series.place(nodes);
   return nodes;
+}
+
+std::vector<std::size_t> ReducedScene::massless_nodes() const {
+  std::vector<std::size_t> massless;
+  for (const Part& part : parts_) {
+    for (const std::size_t node : part.nodes()) {
+      if (nodes_[node].mass == 0) massless.push_back(node);
+    }
+  }
+  std::ranges::sort(massless);
+  return massless;
+}
+
+double ReducedScene::kinetic(const State& state) const {
+  double energy = system_->kinetic(state.v);
+  for (const std::size_t i : flying_) {
+    energy += 0.5 * nodes_[i].mass * flying(i, state.t).velocity.squaredNorm();
+  }
+  return energy;
+}
+
+double ReducedScene::potential(const State& state) const {
+  double energy = system_->potential(state.q) + static_energy_;
+  for (const std::size_t i : flying_) {
+    energy -= nodes_[i].mass * gravity_.dot(flying(i, state.t).position);
+  }
+  return energy;
 }
 
 }  // namespace qddot

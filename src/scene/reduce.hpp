@@ -1,34 +1,82 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "src/model/system.hpp"
+#include "src/scene/reduce/components.hpp"
+#include "src/scene/reduce/part.hpp"
+#include "src/scene/reduce/reductions.hpp"
+#include "src/scene/reduce/series.hpp"
 #include "src/scene/scene.hpp"
 
 namespace qddot {
 
-// The smallest System that moves exactly as a scene does, and the way back to all its nodes.
-// Left out: pinned nodes (q_full = P q + c with P the rows of the free nodes), and with them the
-// springs between two of them, which only add a constant to V.
+// The smallest System that moves exactly as a scene does, what was left out of it and why, and the
+// way back to all of the scene's nodes. Each reduction is exact up to rounding:
+//   pins                a pinned node's position is a constant; springs between two only add to V
+//   duplicates          see reduce/springs.hpp
+//   massless            see reduce/series.hpp
+//   free_flight         a node on no spring obeys x'' = g: x = x0 + v0 t + 1/2 g t^2 (one without
+//                       mass as well without g)
+//   parts               no force couples what no spring joins: each is a system of its own
+//   dimension, mirror   see reduce/frame.hpp, reduce/mirror.hpp and, for the system,
+//   reduce/part.hpp constant_stiffness  springs of rest length zero; on a line, see
+//   reduce/straight.hpp
+// Dimension, mirror and constant stiffness are found for each part by itself.
 class ReducedScene {
  public:
-  // The scene must be valid (see validate).
-  explicit ReducedScene(const Scene& scene);
+  // The scene must be valid (see validate); it is taken as drawn, wherever it says it starts.
+  explicit ReducedScene(const Scene& scene, const Reductions& reductions = {});
 
+  // May consist of parts (see System::parts).
   const System& system() const { return *system_; }
-  // The scene's own positions and velocities at t = 0.
+  // Positions and velocities at t = 0.
   const State& initial() const { return initial_; }
+  // The scene's, which its nodes have.
   int dimension() const { return dimension_; }
 
   // Positions [m] and velocities [m/s] of all nodes of the scene in `state`; pinned ones rest.
   std::vector<Node> expand(const State& state) const;
+  // Energies [J] of all nodes and springs of the scene; weights of pinned nodes do not count.
+  double kinetic(const State& state) const;
+  double potential(const State& state) const;
+  double energy(const State& state) const { return kinetic(state) + potential(state); }
+
+  // Nodes without mass that have unknowns, ascending: most methods cannot take them.
+  std::vector<std::size_t> massless_nodes() const;
+
+  // What was done, in order; a reduction that found nothing says nothing.
+  const std::vector<Finding>& findings() const { return findings_; }
+  const std::vector<Part>& parts() const { return parts_; }
 
  private:
-  std::vector<Node> nodes_;
+  // Where a node in free flight is at time t [s].
+  Node flying(std::size_t node, double t) const;
+
+  // Each step of the reduction, in order.
+  void leave_out_pins();
+  void merge(std::vector<Spring>& springs);
+  void condense(std::vector<Spring>& springs);
+  std::vector<Component> divide(const std::vector<Spring>& springs, const Reductions& reductions);
+  void leave_out_static_springs(const std::vector<Spring>& springs);
+  void build(const std::vector<Component>& components, const std::vector<Spring>& springs,
+             const Reductions& reductions);
+  void report(Reduction reduction, std::string what) {
+    findings_.push_back({reduction, std::move(what)});
+  }
+
+  std::vector<Node> nodes_;  // as drawn, condensed ones in their places
   int dimension_;
-  std::vector<std::size_t> free_;  // the scene's index of each free node
+  Eigen::Vector3d gravity_;
+  std::vector<Series> series_;
+  std::vector<std::size_t> flying_;
+  std::vector<Part> parts_;
   std::unique_ptr<System> system_;
+  double static_energy_ = 0;  // of springs between pinned nodes
   State initial_;
+  std::vector<Finding> findings_;
 };
 
 }  // namespace qddot

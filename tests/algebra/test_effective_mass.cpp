@@ -39,7 +39,7 @@ Case scene_case(const std::string& name, const GeneratorValues& values, double s
   Scene scene = generate(*find_generator(name), values, "test");
   for (Spring& spring : scene.springs) spring.law.rest_length /= stretch;
   for (std::size_t i = 0; some_massless && i < scene.nodes.size(); i += 2) scene.nodes[i].mass = 0;
-  const auto reduced = std::make_shared<ReducedScene>(scene);
+  const auto reduced = std::make_shared<ReducedScene>(scene, Reductions::only({Reduction::pins}));
   return {{reduced, &reduced->system()}, reduced->initial().q};
 }
 

@@ -37,18 +37,22 @@ inline const Method& method_named(std::string_view name) {
   return *found;
 }
 
-inline std::vector<Method> methods_of(Family family) {
+// The methods that take any K; `exact` has tests of its own.
+inline std::vector<Method> general_methods() {
   std::vector<Method> list;
   for (const Method& method : methods()) {
-    if (method.family == family) list.push_back(method);
+    if (!method.needs_constant_stiffness) list.push_back(method);
   }
   return list;
 }
+inline std::vector<Method> methods_of(Family family) {
+  std::vector<Method> list = general_methods();
+  std::erase_if(list, [&](const Method& method) { return method.family != family; });
+  return list;
+}
 inline std::vector<Method> methods_of(Knob knob) {
-  std::vector<Method> list;
-  for (const Method& method : methods()) {
-    if (method.knob == knob) list.push_back(method);
-  }
+  std::vector<Method> list = general_methods();
+  std::erase_if(list, [&](const Method& method) { return method.knob != knob; });
   return list;
 }
 

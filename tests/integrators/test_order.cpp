@@ -31,7 +31,7 @@ Case oscillating() {
 Case linear(int dimension) {
   const Problem p = linear_hammock(dimension);
   auto system = make_mass_spring(p.network);
-  State end = LinearMotion(*system, p.initial).at(1);
+  State end = LinearMotion(*system).after(p.initial, 1);
   return {std::move(system), p.initial, std::move(end)};
 }
 

@@ -30,7 +30,7 @@ bool is_sound(const Run& r, double t_end) {
 
 BOOST_AUTO_TEST_CASE(a_scene_without_unknowns_reaches_its_end) {
   const auto system = make_mass_spring({.node_mass = Vec(0)});
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       try {
         const Run r = run(method, *system, {0, Vec(0), Vec(0)}, 1, knobs_of(method, 0.01, 1e-4));
@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_CASE(a_scene_without_unknowns_reaches_its_end) {
 
 BOOST_AUTO_TEST_CASE(a_start_or_an_end_that_is_no_number_is_refused) {
   const Hammock h;
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     for (const double bad : {nan, infinity, -infinity}) {
       BOOST_TEST_CONTEXT(method.name << " " << bad) {
         const Knobs knobs = knobs_of(method, 0.01, 1e-4);
@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(a_start_or_an_end_that_is_no_number_is_refused) {
 BOOST_AUTO_TEST_CASE(a_start_at_a_time_that_is_no_number_is_refused) {
   Hammock h;
   h.problem.initial.t = nan;
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       const Run r = run(method, *h.system, h.problem.initial, 1, knobs_of(method, 0.01, 1e-4));
       BOOST_TEST(name(r.summary.outcome) == "not_finite");
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(a_run_stopped_before_it_starts_leaves_its_state) {
   const Hammock h;
   std::stop_source budget;
   budget.request_stop();
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       const Run r = run(method, *h.system, h.problem.initial, 1, knobs_of(method, 0.01, 1e-4), {},
                         budget.get_token());
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(a_run_stopped_before_it_starts_leaves_its_state) {
 
 BOOST_AUTO_TEST_CASE(a_run_stopped_on_its_way_ends_there) {
   const Hammock h;
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       std::stop_source budget;
       const Observer observer{{0.5}, [&](const State&) { budget.request_stop(); }};
@@ -167,7 +167,7 @@ BOOST_AUTO_TEST_CASE(explicit_methods_far_above_their_limit_diverge_with_a_finit
 BOOST_AUTO_TEST_CASE(any_knob_however_coarse_ends_in_a_sound_state) {
   for (const Problem& p : {hammock(2), hammock(3), linear_hammock(2)}) {
     const auto system = make_mass_spring(p.network);
-    for (const Method& method : methods()) {
+    for (const Method& method : general_methods()) {
       for (const double coarse : {0.3, 3., 100., 1e6}) {
         BOOST_TEST_CONTEXT(method.name << " " << coarse) {
           const double t_end = 50 * coarse;

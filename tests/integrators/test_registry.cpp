@@ -103,7 +103,8 @@ BOOST_AUTO_TEST_CASE(the_methods_asked_for_are_there_with_their_orders) {
 BOOST_AUTO_TEST_CASE(facts_about_a_method_fit_together) {
   for (const Method& method : methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      BOOST_TEST(method.order >= 1);
+      // Without step error there is no order.
+      BOOST_TEST(method.order >= (method.needs_constant_stiffness ? 0 : 1));
       BOOST_TEST(method.order <= 12);
       // SUNDIALS chooses its steps itself; without implicitness a massless node has no equation.
       if (method.family == Family::sundials) BOOST_TEST((method.knob == Knob::rtol));
@@ -130,7 +131,7 @@ BOOST_AUTO_TEST_CASE(every_method_can_be_made_and_has_not_run_by_then) {
 BOOST_AUTO_TEST_CASE(exactly_the_implicit_methods_factorise_and_those_that_need_it_ask_for_k) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(p.network);
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       const Run r = run(method, *system, p.initial, 0.1, knobs_of(method, 0.01, 1e-4));
       BOOST_TEST(r.summary.message == "");

@@ -90,7 +90,8 @@ Vec momenta(const System& system, const State& s) {
 
 // What 1000 steps of 1/100 s change in the momenta.
 Vec change_of_momenta(const Method& method) {
-  const ReducedScene scene(generate(*find_generator("pair"), {}, "pair"));
+  const ReducedScene scene(generate(*find_generator("pair"), {}, "pair"),
+                           Reductions::only({Reduction::pins}));
   State start = scene.initial();
   for (Index i = 0; i < 6; ++i) start.v[i] += Eigen::Vector3d(1, -2, 3)[i % 3];  // adrift
   const Run r = run(method, scene.system(), start, 10, {.step_size = 0.01});

@@ -56,7 +56,7 @@ void check_accuracy(const System& system, const State& start, const State& end) 
 
 void check_accuracy_where_linear(const Problem& p, double until) {
   const auto system = make_mass_spring(p.network);
-  check_accuracy(*system, p.initial, LinearMotion(*system, p.initial).at(until));
+  check_accuracy(*system, p.initial, LinearMotion(*system).after(p.initial, until));
 }
 
 }  // namespace

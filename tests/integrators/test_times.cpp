@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(every_method_lands_on_the_end_exactly_also_between_steps) {
   h.problem.initial.t = 0.7;
   // 10, 10.3 and almost 11 steps; a start and an end that are no binary fractions.
   for (const double t_end : {1.7, 1.73, 0.7 + 1.0999}) {
-    for (const Method& method : methods()) {
+    for (const Method& method : general_methods()) {
       BOOST_TEST_CONTEXT(method.name << " to " << t_end) {
         const Run r = h.run(method, t_end, knobs_of(method, 0.1, 1e-4));
         if (r.summary.outcome == Outcome::diverged) continue;
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(time_does_not_drift_over_many_steps) {
 BOOST_AUTO_TEST_CASE(a_run_to_its_own_start_changes_nothing) {
   Hammock h;
   h.problem.initial.t = 2.5;
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       const Run r = h.run(method, 2.5, knobs_of(method, 0.1, 1e-4));
       BOOST_TEST(r.summary.message == "");
@@ -104,7 +104,7 @@ BOOST_AUTO_TEST_CASE(a_run_to_its_own_start_changes_nothing) {
 BOOST_AUTO_TEST_CASE(an_observer_sees_its_times_exactly_and_in_order) {
   const Hammock h;
   const std::vector<double> times = {0.01, 0.1, 1. / 3, 0.35, 0.6};
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       Notes notes;
       const Run r = h.run(method, 0.6, knobs_of(method, 0.02, 1e-5), {times, notes.see});
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(an_observer_at_the_ends_of_steps_changes_nothing) {
 
 BOOST_AUTO_TEST_CASE(an_exception_of_the_observer_becomes_a_failure_with_its_words) {
   const Hammock h;
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       const auto refuse = [](const State&) { throw std::runtime_error("seen enough"); };
       const Run r = h.run(method, 1, knobs_of(method, 0.02, 1e-5), {{0.3}, refuse});
@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(an_exception_of_the_observer_becomes_a_failure_with_its_wor
 }
 
 BOOST_AUTO_TEST_CASE(an_integrator_run_twice_from_one_start_ends_the_same_to_the_last_bit) {
-  for (const Method& method : methods()) {
+  for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) { BOOST_TEST(repeats(method)); }
   }
 }

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "src/scene/reduce/components.hpp"
+#include "src/scene/scene.hpp"
+
+namespace qddot {
+
+// One component with all that acts on it: its nodes, the pinned nodes that its springs hold it to,
+// and gravity; numbered anew.
+struct Body {
+  std::vector<std::size_t> nodes{};       // the scene's numbers: free nodes, then pinned ones
+  std::size_t free = 0;                   // how many are free
+  std::vector<Eigen::Vector3d> x{}, v{};  // of all of them; v = 0 where pinned
+  std::vector<double> mass{};             // of all of them; 0 where pinned
+  std::vector<Spring> springs{};          // between numbers of this body
+  Eigen::Vector3d gravity =
+      Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
+};
+
+Body make_body(const Component& component, const std::vector<Node>& nodes,
+               const std::vector<Spring>& springs, const Eigen::Vector3d& gravity);
+
+// What rounding may have done to numbers of this size: coordinates that come from a few operations.
+inline constexpr double rounding = 64 * 0x1p-52;
+
+// The largest coordinate, in absolute value.
+double largest_coordinate(const std::vector<Eigen::Vector3d>& vectors);
+
+}  // namespace qddot

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "src/model/mass_spring.hpp"
+#include "src/scene/reduce/body.hpp"
+#include "src/scene/reduce/mirror.hpp"
+
+namespace qddot {
+
+// A node of a body as the image diag(signs) y of an original one, which lies on the side of each
+// mirror where its coordinate is not negative.
+struct ImageOf {
+  std::size_t original;
+  Eigen::Vector3d signs;
+};
+
+// A body folded along its mirrors.
+struct Folded {
+  std::vector<Eigen::Vector3d> y, w;  // positions and velocities of all nodes in the mirrors' frame
+  std::vector<ImageOf> images;        // of all nodes
+  std::vector<unsigned> on_planes;    // of all nodes, a bit for each mirror that it lies on
+  struct Spring {
+    std::size_t a, b;        // originals
+    Eigen::Vector3d mirror;  // the spring ends at y_a and at diag(mirror) y_b
+    SpringLaw law;
+  };
+  std::vector<Spring> springs;
+};
+
+Folded folded(const Body& body, const Mirrors& mirrors);
+
+}  // namespace qddot

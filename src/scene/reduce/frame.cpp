@@ -1,0 +1,106 @@
+#include "src/scene/reduce/frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace qddot {
+namespace {
+
+// Whether coordinate d is the same for all positions, and zero for whatever moves or pulls.
+bool is_shared(const Body& body, int d) {
+  const auto rests = [&](const Eigen::Vector3d& v) { return v[d] == 0; };
+  return body.gravity[d] == 0 && std::ranges::all_of(body.v, rests) &&
+         std::ranges::all_of(body.x, [&](const auto& x) { return x[d] == body.x.front()[d]; });
+}
+
+// Orthonormal directions that span, within rounding, what they have been given.
+class Span {
+ public:
+  // `noise`: the length below which a vector of this kind is rounding.
+  void offer(const Eigen::Vector3d& vector, double noise) {
+    const Eigen::Vector3d rest = remainder(vector);
+    if (rest.norm() > noise && (noise == 0 || rest.norm() / noise > best_)) {
+      best_ = noise == 0 ? std::numeric_limits<double>::infinity() : rest.norm() / noise;
+      direction_ = remainder(rest.normalized()).normalized();  // twice is enough (Kahan)
+    }
+  }
+  // Takes the best of what was offered since the last time; false where all was spanned already.
+  bool take() {
+    if (best_ == 0) return false;
+    basis_.col(rank_++) = direction_;
+    best_ = 0;
+    return true;
+  }
+  int rank() const { return rank_; }
+  Eigen::Vector3d remainder(const Eigen::Vector3d& vector) const {
+    Eigen::Vector3d rest = vector;
+    for (int k = 0; k < rank_; ++k) rest -= basis_.col(k).dot(vector) * basis_.col(k);
+    return rest;
+  }
+  const Eigen::Matrix3d& basis() const { return basis_; }
+
+ private:
+  Eigen::Matrix3d basis_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();
+  int rank_ = 0;
+  double best_ = 0;
+};
+
+// What spans the motion, from the point farthest above its noise to the least.
+Span span_of(const Body& body) {
+  const double noise = rounding * largest_coordinate(body.x);
+  const double speed_noise = rounding * largest_coordinate(body.v);
+  Span span;
+  do {
+    for (const auto& x : body.x) span.offer(x - body.x.front(), noise);
+    for (const auto& v : body.v) span.offer(v, speed_noise);
+    span.offer(body.gravity, rounding * body.gravity.norm());
+  } while (span.take() && span.rank() < 3);
+  return span;
+}
+
+}  // namespace
+
+Eigen::Matrix3d complete(Eigen::Matrix3d axes, int count) {
+  for (; count < 3; ++count) {
+    Eigen::Vector3d longest = Eigen::Vector3d::Zero();
+    for (int d = 0; d < 3; ++d) {
+      Eigen::Vector3d rest = Eigen::Vector3d::Unit(d);
+      for (int k = 0; k < count; ++k) rest -= axes(d, k) * axes.col(k);
+      if (rest.norm() > longest.norm()) longest = rest;
+    }
+    axes.col(count) = longest.normalized();
+  }
+  return axes;
+}
+
+Frame frame_of(const Body& body, int dimension) {
+  Frame frame{.dimension = 0};
+  std::array<bool, 3> is_kept{};
+  for (int d = 0; d < dimension; ++d) is_kept[d] = !is_shared(body, d);
+  // Where nothing moves, one coordinate remains to say so.
+  if (std::ranges::count(is_kept, true) == 0) is_kept[0] = true;
+  int dropped = 3;
+  for (int d = 2; d >= 0; --d) {
+    if (!is_kept[d]) frame.axes.col(--dropped) = Eigen::Vector3d::Unit(d);
+  }
+  for (int d = 0; d < 3; ++d) {
+    if (is_kept[d]) {
+      frame.axes.col(frame.dimension++) = Eigen::Vector3d::Unit(d);
+    } else {
+      frame.origin[d] = body.x.front()[d];
+    }
+  }
+
+  const Span span = span_of(body);
+  if (span.rank() == 0 || span.rank() >= frame.dimension) return frame;
+  for (int d = 0; d < 3; ++d) {
+    // Shared but for a deviation.
+    if (is_kept[d] && span.remainder(Eigen::Vector3d::Unit(d)).norm() > 1 - 1e-9) return frame;
+  }
+  Frame rotated{span.rank(), body.x.front(), complete(span.basis(), span.rank())};
+  return rotated;
+}
+
+}  // namespace qddot

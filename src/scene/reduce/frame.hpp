@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "src/scene/reduce/body.hpp"
+
+namespace qddot {
+
+// Coordinates y of a D-dimensional subspace: x = origin + axes y, the axes being the first D
+// columns of an orthonormal matrix. A coordinate is either one of the scene's own, to the bit, or a
+// rotated one.
+struct Frame {
+  int dimension = 3;  // D
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+
+  // Coordinates of a point and of a direction; zero beyond D.
+  Eigen::Vector3d point(const Eigen::Vector3d& x) const { return direction(x - origin); }
+  Eigen::Vector3d direction(const Eigen::Vector3d& v) const {
+    Eigen::Vector3d y = axes.transpose() * v;
+    for (int d = dimension; d < 3; ++d) y[d] = 0;
+    return y;
+  }
+  // And back; y must be zero beyond D.
+  Eigen::Vector3d from_point(const Eigen::Vector3d& y) const { return origin + axes * y; }
+  Eigen::Vector3d from_direction(const Eigen::Vector3d& y) const { return axes * y; }
+};
+
+// An orthonormal matrix whose first `count` columns are those of `axes`, which must be orthonormal.
+Eigen::Matrix3d complete(Eigen::Matrix3d axes, int count);
+
+// The smallest subspace in which the body's motion stays. Let all positions (of free nodes and of
+// the pinned ones they are held to), all velocities and gravity lie in a subspace W. A spring pulls
+// along the difference of its ends, so all forces lie in W while all positions do: the components
+// normal to W obey y'' = 0 with y = y' = 0, and stay zero. Sought are first the scene's coordinates
+// that all positions share to the bit and in which nothing moves or pulls; then, among the others,
+// any plane or line that holds everything within rounding. `dimension`: of the scene.
+//
+// A coordinate that is shared almost, but not to the bit, counts as not shared: a deviation of one
+// rounding may be there on purpose, to start a buckling.
+Frame frame_of(const Body& body, int dimension);
+
+}  // namespace qddot

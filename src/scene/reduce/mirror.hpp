@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "src/scene/reduce/body.hpp"
+#include "src/scene/reduce/frame.hpp"
+
+namespace qddot {
+
+// Planes (in two dimensions lines, in one points) that mirror a body onto itself, at right angles
+// to each other: coordinate d of the body, the first `count` of them, changes its sign.
+//
+// A reflection S that maps positions, velocities, masses, pins and springs of a body onto
+// themselves, and gravity to itself, maps its motion q(t) to a motion with the same start, which is
+// therefore the same one: S q(t) = q(t) for all t. So the nodes on one side determine those on the
+// other, and a node on the plane stays on it. With several such planes the same holds for the group
+// that they generate; being at right angles they commute, and each node's images are
+// diag(+-1, ...) of it.
+struct Mirrors {
+  Frame frame;                             // the body's, turned so that the planes are y_d = 0
+  int count = 0;                           // of planes
+  std::vector<std::vector<int>> images{};  // of each node under each reflection
+};
+
+// Looks for such planes among those through the body's middle that are normal to an axis of
+// `frame`, to the diagonal of two of them (which swaps the two coordinates), or to a principal axis
+// of its free nodes or of its pins. Everything has to agree within rounding (see body.hpp). n log n
+// operations for n nodes and springs.
+Mirrors mirrors_of(const Body& body, const Frame& frame);
+
+}  // namespace qddot

@@ -1,0 +1,112 @@
+#include "src/scene/reduce/part.hpp"
+
+#include "src/model/held.hpp"
+#include "src/scene/reduce/folded.hpp"
+#include "src/scene/reduce/straight.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr int no_number = -1;
+
+// The numbers that the originals have in the network: of the free ones, or of the pinned ones too.
+std::vector<int> numbers_of(const Body& body, const Folded& half, bool with_pins) {
+  std::vector<int> numbers(body.nodes.size(), no_number);
+  int next = 0;
+  for (std::size_t i = 0; i < (with_pins ? body.nodes.size() : body.free); ++i) {
+    if (half.images[i].original == i) numbers[i] = next++;
+  }
+  return numbers;
+}
+
+void add_spring(const Folded::Spring& spring, const Folded& half, const std::vector<int>& numbers,
+                Network& network) {
+  const auto& [a, b, mirror, law] = spring;
+  const int i = numbers[a], j = numbers[b];
+  if (i == no_number) {
+    network.anchors.push_back({j, mirror.cwiseProduct(half.y[a]), law});
+  } else if (j == no_number) {
+    network.anchors.push_back({i, mirror.cwiseProduct(half.y[b]), law});
+  } else if (mirror != Eigen::Vector3d::Ones()) {
+    network.image_links.push_back({i, j, mirror, law});
+  } else {
+    network.links.push_back({i, j, law});
+  }
+}
+
+}  // namespace
+
+Part::Part(const Body& body, int dimension, const Reductions& reductions) {
+  Frame frame{.dimension = dimension};
+  if (reductions.has(Reduction::dimension)) frame = frame_of(body, dimension);
+  mirrors_.frame = frame;
+  if (reductions.has(Reduction::mirror)) mirrors_ = mirrors_of(body, frame);
+
+  const bool with_pins = !reductions.has(Reduction::pins);
+  const int axes = frame.dimension;
+  const Folded half = folded(body, mirrors_);
+  const std::vector<int> numbers = numbers_of(body, half, with_pins);
+
+  Network network{.dimension = axes};
+  network.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
+  std::vector<double> q, v;
+  std::vector<bool> is_held;
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    if (numbers[i] == no_number) continue;
+    Unknowns unknowns{std::ssize(q), 0, {}};
+    for (int d = 0; d < axes; ++d) {
+      if (half.on_planes[i] >> d & 1) continue;
+      unknowns.axis[static_cast<std::size_t>(unknowns.count++)] = d;
+      q.push_back(half.y[i][d]);
+      v.push_back(half.w[i][d]);
+      is_held.push_back(i >= body.free);
+    }
+    layout_.push_back(unknowns);
+    if (mirrors_.count > 0) network.zero_coordinates.push_back(half.on_planes[i]);
+  }
+  initial_ = {0, Vec::Map(q.data(), std::ssize(q)), Vec::Map(v.data(), std::ssize(v))};
+
+  const auto count = std::ssize(layout_);
+  network.node_mass = Vec::Zero(count);
+  network.load = Vec::Zero(axes * count);
+  const Eigen::Vector3d g = mirrors_.frame.direction(body.gravity);
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    const int number = numbers[half.images[i].original];
+    if (number == no_number) continue;
+    // What holds a pinned node bears its weight as well; its mass only has to be some number.
+    network.node_mass[number] += i < body.free ? body.mass[i] : 1;
+    for (int d = 0; d < axes; ++d) network.load[axes * number + d] += body.mass[i] * g[d];
+    network.constant_energy -= body.mass[i] * body.gravity.dot(mirrors_.frame.origin);
+    if (i >= body.free) continue;
+    nodes_.push_back(body.nodes[i]);
+    images_.push_back({number, half.images[i].signs});
+  }
+  for (const Folded::Spring& spring : half.springs) add_spring(spring, half, numbers, network);
+
+  if (network.uses_constant_stiffness && !with_pins) {
+    if (auto straight = straightened(network, initial_.q, initial_.v)) {
+      network = std::move(*straight);
+      is_straightened_ = true;
+    }
+  }
+  system_ = make_mass_spring(network);
+  if (with_pins) system_ = std::make_unique<Held>(std::move(system_), is_held);
+}
+
+void Part::expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v,
+                  std::vector<Node>& nodes) const {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Image& image = images_[i];
+    const Unknowns& unknowns = layout_[static_cast<std::size_t>(image.original)];
+    Eigen::Vector3d y = Eigen::Vector3d::Zero(), w = Eigen::Vector3d::Zero();
+    for (int a = 0; a < unknowns.count; ++a) {
+      const int d = unknowns.axis[static_cast<std::size_t>(a)];
+      y[d] = image.signs[d] * q[unknowns.first + a];
+      w[d] = image.signs[d] * v[unknowns.first + a];
+    }
+    nodes[nodes_[i]].position = mirrors_.frame.from_point(y);
+    nodes[nodes_[i]].velocity = mirrors_.frame.from_direction(w);
+  }
+}
+
+}  // namespace qddot

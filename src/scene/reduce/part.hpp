@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "src/model/mass_spring.hpp"
+#include "src/scene/reduce/body.hpp"
+#include "src/scene/reduce/frame.hpp"
+#include "src/scene/reduce/mirror.hpp"
+#include "src/scene/reduce/reductions.hpp"
+
+namespace qddot {
+
+// A body's motion in the fewest unknowns. Every node's position is an affine function of them,
+//   x_i = origin + axes diag(signs_i) y_original(i),   in short x = P q + c,
+// where the originals are the nodes on one side of each mirror. With the energy of all springs
+// written in q the equations of motion are those of M = P'M_full P, f = P'f_full, K = P'K_full P.
+// Springs that are images of each other have the same energy: one stands for all, stiffer by their
+// number, and nothing is multiplied by P.
+class Part {
+ public:
+  Part(const Body& body, int dimension, const Reductions& reductions);
+
+  const System& system() const { return *system_; }
+  // Where its unknowns start.
+  const State& initial() const { return initial_; }
+  // Gives away the system; the rest remains.
+  std::unique_ptr<System> take_system() { return std::move(system_); }
+
+  const Mirrors& mirrors() const { return mirrors_; }
+  // The scene's numbers of its nodes.
+  const std::vector<std::size_t>& nodes() const { return nodes_; }
+  std::size_t originals() const { return layout_.size(); }
+  // Whether it is springs of some rest length on a line that make K constant (see straight.hpp).
+  bool is_straightened() const { return is_straightened_; }
+
+  // Sets positions and velocities of its nodes among those of the scene from its unknowns.
+  void expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v,
+              std::vector<Node>& nodes) const;
+
+ private:
+  // A node as the image of an original, by the signs of its coordinates.
+  struct Image {
+    int original;
+    Eigen::Vector3d signs;
+  };
+  // Where an original's coordinates stand in q: `axis[a]` is unknown first + a.
+  struct Unknowns {
+    Index first;
+    int count;
+    std::array<int, 3> axis;
+  };
+
+  Mirrors mirrors_;
+  std::vector<std::size_t> nodes_;
+  std::vector<Image> images_;     // of the nodes
+  std::vector<Unknowns> layout_;  // of the originals
+  std::unique_ptr<System> system_;
+  State initial_;
+  bool is_straightened_ = false;
+};
+
+}  // namespace qddot

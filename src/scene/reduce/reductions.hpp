@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace qddot {
+
+// What may be left out of a scene without changing its motion.
+enum class Reduction {
+  pins,                // pinned nodes are no unknowns
+  duplicates,          // springs between the same nodes are one, springs of no stiffness none
+  massless,            // springs in series through massless nodes are one
+  free_flight,         // nodes on no spring move in closed form
+  parts,               // what no spring joins is integrated apart
+  dimension,           // a motion in a plane or on a line has two coordinates or one
+  mirror,              // of a motion that is its own mirror image, one half is enough
+  constant_stiffness,  // K is the same everywhere, and is factorised once
+};
+
+inline constexpr std::array<std::string_view, 8> reduction_names = {
+    "pins",  "duplicates", "massless", "free_flight",
+    "parts", "dimension",  "mirror",   "constant_stiffness"};
+
+constexpr std::string_view name(Reduction reduction) {
+  return reduction_names[static_cast<std::size_t>(reduction)];
+}
+
+// A set of reductions; all of them at first.
+class Reductions {
+ public:
+  static Reductions only(std::initializer_list<Reduction> chosen) {
+    Reductions few;
+    few.left_out_.set();
+    for (const Reduction reduction : chosen) few.left_out_.reset(index(reduction));
+    return few;
+  }
+  bool has(Reduction reduction) const { return !left_out_[index(reduction)]; }
+  Reductions without(Reduction reduction) const {
+    Reductions rest = *this;
+    rest.left_out_.set(index(reduction));
+    return rest;
+  }
+
+ private:
+  static std::size_t index(Reduction reduction) { return static_cast<std::size_t>(reduction); }
+
+  std::bitset<reduction_names.size()> left_out_;
+};
+
+// What a reduction did to a scene, and why it may: one sentence or two.
+struct Finding {
+  Reduction reduction;
+  std::string what;
+};
+
+}  // namespace qddot

@@ -1,0 +1,142 @@
+#include "src/scene/reduce/series.hpp"
+
+#include <optional>
+
+namespace qddot {
+namespace {
+
+constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+class Condenser {
+ public:
+  Condenser(const std::vector<Node>& nodes, std::vector<Spring>& springs)
+      : nodes_(nodes), springs_(springs), touching_(nodes.size()), is_seen_(nodes.size(), false) {
+    for (std::size_t e = 0; e < springs.size(); ++e) {
+      for (const std::size_t node : springs[e].nodes) {
+        if (is_massless(node)) touching_[node].push_back(e);
+      }
+    }
+  }
+
+  std::vector<Series> condense() {
+    std::vector<Series> all;
+    std::vector<bool> is_gone(springs_.size(), false);
+    for (std::size_t node = 0; node < nodes_.size(); ++node) {
+      if (!is_joint(node) || is_seen_[node]) continue;
+      const auto series = series_through(node);
+      if (!series) continue;
+      for (const std::size_t e : chain_) is_gone[e] = true;
+      all.push_back(*series);
+    }
+    std::vector<Spring> left;
+    for (std::size_t e = 0; e < springs_.size(); ++e) {
+      if (!is_gone[e]) left.push_back(springs_[e]);
+    }
+    for (const Series& series : all) left.push_back({series.ends, series.law});
+    springs_ = std::move(left);
+    return all;
+  }
+
+ private:
+  bool is_massless(std::size_t node) const {
+    return !nodes_[node].pinned && nodes_[node].mass == 0;
+  }
+  bool is_joint(std::size_t node) const {
+    if (!is_massless(node) || touching_[node].size() != 2) return false;
+    for (const std::size_t e : touching_[node]) {
+      if (springs_[e].law.quartic > 0 || springs_[e].law.stiffness == 0) return false;
+    }
+    return true;
+  }
+  std::size_t other_end(std::size_t e, std::size_t node) const {
+    const auto [a, b] = springs_[e].nodes;
+    return a == node ? b : a;
+  }
+
+  // The springs and joints met from `node` along spring `e`, up to the first node that is no joint;
+  // `none` where they lead round to `node` again.
+  std::size_t follow(std::size_t node, std::size_t e, std::vector<std::size_t>& chain,
+                     std::vector<std::size_t>& joints) {
+    const std::size_t start = node;
+    while (true) {
+      chain.push_back(e);
+      node = other_end(e, node);
+      if (node == start) return none;
+      if (!is_joint(node)) return node;
+      is_seen_[node] = true;
+      joints.push_back(node);
+      const auto& both = touching_[node];
+      e = both[0] == e ? both[1] : both[0];
+    }
+  }
+
+  // Leaves the springs in chain_.
+  std::optional<Series> series_through(std::size_t node) {
+    is_seen_[node] = true;
+    std::vector<std::size_t> back_chain, back_joints, joints;
+    chain_.clear();
+    const std::size_t first = follow(node, touching_[node][0], back_chain, back_joints);
+    if (first == none) return {};  // a ring of massless nodes
+    joints.assign(back_joints.rbegin(), back_joints.rend());
+    joints.push_back(node);
+    chain_.assign(back_chain.rbegin(), back_chain.rend());
+    const std::size_t last = follow(node, touching_[node][1], chain_, joints);
+    if (first == last) return {};  // a loop that comes back to where it began
+    return exact_series({first, last}, joints);
+  }
+
+  std::optional<Series> exact_series(std::array<std::size_t, 2> ends,
+                                     const std::vector<std::size_t>& joints) const {
+    double compliance = 0, rest_length = 0;
+    for (const std::size_t e : chain_) {
+      compliance += 1 / springs_[e].law.stiffness;
+      rest_length += springs_[e].law.rest_length;
+    }
+    const double length = (nodes_[ends[1]].position - nodes_[ends[0]].position).norm();
+    // A series drawn at its rest length may be shorter by what rounding makes of it.
+    if (length < (1 - 1e-12) * rest_length) return {};
+    Series series{ends,
+                  {.stiffness = 1 / compliance,
+                   .rest_length = rest_length,
+                   .holds_in_tension_only = rest_length > 0},
+                  {}};
+    double shift = 0, share = 0;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      // L_e = l_e + k/k_e (l - l0).
+      const SpringLaw& law = springs_[chain_[j]].law;
+      const double part = series.law.stiffness / law.stiffness;
+      shift += law.rest_length - part * rest_length;
+      share += part;
+      series.joints.push_back({joints[j], shift, share});
+    }
+    return series;
+  }
+
+  const std::vector<Node>& nodes_;
+  std::vector<Spring>& springs_;
+  std::vector<std::vector<std::size_t>> touching_;  // the springs of each massless node
+  std::vector<bool> is_seen_;
+  std::vector<std::size_t> chain_;
+};
+
+}  // namespace
+
+void Series::place(std::vector<Node>& nodes) const {
+  const Node &from = nodes[ends[0]], &to = nodes[ends[1]];
+  const Eigen::Vector3d d = to.position - from.position, w = to.velocity - from.velocity;
+  const double l = d.norm();
+  const Eigen::Vector3d n = l > 0 ? Eigen::Vector3d(d / l) : Eigen::Vector3d::Zero();
+  // n' = (w - n (n.w)) / l
+  const Eigen::Vector3d turning =
+      l > 0 ? Eigen::Vector3d((w - n * n.dot(w)) / l) : Eigen::Vector3d::Zero();
+  for (const Joint& joint : joints) {
+    nodes[joint.node].position = from.position + joint.shift * n + joint.share * d;
+    nodes[joint.node].velocity = from.velocity + joint.shift * turning + joint.share * w;
+  }
+}
+
+std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<Spring>& springs) {
+  return Condenser(nodes, springs).condense();
+}
+
+}  // namespace qddot

@@ -1,0 +1,121 @@
+#include "src/scene/reduce/straight.hpp"
+
+#include <algorithm>
+
+#include "src/algebra/effective_mass.hpp"
+
+namespace qddot {
+namespace {
+
+// A spring on the line: d = c - x_i, + s x_j where j is a node.
+struct LineSpring {
+  int i, j;  // j = -1: none
+  double s, c;
+  SpringLaw law;
+
+  double difference(const std::vector<double>& x) const {
+    return c - x[i] + (j < 0 ? 0 : s * x[j]);
+  }
+};
+
+std::vector<LineSpring> springs_of(const Network& network) {
+  std::vector<LineSpring> all;
+  for (const auto& [i, j, law] : network.links) all.push_back({i, j, 1, 0, law});
+  for (const auto& image : network.image_links) {
+    all.push_back({image.i, image.j, image.mirror[0], 0, image.law});
+  }
+  for (const auto& anchor : network.anchors) {
+    all.push_back({anchor.i, -1, 0, anchor.point[0], anchor.law});
+  }
+  return all;
+}
+
+bool may_be_straightened(const std::vector<LineSpring>& springs) {
+  return std::ranges::all_of(springs,
+                             [](const LineSpring& spring) {
+                               return spring.law.quartic == 0 && !spring.law.holds_in_tension_only;
+                             }) &&
+         std::ranges::any_of(springs,
+                             [](const LineSpring& spring) { return spring.law.rest_length > 0; });
+}
+
+// The coordinate of each node: its unknown, or zero where it has none.
+std::vector<double> coordinates(const Network& network, const Vec& q) {
+  std::vector<double> x;
+  Index next = 0;
+  for (Index i = 0; i < network.node_mass.size(); ++i) {
+    const bool is_zero = !network.zero_coordinates.empty() && (network.zero_coordinates[i] & 1);
+    x.push_back(is_zero ? 0 : q[next++]);
+  }
+  return x;
+}
+
+Network with_loads(Network network, const std::vector<LineSpring>& springs,
+                   const std::vector<double>& x) {
+  if (network.load.size() == 0) network.load = Vec::Zero(network.node_mass.size());
+  for (const LineSpring& spring : springs) {
+    const double direction = spring.difference(x) < 0 ? -1 : 1;
+    const double k = spring.law.stiffness, l0 = spring.law.rest_length;
+    const double pull = k * direction * l0;  // V = 1/2 k d^2 - pull d + 1/2 k l0^2
+    network.load[spring.i] -= pull;
+    if (spring.j >= 0) network.load[spring.j] += spring.s * pull;
+    network.constant_energy += 0.5 * k * l0 * l0 - pull * spring.c;
+  }
+  for (auto& link : network.links) link.law.rest_length = 0;
+  for (auto& image : network.image_links) image.law.rest_length = 0;
+  for (auto& anchor : network.anchors) anchor.law.rest_length = 0;
+  return network;
+}
+
+// Kinetic energy about the centre of mass.
+double relative_kinetic(const Vec& mass, const Vec& v) {
+  const double total = mass.sum();
+  if (total == 0) return 0;
+  const double mean = mass.dot(v) / total;
+  return 0.5 * mass.dot((v.array() - mean).square().matrix());
+}
+
+// A hair's breadth, so that rounding does not decide.
+constexpr double margin = 1 - 1e-6;
+
+}  // namespace
+
+std::optional<Network> straightened(const Network& network, const Vec& q, const Vec& v) {
+  if (network.dimension != 1) return {};
+  const auto springs = springs_of(network);
+  if (!may_be_straightened(springs)) return {};
+  const auto x = coordinates(network, q);
+  Network straight = with_loads(network, springs, x);
+  const auto system = make_mass_spring(straight);
+  SymmetricMatrix k = system->stiffness_pattern();
+  system->stiffness(q, k);
+
+  const auto none_turns = [&](double energy, const std::vector<double>& at) {
+    return std::ranges::all_of(springs, [&](const LineSpring& spring) {
+      const double d = spring.difference(at), l0 = spring.law.rest_length;
+      return l0 == 0 ||
+             (d * spring.difference(x) > 0 && energy < margin * 0.5 * spring.law.stiffness * d * d);
+    });
+  };
+  EffectiveMass matrix(*system);
+  if (matrix.factorize_positive(0, 1, k)) {
+    Vec f(q.size()), to_equilibrium(q.size());
+    system->force(q, f);
+    matrix.solve(f, to_equilibrium);
+    const double energy = system->kinetic(v) + 0.5 * f.dot(to_equilibrium);
+    if (none_turns(energy, coordinates(network, q + to_equilibrium))) return straight;
+  } else if (network.anchors.empty() && network.image_links.empty() &&
+             network.zero_coordinates.empty()) {
+    double energy = relative_kinetic(system->mass(), v);
+    double least = INFINITY;
+    for (const LineSpring& spring : springs) {
+      const SpringLaw& law = spring.law;
+      energy += law.energy(std::abs(spring.difference(x)));
+      if (law.rest_length > 0) least = std::min(least, law.energy(0.0));
+    }
+    if (energy < margin * least) return straight;
+  }
+  return {};
+}
+
+}  // namespace qddot

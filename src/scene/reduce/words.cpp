@@ -1,0 +1,130 @@
+#include "src/scene/reduce/words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace qddot {
+namespace {
+
+// "1 node", "2 nodes".
+std::string counted(std::size_t count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+// The first few of a list of nodes, by their numbers.
+std::string listed(const std::vector<std::size_t>& nodes) {
+  constexpr std::size_t most = 8;
+  const std::span shown(nodes.data(), std::min(most, nodes.size()));
+  return fmt::format("{}{}", fmt::join(shown, ", "), nodes.size() > most ? ", ..." : "");
+}
+
+std::string vector(const Eigen::Vector3d& x, int dimension) {
+  std::vector<std::string> numbers;
+  // Adding zero turns -0 into 0.
+  for (int d = 0; d < dimension; ++d) numbers.push_back(fmt::format("{:.4g}", x[d] + 0.0));
+  return fmt::format("({})", fmt::join(numbers, ", "));
+}
+
+// "the plane y = 0.5", or by normal and point where it is askew.
+std::string plane(const Eigen::Vector3d& normal, const Eigen::Vector3d& point, int dimension) {
+  constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
+  const char* kind = dimension == 3 ? "plane" : dimension == 2 ? "line" : "point";
+  for (int d = 0; d < dimension; ++d) {
+    if (std::abs(normal[d]) == 1) return fmt::format("{} {} = {:.6g}", kind, axes[d], point[d]);
+  }
+  return fmt::format("{} normal to {} through {}", kind, vector(normal, dimension),
+                     vector(point, dimension));
+}
+
+std::string subspace(const Frame& frame, int dimension) {
+  const int left_out = dimension - frame.dimension;
+  if (left_out == 1 && dimension > 1) {
+    // Of a 2D scene the third axis is that of the page.
+    return plane(frame.axes.col(frame.dimension), frame.origin, dimension);
+  }
+  return fmt::format("line along {} through {}", vector(frame.axes.col(0), dimension),
+                     vector(frame.origin, dimension));
+}
+
+}  // namespace
+
+std::string pinned_sentence(std::size_t pins) {
+  return fmt::format("{} stay{} where drawn and {} no unknowns", counted(pins, "pinned node"),
+                     pins == 1 ? "s" : "", pins == 1 ? "has" : "have");
+}
+
+std::string merged_sentence(std::size_t gone, std::size_t left) {
+  return fmt::format("{} without stiffness or beside another of the same rest length; {} left",
+                     counted(gone, "spring"), left);
+}
+
+std::string condensed_sentence(const std::vector<std::size_t>& nodes, std::size_t series) {
+  return fmt::format(
+      "{} ({}) between springs in series, which are {}: exact while in tension, and the run ends "
+      "where one goes slack",
+      counted(nodes.size(), "massless node"), listed(nodes), counted(series, "spring"));
+}
+
+std::string flying_sentence(const std::vector<std::size_t>& nodes) {
+  return fmt::format("{} on no spring ({}) move{} in closed form", counted(nodes.size(), "node"),
+                     listed(nodes), nodes.size() == 1 ? "s" : "");
+}
+
+std::string parts_sentence(std::size_t parts) {
+  return fmt::format("{} that no spring joins, each integrated by itself", counted(parts, "part"));
+}
+
+std::vector<Finding> findings_of(const std::vector<Part>& parts,
+                                 const std::vector<std::unique_ptr<System>>& systems,
+                                 int dimension) {
+  std::vector<Finding> findings;
+  const auto add = [&](Reduction reduction, const auto& is_found, const auto& sentence) {
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(parts, is_found));
+    if (count == 0) return;
+    const Part& first = *std::ranges::find_if(parts, is_found);
+    std::string what = sentence(first);
+    if (parts.size() > 1) what += fmt::format(" ({} of {} parts alike)", count, parts.size());
+    findings.push_back({reduction, std::move(what)});
+  };
+  add(
+      Reduction::dimension,
+      [&](const Part& part) { return part.mirrors().frame.dimension < dimension; },
+      [&](const Part& part) {
+        const Frame& frame = part.mirrors().frame;
+        return fmt::format(
+            "positions, velocities and gravity lie in the {}: {} coordinate{} a node",
+            subspace(frame, dimension), frame.dimension, frame.dimension == 1 ? "" : "s");
+      });
+  add(
+      Reduction::mirror, [](const Part& part) { return part.mirrors().count > 0; },
+      [&](const Part& part) {
+        const Mirrors& mirrors = part.mirrors();
+        std::vector<std::string> planes;
+        for (int d = 0; d < mirrors.count; ++d) {
+          planes.push_back(plane(mirrors.frame.axes.col(d), mirrors.frame.origin, dimension));
+        }
+        return fmt::format("the scene is its own mirror image in the {}: {} of {} move freely",
+                           fmt::join(planes, " and the "), part.originals(),
+                           counted(part.nodes().size(), "node"));
+      });
+  const auto constant = static_cast<std::size_t>(
+      std::ranges::count(systems, true, [](const auto& s) { return s->stiffness_is_constant(); }));
+  if (constant > 0) {
+    const bool by_line = std::ranges::any_of(parts, &Part::is_straightened);
+    findings.push_back(
+        {Reduction::constant_stiffness,
+         fmt::format("K is the same everywhere{}, since {}",
+                     constant == systems.size()
+                         ? ""
+                         : fmt::format(" in {} of {} parts", constant, systems.size()),
+                     by_line ? "on a line its energy lets no spring turn over"
+                             : "all rest lengths are zero")});
+  }
+  return findings;
+}
+
+}  // namespace qddot

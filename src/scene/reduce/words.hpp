@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/model/system.hpp"
+#include "src/scene/reduce/part.hpp"
+#include "src/scene/reduce/reductions.hpp"
+
+namespace qddot {
+
+// The sentences by which reductions say what they left out and why they may.
+std::string pinned_sentence(std::size_t pins);
+std::string merged_sentence(std::size_t gone, std::size_t left);
+std::string condensed_sentence(const std::vector<std::size_t>& nodes, std::size_t series);
+std::string flying_sentence(const std::vector<std::size_t>& nodes);
+std::string parts_sentence(std::size_t parts);
+
+// What was found in the parts, each with its system: their subspaces, mirrors and constant K, parts
+// of one kind together. `dimension`: of the scene.
+std::vector<Finding> findings_of(const std::vector<Part>& parts,
+                                 const std::vector<std::unique_ptr<System>>& systems,
+                                 int dimension);
+
+}  // namespace qddot
