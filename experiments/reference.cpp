@@ -159,8 +159,11 @@ void measure_rounding(Reference& reference, const ReducedScene& scene, const Sol
                       double until, double seconds) {
   State start = scene.initial();
   if (start.q.size() == 0) return;
-  const double rounding =
-      std::numeric_limits<double>::epsilon() * start.q.lpNorm<Eigen::Infinity>();
+  double extent = 0;
+  for (const Node& node : scene.expand(start)) {
+    extent = std::max(extent, node.position.lpNorm<Eigen::Infinity>());
+  }
+  const double rounding = std::numeric_limits<double>::epsilon() * extent;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> part(-1, 1);
   for (double& x : start.q) x += rounding * part(random);
