@@ -1,6 +1,7 @@
 #include "src/algebra/effective_mass.hpp"
 
 #include <cmath>
+#include <omp.h>
 #include <stdexcept>
 
 #include <suitesparse/cholmod.h>
@@ -94,6 +95,9 @@ class EffectiveMass::Cholmod {
   // Whether the numeric factorisation ran through every pivot.
   bool numeric(cholmod_factor* factor) {
     current_ = factor;
+    // CHOLMOD asks for 4 threads whatever OMP_NUM_THREADS says; parts this small only wait for
+    // each other in them.
+    omp_set_max_active_levels(0);
     cholmod_factorize(&view_, factor, &common_);
     if (common_.status < CHOLMOD_OK) {
       throw std::runtime_error("CHOLMOD could not factorise: out of memory");
