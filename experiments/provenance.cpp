@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include <Eigen/Core>
+#include <Spectra/Util/Version.h>
 #include <boost/version.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -49,6 +50,8 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
           {"libraries",
            {{"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
                                   EIGEN_MINOR_VERSION)},
+            {"spectra", fmt::format("{}.{}.{}", SPECTRA_MAJOR_VERSION, SPECTRA_MINOR_VERSION,
+                                    SPECTRA_PATCH_VERSION)},
             {"sundials", sundials_version()},
             {"cholmod", fmt::format("{}.{}.{}", CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION,
                                     CHOLMOD_SUBSUB_VERSION)},

@@ -4,7 +4,6 @@
 //   simulate --scene cloth --method arkode_dirk4 --rtol 1e-5 --trajectory path.csv --every 0.01
 //   simulate --list-methods
 //   simulate --list-scenes
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -14,6 +13,7 @@
 
 #include "experiments/catalogue.hpp"
 #include "experiments/csv.hpp"
+#include "experiments/node_table.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
@@ -132,21 +132,6 @@ Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& metho
   if (!fixed) require_positive(a.rtol, "--rtol", "a relative tolerance");
   if (app.count("--atol") > 0) require_positive(a.atol, "--atol", "an absolute tolerance");
   return {a.step_size, a.rtol, a.atol};
-}
-
-std::vector<std::string> node_header(int dimension, std::vector<std::string> header) {
-  constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
-  header.emplace_back("node");
-  for (int d = 0; d < dimension; ++d) header.emplace_back(axes[d]);
-  for (int d = 0; d < dimension; ++d) header.emplace_back(fmt::format("v{}", axes[d]));
-  return header;
-}
-
-void write_node(Csv& csv, std::size_t index, const Node& node, int dimension) {
-  csv.field(index);
-  for (int d = 0; d < dimension; ++d) csv.field(node.position[d]);
-  for (int d = 0; d < dimension; ++d) csv.field(node.velocity[d]);
-  csv.end_row();
 }
 
 class Output {

@@ -1,6 +1,7 @@
 #include "src/algebra/effective_mass.hpp"
 
 #include <cmath>
+#include <omp.h>
 #include <stdexcept>
 
 #include <suitesparse/cholmod.h>
@@ -9,8 +10,8 @@ namespace qddot {
 
 class EffectiveMass::Cholmod {
  public:
-  explicit Cholmod(const System& system)
-      : mass_(system.mass()), matrix_(system.stiffness_pattern()) {
+  Cholmod(const System& system, Vec diagonal)
+      : mass_(std::move(diagonal)), matrix_(system.stiffness_pattern()) {
     cholmod_start(&common_);
     common_.print = 0;  // failures are returned, not printed
     // Larger supernodes than the standard 4, 16, 48: nodes' blocks make columns alike, and the
@@ -58,6 +59,8 @@ class EffectiveMass::Cholmod {
     return numeric(factor_) && signs(factor_) == Definiteness::positive;
   }
 
+  Index negative_pivots() const { return factor_ ? negative_pivots(current_) : 0; }
+
   void solve(const Vec& b, Vec& x) {
     if (!factor_) return;
     cholmod_dense right{};
@@ -92,6 +95,9 @@ class EffectiveMass::Cholmod {
   // Whether the numeric factorisation ran through every pivot.
   bool numeric(cholmod_factor* factor) {
     current_ = factor;
+    // CHOLMOD asks for 4 threads whatever OMP_NUM_THREADS says; parts this small only wait for
+    // each other in them.
+    omp_set_max_active_levels(0);
     cholmod_factorize(&view_, factor, &common_);
     if (common_.status < CHOLMOD_OK) {
       throw std::runtime_error("CHOLMOD could not factorise: out of memory");
@@ -100,17 +106,24 @@ class EffectiveMass::Cholmod {
   }
 
   // Of LDL', the inertia is that of D (Sylvester); an LL' that ran through is positive.
+  static Index negative_pivots(const cholmod_factor* factor) {
+    if (factor->is_ll) return 0;
+    const auto* first = static_cast<const int*>(factor->p);
+    const auto* value = static_cast<const double*>(factor->x);
+    Index count = 0;
+    for (std::size_t j = 0; j < factor->n; ++j) count += value[first[j]] < 0;
+    return count;
+  }
+
   static Definiteness signs(const cholmod_factor* factor) {
     if (factor->is_ll) return Definiteness::positive;
     const auto* first = static_cast<const int*>(factor->p);
     const auto* value = static_cast<const double*>(factor->x);
-    auto definiteness = Definiteness::positive;
     for (std::size_t j = 0; j < factor->n; ++j) {
       const double pivot = value[first[j]];
       if (pivot == 0 || !std::isfinite(pivot)) return Definiteness::singular;
-      if (pivot < 0) definiteness = Definiteness::indefinite;
     }
-    return definiteness;
+    return negative_pivots(factor) > 0 ? Definiteness::indefinite : Definiteness::positive;
   }
 
   Vec mass_;
@@ -123,7 +136,9 @@ class EffectiveMass::Cholmod {
   cholmod_dense *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;
 };
 
-EffectiveMass::EffectiveMass(const System& system) : cholmod_(std::make_unique<Cholmod>(system)) {}
+EffectiveMass::EffectiveMass(const System& system) : EffectiveMass(system, system.mass()) {}
+EffectiveMass::EffectiveMass(const System& system, Vec diagonal)
+    : cholmod_(std::make_unique<Cholmod>(system, std::move(diagonal))) {}
 EffectiveMass::~EffectiveMass() = default;
 
 EffectiveMass::Definiteness EffectiveMass::factorize(double a, double s, const SymmetricMatrix& k) {
@@ -133,6 +148,8 @@ EffectiveMass::Definiteness EffectiveMass::factorize(double a, double s, const S
 bool EffectiveMass::factorize_positive(double a, double s, const SymmetricMatrix& k) {
   return cholmod_->factorize_positive(a, s, k);
 }
+
+Index EffectiveMass::negative_pivots() const { return cholmod_->negative_pivots(); }
 
 void EffectiveMass::solve(const Vec& b, Vec& x) { cholmod_->solve(b, x); }
 

@@ -17,15 +17,22 @@ class EffectiveMass {
   enum class Definiteness { positive, indefinite, singular };
 
   explicit EffectiveMass(const System& system);
+  // The same with another diagonal (n entries) in place of the system's masses.
+  EffectiveMass(const System& system, Vec diagonal);
   ~EffectiveMass();
 
-  // Factorises a M - s K, a >= 0, s [s^2] >= 0, K with the system's pattern. An indefinite matrix
-  // is factorised as LDL' without pivoting. Throws std::runtime_error when out of memory.
+  // Factorises a M - s K, K with the system's pattern; in an implicit stage a >= 0, s [s^2] >= 0.
+  // An indefinite matrix is factorised as LDL' without pivoting. Throws std::runtime_error when out
+  // of memory.
   Definiteness factorize(double a, double s, const SymmetricMatrix& k);
 
   // The same, but gives up (false, nothing to solve with) unless the matrix is positive definite:
   // cheaper where an indefinite one is of no use.
   bool factorize_positive(double a, double s, const SymmetricMatrix& k);
+
+  // How many eigenvalues of the last factorised matrix are negative (Sylvester's law of inertia);
+  // it must not have been singular.
+  Index negative_pivots() const;
 
   // x = (a M - s K)^-1 b with the last factors, which must not be singular; b, x: n.
   void solve(const Vec& b, Vec& x);

@@ -141,6 +141,29 @@ BOOST_AUTO_TEST_CASE(compression_turns_the_matrix_indefinite_at_the_largest_eige
   }
 }
 
+BOOST_AUTO_TEST_CASE(negative_pivots_are_as_many_as_negative_eigenvalues) {
+  for (const auto& [c, lambda] : compressed_cases()) {
+    EffectiveMass solver(*c.system);
+    for (const double s : {0.5, 1.01, 2.3, 11.7}) {
+      BOOST_TEST((solver.factorize(1, s / lambda, c.k()) != Definiteness::singular));
+      const Vec values =
+          effective(*c.system, 1, s / lambda, c.k()).selfadjointView<Eigen::Lower>().eigenvalues();
+      BOOST_TEST(solver.negative_pivots() == (values.array() < 0).count());
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(another_diagonal_takes_the_place_of_the_masses) {
+  for (const Case& c : cases(1.2)) {
+    const Vec diagonal = Vec::LinSpaced(c.system->size(), 1, 3);
+    EffectiveMass solver(*c.system, diagonal);
+    BOOST_TEST(solver.factorize(2, 1e-2, c.k()) == Definiteness::positive);
+    Eigen::MatrixXd a = -1e-2 * dense(c.k());
+    a.diagonal() += 2 * diagonal;
+    BOOST_TEST(backward_error(solver, a) < positive_tolerance(a));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(small_and_large_cases_become_indefinite) {
   const auto large = std::ranges::count_if(
       compressed_cases(), [](const Compressed& c) { return c.at.system->size() > 400; });
@@ -223,6 +246,7 @@ BOOST_AUTO_TEST_CASE(no_unknowns_are_solved_for_at_once) {
   EffectiveMass solver(*system);
   BOOST_TEST(solver.factorize(1, 1, system->stiffness_pattern()) == Definiteness::positive);
   BOOST_TEST(solver.factorize_positive(1, 1, system->stiffness_pattern()));
+  BOOST_TEST(solver.negative_pivots() == 0);
   Vec x;
   solver.solve(Vec(), x);
   BOOST_TEST(x.size() == 0);

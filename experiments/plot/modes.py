@@ -1,0 +1,183 @@
+"""Draws the lowest natural modes that the program modes found.
+
+Call: modes.py DIR, the folder with modes.csv, shapes.csv, springs.csv; writes DIR/modes.png and
+DIR/modes.svg. Up to six modes are drawn: those that grow, then those that vibrate from the lowest
+on, and those of frequency zero where there are no others.
+"""
+
+import csv
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.collections import LineCollection
+
+from sheet import Sheet
+from style import COOL, FAINT, INK, WARM, number, use_style
+
+MOST_PANELS = 6
+COLUMNS = 3
+PANEL, GAP, TITLE = 3.1, 0.15, 0.3
+TOP, SIDE = 0.85, 0.15
+# The largest displacement as a part of the scene's size, as it is seen.
+AMPLITUDE = 0.16
+REST = "#BDBDBD"
+# The more springs, the thinner; where there are more than MANY, without those that are longer by
+# this factor than the shortest at both of their ends, such as the diagonals of grids.
+THICK, THIN, MANY = 1.3, 0.35, 4000
+DIAGONAL = 1.35
+# The least and the greatest height of a panel as a part of its width.
+FLATTEST, TALLEST = 0.4, 1.15
+MOST_DOTS = 60
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A mode: its rank, omega in rad/s (minus the rate where it grows), displacements by node."""
+
+    rank: int
+    omega: float
+    displacements: np.ndarray
+
+    @property
+    def label(self):
+        """Rank and frequency."""
+        if self.omega < 0:
+            return f"mode {self.rank}: grows at {number(-self.omega)} /s"
+        if self.omega == 0:
+            return f"mode {self.rank}: 0 Hz"
+        return f"mode {self.rank}: {number(self.omega / (2 * np.pi))} Hz"
+
+    @property
+    def color(self):
+        """Warm where it grows, else cool."""
+        return WARM[0] if self.omega < 0 else COOL[0]
+
+
+def read_modes(folder):
+    """Positions by node and axis, and the modes whose shapes are there."""
+    with open(folder / "modes.csv", newline="", encoding="utf-8") as file:
+        omegas = {int(row["mode"]): float(row["omega"]) for row in csv.DictReader(file)}
+    table = np.loadtxt(folder / "shapes.csv", delimiter=",", skiprows=1, ndmin=2)
+    if table.size == 0:
+        sys.exit(f"modes.py: {folder} has no mode to draw: nothing in the scene can move")
+    ranks = table[:, 0].astype(int)
+    positions, displacements = np.split(table[:, 2:], 2, axis=1)
+    modes = [Mode(r, omegas[r], displacements[ranks == r]) for r in np.unique(ranks)]
+    return positions[ranks == ranks[0]], modes
+
+
+def chosen(modes):
+    """The modes to be drawn, by rank."""
+    ordered = sorted(modes, key=lambda mode: (mode.omega == 0, mode.rank))
+    return sorted(ordered[:MOST_PANELS], key=lambda mode: mode.rank)
+
+
+def view(dimension, gravity):
+    """The matrix that takes a point to the picture; in space obliquely from above, with gravity
+    downwards."""
+    if dimension < 3:
+        return np.eye(dimension, 2)
+    weight = np.linalg.norm(gravity)
+    up = -np.array(gravity) / weight if weight > 0 else np.array([0.0, 0.0, 1.0])
+    # The first axis that is not along the vertical comes towards the viewer.
+    front = np.eye(3)[np.argmin(np.abs(up) > 0.9)]
+    front = front - up * (front @ up)
+    front /= np.linalg.norm(front)
+    across = np.cross(up, front)
+    return np.stack([0.83 * across - 0.56 * front, 0.94 * up - 0.19 * across - 0.28 * front], 1)
+
+
+def without_diagonals(positions, springs):
+    """The springs that are drawn where there are too many to be told apart."""
+    lengths = np.linalg.norm(np.diff(positions[springs], axis=1)[:, 0], axis=1)
+    shortest = np.full(len(positions), np.inf)
+    for end in springs.T:
+        np.minimum.at(shortest, end, lengths)
+    return springs[lengths <= DIAGONAL * shortest[springs].max(axis=1)]
+
+
+def draw_springs(axes, points, springs, color, order):
+    """A network: its springs as lines and, where there are few nodes, these as dots."""
+    share = min(1.0, len(springs) / MANY)
+    width = THICK + (THIN - THICK) * share**0.5
+    lines = LineCollection(points[springs], colors=color, linewidths=width, zorder=order)
+    axes.add_collection(lines)
+    if len(points) <= MOST_DOTS:
+        axes.plot(*points.T, "o", color=color, markersize=3, linewidth=0, zorder=order + 0.5)
+
+
+def drawn_points(positions, modes, look):
+    """The nodes at rest and in each mode, in the picture's plane."""
+    rest = positions @ look
+    extent = max(np.ptp(rest, axis=0).max(), 1e-12)
+    shapes = []
+    for mode in modes:
+        moved = mode.displacements @ look
+        if positions.shape[1] == 1:  # along a line nothing would be seen: drawn across it
+            moved = moved[:, ::-1]
+        largest = np.linalg.norm(moved, axis=1).max()
+        shapes.append(rest + moved * (AMPLITUDE * extent / max(largest, 1e-300)))
+    return rest, shapes
+
+
+def frame(points):
+    """The limits in x and y of a panel around the points, and its height in inches."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    width, height = np.maximum(high - low, 1e-12)
+    ratio = np.clip(height / width, FLATTEST, TALLEST)
+    half = 0.53 * max(width, height / ratio) * np.array([1, ratio])
+    middle = (low + high) / 2
+    return middle - half, middle + half, PANEL * ratio
+
+
+def main(folder):
+    """Draws the picture."""
+    use_style()
+    folder = Path(folder)
+    origin = json.loads((folder / "modes.json").read_text(encoding="utf-8"))
+    positions, modes = read_modes(folder)
+    modes = chosen(modes)
+    springs = np.loadtxt(folder / "springs.csv", delimiter=",", skiprows=1, dtype=int, ndmin=2)
+    springs = springs.reshape(-1, 2)
+    if len(springs) > MANY:
+        springs = without_diagonals(positions, springs)
+    look = view(positions.shape[1], origin["gravity"])
+    rest, shapes = drawn_points(positions, modes, look)
+    low, high, tall = frame(np.concatenate([rest, *shapes]))
+    rows = -(-len(modes) // COLUMNS)
+    height = TOP + rows * (tall + TITLE + GAP)
+    sheet = Sheet(2 * SIDE + COLUMNS * PANEL + (COLUMNS - 1) * GAP, height)
+    place = {"drawn": "as drawn", "equilibrium": "at equilibrium"}[origin["at"]]
+    title = f"{origin['scene']['name']}: natural modes {place}"
+    sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center", color=INK)
+    words = [f"modes of finite frequency: {origin['finite_modes']}"]
+    if origin["unstable_directions"] > 0:
+        words.append(f"unstable: {origin['unstable_directions']}")
+    if origin["omega_max"] is not None:
+        words.append(f"highest {number(origin['omega_max'] / (2 * np.pi))} Hz")
+    words.append("grey: at rest" if origin["at"] == "equilibrium" else "grey: as drawn")
+    if positions.shape[1] == 1:
+        words.append("displacements drawn across the line")
+    sheet.text(0.15, 0.54, ", ".join(words), size=10, color=FAINT, va="center")
+    sheet.rule(0.75)
+    for i, (mode, shape) in enumerate(zip(modes, shapes)):
+        left = SIDE + (i % COLUMNS) * (PANEL + GAP)
+        top = TOP + (i // COLUMNS) * (tall + TITLE + GAP)
+        middle = {"ha": "center", "va": "center"}
+        sheet.text(left + PANEL / 2, top + TITLE / 2, mode.label, size=10.5, **middle)
+        axes = sheet.axes(left, top + TITLE, PANEL, tall)
+        axes.set_axis_off()
+        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+        draw_springs(axes, rest, springs, REST, 1)
+        draw_springs(axes, shape, springs, mode.color, 2)
+    for extension in ("png", "svg"):
+        sheet.save(str(folder / f"modes.{extension}"))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("Usage: modes.py DIR")
+    main(sys.argv[1])

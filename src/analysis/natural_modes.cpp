@@ -1,0 +1,158 @@
+#include "src/analysis/natural_modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "src/algebra/effective_mass.hpp"
+#include "src/algebra/leading_pairs.hpp"
+#include "src/analysis/largest_frequency.hpp"
+
+namespace qddot {
+namespace {
+
+using Eigen::MatrixXd;
+
+// Up to here the dense decomposition takes no longer than Lanczos' method, and it cannot fail.
+constexpr Index most_dense = 400;
+// Shifts stand off the spectrum by this part of its width, or as many times more as it takes.
+constexpr double least_offset_below = 1e-8, least_offset_above = 1e-4;
+constexpr double growth = 4;
+constexpr int most_tries = 40;
+
+// The pencil -K x = w^2 M x at one q.
+struct Pencil {
+  const System& system;
+  const Vec& mass;
+  SymmetricMatrix k;
+  std::vector<Index> massive{}, massless{};
+  double width = 0;  // Gershgorin's bound of all finite w^2; 1 where nothing pulls
+
+  Pencil(const System& s, const Vec& q, const Vec& m)
+      : system(s), mass(m), k(s.stiffness_pattern()) {
+    system.stiffness(q, k);
+    const SymmetricMatrix sizes = k.cwiseAbs();
+    const Vec row_sums = sizes.selfadjointView<Eigen::Lower>() * Vec::Ones(system.size());
+    for (Index i = 0; i < system.size(); ++i) {
+      (mass[i] > 0 ? massive : massless).push_back(i);
+      if (mass[i] > 0) width = std::max(width, row_sums[i] / mass[i]);
+    }
+    if (width == 0) width = 1;
+  }
+};
+
+[[noreturn]] void refuse_loose_massless() {
+  throw std::domain_error(
+      "there are no natural modes: a massless node is not held by its springs, so nothing says how "
+      "it moves");
+}
+
+// All finite modes, the massless unknowns eliminated: with a and b for massive and massless ones,
+// -K_bb x_b = K_ba x_a and (-K_aa - K_ab (-K_bb)^-1 K_ba) x_a = w^2 M_a x_a.
+NaturalModes dense_modes(const Pencil& p) {
+  const auto &a = p.massive, &b = p.massless;
+  const Vec root = p.mass(a).cwiseSqrt();
+  const Vec per_root = root.cwiseInverse();
+  const MatrixXd stiff = -MatrixXd(MatrixXd(p.k).selfadjointView<Eigen::Lower>());
+  MatrixXd follow(b.size(), a.size());  // x_b = follow x_a
+  if (!b.empty()) {
+    const Eigen::LLT<MatrixXd> held(stiff(b, b));
+    // A matrix that is singular may pass by rounding; its reciprocal condition tells.
+    if (held.info() != Eigen::Success ||
+        held.rcond() < std::numeric_limits<double>::epsilon() * static_cast<double>(b.size())) {
+      refuse_loose_massless();
+    }
+    follow = -held.solve(stiff(b, a));
+  }
+  const MatrixXd condensed = stiff(a, a) + stiff(a, b) * follow;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(per_root.asDiagonal() * condensed *
+                                                       per_root.asDiagonal());
+  NaturalModes modes{solver.eigenvalues(), MatrixXd(p.system.size(), std::ssize(a))};
+  const MatrixXd shapes = per_root.asDiagonal() * solver.eigenvectors();
+  modes.shapes(a, Eigen::all) = shapes;
+  modes.shapes(b, Eigen::all) = follow * shapes;
+  return modes;
+}
+
+// The modes nearest to a shift that the factors of `matrix` = +-(-K - shift M) belong to, which
+// must leave (..)^-1 positive on the massive unknowns.
+NaturalModes modes_beside(const Pencil& p, EffectiveMass& matrix, double offset, Index count) {
+  const Vec root = p.mass.cwiseSqrt();
+  // M^1/2 (..)^-1 M^1/2, with eigenvalues 1 / |w^2 - shift|, zero for massless unknowns.
+  const auto apply = [&](const Vec& z, Vec& y) {
+    matrix.solve(root.cwiseProduct(z), y);
+    y = offset * root.cwiseProduct(y);
+  };
+  const EigenPairs pairs = leading_pairs(apply, p.system.size(), count);
+  MatrixXd shapes(p.system.size(), count);
+  Vec x(p.system.size());
+  for (Index j = 0; j < count; ++j) {
+    matrix.solve(root.cwiseProduct(pairs.vectors.col(j)), x);
+    shapes.col(j) = x * (offset / pairs.values[j]);
+  }
+  // By Rayleigh and Ritz in the space of these shapes: w^2 of second order in their errors.
+  const MatrixXd stiffness = -shapes.transpose() * (p.k.selfadjointView<Eigen::Lower>() * shapes);
+  const MatrixXd masses = shapes.transpose() * p.mass.asDiagonal() * shapes;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(stiffness, masses);
+  return {ritz.eigenvalues(), shapes * ritz.eigenvectors()};
+}
+
+bool is_small(const Pencil& p, Index count) {
+  return p.system.size() <= most_dense || 4 * count >= p.system.size();
+}
+
+}  // namespace
+
+Index finite_modes(const System& system) { return (system.mass().array() > 0).count(); }
+
+NaturalModes lowest_modes(const System& system, const Vec& q, Index count) {
+  return lowest_modes(system, q, count, system.mass());
+}
+
+NaturalModes lowest_modes(const System& system, const Vec& q, Index count, const Vec& mass) {
+  const Pencil p(system, q, mass);
+  count = std::min(count, std::ssize(p.massive));
+  if (count == 0) return {Vec(0), MatrixXd(system.size(), 0)};
+  if (is_small(p, count)) {
+    const NaturalModes all = dense_modes(p);
+    return {all.squares.head(count), all.shapes.leftCols(count)};
+  }
+  EffectiveMass matrix(system, mass);
+  double offset = least_offset_below * p.width;
+  for (int tries = 0; !matrix.factorize_positive(offset, 1, p.k); ++tries) {
+    if (tries == most_tries) refuse_loose_massless();
+    offset *= growth;
+  }
+  return modes_beside(p, matrix, offset, count);
+}
+
+NaturalModes highest_modes(const System& system, const Vec& q, Index count) {
+  const Pencil p(system, q, system.mass());
+  count = std::min(count, std::ssize(p.massive));
+  if (count == 0) return {Vec(0), MatrixXd(system.size(), 0)};
+  if (is_small(p, count)) {
+    const NaturalModes all = dense_modes(p);
+    return {all.squares.tail(count), all.shapes.rightCols(count)};
+  }
+  // Above all finite w^2, s M + K is positive but for a negative pivot for each massless unknown.
+  EffectiveMass matrix(system);
+  const auto is_above = [&](double shift) {
+    if (p.massless.empty()) return matrix.factorize_positive(shift, -1, p.k);
+    return matrix.factorize(shift, -1, p.k) != EffectiveMass::Definiteness::singular &&
+           matrix.negative_pivots() == std::ssize(p.massless);
+  };
+  const double w = p.massless.empty() ? largest_frequency(system, q) : std::sqrt(p.width);
+  double offset = least_offset_above * p.width;
+  for (int tries = 0; !is_above(w * w + offset); ++tries) {
+    if (tries == most_tries) refuse_loose_massless();
+    offset *= growth;
+  }
+  return modes_beside(p, matrix, offset, count);
+}
+
+}  // namespace qddot

@@ -1,0 +1,48 @@
+#include "src/scene/settle.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "src/scene/invalid_input.hpp"
+
+namespace qddot {
+namespace {
+
+double diagonal(const std::vector<Node>& nodes) {
+  Eigen::AlignedBox3d box;
+  for (const Node& node : nodes) box.extend(node.position);
+  const double size = box.isEmpty() ? 0 : box.diagonal().norm();
+  return size > 0 ? size : 1;  // a single point has no scale of its own
+}
+
+}  // namespace
+
+Equilibrium equilibrium_of(const ReducedScene& scene) {
+  const State& start = scene.initial();
+  return find_equilibrium(scene.system(), start.q, diagonal(scene.expand(start)));
+}
+
+Scene settled(const Scene& scene, const std::string& source) {
+  const ReducedScene reduced(scene);
+  const Equilibrium rest = equilibrium_of(reduced);
+  const std::vector<Node> nodes = reduced.expand({0, rest.q, reduced.initial().v});
+  if (rest.outcome != Equilibrium::Outcome::reached) {
+    const auto moved = [&](std::size_t i) {
+      return (nodes[i].position - scene.nodes[i].position).norm();
+    };
+    std::size_t farthest = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (moved(i) > moved(farthest)) farthest = i;
+    }
+    throw InvalidInput(fmt::format("{}: {} (node {} moved by {:.3g} m)", source, rest.message,
+                                   farthest, moved(farthest)));
+  }
+  Scene result = scene;
+  result.starts_at_equilibrium = false;
+  for (std::size_t i = 0; i < nodes.size(); ++i) result.nodes[i].position = nodes[i].position;
+  return result;
+}
+
+}  // namespace qddot

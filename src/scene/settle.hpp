@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "src/analysis/equilibrium.hpp"
+#include "src/scene/reduce.hpp"
+#include "src/scene/scene.hpp"
+
+namespace qddot {
+
+// The stable equilibrium that is reached downhill from the scene's initial positions; the size of
+// the scene is the diagonal of the box around its nodes.
+Equilibrium equilibrium_of(const ReducedScene& scene);
+
+// The scene with its nodes at that equilibrium and its velocities as drawn; it no longer asks to
+// start there. Throws InvalidInput, in one sentence that starts with `source` and names the node
+// that moved farthest, where there is no equilibrium or none is reached.
+Scene settled(const Scene& scene, const std::string& source);
+
+}  // namespace qddot

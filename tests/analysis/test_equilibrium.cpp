@@ -1,0 +1,262 @@
+#include <limits>
+#include <random>
+
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+
+#include "src/analysis/equilibrium.hpp"
+#include "src/analysis/stability.hpp"
+#include "src/scene/generators.hpp"
+#include "src/scene/reduce.hpp"
+#include "tests/measure.hpp"
+#include "tests/problems.hpp"
+
+using namespace qddot;
+
+namespace {
+
+using Outcome = Equilibrium::Outcome;
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+// Whether it is what it says: a place without force to the rounding of its coordinates, from which
+// the energy falls in no direction. The curvature may be negative by rounding, 1e-11 of the row
+// sum.
+void check_minimum(const System& system, const Equilibrium& e, double length) {
+  BOOST_TEST((e.outcome == Outcome::reached), e.message);
+  BOOST_TEST(e.message == "");
+  BOOST_TEST_REQUIRE(e.q.allFinite());
+  const double row_sum = largest_row_sum(stiffness_at(system, e.q));
+  const Vec f = force_at(system, e.q);
+  BOOST_TEST(f.lpNorm<Eigen::Infinity>() == e.residual);
+  BOOST_TEST(e.residual <= 8 * eps * row_sum * std::max(e.q.lpNorm<Eigen::Infinity>(), length));
+  BOOST_TEST(unstable_directions(system, e.q) == 0);
+  BOOST_TEST(e.smallest_eigenvalue >= -1e-11 * row_sum);
+  // That of the place before the last steps of Newton's: the same but for rounding.
+  const double smallest = smallest_curvature(system, e.q).value;
+  BOOST_TEST(std::abs(e.smallest_eigenvalue - smallest) < 1e-9 * row_sum);
+  BOOST_TEST(e.isolated == (e.smallest_eigenvalue > 1e-11 * row_sum));
+}
+
+// How far a coordinate may be from the exact minimum: the force that is left over the stiffness.
+double position_tolerance(const Equilibrium& e) {
+  return 100 * e.residual / e.smallest_eigenvalue + 100 * eps;
+}
+
+ReducedScene draw(const std::string& name, const GeneratorValues& values) {
+  return ReducedScene(generate(*find_generator(name), values, "test"));
+}
+
+// Nodes on a line along x between two pins that stand closer than the springs are long.
+Problem strut(int dimension, int nodes, double gravity) {
+  Problem p;
+  p.network = {.dimension = dimension, .node_mass = Vec::Constant(nodes, 0.1)};
+  p.network.gravity[dimension - 1] = -gravity;
+  p.initial.q = Vec::Zero(dimension * nodes);
+  for (int i = 0; i < nodes; ++i) p.initial.q[dimension * i] = i + 1;
+  const SpringLaw law{.stiffness = 50, .rest_length = 1.1};
+  for (int i = 0; i + 1 < nodes; ++i) p.network.links.push_back({i, i + 1, law});
+  p.network.anchors = {{0, {0, 0, 0}, law}, {nodes - 1, {nodes + 1.0, 0, 0}, law}};
+  return p;
+}
+
+// The network and its start turned by `turn` and its nodes put in the order of `order`.
+Problem turned(const Problem& p, const Eigen::Matrix3d& turn, const std::vector<int>& order) {
+  Problem other = p;
+  other.network.gravity = turn * p.network.gravity;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    other.network.node_mass[order[i]] = p.network.node_mass[i];
+    other.initial.q.segment<3>(3 * order[i]) = turn * p.initial.q.segment<3>(3 * i);
+  }
+  for (auto& link : other.network.links) {
+    link.i = order[link.i];
+    link.j = order[link.j];
+  }
+  for (auto& anchor : other.network.anchors) {
+    anchor.i = order[anchor.i];
+    anchor.point = turn * anchor.point;
+  }
+  return other;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(equilibrium)
+
+BOOST_AUTO_TEST_CASE(one_mass_hangs_where_its_weight_says) {
+  const auto system = make_mass_spring({.dimension = 1,
+                                        .gravity = {-9.81, 0, 0},
+                                        .node_mass = Vec::Constant(1, 2),
+                                        .anchors = {{0, {0, 0, 0}, {.stiffness = 50}}}});
+  const Equilibrium e = find_equilibrium(*system, Vec::Constant(1, 3), 1);
+  check_minimum(*system, e, 1);
+  BOOST_TEST(std::abs(e.q[0] + 2 * 9.81 / 50) < 4 * eps);
+  BOOST_TEST(std::abs(e.smallest_eigenvalue - 50) < 50 * 4 * eps);
+  BOOST_TEST(e.isolated);
+}
+
+BOOST_AUTO_TEST_CASE(hanging_chain_is_stretched_by_the_weight_below_each_spring) {
+  // From the horizontal, and from soft to stiff: 1 kg in all on 1 m.
+  for (const double stiffness : {30.0, 1e3, 1e6}) {
+    const int nodes = 30;
+    const auto scene = draw("chain", {{"nodes", nodes}, {"stiffness", stiffness}});
+    const Equilibrium e = find_equilibrium(scene.system(), scene.initial().q, 1);
+    check_minimum(scene.system(), e, 1);
+    double z = 0;
+    for (int i = 0; i + 1 < nodes; ++i) {
+      const double weight = 9.81 * (nodes - 1 - i) / nodes;
+      z -= 1.0 / (nodes - 1) + weight / stiffness;
+      const Eigen::Vector3d expected(0, 0, z);
+      BOOST_TEST(distance(e.q.segment<3>(3 * i), expected) < position_tolerance(e));
+    }
+    BOOST_TEST(position_tolerance(e) < 1e-6);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(straight_strut_buckles_although_it_starts_in_balance) {
+  for (const int dimension : {2, 3}) {
+    for (const int nodes : {1, 2, 9}) {
+      for (const double gravity : {0.0, 9.81}) {
+        const auto [network, initial] = strut(dimension, nodes, gravity);
+        const auto system = make_mass_spring(network);
+        if (gravity == 0) {
+          BOOST_TEST(force_at(*system, initial.q).norm() < 1e-12);  // rounding of 5 N
+          BOOST_TEST(smallest_curvature(*system, initial.q).value < -1);
+        }
+        const Equilibrium e = find_equilibrium(*system, initial.q, nodes + 1.0);
+        check_minimum(*system, e, nodes + 1.0);
+        BOOST_TEST(system->potential(e.q) < system->potential(initial.q));
+        const auto across = e.q.reshaped(dimension, nodes).bottomRows(dimension - 1);
+        BOOST_TEST(across.cwiseAbs().maxCoeff() > 0.1);
+        if (gravity > 0) BOOST_TEST(across.bottomRows(1).maxCoeff() < 0);  // it hangs
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(upright_pendulum_ends_hanging) {
+  const double m = 2, g = 9.81, k = 500, l0 = 0.7;
+  for (const int dimension : {2, 3}) {
+    Network network{.dimension = dimension, .node_mass = Vec::Constant(1, m)};
+    network.gravity[dimension - 1] = -g;
+    network.anchors = {{0, {0, 0, 0}, {k, l0}}};
+    const auto system = make_mass_spring(network);
+    Vec down = Vec::Zero(dimension);
+    down[dimension - 1] = -(l0 + m * g / k);
+    // In exact balance on its compressed spring, and above and below that.
+    for (const double height : {l0 - m * g / k, l0, 0.3, 2.0}) {
+      Vec up = Vec::Zero(dimension);
+      up[dimension - 1] = height;
+      const Equilibrium e = find_equilibrium(*system, up, 1);
+      check_minimum(*system, e, 1);
+      BOOST_TEST(distance(e.q, down) < position_tolerance(e));
+      BOOST_TEST(e.isolated);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_nothing_holds_falls_for_ever) {
+  const auto free_chain = draw("chain", {{"nodes", 30}, {"pinned_ends", 0}});
+  // A cloth of which one node hangs on nothing.
+  Scene torn = generate(*find_generator("cloth"), {{"nodes", 8}}, "test");
+  std::erase_if(torn.springs, [](const Spring& s) { return s.nodes[0] == 20 || s.nodes[1] == 20; });
+  const ReducedScene torn_cloth(torn);
+  for (const ReducedScene* scene : {&free_chain, &torn_cloth}) {
+    const Equilibrium e = find_equilibrium(scene->system(), scene->initial().q, 1);
+    BOOST_TEST((e.outcome == Outcome::unbounded));
+    BOOST_TEST(e.message.find("falls for ever") != e.message.npos);
+    BOOST_TEST(e.q.allFinite());
+    BOOST_TEST(e.residual > 1e-4);  // some weight
+    BOOST_TEST(e.iterations < 500);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(slack_cloth_comes_to_rest) {
+  for (const double nodes : {6, 13, 20}) {
+    const auto scene = draw("cloth", {{"nodes", nodes}});
+    const Equilibrium e = find_equilibrium(scene.system(), scene.initial().q, 1.5);
+    check_minimum(scene.system(), e, 1.5);
+    // The force that is left against the weight of a node.
+    BOOST_TEST(e.residual < 1e-9 * 0.5 * 9.81 / (nodes * nodes));
+    BOOST_TEST(e.iterations < 300);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(random_networks_come_to_rest_however_they_start) {
+  std::mt19937 random(3);
+  for (const double stretch : {1.3, 0.9, 0.5}) {
+    for (const int dimension : {1, 2, 3}) {
+      for (const int nodes : {1, 3, 10, 40}) {
+        Problem p = random_network(random, dimension, nodes, stretch);
+        for (const bool with_massless : {false, true}) {
+          for (int i = 0; with_massless && i < nodes; i += 2) p.network.node_mass[i] = 0;
+          const auto system = make_mass_spring(p.network);
+          const Equilibrium e = find_equilibrium(*system, p.initial.q, nodes + 1.0);
+          check_minimum(*system, e, nodes + 1.0);
+          BOOST_TEST(system->potential(e.q) <= system->potential(p.initial.q));
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(rest_does_not_depend_on_directions_and_numbers) {
+  const Problem p = hammock(3);
+  const auto system = make_mass_spring(p.network);
+  const Equilibrium e = find_equilibrium(*system, p.initial.q, 5);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  const std::vector<int> order = {2, 0, 3, 1};
+  const Problem other = turned(p, turn, order);
+  const auto other_system = make_mass_spring(other.network);
+  const Equilibrium o = find_equilibrium(*other_system, other.initial.q, 5);
+  check_minimum(*other_system, o, 5);
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector3d expected = turn * e.q.segment<3>(3 * i);
+    BOOST_TEST(distance(o.q.segment<3>(3 * order[i]), expected) < position_tolerance(e));
+  }
+  BOOST_TEST(position_tolerance(e) < 1e-10);
+  BOOST_TEST(std::abs(o.smallest_eigenvalue - e.smallest_eigenvalue) < 1e-10 * 100);  // N/m
+}
+
+BOOST_AUTO_TEST_CASE(loose_ends_are_no_obstacle_and_are_told) {
+  // A free pair ends at its rest length somewhere, in some direction.
+  const auto pair = draw("pair", {{"stretch", 1.4}, {"rest_length", 0.8}});
+  const Equilibrium e = find_equilibrium(pair.system(), pair.initial().q, 1);
+  check_minimum(pair.system(), e, 1);
+  BOOST_TEST(std::abs((e.q.tail<3>() - e.q.head<3>()).norm() - 0.8) < 8 * eps);
+  BOOST_TEST(!e.isolated);
+  // Masses that nothing pulls stay where they are.
+  const auto nothing = make_mass_spring({.dimension = 2, .node_mass = Vec::Ones(2)});
+  const Vec anywhere{{1, 2, 3, 4}};
+  const Equilibrium still = find_equilibrium(*nothing, anywhere, 1);
+  BOOST_TEST((still.outcome == Outcome::reached));
+  BOOST_TEST((still.q == anywhere));
+  BOOST_TEST(still.iterations == 0);
+  BOOST_TEST(!still.isolated);
+}
+
+BOOST_AUTO_TEST_CASE(rest_is_found_again_at_once) {
+  const auto scene = draw("cloth", {{"nodes", 12}});
+  const Equilibrium e = find_equilibrium(scene.system(), scene.initial().q, 1.5);
+  const Equilibrium again = find_equilibrium(scene.system(), e.q, 1.5);
+  BOOST_TEST(again.iterations == 0);
+  BOOST_TEST(distance(again.q, e.q) < position_tolerance(e));
+}
+
+BOOST_AUTO_TEST_CASE(forces_that_overflow_end_the_search) {
+  const auto system = make_mass_spring(
+      {.dimension = 1, .node_mass = Vec::Ones(1), .anchors = {{0, {0, 0, 0}, {.quartic = 1e300}}}});
+  const Equilibrium e = find_equilibrium(*system, Vec::Constant(1, 1e10), 1e10);
+  BOOST_TEST((e.outcome == Outcome::not_converged));
+  BOOST_TEST(e.message.find("overflow") != e.message.npos);
+}
+
+BOOST_AUTO_TEST_CASE(no_unknowns_rest) {
+  const Equilibrium e = find_equilibrium(*make_mass_spring({.dimension = 3}), Vec(), 1);
+  BOOST_TEST((e.outcome == Outcome::reached));
+  BOOST_TEST(e.q.size() == 0);
+  BOOST_TEST(e.residual == 0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
