@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <string>
 #include <unistd.h>
@@ -11,46 +10,17 @@
 #include "src/scene/generators.hpp"
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/scene_file.hpp"
+#include "tests/folder.hpp"
+#include "tests/scene/refusal.hpp"
 
 namespace fs = std::filesystem;
 using namespace qddot;
 
 namespace {
 
-// A fresh folder for a test's files, gone at its end.
-class Folder {
- public:
-  Folder() { fs::create_directories(path_); }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return (path_ / name).string();
-  }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_ = fs::temp_directory_path() /
-                   fmt::format("qddot_scene_{}_{:x}", getpid(), std::random_device{}());
-};
-
 // What read_scene says of the file; empty where it takes it.
 std::string refusal(const std::string& path) {
-  try {
-    read_scene(path);
-    return "";
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-}
-
-bool names_all(const std::string& message, const std::vector<std::string>& fragments) {
-  for (const std::string& fragment : fragments) {
-    if (message.find(fragment) == message.npos) return false;
-  }
-  return !message.empty() && message.find('\n') == message.npos;
+  return refusal_of([&] { read_scene(path); });
 }
 
 // Two nodes and a spring, of which each test spoils a part.
@@ -85,12 +55,6 @@ const std::string mesh_scene =
     "[[mesh.pin]]\n"
     "min = [-1, -1, 2]\n"
     "max = [1, 1, 3]\n";
-
-std::string with(std::string text, const std::string& old_part, const std::string& new_part) {
-  const std::size_t at = text.find(old_part);
-  BOOST_REQUIRE(at != text.npos);
-  return text.replace(at, old_part.size(), new_part);
-}
 
 // Each text spoils one line of `good`; the message names that line, the field, what was written
 // and what is allowed.
@@ -225,7 +189,7 @@ BOOST_AUTO_TEST_CASE(malformed_meshes_are_named) {
       {{"'m.obj'", "3", {":2:", "mesh.file", "3", "text"}},
        {"'m.obj'", "'no.obj'", {":2:", "mesh.file", "no.obj", "No such file"}},
        {"'m.obj'", "'bad.obj'", {":2:", "mesh.file", "bad.obj:1:", "finite"}},
-       {"'m.obj'", "'m.msh'", {":2:", "mesh.file", ".msh", ".obj and .mesh"}},
+       {"'m.obj'", "'m.off'", {":2:", "mesh.file", ".off", ".obj, .mesh and .msh"}},
        {"file = 'm.obj'\n", "", {":1:", "mesh.file", "missing", "text"}},
        {"scale = 2", "scale = 0", {":3:", "mesh.scale", "0", "above 0"}},
        {"stiffness = 10", "stiffness = -1", {":4:", "mesh.stiffness", "-1", "from 0"}},
