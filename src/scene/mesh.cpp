@@ -7,7 +7,6 @@
 
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/mesh_formats.hpp"
-#include "src/scene/text_file.hpp"
 
 namespace qddot {
 namespace {
@@ -76,9 +75,9 @@ double Words::number(std::string_view field, std::string_view word) const {
   return *value;
 }
 
-Mesh read_mesh(const std::filesystem::path& file) {
+Mesh read_mesh(const std::filesystem::path& file, const TextSource& read) {
   reader_for(file);  // a file of another ending is not opened
-  return parse_mesh(read_text(file.string()), file);
+  return parse_mesh(read(file.string()), file);
 }
 
 Mesh parse_mesh(const std::string& text, const std::filesystem::path& file) {

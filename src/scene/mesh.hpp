@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "src/scene/text_file.hpp"
+
 namespace qddot {
 
 // Vertices, distinct edges and triangles of a surface or volume mesh. Vertices without an edge are
@@ -21,7 +23,7 @@ struct Mesh {
 // indices counted back from the last vertex), a MEDIT .mesh or a Gmsh .msh of version 2.2 or 4.1
 // (both ASCII; every element's edges), chosen by the file name's ending. Throws InvalidInput naming
 // the file, line, value and what is allowed.
-Mesh read_mesh(const std::filesystem::path& file);
+Mesh read_mesh(const std::filesystem::path& file, const TextSource& read = read_text);
 
 // The same of a text in memory, as if `file` held it.
 Mesh parse_mesh(const std::string& text, const std::filesystem::path& file);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,9 @@ namespace qddot {
 // The whole of a file that the user named. Throws InvalidInput, in a sentence that starts with
 // `path`, where it cannot be read or holds more than 256 MB.
 std::string read_text(const std::string& path);
+
+// Gives the text of a file as read_text does, which may keep its files elsewhere than on a disk.
+using TextSource = std::function<std::string(const std::string& path)>;
 
 // `text` made fit for a one-line message: at most `most` characters, unprintable ones as '?'.
 std::string shown(std::string_view text, std::size_t most = 60);
