@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "src/scene/scene.hpp"
+
+namespace qddot {
+
+// The scene as the text of a scene file of nodes and springs. Read back, it gives the same scene to
+// the last bit of every number. The scene must be valid and have a node. Bytes of its name that are
+// no UTF-8, which TOML cannot hold, are written as U+FFFD.
+std::string to_toml(const Scene& scene);
+
+}  // namespace qddot
