@@ -2,8 +2,10 @@
 //
 //   simulate --scene cloth --method verlet --step-size 5e-4 --until 0.1 --final end.csv
 //   simulate --scene cloth --method arkode_dirk4 --rtol 1e-5 --trajectory path.csv --every 0.01
+//   simulate --scene cloth --write-scene cloth.toml
 //   simulate --list-methods
 //   simulate --list-scenes
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -17,16 +19,18 @@
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
+#include "experiments/whole_file.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/reduce.hpp"
 #include "src/scene/scene_file.hpp"
+#include "src/scene/scene_writer.hpp"
 
 namespace qddot {
 namespace {
 
 struct Arguments {
-  std::string scene, method, final_path, trajectory_path, energy_path;
+  std::string scene, method, final_path, trajectory_path, energy_path, written_scene_path;
   double step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0, energy_every = 0;
   std::vector<double> every;
   bool list_methods = false, list_scenes = false, csv = false;
@@ -42,6 +46,10 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--final", a.final_path, "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
   app.add_option("--trajectory", a.trajectory_path, "CSV of all nodes over time: t,node,x,...");
   app.add_option("--energy", a.energy_path, "CSV of t,kinetic,potential,total");
+  app.add_option(
+      "--write-scene", a.written_scene_path,
+      "TOML of the scene as nodes and springs, to the last bit; without --method nothing "
+      "else is done");
   app.add_option("--every", a.every,
                  "the time between samples in s; steps land on them. Stands behind the output it "
                  "is for, or once for both")
@@ -103,6 +111,21 @@ void require_distinct_outputs(const CLI::App& app, const Arguments& a) {
                       option, path, file));
     }
   }
+  if (app.count("--write-scene") == 0) return;
+  require_given(a.written_scene_path, "--write-scene", "the name of a TOML file");
+  if (taken.contains(std::filesystem::absolute(a.written_scene_path).lexically_normal())) {
+    throw InvalidInput(fmt::format(
+        "--write-scene {}: another output or its sidecar goes there; allowed is a file for each",
+        a.written_scene_path));
+  }
+}
+
+// Whether the command line asks for the scene as a file and has nothing that is for a run.
+bool only_writes_scene(const CLI::App& app) {
+  const auto given = [&](const char* option) { return app.count(option) > 0; };
+  constexpr std::array of_a_run = {"--method", "--step-size",  "--rtol",   "--atol", "--until",
+                                   "--final",  "--trajectory", "--energy", "--every"};
+  return given("--write-scene") && std::ranges::none_of(of_a_run, given);
 }
 
 const Method& require_method(const std::string& name) {
@@ -147,6 +170,22 @@ void write_node(Csv& csv, std::size_t index, const Node& node, int dimension) {
   for (int d = 0; d < dimension; ++d) csv.field(node.velocity[d]);
   csv.end_row();
 }
+
+// A place for the scene that is asked for, taken before anything else is done.
+class WrittenScene {
+ public:
+  explicit WrittenScene(const std::string& path) {
+    if (!path.empty()) file_ = std::make_unique<WholeFile>(path);
+  }
+  void commit(const Scene& scene) {
+    if (!file_) return;
+    file_->write(to_toml(scene));
+    file_->commit();
+  }
+
+ private:
+  std::unique_ptr<WholeFile> file_;
+};
 
 class Output {
  public:
@@ -218,6 +257,11 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
     return done;
   }
   require_given(a.scene, "--scene", "a generator's name or a scene file");
+  if (only_writes_scene(app)) {
+    require_distinct_outputs(app, a);
+    WrittenScene(a.written_scene_path).commit(load_scene(a.scene));
+    return done;
+  }
   const Method& method = require_method(a.method);
   const Knobs knobs = require_knobs(app, a, method);
   assign_every(app, a);
@@ -226,7 +270,9 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
 
   const ReducedScene scene(drawn);
+  WrittenScene written_scene(a.written_scene_path);
   Output output(a, scene, until);
+  written_scene.commit(drawn);
   State state = scene.initial();
   output.see(state);
   const Summary summary =
