@@ -78,7 +78,8 @@ class GmshReader {
     const int line = words_.line();
     while (words_.in_line() != end) {
       if (!words_.next_line())
-        words_.refuse("section", section, fmt::format("are sections that end with {}", end), line);
+        words_.refuse("section", section, fmt::format("are sections that end with {}", shown(end)),
+                      line);
     }
   }
 

@@ -13,8 +13,10 @@ namespace {
 
 Mesh read_file(const Table& table, const std::filesystem::path& folder, const TextSource& read) {
   const std::string file = table.text("file");
-  if (std::ranges::any_of(file, [](unsigned char c) { return std::iscntrl(c); }))
-    table.refuse("file", "names without control characters");
+  const bool has_control =
+      std::ranges::any_of(file, [](unsigned char c) { return std::iscntrl(c); });
+  if (has_control || file.size() > 1000)  // messages hold it
+    table.refuse("file", "names of up to 1000 bytes without control characters");
   try {
     return read_mesh(folder / file, read);
   } catch (const InvalidInput& refusal) {

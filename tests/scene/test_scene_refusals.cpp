@@ -95,6 +95,7 @@ BOOST_AUTO_TEST_CASE(malformed_meshes_are_named) {
         "'q.obj'\nbending_stiffness = 1.5\n",
         {":3:", "mesh.bending_stiffness", "1.5", "q.obj", "two triangles", "is 0"}},
        {"'m.obj'", "\"m\\n.obj\"", {":2:", "mesh.file", "m .obj", "control"}},
+       {"'m.obj'", "'" + std::string(2000, 'm') + ".obj'", {":2:", "mesh.file", "mmm...", "1000"}},
        {"total_mass = 8\n", "", {":1:", "mesh.node_mass", "exactly one", "total_mass"}},
        {"scale = 2", "node_mass = 1", {":3:", "mesh.node_mass", "exactly one", "total_mass"}},
        {"total_mass = 8", "total_mass = -8", {":5:", "total_mass", "-8", "from 0"}},
