@@ -65,7 +65,7 @@ void show_input_at_death() {
   std::exit(1);
 }
 
-constexpr SceneLimits limits{.nodes = 1000, .springs = 6000};
+constexpr SceneLimits limits{.nodes = 100, .springs = 300};
 
 // A scene file, or one that takes all that a mesh has. Both name their meshes.
 Scene read(const std::string& name, bool bends) {

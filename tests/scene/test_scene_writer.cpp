@@ -132,12 +132,13 @@ BOOST_AUTO_TEST_CASE(any_name_is_read_back) {
   Scene scene{.dimension = 1, .nodes = {{.mass = 1}}};
   std::string controls;
   for (char c = 0; c < ' '; ++c) controls += c;
+  std::string many_dots;
+  for (int i = 0; i < 200; ++i) many_dots += "a.";
   for (const std::string& name :
-       {std::string(), std::string("two links"), std::string("\"quoted\" 'too'"),
+       {many_dots, std::string(), std::string("two links"), std::string("\"quoted\" 'too'"),
         std::string("\\ and \\u0041 and \\\""), controls + "\x7f", std::string("a\r\nb\n\n"),
         std::string("Brücke 桥 🌉 \u0085\u2028\ufeff\uffff"), std::string("\U0010ffff\ud7ff\ue000"),
-        std::string("v1.2.3"), std::string(500, '.'), std::string("# = [[nodes]]"),
-        std::string(100'000, '"')}) {
+        std::string("v1.2.3"), std::string("# = [[nodes]]"), std::string(100'000, '"')}) {
     scene.name = name;
     const std::string text = to_toml(scene);
     BOOST_TEST(first_difference(scene, parsed(text)) == "", text.substr(0, 200));
