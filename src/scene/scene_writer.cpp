@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "src/scene/invalid_input.hpp"
+
 namespace qddot {
 namespace {
 
@@ -64,6 +66,7 @@ class TomlText {
     add("]\n");
   }
 
+  std::size_t size() const { return text_.size(); }
   std::string text() const { return fmt::to_string(text_); }
 
  private:
@@ -111,15 +114,27 @@ void add_spring(const Spring& spring, TomlText& out) {
 
 }  // namespace
 
-std::string to_toml(const Scene& scene) {
+std::string to_toml(const Scene& scene, std::size_t most) {
   TomlText out;
+  const auto require_readable = [&] {
+    if (out.size() > most)
+      throw InvalidInput(
+          fmt::format("scene {}: it takes more than {} MB as a text; allowed are scenes of less",
+                      shown(scene.name), static_cast<double>(most) / 1e6));
+  };
   out.line("name", scene.name);
   out.add(fmt::format("dimension = {}\n", scene.dimension));
   out.line("gravity", scene.gravity, scene.dimension);
   if (scene.until) out.line("until", *scene.until);
   out.line("start", scene.starts_at_equilibrium ? "equilibrium" : "drawn");
-  for (const Node& node : scene.nodes) add_node(node, scene.dimension, out);
-  for (const Spring& spring : scene.springs) add_spring(spring, out);
+  for (const Node& node : scene.nodes) {
+    add_node(node, scene.dimension, out);
+    require_readable();
+  }
+  for (const Spring& spring : scene.springs) {
+    add_spring(spring, out);
+    require_readable();
+  }
   return out.text();
 }
 

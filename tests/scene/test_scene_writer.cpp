@@ -158,6 +158,16 @@ BOOST_AUTO_TEST_CASE(bytes_that_are_no_text_are_replaced_in_a_name) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_text_too_large_to_be_read_is_refused) {
+  const Scene scene = parsed(two_links), nodes{.name = "n", .nodes = {scene.nodes[1]}};
+  for (const Scene& one : {scene, nodes}) {
+    const std::size_t size = to_toml(one).size();
+    BOOST_TEST(refusal_of([&] { to_toml(one, size); }) == "");
+    BOOST_TEST(names_all(refusal_of([&] { to_toml(one, size - 1); }),
+                         {"scene " + one.name + ": ", "MB", "allowed"}));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_written_scene_is_one_to_edit) {
   const Scene scene = parsed(two_links);
   BOOST_TEST(to_toml(scene) ==
