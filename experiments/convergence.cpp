@@ -88,12 +88,13 @@ int convergence(const CLI::App& app, const Arguments& a,
   require_given(a.out, "--out", "the folder for the results");
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
-  const ReducedScene scene(drawn, reductions_of(a.scene));
+  const Scene start = started(drawn, a.scene);
+  const ReducedScene scene(start, reductions_of(a.scene));
   require_reference_exists(scene, a.scene.name);
   const auto selected = select_fixed_step(a.methods, scene, a.scene.name);
   require_folder(a.out);
 
-  const nlohmann::json origin = provenance(command_line, drawn);
+  const nlohmann::json origin = provenance(command_line, drawn, start, scene);
   CsvFile csv(a.out + "/order.csv",
               {"method", "h", "error_position", "error_velocity", "observed_order"});
   const Reference reference = reference_for(drawn, scene, until, a.out, origin);

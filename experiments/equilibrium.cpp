@@ -45,7 +45,7 @@ int equilibrium(const CLI::App& app, const Arguments& a,
   require_given(a.scene, "--scene", "a generator's name or a scene file");
   if (app.count("--final") > 0) require_given(a.final_path, "--final", "the name of a CSV file");
   const Scene drawn = load_scene(a.scene);
-  const ReducedScene scene(drawn);
+  const ReducedScene scene(drawn, Reductions::all_directions());
   std::unique_ptr<CsvFile> csv;
   if (!a.final_path.empty()) {
     csv = std::make_unique<CsvFile>(a.final_path, node_header(drawn.dimension, {}));
@@ -68,7 +68,7 @@ int equilibrium(const CLI::App& app, const Arguments& a,
     return end_not_reached;
   }
   fmt::print("{}: at rest after {} iterations; largest force {:.2g} N, energy {:.9g} J\n",
-             drawn.name, rest.iterations, rest.residual, scene.system().potential(rest.q));
+             drawn.name, rest.iterations, rest.residual, scene.potential({0, rest.q, Vec::Zero(rest.q.size())}));
   fmt::print("smallest eigenvalue of -K: {:.6g} N/m, {}\n", rest.smallest_eigenvalue,
              rest.isolated ? "an isolated minimum"
                            : "zero within rounding: something is loose, and the minimum is not "

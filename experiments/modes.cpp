@@ -135,7 +135,8 @@ int modes(const Arguments& a, const std::vector<std::string>& command_line) {
   }
   const Scene drawn = load_scene(a.scene);
   const bool at_equilibrium = is_at_equilibrium(a, drawn);
-  const ReducedScene scene(at_equilibrium ? settled(drawn, a.scene) : drawn);
+  const ReducedScene scene(at_equilibrium ? settled(drawn, a.scene) : drawn,
+                           Reductions::all_directions());
   require_folder(a.out);
   CsvFile table(a.out + "/modes.csv", {"mode", "omega", "frequency_hz"});
   CsvFile shapes(a.out + "/shapes.csv", shape_header(drawn.dimension));

@@ -5,13 +5,19 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "src/scene/reduce.hpp"
 #include "src/scene/scene.hpp"
 
 namespace qddot {
 
 // Where a result comes from: command line, scene and its content hash, version of the code,
 // compiler and flags, processor, libraries, date (UTC).
-nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& scene);
+nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn);
+
+// The same with what was left out of the scene and what is left: see Explanation. `start`: the scene
+// as it starts.
+nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,
+                          const Scene& start, const ReducedScene& reduced);
 
 // Hash of all sources that decide a motion; changes when the code does.
 std::string code_hash();

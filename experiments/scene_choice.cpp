@@ -10,6 +10,7 @@
 #include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/scene_file.hpp"
+#include "src/scene/settle.hpp"
 
 namespace qddot {
 namespace {
@@ -36,6 +37,10 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
 Scene load(const SceneChoice& choice) {
   require_given(choice.name, "--scene", "a generator's name or a scene file");
   return load_scene(choice.name);
+}
+
+Scene started(const Scene& drawn, const SceneChoice& choice) {
+  return drawn.starts_at_equilibrium ? settled(drawn, choice.name) : drawn;
 }
 
 Reductions reductions_of(const SceneChoice& choice) {

@@ -21,9 +21,12 @@ struct SceneChoice {
 // Adds --scene and --no-reduce.
 void add_scene_options(CLI::App& app, SceneChoice& choice);
 
-// The scene as drawn, and moved to its equilibrium where it says that it starts there. Throws
-// InvalidInput where there is none of that name, it is wrong, or it has no equilibrium.
+// The scene of that name. Throws InvalidInput where there is none or it is wrong.
 Scene load(const SceneChoice& choice);
+
+// The scene as its motion starts: moved to its equilibrium where it says so. Throws InvalidInput
+// where it has none.
+Scene started(const Scene& drawn, const SceneChoice& choice);
 
 // All reductions but those that the user does without. Throws InvalidInput for an unknown name.
 Reductions reductions_of(const SceneChoice& choice);

@@ -2,8 +2,11 @@
 //
 //   simulate --scene cloth --method verlet --step-size 5e-4 --until 0.1 --final end.csv
 //   simulate --scene cloth --method arkode_dirk4 --rtol 1e-5 --trajectory path.csv --every 0.01
+//   simulate --scene cloth --write-scene cloth.toml
+//   simulate --scene cloth --explain
 //   simulate --list-methods
 //   simulate --list-scenes
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -18,19 +21,24 @@
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/whole_file.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
+#include "src/analysis/frequency_bound.hpp"
+#include "src/analysis/largest_frequency.hpp"
+#include "src/scene/explain.hpp"
 #include "src/scene/reduce.hpp"
+#include "src/scene/scene_writer.hpp"
 
 namespace qddot {
 namespace {
 
 struct Arguments {
   SceneChoice scene;
-  std::string method, final_path, trajectory_path, energy_path;
+  std::string method, final_path, trajectory_path, energy_path, written_scene_path;
   double step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0, energy_every = 0;
   std::vector<double> every;
-  bool list_methods = false, list_scenes = false, csv = false;
+  bool list_methods = false, list_scenes = false, csv = false, explain = false;
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -43,11 +51,17 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--final", a.final_path, "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
   app.add_option("--trajectory", a.trajectory_path, "CSV of all nodes over time: t,node,x,...");
   app.add_option("--energy", a.energy_path, "CSV of t,kinetic,potential,total");
+  app.add_option(
+      "--write-scene", a.written_scene_path,
+      "TOML of the scene as nodes and springs, to the last bit; without --method nothing "
+      "else is done");
   app.add_option("--every", a.every,
                  "the time between samples in s; steps land on them. Stands behind the output it "
                  "is for, or once for both")
       ->expected(1)
       ->take_all();
+  app.add_flag("--explain", a.explain,
+               "say what need not be integrated of the scene and why, and run nothing");
   app.add_flag("--list-methods", a.list_methods, "print the methods there are");
   app.add_flag("--list-scenes", a.list_scenes, "print the scene generators and their parameters");
   app.add_flag("--csv", a.csv, "lists as CSV");
@@ -104,6 +118,21 @@ void require_distinct_outputs(const CLI::App& app, const Arguments& a) {
                       option, path, file));
     }
   }
+  if (app.count("--write-scene") == 0) return;
+  require_given(a.written_scene_path, "--write-scene", "the name of a TOML file");
+  if (taken.contains(std::filesystem::absolute(a.written_scene_path).lexically_normal())) {
+    throw InvalidInput(fmt::format(
+        "--write-scene {}: another output or its sidecar goes there; allowed is a file for each",
+        a.written_scene_path));
+  }
+}
+
+// Whether the command line asks for the scene as a file and has nothing that is for a run.
+bool only_writes_scene(const CLI::App& app) {
+  const auto given = [&](const char* option) { return app.count(option) > 0; };
+  constexpr std::array of_a_run = {"--method", "--step-size",  "--rtol",   "--atol", "--until",
+                                   "--final",  "--trajectory", "--energy", "--every"};
+  return given("--write-scene") && std::ranges::none_of(of_a_run, given);
 }
 
 const Method& require_method(const std::string& name) {
@@ -133,6 +162,22 @@ Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& metho
   if (app.count("--atol") > 0) require_positive(a.atol, "--atol", "an absolute tolerance");
   return {a.step_size, a.rtol, a.atol};
 }
+
+// A place for the scene that is asked for, taken before anything else is done.
+class WrittenScene {
+ public:
+  explicit WrittenScene(const std::string& path) {
+    if (!path.empty()) file_ = std::make_unique<WholeFile>(path);
+  }
+  void commit(const Scene& scene) {
+    if (!file_) return;
+    file_->write(to_toml(scene));
+    file_->commit();
+  }
+
+ private:
+  std::unique_ptr<WholeFile> file_;
+};
 
 class Output {
  public:
@@ -175,6 +220,7 @@ class Output {
     }
   }
 
+  bool is_asked_for() const { return final_ || trajectory_ || energy_; }
   void finish(const State& state, const nlohmann::json& origin) {
     if (final_) {
       const auto nodes = scene_.expand(state);
@@ -194,6 +240,27 @@ class Output {
   std::unique_ptr<CsvFile> final_, trajectory_, energy_;
 };
 
+// Why an explicit method cannot be stable from the start, if it cannot; the cheap bound of w_max
+// settles most cases.
+std::string step_warning(const Method& method, const Knobs& knobs, const ReducedScene& scene) {
+  if (method.implicit || method.order == 0 || method.knob != Knob::step_size) return "";
+  const System& system = scene.system();
+  const Vec& q = scene.initial().q;
+  const double limit = method.stability_limit, h = knobs.step_size;
+  if (h * frequency_bound(system, q) <= limit) return "";
+  const double w = largest_frequency(system, q);
+  if (h * w <= limit) return "";
+  return fmt::format("h = {:.4g} s is above {:g}/w_max = {:.4g} s, where {} blows up (w_max = {:.5g} "
+                     "rad/s at the start)",
+                     h, limit, limit / w, method.name, w);
+}
+
+int explain_only(const Arguments& a) {
+  const Scene start = started(load(a.scene), a.scene);
+  fmt::print("{}", in_words(explain(start, ReducedScene(start, reductions_of(a.scene))), start));
+  return done;
+}
+
 int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& command_line) {
   if (a.list_methods) {
     print_methods(a.csv);
@@ -204,37 +271,52 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
     return done;
   }
   require_given(a.scene.name, "--scene", "a generator's name or a scene file");
+  if (only_writes_scene(app)) {
+    require_distinct_outputs(app, a);
+    WrittenScene(a.written_scene_path).commit(load(a.scene));
+    return done;
+  }
+  if (a.explain) return explain_only(a);
   const Method& method = require_method(a.method);
   const Knobs knobs = require_knobs(app, a, method);
   assign_every(app, a);
   require_distinct_outputs(app, a);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  const Scene start = started(drawn, a.scene);
   Reductions reductions = reductions_of(a.scene);
   // Springs in series are one in tension only: who takes the node between them need not care.
   if (method.accepts_massless) reductions = reductions.without(Reduction::massless);
-  const ReducedScene scene(drawn, reductions);
+  const ReducedScene scene(start, reductions);
   require_fit(method, scene, a.scene.name);
 
+  WrittenScene written_scene(a.written_scene_path);
   Output output(a, scene, until);
+  written_scene.commit(drawn);
   State state = scene.initial();
   output.see(state);
   const Summary summary =
       make_integrator(method, scene.system(), knobs)->advance(state, until, output.observer());
 
-  nlohmann::json origin = provenance(command_line, drawn);
-  origin["outcome"] = name(summary.outcome);
-  origin["t_reached"] = summary.t_reached;
-  output.finish(state, origin);
+  if (output.is_asked_for()) {
+    nlohmann::json origin = provenance(command_line, drawn, start, scene);
+    origin["outcome"] = name(summary.outcome);
+    origin["t_reached"] = summary.t_reached;
+    output.finish(state, origin);
+  }
   const Counts& c = summary.counts;
   fmt::print(
       "{} on {}: {} at t = {:g} s after {} steps, {} force and {} stiffness evaluations, "
       "{} factorisations\n",
       method.name, drawn.name, name(summary.outcome), summary.t_reached, c.steps,
       c.force_evaluations, c.stiffness_evaluations, c.factorizations);
-  if (summary.outcome == Outcome::reached_end) return done;
-  fmt::print(stderr, "simulate: {} of {} s reached: {}\n", summary.t_reached, until,
-             summary.message);
+  const std::string warning = step_warning(method, knobs, scene);
+  if (summary.outcome == Outcome::reached_end) {
+    if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
+    return done;
+  }
+  fmt::print(stderr, "simulate: {} of {} s reached: {}{}{}\n", summary.t_reached, until,
+             summary.message, warning.empty() ? "" : "; ", warning);
   return end_not_reached;
 }
 

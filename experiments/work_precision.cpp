@@ -120,14 +120,15 @@ int work_precision(const CLI::App& app, const Arguments& a,
   }
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
-  const ReducedScene scene(drawn, reductions_of(a.scene));
+  const Scene start = started(drawn, a.scene);
+  const ReducedScene scene(start, reductions_of(a.scene));
   require_reference_exists(scene, a.scene.name);
   const auto selected = select_methods(a.methods, scene, a.scene.name);
   require_folder(a.out);
   CsvFile points_csv(a.out + "/points.csv", point_columns);
   CsvFile front_csv(a.out + "/front.csv", front_columns);
 
-  nlohmann::json origin = provenance(command_line, drawn);
+  nlohmann::json origin = provenance(command_line, drawn, start, scene);
   origin["until"] = until;
   show_progress("making the reference ...");
   const Reference reference = reference_for(drawn, scene, until, a.out, origin);

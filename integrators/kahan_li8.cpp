@@ -52,6 +52,7 @@ Method kahan_li8() {
           .source = "Kahan and Li, Mathematics of Computation 66 (1997) 1089-1099",
           .order = 8,
           .symplectic = true,
+          .stability_limit = 3.1,  // where the trace of one step's matrix first exceeds 2
           .make = create<KahanLi8>};
 }
 

@@ -27,6 +27,8 @@ struct Method {
   Family family = Family::hand_written;
   Knob knob = Knob::step_size;
   bool implicit = false;
+  // Of explicit methods: on q'' = -w^2 q the motion blows up where h w is above it.
+  double stability_limit = 2;
   bool symplectic = false;
   bool needs_stiffness = false;
   bool accepts_massless = false;

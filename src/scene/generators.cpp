@@ -47,8 +47,8 @@ void require(const GeneratorParameter& parameter, double value, const std::strin
 
 }  // namespace
 
-Scene generate(const Generator& generator, const GeneratorValues& values,
-               const std::string& source) {
+Scene generate(const Generator& generator, const GeneratorValues& values, const std::string& source,
+               const SceneLimits& limits) {
   GeneratorValues complete;
   std::vector<std::string> names;
   for (const auto& parameter : generator.parameters) {
@@ -65,6 +65,7 @@ Scene generate(const Generator& generator, const GeneratorValues& values,
   for (const auto& parameter : generator.parameters) {
     require(parameter, complete[parameter.name], source);
   }
+  require_within(limits, generator.size(complete), source);
   Scene scene = generator.draw(complete);
   scene.name = generator.name;
   validate(scene, source);

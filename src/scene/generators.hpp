@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "src/scene/scene.hpp"
+#include "src/scene/scene_limits.hpp"
 
 namespace qddot {
 
@@ -24,7 +25,10 @@ struct Generator {
   std::string name;
   std::string summary;
   std::vector<GeneratorParameter> parameters;
-  Scene (*draw)(const GeneratorValues& values);  // `values` holds every parameter
+  // The size of the scene that draw() draws, known before it is drawn. `values` holds every
+  // parameter, for draw() too.
+  SceneSize (*size)(const GeneratorValues& values);
+  Scene (*draw)(const GeneratorValues& values);
 };
 
 // All generators, in the order in which they are listed.
@@ -35,8 +39,9 @@ const Generator* find_generator(const std::string& name);
 
 // Draws the scene; parameters that `values` does not name take their standard value. Throws
 // InvalidInput, in a sentence that starts with `source`, for an unknown parameter or a value that
-// is not finite, not whole where it must be, or outside [low, high].
-Scene generate(const Generator& generator, const GeneratorValues& values,
-               const std::string& source);
+// is not finite, not whole where it must be, or outside [low, high], and for a scene that would be
+// larger than the limits.
+Scene generate(const Generator& generator, const GeneratorValues& values, const std::string& source,
+               const SceneLimits& limits = {});
 
 }  // namespace qddot

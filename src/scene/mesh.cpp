@@ -7,10 +7,21 @@
 
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/mesh_formats.hpp"
-#include "src/scene/text_file.hpp"
 
 namespace qddot {
 namespace {
+
+using Reader = Mesh (*)(const std::string& text, const std::string& file);
+
+Reader reader_for(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  if (ending == ".obj") return read_obj;
+  if (ending == ".mesh") return read_medit;
+  if (ending == ".msh") return read_gmsh;
+  throw InvalidInput(
+      fmt::format("{}: the ending \"{}\" is not allowed; allowed are .obj, .mesh and .msh",
+                  file.string(), ending));
+}
 
 bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && c != '\n'; }
 
@@ -64,13 +75,14 @@ double Words::number(std::string_view field, std::string_view word) const {
   return *value;
 }
 
-Mesh read_mesh(const std::filesystem::path& file) {
-  const std::string name = file.string(), ending = file.extension().string();
-  if (ending != ".obj" && ending != ".mesh")
-    throw InvalidInput(fmt::format(
-        "{}: the ending \"{}\" is not allowed; allowed are .obj and .mesh", name, ending));
-  const std::string text = read_text(name);
-  Mesh mesh = ending == ".obj" ? read_obj(text, name) : read_medit(text, name);
+Mesh read_mesh(const std::filesystem::path& file, const TextSource& read) {
+  reader_for(file);  // a file of another ending is not opened
+  return parse_mesh(read(file.string()), file);
+}
+
+Mesh parse_mesh(const std::string& text, const std::filesystem::path& file) {
+  const std::string name = file.string();
+  Mesh mesh = reader_for(file)(text, name);
   if (mesh.vertices.empty())
     throw InvalidInput(fmt::format("{}: it has no vertices; allowed are meshes with some", name));
   keep_distinct(mesh.edges);

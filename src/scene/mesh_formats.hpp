@@ -55,5 +55,6 @@ std::optional<Number> number_in(std::string_view word) {
 // The formats. Edges come as the file has them: repeated, in either direction, unsorted.
 Mesh read_obj(const std::string& text, const std::string& file);
 Mesh read_medit(const std::string& text, const std::string& file);
+Mesh read_gmsh(const std::string& text, const std::string& file);
 
 }  // namespace qddot

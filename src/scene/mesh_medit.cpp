@@ -2,24 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "src/scene/mesh_elements.hpp"
 #include "src/scene/mesh_formats.hpp"
 
 namespace qddot {
 namespace {
-
-// A section of elements: the edges of each, by the places of their two corners.
-struct Element {
-  std::string_view keyword;
-  std::size_t corners;
-  std::string_view edges;
-};
-constexpr std::array<Element, 5> elements{{
-    {"Edges", 2, "01"},
-    {"Triangles", 3, "01 12 20"},
-    {"Quadrilaterals", 4, "01 12 23 30"},
-    {"Tetrahedra", 4, "01 02 03 12 13 23"},
-    {"Hexahedra", 8, "01 12 23 30 45 56 67 74 04 15 26 37"},
-}};
 
 class MeditReader {
  public:
@@ -31,7 +18,7 @@ class MeditReader {
     for (auto word = words_.next(); !word.empty() && word != "End"; word = words_.next()) {
       const auto element =
           std::find_if(elements.begin(), elements.end(),
-                       [&](const Element& candidate) { return candidate.keyword == word; });
+                       [&](const Element& candidate) { return candidate.medit_section == word; });
       if (word == "Dimension")
         dimension_ = whole(word, 2, 3);
       else if (word == "Vertices")
@@ -70,16 +57,12 @@ class MeditReader {
   }
 
   void read_elements(const Element& element) {
-    std::array<std::size_t, 8> corners;
-    for (std::size_t left = count(element.keyword); left > 0; --left) {
-      for (std::size_t k = 0; k < element.corners; ++k) corners[k] = corner(element.keyword);
-      skip_reference(element.keyword);
-      const auto corner_at = [&](std::size_t k) {
-        return corners[std::size_t(element.edges[k] - '0')];
-      };
-      for (std::size_t k = 0; k < element.edges.size(); k += 3)
-        mesh_.edges.push_back({corner_at(k), corner_at(k + 1)});
-      if (element.corners == 3) mesh_.triangles.push_back({corners[0], corners[1], corners[2]});
+    const std::string_view field = element.medit_section;
+    std::array<std::size_t, most_corners> corners;
+    for (std::size_t left = count(field); left > 0; --left) {
+      for (std::size_t k = 0; k < element.corners; ++k) corners[k] = corner(field);
+      skip_reference(field);
+      add_element(element, corners, mesh_);
     }
   }
 

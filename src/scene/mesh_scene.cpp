@@ -1,18 +1,40 @@
 #include "src/scene/mesh_scene.hpp"
 
+#include <algorithm>
+#include <cctype>
+
+#include <fmt/format.h>
+
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/mesh.hpp"
 
 namespace qddot {
 namespace {
 
-Mesh read_file(const Table& table, const std::filesystem::path& folder) {
+Mesh read_file(const Table& table, const std::filesystem::path& folder, const TextSource& read) {
   const std::string file = table.text("file");
+  const bool has_control =
+      std::ranges::any_of(file, [](unsigned char c) { return std::iscntrl(c); });
+  if (has_control || file.size() > 1000)  // messages hold it
+    table.refuse("file", "names of up to 1000 bytes without control characters");
   try {
-    return read_mesh(folder / file);
+    return read_mesh(folder / file, read);
   } catch (const InvalidInput& refusal) {
     table.fail("file", refusal.what());
   }
+}
+
+// The pairs of nodes that springs against bending join.
+std::vector<std::array<std::size_t, 2>> bending_pairs(const Table& table, const Mesh& mesh) {
+  const double stiffness = table.number_or(0, "bending_stiffness", not_negative);
+  if (stiffness == 0) return {};
+  auto pairs = opposite_vertices(mesh);
+  if (pairs.empty())
+    table.fail(
+        "bending_stiffness",
+        fmt::format("{} is not allowed as {} has no edge between two triangles; allowed is 0",
+                    stiffness, shown(table.text("file"))));
+  return pairs;
 }
 
 double mass_of_each(const Table& table, std::size_t nodes) {
@@ -42,19 +64,25 @@ void pin(const Table& box, std::vector<Node>& nodes) {
 
 }  // namespace
 
-void add_mesh(const Table& table, const std::filesystem::path& folder, Scene& scene) {
+void add_mesh(const Table& table, const std::filesystem::path& folder, const TextSource& read,
+              const SceneLimits& limits, Scene& scene) {
   table.allow_keys(
       {"file", "scale", "stiffness", "bending_stiffness", "node_mass", "total_mass", "pin"});
   const double scale = table.number_or(1, "scale", positive);
   const double stiffness = table.number("stiffness", not_negative);
   const double bending_stiffness = table.number_or(0, "bending_stiffness", not_negative);
-  const Mesh mesh = read_file(table, folder);
+  const Mesh mesh = read_file(table, folder, read);
+  const auto bending = bending_pairs(table, mesh);
+  const SceneSize size{mesh.vertices.size(), mesh.edges.size() + bending.size()};
+  require_within(limits, size, table.place());
 
   const double mass = mass_of_each(table, mesh.vertices.size());
+  scene.nodes.reserve(size.nodes);
+  scene.springs.reserve(size.springs);
   for (const Eigen::Vector3d& vertex : mesh.vertices)
     scene.nodes.push_back({.position = scale * vertex, .mass = mass});
   add_springs(mesh.edges, stiffness, scene);
-  if (bending_stiffness > 0) add_springs(opposite_vertices(mesh), bending_stiffness, scene);
+  add_springs(bending, bending_stiffness, scene);
   for (const Table& box : table.tables("pin")) pin(box, scene.nodes);
 }
 

@@ -1,14 +1,12 @@
 #include "src/scene/scene_file.hpp"
 
 #include <cctype>
-#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "src/scene/generators.hpp"
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/mesh_scene.hpp"
-#include "src/scene/text_file.hpp"
 #include "src/scene/toml_table.hpp"
 
 namespace qddot {
@@ -45,8 +43,7 @@ void refuse_deep_keys(const std::string& text, const std::string& path) {
   }
 }
 
-toml::table parse(const std::string& path) {
-  const std::string text = read_text(path);
+toml::table parse(const std::string& text, const std::string& path) {
   refuse_deep_keys(text, path);
   try {
     return toml::parse(text);
@@ -77,14 +74,14 @@ Spring spring_in(const Table& table, const std::vector<Node>& nodes) {
                   .quartic = table.number_or(0, "quartic", not_negative)}};
 }
 
-void add_nodes_and_springs(const Table& file, Scene& scene) {
-  file.allow_keys({"name", "dimension", "gravity", "until", "nodes", "springs"});
+void add_nodes_and_springs(const Table& file, const SceneLimits& limits, Scene& scene) {
+  file.allow_keys({"name", "dimension", "gravity", "until", "start", "nodes", "springs"});
   scene.dimension = file.integer("dimension", 1, 3);
-  for (const Table& table : file.tables("nodes"))
-    scene.nodes.push_back(node_in(table, scene.dimension));
+  const std::vector<Table> nodes = file.tables("nodes"), springs = file.tables("springs");
+  require_within(limits, {nodes.size(), springs.size()}, file.place());
+  for (const Table& table : nodes) scene.nodes.push_back(node_in(table, scene.dimension));
   if (scene.nodes.empty()) file.refuse("nodes", "lists of at least one node");
-  for (const Table& table : file.tables("springs"))
-    scene.springs.push_back(spring_in(table, scene.nodes));
+  for (const Table& table : springs) scene.springs.push_back(spring_in(table, scene.nodes));
 }
 
 std::string generator_names() {
@@ -93,7 +90,7 @@ std::string generator_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-Scene generated(const Table& table) {
+Scene generated(const Table& table, const SceneLimits& limits) {
   const std::string kind = table.text("kind");
   const Generator* generator = find_generator(kind);
   if (!generator) table.refuse("kind", generator_names());
@@ -101,38 +98,49 @@ Scene generated(const Table& table) {
   for (const std::string& key : table.keys()) {
     if (key != "kind") values[key] = table.number(key);
   }
-  return generate(*generator, values, table.place());
+  return generate(*generator, values, table.place(), limits);
 }
 
-Scene scene_in(const Table& file, const std::filesystem::path& path) {
-  if (file.has("nodes") + file.has("mesh") + file.has("generator") != 1)
-    throw InvalidInput(fmt::format(
-        "{}: a scene needs nodes; allowed is exactly one of [[nodes]], [mesh] and [generator]",
-        path.string()));
-  Scene scene;
-  if (file.has("generator")) {
-    file.allow_keys({"name", "until", "generator"});
-    scene = generated(file.table("generator"));
-  } else if (file.has("mesh")) {
-    file.allow_keys({"name", "dimension", "gravity", "until", "mesh"});
-    if (file.has("dimension")) file.integer("dimension", 3, 3);
-    add_mesh(file.table("mesh"), path.parent_path(), scene);
-  } else {
-    add_nodes_and_springs(file, scene);
-  }
-  scene.name = file.has("name") ? file.text("name") : path.stem().string();
-  if (file.has("until")) scene.until = file.number("until", positive);
-  if (file.has("gravity")) scene.gravity = file.vector("gravity", scene.dimension);
-  return scene;
+bool starts_at_equilibrium(const Table& file) {
+  if (!file.has("start")) return false;
+  const std::string start = file.text("start");
+  if (start != "drawn" && start != "equilibrium")
+    file.refuse("start", "\"drawn\" and \"equilibrium\"");
+  return start == "equilibrium";
 }
 
 }  // namespace
 
-Scene read_scene(const std::string& path) {
-  const toml::table file = parse(path);
-  Scene scene = scene_in(Table(file, path), path);
+Scene parse_scene(const std::string& text, const std::string& path,
+                  const std::filesystem::path& folder, const SceneLimits& limits,
+                  const TextSource& read) {
+  const toml::table content = parse(text, path);
+  const Table file(content, path);
+  if (file.has("nodes") + file.has("mesh") + file.has("generator") != 1)
+    throw InvalidInput(fmt::format(
+        "{}: a scene needs nodes; allowed is exactly one of [[nodes]], [mesh] and [generator]",
+        path));
+  Scene scene;
+  if (file.has("generator")) {
+    file.allow_keys({"name", "until", "start", "generator"});
+    scene = generated(file.table("generator"), limits);
+  } else if (file.has("mesh")) {
+    file.allow_keys({"name", "dimension", "gravity", "until", "start", "mesh"});
+    if (file.has("dimension")) file.integer("dimension", 3, 3);
+    add_mesh(file.table("mesh"), folder, read, limits, scene);
+  } else {
+    add_nodes_and_springs(file, limits, scene);
+  }
+  scene.name = file.has("name") ? file.text("name") : std::filesystem::path(path).stem().string();
+  if (file.has("until")) scene.until = file.number("until", positive);
+  if (file.has("gravity")) scene.gravity = file.vector("gravity", scene.dimension);
+  scene.starts_at_equilibrium = starts_at_equilibrium(file);
   validate(scene, path);
   return scene;
+}
+
+Scene read_scene(const std::string& path) {
+  return parse_scene(read_text(path), path, std::filesystem::path(path).parent_path());
 }
 
 Scene load_scene(const std::string& name_or_path) {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "src/scene/scene.hpp"
+#include "src/scene/scene_limits.hpp"
+#include "src/scene/text_file.hpp"
 
 namespace qddot {
 
@@ -10,6 +13,12 @@ namespace qddot {
 // Throws InvalidInput with one sentence that names file, line, entry, field, value and what is
 // allowed; unknown keys are errors.
 Scene read_scene(const std::string& path);
+
+// The same of a text in memory, as if the file `path` held it: meshes are sought from `folder`,
+// their text is taken from `read`. A scene larger than the limits is refused before it is made.
+Scene parse_scene(const std::string& text, const std::string& path,
+                  const std::filesystem::path& folder, const SceneLimits& limits = {},
+                  const TextSource& read = read_text);
 
 // The scene that a user names on a command line: a generator's name, else a file's path.
 // Throws InvalidInput as read_scene does, and for a name that is neither.

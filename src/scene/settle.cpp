@@ -25,7 +25,7 @@ Equilibrium equilibrium_of(const ReducedScene& scene) {
 }
 
 Scene settled(const Scene& scene, const std::string& source) {
-  const ReducedScene reduced(scene);
+  const ReducedScene reduced(scene, Reductions::all_directions());
   const Equilibrium rest = equilibrium_of(reduced);
   const std::vector<Node> nodes = reduced.expand({0, rest.q, reduced.initial().v});
   if (rest.outcome != Equilibrium::Outcome::reached) {

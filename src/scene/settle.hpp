@@ -9,7 +9,8 @@
 namespace qddot {
 
 // The stable equilibrium that is reached downhill from the scene's initial positions; the size of
-// the scene is the diagonal of the box around its nodes.
+// the scene is the diagonal of the box around its nodes. The scene must have been reduced to
+// Reductions::all_directions() at most: rest may lie where a reduced motion never comes.
 Equilibrium equilibrium_of(const ReducedScene& scene);
 
 // The scene with its nodes at that equilibrium and its velocities as drawn; it no longer asks to

@@ -14,7 +14,6 @@
 namespace qddot {
 
 std::string read_text(const std::string& path) {
-  constexpr std::size_t most = 256'000'000;
   const auto refuse = [&](const std::string& what) {
     throw InvalidInput(
         fmt::format("{}: {}; allowed are readable files of up to 256 MB", path, what));
@@ -28,7 +27,7 @@ std::string read_text(const std::string& path) {
   std::array<char, 65536> block;
   while (in.read(block.data(), block.size()), in.gcount() > 0) {
     text.append(block.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.size() > most) refuse("the file holds more than 256 MB");
+    if (text.size() > most_bytes) refuse("the file holds more than 256 MB");
   }
   if (in.bad()) refuse("the file cannot be read to its end");
   return text;

@@ -132,6 +132,7 @@ void Table::fail(std::string_view key, std::string_view what) const {
 }
 
 std::string Table::place() const {
+  if (entry_.empty()) return file_;
   return fmt::format("{}:{}: {}", file_, table_.source().begin.line, entry_);
 }
 

@@ -55,7 +55,7 @@ class Table {
   [[noreturn]] void refuse(std::string_view key, std::string_view allowed) const;
   // Throws InvalidInput: `what`, after the file, line and name of `key`.
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;
-  // "file:line: entry" of this table.
+  // "file:line: entry" of this table, "file" of the top level.
   std::string place() const;
 
  private:

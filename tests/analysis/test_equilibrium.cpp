@@ -44,7 +44,8 @@ double position_tolerance(const Equilibrium& e) {
 }
 
 ReducedScene draw(const std::string& name, const GeneratorValues& values) {
-  return ReducedScene(generate(*find_generator(name), values, "test"));
+  return ReducedScene(generate(*find_generator(name), values, "test"),
+                      Reductions::all_directions());
 }
 
 // Nodes on a line along x between two pins that stand closer than the springs are long.
@@ -160,7 +161,7 @@ BOOST_AUTO_TEST_CASE(what_nothing_holds_falls_for_ever) {
   // A cloth of which one node hangs on nothing.
   Scene torn = generate(*find_generator("cloth"), {{"nodes", 8}}, "test");
   std::erase_if(torn.springs, [](const Spring& s) { return s.nodes[0] == 20 || s.nodes[1] == 20; });
-  const ReducedScene torn_cloth(torn);
+  const ReducedScene torn_cloth(torn, Reductions::all_directions());
   for (const ReducedScene* scene : {&free_chain, &torn_cloth}) {
     const Equilibrium e = find_equilibrium(scene->system(), scene->initial().q, 1);
     BOOST_TEST((e.outcome == Outcome::unbounded));

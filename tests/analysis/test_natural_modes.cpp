@@ -39,7 +39,7 @@ Case scene_case(const std::string& name, const GeneratorValues& values, double s
   Scene scene = generate(*find_generator(name), values, "test");
   for (Spring& spring : scene.springs) spring.law.rest_length /= stretch;
   for (Node& node : scene.nodes) node.pinned = node.pinned && pinned;
-  const auto reduced = std::make_shared<ReducedScene>(scene);
+  const auto reduced = std::make_shared<ReducedScene>(scene, Reductions::all_directions());
   return {{reduced, &reduced->system()}, reduced->initial().q};
 }
 

@@ -43,7 +43,7 @@ BOOST_AUTO_TEST_CASE(sidecar_says_how_well_it_rests) {
   const Folder folder;
   const Run result = run("equilibrium", {"--scene", "lattice", "--final", folder / "e.csv"});
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
-  const ReducedScene scene(load_scene("lattice"));
+  const ReducedScene scene(load_scene("lattice"), Reductions::all_directions());
   const Equilibrium e = equilibrium_of(scene);
   const auto origin = nlohmann::json::parse(read_all(folder / "e.json"));
   BOOST_TEST(origin.at("outcome").get<std::string>() == "reached");

@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(shapes_have_every_node_and_the_springs_join_them) {
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   BOOST_TEST(contains(result.out, {"at equilibrium"}));
   const Scene rest = settled(load_scene("cloth"), "");
-  const ReducedScene reduced(rest);
+  const ReducedScene reduced(rest, Reductions::all_directions());
   const Vec& q = reduced.initial().q;
   const NaturalModes expected = lowest_modes(reduced.system(), q, 3);
   const Table table = read_csv(file_in(folder, "shapes.csv"));

@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(help_names_every_option) {
     BOOST_TEST(result.err == "");
     BOOST_TEST(contains(result.out, {"--scene", "--method", "--step-size", "--rtol", "--atol",
                                      "--until", "--final", "--trajectory", "--energy", "--every",
-                                     "--list-methods", "--list-scenes", "--csv"}));
+                                     "--write-scene", "--list-methods", "--list-scenes", "--csv"}));
   }
 }
 

@@ -1,17 +1,16 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
 
-#include "src/scene/invalid_input.hpp"
 #include "src/scene/mesh.hpp"
+#include "tests/folder.hpp"
+#include "tests/scene/refusal.hpp"
 
 namespace fs = std::filesystem;
 using namespace qddot;
@@ -20,42 +19,13 @@ namespace {
 
 using Pairs = std::vector<std::array<std::size_t, 2>>;
 
-// A fresh folder for a test's files, gone at its end.
-class Folder {
- public:
-  Folder() { fs::create_directories(path_); }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
-  }
-  Mesh read(const std::string& name, const std::string& text) const {
-    return read_mesh(write(name, text));
-  }
-  // What read_mesh says of the text; empty where it takes it.
-  std::string refusal(const std::string& name, const std::string& text) const {
-    try {
-      read(name, text);
-      return "";
-    } catch (const InvalidInput& error) {
-      return error.what();
-    }
-  }
-
- private:
-  fs::path path_ = fs::temp_directory_path() /
-                   fmt::format("qddot_mesh_{}_{:x}", getpid(), std::random_device{}());
-};
-
-bool names_all(const std::string& message, const std::vector<std::string>& fragments) {
-  for (const std::string& fragment : fragments) {
-    if (message.find(fragment) == message.npos) return false;
-  }
-  return !message.empty() && message.find('\n') == message.npos;
+// What parse_mesh says of the text; empty where it takes it.
+std::string refusal(const std::string& name, const std::string& text) {
+  return refusal_of([&] { parse_mesh(text, name); });
 }
+
+Mesh obj(const std::string& text) { return parse_mesh(text, "a.obj"); }
+Mesh medit(const std::string& text) { return parse_mesh(text, "a.mesh"); }
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -70,14 +40,7 @@ const std::string glued =
     "Tetrahedra\n2\n1 2 3 4 0\n1 3 2 5 0\n"
     "End\n";
 
-std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
-  const std::size_t at = text.find(old_part);
-  BOOST_REQUIRE(at != text.npos);
-  return text.replace(at, old_part.size(), new_part);
-}
-
 void check_mutations(const std::string& name, const std::string& good) {
-  const Folder folder;
   std::mt19937 random(2);
   const std::string spice = "\n \t#-+/0919eanf" + std::string(1, '\0');
   for (int round = 0; round < 3000; ++round) {
@@ -95,15 +58,14 @@ void check_mutations(const std::string& name, const std::string& good) {
           text.erase(at, std::min<std::size_t>(random() % 20, text.size() - 1));
       }
     }
-    BOOST_TEST(folder.refusal(name, text).find('\n') == std::string::npos, text);
+    BOOST_TEST(refusal(name, text).find('\n') == std::string::npos, text);
   }
 }
 
 void check_truncations(const std::string& name, const std::string& good) {
-  const Folder folder;
   std::size_t loaded = 0;
   for (std::size_t length = 0; length <= good.size(); ++length)
-    loaded += folder.refusal(name, good.substr(0, length)).empty();
+    loaded += refusal(name, good.substr(0, length)).empty();
   BOOST_TEST(loaded > 0);
   BOOST_TEST(loaded < good.size());
 }
@@ -113,80 +75,88 @@ void check_truncations(const std::string& name, const std::string& good) {
 BOOST_AUTO_TEST_SUITE(mesh)
 
 BOOST_AUTO_TEST_CASE(all_forms_of_a_face_give_the_same_edges) {
-  const Folder folder;
   const Pairs expected{{0, 1}, {0, 2}, {1, 2}};
   for (const std::string face :
        {"f 1 2 3", "f 1/1 2/2 3/3", "f 1//1 2//2 3//3", "f 1/4/1 2/5/1 3/6/1", "f -4 -3 -2",
         "f -4/1/-1 -3//2 3", "f 3 1 2 # turned", "\tf  1 2\t3 \r", "f 1 2 3\nf 3 2 1", "l 1 2 3 1",
         "f 1 1 2 3"}) {
-    const Mesh mesh = folder.read("a.obj", "vt 0 0\nvn 0 0 1\n" + square + face + "\n");
+    const Mesh mesh = obj("vt 0 0\nvn 0 0 1\n" + square + face + "\n");
     BOOST_TEST((mesh.edges == expected), face);
     BOOST_TEST(mesh.vertices.size() == 4);  // the fourth in no face
   }
 }
 
 BOOST_AUTO_TEST_CASE(a_polygon_has_its_boundary_for_edges) {
-  const Folder folder;
-  const Mesh mesh = folder.read("a.obj", square + "f 1 2 3 4");
+  const Mesh mesh = obj(square + "f 1 2 3 4");
   BOOST_TEST((mesh.edges == Pairs{{0, 1}, {0, 3}, {1, 2}, {2, 3}}));
   BOOST_TEST(mesh.triangles.empty());
 }
 
 BOOST_AUTO_TEST_CASE(negative_indices_count_from_the_last_vertex_so_far) {
-  const Folder folder;
-  const Mesh mesh =
-      folder.read("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf -1 -2 -3\n" + square + "f -1 -2 -3 -4\n");
+  const Mesh mesh = obj("v 0 0 0\nv 1 0 0\nv 2 0 0\nf -1 -2 -3\n" + square + "f -1 -2 -3 -4\n");
   BOOST_TEST((mesh.edges == Pairs{{0, 1}, {0, 2}, {1, 2}, {3, 4}, {3, 6}, {4, 5}, {5, 6}}));
 }
 
 BOOST_AUTO_TEST_CASE(vertices_are_read_exactly) {
-  const Folder folder;
-  const Mesh mesh = folder.read("a.obj", "v 0.1 -2.5e-3 +3\nv 1 2 3 1.0\nv 1 2 3 .5 .5 .5");
+  const Mesh mesh = obj("v 0.1 -2.5e-3 +3\nv 1 2 3 1.0\nv 1 2 3 .5 .5 .5");
   BOOST_TEST((mesh.vertices[0] == Eigen::Vector3d(0.1, -2.5e-3, 3)));
   BOOST_TEST((mesh.vertices[2] == Eigen::Vector3d(1, 2, 3)));
 }
 
 BOOST_AUTO_TEST_CASE(tetrahedra) {
-  const Folder folder;
-  const Mesh two = folder.read("a.mesh", glued);
+  const Mesh two = medit(glued);
   BOOST_TEST(two.vertices.size() == 5);
   BOOST_TEST(two.edges.size() == 9);
   BOOST_TEST((two.vertices[4] == Eigen::Vector3d(0, 0, -1.5)));
   BOOST_TEST(two.triangles.size() == 1);
-  const Mesh one =
-      folder.read("a.mesh", replaced(glued, "2\n1 2 3 4 0\n1 3 2 5 0", "1\n1 2 3 4 0"));
+  const Mesh one = medit(with(glued, "2\n1 2 3 4 0\n1 3 2 5 0", "1\n1 2 3 4 0"));
   BOOST_TEST((one.edges == Pairs{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
 }
 
 BOOST_AUTO_TEST_CASE(medit_sections_in_any_order) {
-  const Folder folder;
-  const Mesh mesh = folder.read("a.mesh",
-                                "MeshVersionFormatted 1 Quadrilaterals 1 1 2 3 4 0 Edges 1\n"
-                                "1 3 0 Dimension 2 Vertices 4 0 0 0 1 0 0 1 1 0 0 1 0");
+  const Mesh mesh = medit(
+      "MeshVersionFormatted 1 Quadrilaterals 1 1 2 3 4 0 Edges 1\n"
+      "1 3 0 Dimension 2 Vertices 4 0 0 0 1 0 0 1 1 0 0 1 0");
   BOOST_TEST((mesh.edges == Pairs{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}}));
   BOOST_TEST((mesh.vertices[2] == Eigen::Vector3d(1, 1, 0)));
 }
 
 BOOST_AUTO_TEST_CASE(a_hexahedron_has_twelve_edges) {
-  const Folder folder;
   std::string text = "MeshVersionFormatted 1\nDimension 3\nVertices 8\n";
   for (const char* xy : {"0 0", "1 0", "1 1", "0 1"}) text += fmt::format("{} 0 0\n", xy);
   for (const char* xy : {"0 0", "1 0", "1 1", "0 1"}) text += fmt::format("{} 1 0\n", xy);
-  const Mesh mesh = folder.read("a.mesh", text + "Hexahedra 1\n1 2 3 4 5 6 7 8 0\nEnd\n");
+  const Mesh mesh = medit(text + "Hexahedra 1\n1 2 3 4 5 6 7 8 0\nEnd\n");
   BOOST_TEST(mesh.edges.size() == 12);
   for (const auto& [i, j] : mesh.edges)
     BOOST_TEST((mesh.vertices[i] - mesh.vertices[j]).norm() == 1);
 }
 
+BOOST_AUTO_TEST_CASE(a_prism_and_a_pyramid_on_one_face) {
+  const Mesh mesh = medit(
+      "MeshVersionFormatted 2 Dimension 3 Vertices 7 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 1 0 0 1 1 "
+      "0"
+      " 2 2 2 0 Prisms 1 1 2 3 4 5 6 0 Pyramids 1 2 3 6 5 7 0 End");
+  BOOST_TEST((mesh.edges == Pairs{{0, 1},
+                                  {0, 2},
+                                  {0, 3},
+                                  {1, 2},
+                                  {1, 4},
+                                  {1, 6},
+                                  {2, 5},
+                                  {2, 6},
+                                  {3, 4},
+                                  {3, 5},
+                                  {4, 5},
+                                  {4, 6},
+                                  {5, 6}}));
+}
+
 BOOST_AUTO_TEST_CASE(bending_pairs_lie_opposite_to_shared_edges) {
-  const Folder folder;
-  BOOST_TEST(
-      (opposite_vertices(folder.read("a.obj", square + "f 1 2 3\nf 1 3 4")) == Pairs{{1, 3}}));
+  BOOST_TEST((opposite_vertices(obj(square + "f 1 2 3\nf 1 3 4")) == Pairs{{1, 3}}));
   // A boundary, a triangle given twice and an edge of three triangles bend nothing.
-  BOOST_TEST(opposite_vertices(folder.read("a.obj", square + "f 1 2 3\nf 3 2 1")).empty());
-  BOOST_TEST(opposite_vertices(folder.read("a.obj", square + "v 5 5 5\nf 1 2 3\nf 1 2 4\nf 1 2 5"))
-                 .empty());
-  BOOST_TEST(opposite_vertices(folder.read("a.obj", square + "f 1 2 3 4")).empty());
+  BOOST_TEST(opposite_vertices(obj(square + "f 1 2 3\nf 3 2 1")).empty());
+  BOOST_TEST(opposite_vertices(obj(square + "v 5 5 5\nf 1 2 3\nf 1 2 4\nf 1 2 5")).empty());
+  BOOST_TEST(opposite_vertices(obj(square + "f 1 2 3 4")).empty());
 }
 
 BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
@@ -221,29 +191,27 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
       {"a.mesh", medit + "Vertices 1\n0 nan 0 0\n"},
       {"a.mesh", medit + "Vertices 1\n0 0 0\nEnd\n"},
       {"a.mesh", "MeshVersionFormatted 1\nDimension 4\n"},
-      {"a.mesh", replaced(glued, "1 3 2 5 0", "1 3 2 6 0")},
-      {"a.mesh", replaced(glued, "1 3 2 5 0", "0 3 2 5 0")},
-      {"a.mesh", replaced(glued, "1 3 2 5 0", "-1 3 2 5 0")},
-      {"a.mesh", replaced(glued, "1 3 2 5 0\nEnd\n", "1 3")},
+      {"a.mesh", with(glued, "1 3 2 5 0", "1 3 2 6 0")},
+      {"a.mesh", with(glued, "1 3 2 5 0", "0 3 2 5 0")},
+      {"a.mesh", with(glued, "1 3 2 5 0", "-1 3 2 5 0")},
+      {"a.mesh", with(glued, "1 3 2 5 0\nEnd\n", "1 3")},
       {"a.msh", square},
+      {"a.off", square},
       {"a", square}};
-  const Folder folder;
   for (const auto& [name, text] : cases) {
-    const std::string message = folder.refusal(name, text);
+    const std::string message = refusal(name, text);
     BOOST_CHECK_MESSAGE(names_all(message, {name, "allowed"}) && message.size() < 400,
                         text.substr(0, 80) << " gives: " << message);
   }
 }
 
 BOOST_AUTO_TEST_CASE(messages_name_line_value_and_range) {
-  const Folder folder;
-  BOOST_TEST(names_all(folder.refusal("a.obj", square + "f 1 2 5\n"),
+  BOOST_TEST(names_all(refusal("a.obj", square + "f 1 2 5\n"),
                        {"a.obj:5:", "face", "5", "from 1 to 4", "-4"}));
-  BOOST_TEST(
-      names_all(folder.refusal("a.obj", "\nv 1 x 3\n"), {"a.obj:2:", "vertex", "x", "finite"}));
-  BOOST_TEST(names_all(folder.refusal("a.mesh", replaced(glued, "1 3 2 5", "1 3 2 6")),
+  BOOST_TEST(names_all(refusal("a.obj", "\nv 1 x 3\n"), {"a.obj:2:", "vertex", "x", "finite"}));
+  BOOST_TEST(names_all(refusal("a.mesh", with(glued, "1 3 2 5", "1 3 2 6")),
                        {"a.mesh:20:", "6", "1 to 5"}));
-  BOOST_TEST(names_all(folder.refusal("a.mesh", replaced(glued, "0 0 1 0", "0 0 y 0")),
+  BOOST_TEST(names_all(refusal("a.mesh", with(glued, "0 0 1 0", "0 0 y 0")),
                        {"a.mesh:9:", "Vertices", "y", "finite"}));
 }
 

@@ -4,6 +4,14 @@
 #include "src/scene/generators/ranges.hpp"
 
 namespace qddot {
+namespace {
+
+SceneSize size_of_chain(const GeneratorValues& p) {
+  const auto count = static_cast<std::size_t>(p.at("nodes"));
+  return {.nodes = count, .springs = count - 1};
+}
+
+}  // namespace
 
 Generator chain() {
   return {.name = "chain",
@@ -15,6 +23,7 @@ Generator chain() {
                          {"pinned_ends", 1, 0, 2, "how many ends are pinned", true},
                          {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
                          {"until", 0.1, least, most, "the horizon in s"}},
+          .size = size_of_chain,
           .draw = [](const GeneratorValues& p) {
             const auto count = static_cast<std::size_t>(p.at("nodes"));
             const double rest_length = p.at("length") / static_cast<double>(count - 1);

@@ -4,6 +4,16 @@
 #include "src/scene/generators/ranges.hpp"
 
 namespace qddot {
+namespace {
+
+SceneSize size_of_cloth(const GeneratorValues& p) {
+  const auto n = static_cast<std::size_t>(p.at("nodes"));
+  const std::size_t structural = 2 * n * (n - 1), shear = 2 * (n - 1) * (n - 1);
+  const std::size_t bending = 2 * n * (n - 2);
+  return {.nodes = n * n, .springs = structural + shear + bending};
+}
+
+}  // namespace
 
 Generator cloth() {
   return {.name = "cloth",
@@ -16,6 +26,7 @@ Generator cloth() {
                          {"bending_stiffness", 100, 0, most, "between second neighbours in N/m"},
                          {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
                          {"until", 0.1, least, most, "the horizon in s"}},
+          .size = size_of_cloth,
           .draw = [](const GeneratorValues& p) {
             const int count = static_cast<int>(p.at("nodes"));
             const double spacing = p.at("side") / (count - 1);

@@ -2,6 +2,7 @@
 // joined to its 26 neighbours, along edges, face diagonals and space diagonals.
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 
 #include "src/scene/generators.hpp"
 #include "src/scene/generators/ranges.hpp"
@@ -24,6 +25,17 @@ constexpr std::array<std::array<int, 3>, 13> directions = {{{1, 0, 0},
                                                             {1, -1, 1},
                                                             {1, -1, -1}}};
 
+SceneSize size_of_lattice(const GeneratorValues& p) {
+  // How many pairs of nodes along an axis are 0 or 1 apart.
+  const auto pairs = [&](const char* nodes, int apart) {
+    return static_cast<std::size_t>(p.at(nodes)) - static_cast<std::size_t>(std::abs(apart));
+  };
+  SceneSize size{.nodes = pairs("nodes_x", 0) * pairs("nodes_y", 0) * pairs("nodes_z", 0)};
+  for (const auto& [dx, dy, dz] : directions)
+    size.springs += pairs("nodes_x", dx) * pairs("nodes_y", dy) * pairs("nodes_z", dz);
+  return size;
+}
+
 }  // namespace
 
 Generator lattice() {
@@ -37,6 +49,7 @@ Generator lattice() {
                          {"stiffness", 5e4, 0, most, "of each spring in N/m"},
                          {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
                          {"until", 0.2, least, most, "the horizon in s"}},
+          .size = size_of_lattice,
           .draw = [](const GeneratorValues& p) {
             const int nx = static_cast<int>(p.at("nodes_x")),
                       ny = static_cast<int>(p.at("nodes_y")),

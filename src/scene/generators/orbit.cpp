@@ -2,6 +2,7 @@
 // central, so energy and angular momentum stay, and the motion stays in a plane that is none of
 // the coordinate planes. With rest_length = 0 the orbit is an ellipse; otherwise a rosette.
 #include "src/scene/generators.hpp"
+#include "src/scene/generators/one_spring.hpp"
 #include "src/scene/generators/ranges.hpp"
 
 namespace qddot {
@@ -15,6 +16,7 @@ Generator orbit() {
                          {"radius", 1.2, least, most, "the distance at t = 0 in m"},
                          {"speed", 3, 0, most, "the speed across the spring at t = 0 in m/s"},
                          {"until", 2, least, most, "the horizon in s"}},
+          .size = one_spring,
           .draw = [](const GeneratorValues& p) {
             Scene scene{.until = p.at("until")};
             scene.nodes = {{.pinned = true},

@@ -1,6 +1,7 @@
 // The lecture's first example, a 1D spring of zero rest length on a wall: m x'' = -k x, so that
 // x(t) = x0 cos(w t), w = sqrt(k/m), in closed form by exp(At).
 #include "src/scene/generators.hpp"
+#include "src/scene/generators/one_spring.hpp"
 #include "src/scene/generators/ranges.hpp"
 
 namespace qddot {
@@ -13,6 +14,7 @@ Generator oscillator() {
                          {"position", 1, -most, most, "x at t = 0 in m"},
                          {"velocity", 0, -most, most, "v at t = 0 in m/s"},
                          {"until", 2, least, most, "the horizon in s"}},
+          .size = one_spring,
           .draw = [](const GeneratorValues& p) {
             Scene scene{.dimension = 1, .until = p.at("until")};
             scene.nodes = {{.pinned = true},

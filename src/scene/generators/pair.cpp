@@ -2,6 +2,7 @@
 // rotates about it. At small amplitude without rotation the frequency is sqrt(k/mu) with the
 // reduced mass mu = m1 m2 / (m1 + m2).
 #include "src/scene/generators.hpp"
+#include "src/scene/generators/one_spring.hpp"
 #include "src/scene/generators/ranges.hpp"
 
 namespace qddot {
@@ -17,6 +18,7 @@ Generator pair() {
                      {"stretch", 1.1, least, most, "length / l0 at t = 0 (length in m if l0 = 0)"},
                      {"spin", 2, -most, most, "angular velocity at t = 0 in rad/s"},
                      {"until", 2, least, most, "the horizon in s"}},
+      .size = one_spring,
       .draw = [](const GeneratorValues& p) {
         const double m1 = p.at("mass_1"), m2 = p.at("mass_2"), l0 = p.at("rest_length");
         const double length = p.at("stretch") * (l0 > 0 ? l0 : 1);

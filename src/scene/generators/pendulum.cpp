@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/scene/generators.hpp"
+#include "src/scene/generators/one_spring.hpp"
 #include "src/scene/generators/ranges.hpp"
 
 namespace qddot {
@@ -19,6 +20,7 @@ Generator pendulum() {
                          {"speed", 0.5, -most, most, "the speed out of the plane at t = 0 in m/s"},
                          {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
                          {"until", 2, least, most, "the horizon in s"}},
+          .size = one_spring,
           .draw = [](const GeneratorValues& p) {
             const double l = p.at("length"), angle = p.at("angle");
             Scene scene{.gravity = {0, 0, -p.at("gravity")}, .until = p.at("until")};

@@ -37,6 +37,9 @@ class Reductions {
     for (const Reduction reduction : chosen) few.left_out_.reset(index(reduction));
     return few;
   }
+  // Those that leave every direction in which the free nodes may move: for statics and small
+  // motions, which ask what happens to the left and right of the motion as well.
+  static Reductions all_directions() { return only({Reduction::pins, Reduction::duplicates}); }
   bool has(Reduction reduction) const { return !left_out_[index(reduction)]; }
   Reductions without(Reduction reduction) const {
     Reductions rest = *this;

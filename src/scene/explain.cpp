@@ -1,0 +1,118 @@
+#include "src/scene/explain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "src/analysis/frequency_bound.hpp"
+#include "src/analysis/largest_frequency.hpp"
+#include "src/analysis/natural_modes.hpp"
+#include "src/analysis/stability.hpp"
+
+namespace qddot {
+namespace {
+
+// Beyond that the factorisations take more than some seconds.
+constexpr Index largest_examined = 300000;
+
+void find_fastest(Explanation& explanation, const ReducedScene& all) {
+  try {
+    const State& start = all.initial();
+    const NaturalModes lowest = lowest_modes(all.system(), start.q, 1);
+    if (lowest.squares.size() == 0 || lowest.squares[0] >= 0) return;
+    explanation.growth = std::sqrt(-lowest.squares[0]);
+    // A displacement goes through the reduction as a velocity does.
+    const auto nodes = all.expand({0, start.q, lowest.shapes.col(0)});
+    const auto amplitude = [](const Node& node) { return node.velocity.norm(); };
+    explanation.fastest = static_cast<std::size_t>(
+        std::ranges::max_element(nodes, {}, amplitude) - nodes.begin());
+  } catch (const std::exception&) {
+    // Massless nodes that are loose, or an iteration that does not converge: it stays unknown.
+  }
+}
+
+double lanczos(const System& system, const Vec& q) {
+  try {
+    return largest_frequency(system, q);
+  } catch (const std::runtime_error&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+std::string step_sentence(const Explanation& e) {
+  if (e.unknowns == 0) return "nothing is left to integrate";
+  if (std::isinf(e.omega_bound)) {
+    return "w_max is infinite, since a massless node is left: no explicit method";
+  }
+  const double w = std::isnan(e.omega_max) ? e.omega_bound : e.omega_max;
+  if (w == 0) return "w_max = 0: nothing vibrates";
+  return fmt::format(
+      "w_max = {:.5g} rad/s at the start (at most {:.5g}): explicit methods are stable up to "
+      "h = 2/w_max = {:.4g} s",
+      w, e.omega_bound, 2 / w);
+}
+
+std::string stability_sentence(const Explanation& e, const Scene& scene) {
+  if (!e.is_examined) return "whether K is indefinite at the start was not examined: too large";
+  if (e.unstable == 0) return "K is negative semidefinite at the start: no direction grows";
+  std::string sentence =
+      fmt::format("K is indefinite at the start, in {} direction{} (springs are compressed)",
+                  e.unstable, e.unstable == 1 ? "" : "s");
+  if (e.growth > 0) {
+    const auto& x = scene.nodes[e.fastest].position;
+    sentence += fmt::format("; the fastest grows as exp({:.4g} t), most at node {} ({})", e.growth,
+                            e.fastest, fmt::join(x.data(), x.data() + scene.dimension, ", "));
+  }
+  return sentence;
+}
+
+// What the reduced motion does not see: it is exact, but the slightest push would leave it.
+std::string left_out_sentence(const Explanation& e) {
+  return fmt::format(
+      "{} of these directions lead{} out of what is left (dimension, mirror): the motion as drawn "
+      "never takes them, one that is disturbed does; --no-reduce dimension,mirror keeps them",
+      e.unstable_left_out, e.unstable_left_out == 1 ? "s" : "");
+}
+
+}  // namespace
+
+Explanation explain(const Scene& scene, const ReducedScene& reduced) {
+  const System& system = reduced.system();
+  const Vec& q = reduced.initial().q;
+  Explanation e;
+  e.drawn_unknowns = scene.dimension * std::ssize(scene.nodes);
+  e.unknowns = system.size();
+  e.findings = reduced.findings();
+  e.stiffness_is_constant = system.stiffness_is_constant();
+  e.omega_bound = frequency_bound(system, q);
+  e.omega_max = lanczos(system, q);
+  e.is_examined = e.drawn_unknowns <= largest_examined;
+  if (!e.is_examined || e.unknowns == 0) return e;
+  const ReducedScene all(scene, Reductions::all_directions());
+  e.unstable = unstable_directions(all.system(), all.initial().q);
+  if (e.unstable == 0) return e;
+  e.unstable_left_out = std::max(0, e.unstable - unstable_directions(system, q));
+  find_fastest(e, all);
+  return e;
+}
+
+std::string in_words(const Explanation& e, const Scene& scene) {
+  std::string words = fmt::format("{}: {} nodes, {} springs; {} unknowns of {} are left\n",
+                                  scene.name, scene.nodes.size(), scene.springs.size(), e.unknowns,
+                                  e.drawn_unknowns);
+  const auto line = [&](std::string_view about, const std::string& sentence) {
+    words += fmt::format("  {:<19} {}\n", about, sentence);
+  };
+  for (const Finding& finding : e.findings) line(name(finding.reduction), finding.what);
+  if (!e.stiffness_is_constant && e.unknowns > 0) line("K", "changes with the positions");
+  line("step", step_sentence(e));
+  if (e.unknowns > 0) line("stability", stability_sentence(e, scene));
+  if (e.unstable_left_out > 0) line("", left_out_sentence(e));
+  return words;
+}
+
+}  // namespace qddot

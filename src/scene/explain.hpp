@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "src/scene/reduce.hpp"
+#include "src/scene/scene.hpp"
+
+namespace qddot {
+
+// What a scene is and what is left of it to be integrated, without any of it being integrated.
+struct Explanation {
+  Index drawn_unknowns = 0;  // dimension x nodes
+  Index unknowns = 0;
+  std::vector<Finding> findings;
+  bool stiffness_is_constant = false;
+  // At the start, of the system that is left:
+  double omega_bound = 0;  // w_max is at most that [rad/s], by Gershgorin; infinite without mass
+  double omega_max = 0;    // by Lanczos, to about 1e-4; NaN where that does not converge
+  // At the start, in all directions in which the nodes may move:
+  int unstable = 0;           // directions in which V falls: K is indefinite if there are any
+  int unstable_left_out = 0;  // of these, how many the reduced motion never takes
+  double growth = 0;          // of the fastest [1/s], 0 where it is not known
+  std::size_t fastest = 0;    // the node that the fastest moves most
+  bool is_examined = true;    // false: too large for that
+};
+
+// `scene`: as it starts, and reduced.
+Explanation explain(const Scene& scene, const ReducedScene& reduced);
+
+// In some lines, each ended by a line feed.
+std::string in_words(const Explanation& explanation, const Scene& scene);
+
+}  // namespace qddot

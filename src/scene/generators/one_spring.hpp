@@ -1,0 +1,10 @@
+#pragma once
+
+#include "src/scene/generators.hpp"
+
+namespace qddot {
+
+// The size of a scene that is one spring and its two ends, whatever the parameters.
+inline SceneSize one_spring(const GeneratorValues&) { return {.nodes = 2, .springs = 1}; }
+
+}  // namespace qddot

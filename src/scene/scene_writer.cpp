@@ -1,0 +1,141 @@
+#include "src/scene/scene_writer.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "src/scene/invalid_input.hpp"
+
+namespace qddot {
+namespace {
+
+// Not so for -0, which must be written.
+bool is_plain_zero(double x) { return std::bit_cast<std::uint64_t>(x) == 0; }
+
+// How many bytes the UTF-8 sequence at the start of `text` has; 0 where there is none.
+std::size_t sequence_length(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+  if (first > 0xf4 || length == 0 || text.size() < length) return 0;
+  for (std::size_t k = 1; k < length; ++k) {
+    if (byte(k) < 0x80 || byte(k) > 0xbf) return 0;
+  }
+  // What has a shorter form, is half of a surrogate pair, or lies beyond U+10FFFF.
+  const bool wrong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
+                     (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
+  return wrong ? 0 : length;
+}
+
+class TomlText {
+ public:
+  void add(std::string_view text) { text_.append(text); }
+
+  // `key = "text"`
+  void line(std::string_view key, std::string_view value) {
+    add_key(key);
+    text_.push_back('"');
+    // Reading bounds the dots of a line, since they part keys.
+    const bool hides_dots = std::ranges::count(value, '.') > 20;
+    while (!value.empty()) {
+      const std::size_t length = sequence_length(value);
+      if (length == 0)
+        add("\ufffd");
+      else
+        add_character(value.substr(0, length), hides_dots);
+      value.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    add("\"\n");
+  }
+  void line(std::string_view key, double value) {
+    add_key(key);
+    add_number(value);
+    text_.push_back('\n');
+  }
+  // The first `size` components.
+  void line(std::string_view key, const Eigen::Vector3d& value, int size) {
+    add_key(key);
+    for (int k = 0; k < size; ++k) {
+      add(k == 0 ? "[" : ", ");
+      add_number(value[k]);
+    }
+    add("]\n");
+  }
+
+  std::size_t size() const { return text_.size(); }
+  std::string text() const { return fmt::to_string(text_); }
+
+ private:
+  void add_key(std::string_view key) {
+    add(key);
+    add(" = ");
+  }
+  // The shortest number that reads back as the same; never an integer, which has no -0.
+  void add_number(double x) {
+    const std::size_t start = text_.size();
+    fmt::format_to(std::back_inserter(text_), "{}", x);
+    const std::string_view digits(text_.data() + start, text_.size() - start);
+    if (digits.find_first_of(".e") == digits.npos) add(".0");
+  }
+  void add_character(std::string_view character, bool hides_dots) {
+    const auto c = static_cast<unsigned char>(character[0]);
+    if (c == '"' || c == '\\') text_.push_back('\\');
+    if (c < ' ' || c == 0x7f || (c == '.' && hides_dots))
+      fmt::format_to(std::back_inserter(text_), "\\u{:04X}", c);
+    else
+      add(character);
+  }
+
+  fmt::memory_buffer text_;
+};
+
+void add_node(const Node& node, int dimension, TomlText& out) {
+  out.add("\n[[nodes]]\n");
+  out.line("position", node.position, dimension);
+  for (const double v : node.velocity) {
+    if (is_plain_zero(v)) continue;
+    out.line("velocity", node.velocity, dimension);
+    break;
+  }
+  out.line("mass", node.mass);
+  if (node.pinned) out.add("pinned = true\n");
+}
+
+void add_spring(const Spring& spring, TomlText& out) {
+  out.add(fmt::format("\n[[springs]]\nnodes = [{}, {}]\n", spring.nodes[0], spring.nodes[1]));
+  out.line("stiffness", spring.law.stiffness);
+  out.line("rest_length", spring.law.rest_length);
+  if (!is_plain_zero(spring.law.quartic)) out.line("quartic", spring.law.quartic);
+}
+
+}  // namespace
+
+std::string to_toml(const Scene& scene, std::size_t most) {
+  TomlText out;
+  const auto require_readable = [&] {
+    if (out.size() > most)
+      throw InvalidInput(
+          fmt::format("scene {}: it takes more than {} MB as a text; allowed are scenes of less",
+                      shown(scene.name), static_cast<double>(most) / 1e6));
+  };
+  out.line("name", scene.name);
+  out.add(fmt::format("dimension = {}\n", scene.dimension));
+  out.line("gravity", scene.gravity, scene.dimension);
+  if (scene.until) out.line("until", *scene.until);
+  out.line("start", scene.starts_at_equilibrium ? "equilibrium" : "drawn");
+  for (const Node& node : scene.nodes) {
+    add_node(node, scene.dimension, out);
+    require_readable();
+  }
+  for (const Spring& spring : scene.springs) {
+    add_spring(spring, out);
+    require_readable();
+  }
+  return out.text();
+}
+
+}  // namespace qddot

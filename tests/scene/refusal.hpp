@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+
+#include "src/scene/invalid_input.hpp"
+
+namespace qddot {
+
+// What is said of something that is not taken; empty where it is.
+template <class Reading>
+std::string refusal_of(const Reading& reading) {
+  try {
+    reading();
+    return "";
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+}
+
+// Whether a refusal is one line that holds the fragments.
+inline bool names_all(const std::string& message, const std::vector<std::string>& fragments) {
+  for (const std::string& fragment : fragments) {
+    if (message.find(fragment) == message.npos) return false;
+  }
+  return !message.empty() && message.find('\n') == message.npos;
+}
+
+// `text` with the first `old_part`, which must be there, replaced.
+inline std::string with(std::string text, const std::string& old_part,
+                        const std::string& new_part) {
+  const std::size_t at = text.find(old_part);
+  BOOST_REQUIRE(at != text.npos);
+  return text.replace(at, old_part.size(), new_part);
+}
+
+}  // namespace qddot

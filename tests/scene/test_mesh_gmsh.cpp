@@ -1,0 +1,199 @@
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
+
+#include "src/scene/mesh.hpp"
+#include "tests/folder.hpp"
+#include "tests/scene/refusal.hpp"
+
+using namespace qddot;
+
+namespace {
+
+using Pairs = std::vector<std::array<std::size_t, 2>>;
+
+Mesh gmsh(const std::string& text) { return parse_mesh(text, "a.msh"); }
+std::string refusal(const std::string& text) {
+  return refusal_of([&] { gmsh(text); });
+}
+
+// A triangle beside a quadrangle, nodes numbered with gaps and in no order, with sections that are
+// passed over and an element of each kind of edge-less and bounding part.
+const std::string old_format =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+    "$PhysicalNames\n1\n2 7 \"a $Nodes # b\"\n$EndPhysicalNames\n"
+    "$Nodes\n5\n40 1 0 0\n7 0 0 0\n1000000000000 1 1 0\n8 0 1 0.5\n2 2 0.1 -1e-3\n$EndNodes\n"
+    "$Elements\n4\n"
+    "1 15 2 0 1 7\n"
+    "2 1 0 7 8\n"
+    "9 3 2 7 1 7 40 1000000000000 8\n"
+    "4 2 3 -7 1 0 40 2 1000000000000\n"
+    "$EndElements\n"
+    "$NodeData\n1\n\"u\"\n$EndNodeData\n";
+
+// The same in blocks, the last three nodes with parameters on their surface or curve.
+const std::string new_format =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+    "$Entities\n0 0 1 0\n1 0 0 0 1 1 0 1 7 0\n$EndEntities\n"
+    "$Nodes\n3 5 2 1000000000000\n"
+    "0 1 0 2\n40\n7\n1 0 0\n0 0 0\n"
+    "2 1 1 2\n1000000000000\n8\n1 1 0 0.25 0.75\n0 1 0.5 0.5 0.5\n"
+    "1 3 1 1\n2\n2 0.1 -1e-3 0.125\n"
+    "$EndNodes\n"
+    "$Elements\n4 4 1 9\n"
+    "0 1 15 1\n1 7\n"
+    "1 3 1 1\n2 7 8\n"
+    "2 1 3 1\n9 7 40 1000000000000 8\n"
+    "2 1 2 1\n4 40 2 1000000000000\n"
+    "$EndElements\n";
+
+// One element of a type on nodes 1, 2, ... at (1, 0, 0), (2, 0, 0), ...
+std::string one_element(int type, int corners) {
+  std::string text = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", corners);
+  for (int i = 1; i <= corners; ++i) text += fmt::format("{0} {0} 0 0\n", i);
+  text += fmt::format("$EndNodes\n$Elements\n1\n1 {} 0", type);
+  for (int i = 1; i <= corners; ++i) text += fmt::format(" {}", i);
+  return text + "\n$EndElements\n";
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(mesh_gmsh)
+
+BOOST_AUTO_TEST_CASE(both_versions_give_the_same_mesh) {
+  for (const std::string& text : {old_format, new_format}) {
+    const Mesh mesh = gmsh(text);
+    BOOST_TEST_REQUIRE(mesh.vertices.size() == 5u);
+    BOOST_TEST((mesh.vertices[0] == Eigen::Vector3d(1, 0, 0)));
+    BOOST_TEST((mesh.vertices[3] == Eigen::Vector3d(0, 1, 0.5)));
+    BOOST_TEST((mesh.vertices[4] == Eigen::Vector3d(2, 0.1, -1e-3)));
+    // The line from 7 to 8 is a side of the quadrangle.
+    BOOST_TEST((mesh.edges == Pairs{{0, 1}, {0, 2}, {0, 4}, {1, 3}, {2, 3}, {2, 4}}));
+    BOOST_TEST((mesh.triangles == std::vector<std::array<std::size_t, 3>>{{0, 4, 2}}));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(every_element_has_the_edges_of_its_kind) {
+  const std::map<int, Pairs> edges = {
+      {15, {}},
+      {1, {{0, 1}}},
+      {2, {{0, 1}, {0, 2}, {1, 2}}},
+      {3, {{0, 1}, {0, 3}, {1, 2}, {2, 3}}},
+      {4, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}},
+      {5,
+       {{0, 1},
+        {0, 3},
+        {0, 4},
+        {1, 2},
+        {1, 5},
+        {2, 3},
+        {2, 6},
+        {3, 7},
+        {4, 5},
+        {4, 7},
+        {5, 6},
+        {6, 7}}},
+      {6, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}}},
+      {7, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}}};
+  const std::map<int, int> corners = {{15, 1}, {1, 2}, {2, 3}, {3, 4},
+                                      {4, 4},  {5, 8}, {6, 6}, {7, 5}};
+  for (const auto& [type, count] : corners) {
+    const Mesh mesh = gmsh(one_element(type, count));
+    BOOST_TEST((mesh.edges == edges.at(type)), "type " << type);
+    BOOST_TEST(mesh.triangles.size() == (type == 2 ? 1u : 0u));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(other_elements_are_refused) {
+  for (const int type : {0, -1, 8, 9, 11, 14, 16, 92}) {
+    const std::string message = refusal(one_element(type, 3));
+    BOOST_TEST(names_all(message, {"a.msh:12:", "element type", std::to_string(type),
+                                   "2 (triangle)", "15 (point)", "7 (pyramid)", "allowed"}),
+               message);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(sections_may_be_repeated) {
+  const std::string more =
+      "$Nodes\n1\n3 9 9 9\n$EndNodes\n$Elements\n1\n10 1 0 3 40\n$EndElements\n";
+  const Mesh mesh = gmsh(old_format + more);
+  BOOST_TEST(mesh.vertices.size() == 6u);
+  BOOST_TEST((mesh.edges[3] == std::array<std::size_t, 2>{0, 5}));
+}
+
+BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
+  struct Spoiled {
+    const std::string &good, old_part, new_part;
+    std::vector<std::string> fragments;
+  };
+  const std::vector<Spoiled> cases = {
+      {old_format, "2.2 0 8", "2.1 0 8", {":2:", "version", "2.1", "2.2 and 4.1"}},
+      {old_format, "2.2 0 8", "4 0 8", {":2:", "version", "4", "2.2 and 4.1"}},
+      {old_format, "2.2 0 8", "2.2 1 8", {":2:", "file type", "1", "0", "ASCII"}},
+      {new_format, "4.1 0 8", "4.1 1 8", {":2:", "file type", "1", "0", "ASCII"}},
+      {old_format, "$MeshFormat", "$Nodes", {":1:", "$Nodes", "$MeshFormat"}},
+      {old_format, "$EndMeshFormat", "1", {":3:", "$EndMeshFormat"}},
+      {old_format, "$EndPhysicalNames", "$EndPhysical", {":4:", "$EndPhysicalNames"}},
+      {old_format, "$EndNodes\n", "stray\n$EndNodes\n", {":15:", "stray", "$EndNodes"}},
+      {old_format, "$Nodes\n5", "$Nodes\n4", {":14:", "section", "2", "$EndNodes"}},
+      {old_format, "$Nodes\n5", "$Nodes\n6", {":15:", "node tag", "$EndNodes", "whole"}},
+      {old_format, "$Nodes\n5", "$Nodes\n-5", {":9:", "number of nodes", "-5", "from 0"}},
+      {old_format, "$Nodes\n5", "$Nodes\n5e9", {":9:", "number of nodes", "5e9", "from 0"}},
+      {old_format, "8 0 1 0.5", "40 0 1 0.5", {":13:", "node tag", "40", "no other"}},
+      {old_format, "8 0 1 0.5", "-8 0 1 0.5", {":13:", "node tag", "-8", "from 0"}},
+      {old_format, "8 0 1 0.5", "8 0 nan 0.5", {":13:", "node", "nan", "finite"}},
+      {old_format, "8 0 1 0.5", "8 0 1e999 0.5", {":13:", "node", "1e999", "finite"}},
+      {old_format, "2 1 0 7 8", "2 1 0 7 9", {":19:", "line", "9", "tags of nodes"}},
+      {old_format, "9 3 2 7 1 7 40", "9 3 1 7 1 7 40", {":20:", "quadrangle", "1", "tags"}},
+      {old_format, "2 1 0 7 8", "2 1 0.5 7 8", {":19:", "number of tags", "0.5", "whole"}},
+      {old_format, "2 1 0 7 8\n", "", {"element"}},
+      {old_format, "$NodeData", "NodeData", {":23:", "NodeData", "start with $"}},
+      {old_format, "$EndNodeData\n", "", {":23:", "$NodeData", "$EndNodeData"}},
+      {new_format, "2 1 1 2\n", "2 1 2 2\n", {":15:", "parametric", "2", "0 to 1"}},
+      {new_format, "2 1 1 2\n", "4 1 1 2\n", {":15:", "dimension", "4", "0 to 3"}},
+      {new_format, "2 1 1 2\n", "2 1 0 2\n", {":19:", "tag of the entity", "0.5", "whole"}},
+      {new_format, "0.25 0.75", "0.25 x", {":18:", "parameter", "x", "finite"}},
+      {new_format, "8\n1 1 0", "7\n1 1 0", {":19:", "node tag", "7", "no other"}},
+      {new_format, "3 5 2", "4 5 2", {"dimension", "$EndNodes"}},
+      {new_format, "3 5 2", "2 5 2", {":20:", "section", "1", "$EndNodes"}},
+      {new_format, "1 3 1 1\n2 7 8", "1 3 1 1\n2 7 9", {":29:", "line", "9", "tags"}},
+      {new_format, "2 1 3 1\n", "2 1 10 1\n", {":30:", "element type", "10", "3 (quadrangle)"}},
+      {new_format, "2 1 3 1\n", "2 1 3 1000000000\n", {"quadrangle"}}};
+  for (const auto& [good, old_part, new_part, fragments] : cases) {
+    const std::string message = refusal(with(good, old_part, new_part));
+    BOOST_CHECK_MESSAGE(names_all(message, fragments) && names_all(message, {"a.msh:", "allowed"}),
+                        new_part << " gives: " << message);
+    BOOST_TEST(message.size() < 400u);
+  }
+  BOOST_TEST(names_all(refusal(""), {"a.msh:1:", "$MeshFormat"}));
+  BOOST_TEST(names_all(refusal("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"), {"no vertices"}));
+}
+
+BOOST_AUTO_TEST_CASE(a_vast_count_takes_no_memory) {
+  const std::string start = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1000000000\n1 0 0 0\n";
+  BOOST_TEST(names_all(refusal(start), {"node tag", "ends too early"}));
+}
+
+BOOST_AUTO_TEST_CASE(truncated_files_load_or_are_refused) {
+  for (const std::string& good : {old_format, new_format}) {
+    std::size_t loaded = 0;
+    for (std::size_t length = 0; length <= good.size(); ++length)
+      loaded += refusal(good.substr(0, length)).empty();
+    BOOST_TEST(loaded > 0u);
+    // Between the end of one section and the end of the next there is none to load.
+    BOOST_TEST(loaded < good.size() / 4);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_ending_of_the_file_chooses_the_format) {
+  const Folder folder;
+  BOOST_TEST(read_mesh(folder.write("a.msh", new_format)).vertices.size() == 5u);
+  BOOST_TEST(names_all(refusal_of([&] { read_mesh(folder.write("a.mesh", new_format)); }),
+                       {"a.mesh:1:", "MeshVersionFormatted"}));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
