@@ -68,7 +68,8 @@ int equilibrium(const CLI::App& app, const Arguments& a,
     return end_not_reached;
   }
   fmt::print("{}: at rest after {} iterations; largest force {:.2g} N, energy {:.9g} J\n",
-             drawn.name, rest.iterations, rest.residual, scene.potential({0, rest.q, Vec::Zero(rest.q.size())}));
+             drawn.name, rest.iterations, rest.residual,
+             scene.potential({0, rest.q, Vec::Zero(rest.q.size())}));
   fmt::print("smallest eigenvalue of -K: {:.6g} N/m, {}\n", rest.smallest_eigenvalue,
              rest.isolated ? "an isolated minimum"
                            : "zero within rounding: something is loose, and the minimum is not "

@@ -69,17 +69,18 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
     reductions.push_back({{"name", name(finding.reduction)}, {"what", finding.what}});
   }
   // Infinite and unknown numbers become null.
-  origin["reduced"] = {{"unknowns_drawn", e.drawn_unknowns},
-                       {"unknowns", e.unknowns},
-                       {"parts", reduced.parts().size()},
-                       {"reductions", reductions},
-                       {"stiffness_is_constant", e.stiffness_is_constant},
-                       {"omega_max", e.omega_max},
-                       {"omega_max_bound", e.omega_bound},
-                       {"largest_stable_step", 2 / e.omega_max},
-                       {"unstable_directions", e.is_examined ? nlohmann::json(e.unstable) : nullptr},
-                       {"unstable_directions_left_out", e.unstable_left_out},
-                       {"growth_rate", e.growth}};
+  origin["reduced"] = {
+      {"unknowns_drawn", e.drawn_unknowns},
+      {"unknowns", e.unknowns},
+      {"parts", reduced.parts().size()},
+      {"reductions", reductions},
+      {"stiffness_is_constant", e.stiffness_is_constant},
+      {"omega_max", e.omega_max},
+      {"omega_max_bound", e.omega_bound},
+      {"largest_stable_step", 2 / e.omega_max},
+      {"unstable_directions", e.is_examined ? nlohmann::json(e.unstable) : nullptr},
+      {"unstable_directions_left_out", e.unstable_left_out},
+      {"growth_rate", e.growth}};
   if (e.growth > 0) origin["reduced"]["fastest_growing_node"] = e.fastest;
   return origin;
 }

@@ -14,8 +14,8 @@ namespace qddot {
 // compiler and flags, processor, libraries, date (UTC).
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn);
 
-// The same with what was left out of the scene and what is left: see Explanation. `start`: the scene
-// as it starts.
+// The same with what was left out of the scene and what is left: see Explanation. `start`: the
+// scene as it starts.
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,
                           const Scene& start, const ReducedScene& reduced);
 

@@ -23,10 +23,10 @@
 #include "experiments/scene_choice.hpp"
 #include "experiments/whole_file.hpp"
 #include "integrators/registry.hpp"
-#include "src/scene/invalid_input.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/analysis/largest_frequency.hpp"
 #include "src/scene/explain.hpp"
+#include "src/scene/invalid_input.hpp"
 #include "src/scene/reduce.hpp"
 #include "src/scene/scene_writer.hpp"
 
@@ -250,9 +250,10 @@ std::string step_warning(const Method& method, const Knobs& knobs, const Reduced
   if (h * frequency_bound(system, q) <= limit) return "";
   const double w = largest_frequency(system, q);
   if (h * w <= limit) return "";
-  return fmt::format("h = {:.4g} s is above {:g}/w_max = {:.4g} s, where {} blows up (w_max = {:.5g} "
-                     "rad/s at the start)",
-                     h, limit, limit / w, method.name, w);
+  return fmt::format(
+      "h = {:.4g} s is above {:g}/w_max = {:.4g} s, where {} blows up (w_max = {:.5g} "
+      "rad/s at the start)",
+      h, limit, limit / w, method.name, w);
 }
 
 int explain_only(const Arguments& a) {

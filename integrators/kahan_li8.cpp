@@ -51,8 +51,8 @@ Method kahan_li8() {
           .summary = "17 Verlet steps composed to order 8; for the accurate end of the chart",
           .source = "Kahan and Li, Mathematics of Computation 66 (1997) 1089-1099",
           .order = 8,
-          .symplectic = true,
           .stability_limit = 3.1,  // where the trace of one step's matrix first exceeds 2
+          .symplectic = true,
           .make = create<KahanLi8>};
 }
 

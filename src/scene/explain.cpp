@@ -28,8 +28,8 @@ void find_fastest(Explanation& explanation, const ReducedScene& all) {
     // A displacement goes through the reduction as a velocity does.
     const auto nodes = all.expand({0, start.q, lowest.shapes.col(0)});
     const auto amplitude = [](const Node& node) { return node.velocity.norm(); };
-    explanation.fastest = static_cast<std::size_t>(
-        std::ranges::max_element(nodes, {}, amplitude) - nodes.begin());
+    explanation.fastest =
+        static_cast<std::size_t>(std::ranges::max_element(nodes, {}, amplitude) - nodes.begin());
   } catch (const std::exception&) {
     // Massless nodes that are loose, or an iteration that does not converge: it stays unknown.
   }
@@ -101,9 +101,9 @@ Explanation explain(const Scene& scene, const ReducedScene& reduced) {
 }
 
 std::string in_words(const Explanation& e, const Scene& scene) {
-  std::string words = fmt::format("{}: {} nodes, {} springs; {} unknowns of {} are left\n",
-                                  scene.name, scene.nodes.size(), scene.springs.size(), e.unknowns,
-                                  e.drawn_unknowns);
+  std::string words =
+      fmt::format("{}: {} nodes, {} springs; {} unknowns of {} are left\n", scene.name,
+                  scene.nodes.size(), scene.springs.size(), e.unknowns, e.drawn_unknowns);
   const auto line = [&](std::string_view about, const std::string& sentence) {
     words += fmt::format("  {:<19} {}\n", about, sentence);
   };
