@@ -19,7 +19,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-// A system and where it is; `owner` keeps alive what the system is a part of.
+// A system and where it is.
 struct Case {
   std::shared_ptr<const System> system;
   Vec q;
