@@ -28,8 +28,9 @@ namespace {
 
 constexpr int most_modes = 1000;
 constexpr int most_printed = 10;
-// What rounding may leave of a w^2 that is zero, as a part of the largest.
-constexpr double square_noise = 1e-13;
+// What rounding, that of the positions included, may leave of a w^2 that is zero, as a part of the
+// largest.
+constexpr double square_noise = 1e-12;
 
 struct Arguments {
   std::string scene, out, at;

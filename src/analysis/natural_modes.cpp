@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 // Up to here the dense decomposition takes no longer than Lanczos' method, and it cannot fail.
 constexpr Index most_dense = 400;
 // Shifts stand off the spectrum by this part of its width, or as many times more as it takes.
-constexpr double least_offset_below = 1e-8, least_offset_above = 1e-4;
+constexpr double least_offset = 1e-8;
 constexpr double growth = 4;
 constexpr int most_tries = 40;
 
@@ -123,7 +123,7 @@ NaturalModes lowest_modes(const System& system, const Vec& q, Index count, const
     return {all.squares.head(count), all.shapes.leftCols(count)};
   }
   EffectiveMass matrix(system, mass);
-  double offset = least_offset_below * p.width;
+  double offset = least_offset * p.width;
   for (int tries = 0; !matrix.factorize_positive(offset, 1, p.k); ++tries) {
     if (tries == most_tries) refuse_loose_massless();
     offset *= growth;
@@ -147,7 +147,7 @@ NaturalModes highest_modes(const System& system, const Vec& q, Index count) {
            matrix.negative_pivots() == std::ssize(p.massless);
   };
   const double w = p.massless.empty() ? largest_frequency(system, q) : std::sqrt(p.width);
-  double offset = least_offset_above * p.width;
+  double offset = least_offset * p.width;
   for (int tries = 0; !is_above(w * w + offset); ++tries) {
     if (tries == most_tries) refuse_loose_massless();
     offset *= growth;

@@ -10,7 +10,7 @@ namespace qddot {
 // w^2 < 0 and the shape grows.
 struct NaturalModes {
   Vec squares;             // w^2 [1/s^2], ascending
-  Eigen::MatrixXd shapes;  // x, a column each with x'Mx = 1 kg (so that x is in m sqrt(kg)/kg)
+  Eigen::MatrixXd shapes;  // x, a column each, x'Mx = 1 (x in kg^-1/2)
 };
 
 // How many finite natural frequencies there are: one for each unknown with mass. A massless unknown

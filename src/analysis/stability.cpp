@@ -9,6 +9,7 @@ namespace qddot {
 namespace {
 
 constexpr double threshold = 1e-10;
+constexpr int most_tries = 20;
 
 Vec row_sums(const SymmetricMatrix& k) {
   const SymmetricMatrix sizes = k.cwiseAbs();
@@ -32,11 +33,13 @@ int unstable_directions(const System& system, const Vec& q) {
   const double bound = row_sums(k).cwiseQuotient(metric).maxCoeff();
   if (bound == 0) return 0;
   EffectiveMass matrix(system, metric);
-  // LDL' without pivoting can meet a pivot that is zero, but not with every tau.
-  for (double tau = threshold * bound;; tau *= 1.1) {
+  // LDL' without pivoting can meet a pivot that is zero, but hardly with several tau.
+  double tau = threshold * bound;
+  for (int tries = 0; tries < most_tries; ++tries, tau *= 1.1) {
     if (matrix.factorize(tau, 1, k) == EffectiveMass::Definiteness::singular) continue;
     return static_cast<int>(matrix.negative_pivots());
   }
+  throw std::runtime_error("the stiffness matrix cannot be factorised, so its signs are not known");
 }
 
 Curvature smallest_curvature(const System& system, const Vec& q) {

@@ -156,6 +156,26 @@ BOOST_AUTO_TEST_CASE(upright_pendulum_ends_hanging) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(saddle_is_left_to_the_lower_side) {
+  // A node in balance between two compressed springs along x, on a third from below whose push its
+  // weight cancels and whose energy is steeper downwards: 1/4 c (y - 0.3)^4.
+  const SpringLaw beside{.stiffness = 100, .rest_length = 1.1};
+  const SpringLaw below{.stiffness = 5, .rest_length = 1.3, .quartic = 20};
+  for (const double turn : {1.0, -1.0}) {
+    const auto system = make_mass_spring(
+        {.dimension = 2,
+         .gravity = {0, turn * below.tension(1.0), 0},
+         .node_mass = Vec::Ones(1),
+         .anchors = {{0, {-1, 0, 0}, beside}, {0, {1, 0, 0}, beside}, {0, {0, -turn, 0}, below}}});
+    const Vec start = Vec::Zero(2);
+    BOOST_TEST(force_at(*system, start).norm() < 1e-14);
+    BOOST_TEST(smallest_curvature(*system, start).value < -1);
+    const Equilibrium e = find_equilibrium(*system, start, 1);
+    check_minimum(*system, e, 1);
+    BOOST_TEST(turn * e.q[1] > 0.1);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(what_nothing_holds_falls_for_ever) {
   const auto free_chain = draw("chain", {{"nodes", 30}, {"pinned_ends", 0}});
   // A cloth of which one node hangs on nothing.

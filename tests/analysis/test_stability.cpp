@@ -105,6 +105,12 @@ BOOST_AUTO_TEST_CASE(zeros_of_the_metric_become_the_mean_mass) {
   BOOST_TEST((metric(Vec{{0, 0}}) == Vec{{1, 1}}));
 }
 
+BOOST_AUTO_TEST_CASE(stiffness_that_overflows_is_no_endless_loop) {
+  const auto system = make_mass_spring(
+      {.dimension = 1, .node_mass = Vec::Ones(1), .anchors = {{0, {0, 0, 0}, {.quartic = 1e300}}}});
+  BOOST_CHECK_THROW(unstable_directions(*system, Vec::Constant(1, 1e10)), std::runtime_error);
+}
+
 BOOST_AUTO_TEST_CASE(nothing_is_stable) {
   const auto system = make_mass_spring({.dimension = 3});
   BOOST_TEST(unstable_directions(*system, Vec()) == 0);
