@@ -8,91 +8,147 @@
 namespace qddot {
 namespace {
 
-// `per_node` of each node, laid out as the unknowns are.
-template <int D, class Layout, class PerNode>
-Vec unknowns_from(const Layout& layout, const PerNode& per_node) {
-  Vec all(layout.first(static_cast<int>(layout.nodes())));
-  for (int i = 0; i < layout.nodes(); ++i) {
-    const Eigen::Matrix<double, D, 1> x = per_node(i);
-    for (int a = 0; a < layout.count(i); ++a) all[layout.first(i) + a] = x[layout.axis(i, a)];
-  }
-  return all;
-}
+// Where each block of K stands, in the pattern of a network. The column of node j's coordinate a
+// holds the rows a, a + 1, ... of its own block, then the rows of each neighbour i > j in ascending
+// order. So a block is found by its node's first column and its place below it: nothing is searched
+// for during assembly.
+template <int D>
+class Pattern {
+ public:
+  using Block = Eigen::Matrix<double, D, D>;
 
-template <int D, class Layout>
+  explicit Pattern(const Layout<D>& layout) : layout_(layout), below_(layout.nodes()) {}
+
+  void join(int i, int j) {
+    if (i != j) below_[std::min(i, j)].push_back({std::max(i, j), 0});
+  }
+
+  // To be called once, after all joins.
+  SymmetricMatrix make() {
+    const Index n = layout_.first(static_cast<int>(layout_.nodes()));
+    Index nonzeros = 0;
+    for (int node = 0; node < layout_.nodes(); ++node) {
+      auto& list = below_[node];
+      std::ranges::sort(list, {}, &Neighbour::node);
+      list.erase(std::ranges::unique(list, {}, &Neighbour::node).begin(), list.end());
+      int rows = 0;
+      for (Neighbour& neighbour : list) {
+        neighbour.rows_before = rows;
+        rows += layout_.count(neighbour.node);
+      }
+      const int count = layout_.count(node);
+      nonzeros += count * (count + 1) / 2 + count * rows;
+    }
+    SymmetricMatrix pattern(n, n);
+    pattern.reserve(nonzeros);
+    for (int node = 0; node < layout_.nodes(); ++node) {
+      const int end = layout_.first(node + 1);
+      for (int column = layout_.first(node); column < end; ++column) {
+        pattern.startVec(column);
+        for (int row = column; row < end; ++row) pattern.insertBack(row, column) = 0;
+        for (const Neighbour& neighbour : below_[node]) {
+          const int last = layout_.first(neighbour.node + 1);
+          for (int row = layout_.first(neighbour.node); row < last; ++row) {
+            pattern.insertBack(row, column) = 0;
+          }
+        }
+      }
+    }
+    pattern.finalize();
+    return pattern;
+  }
+
+  // The rows between the own block of the first of two joined nodes and the block of both.
+  int place(int i, int j) const {
+    if (i == j) return 0;
+    const auto& list = below_[std::min(i, j)];
+    return std::ranges::lower_bound(list, std::max(i, j), {}, &Neighbour::node)->rows_before;
+  }
+
+ private:
+  struct Neighbour {
+    int node, rows_before;
+  };
+
+  const Layout<D>& layout_;
+  std::vector<std::vector<Neighbour>> below_;  // the neighbours i > j of each node j
+};
+
+// Springs between nodes all of whose coordinates are unknowns are kept apart, by their first
+// unknowns alone; the few that touch a node on a mirror go through the layout.
+template <int D>
 class MassSpring final : public System {
   using Point = Eigen::Matrix<double, D, 1>;
   using Block = Eigen::Matrix<double, D, D>;
 
-  // An ImageLink with the diagonal of its mirror.
+  // i, j: first unknowns. Of an image link, j may be i.
+  struct Link {
+    int i, j;
+    SpringLaw law;
+  };
   struct Image {
     int i, j;
     Point mirror;
     SpringLaw law;
   };
+  struct Anchor {
+    int i;
+    Point point;
+    SpringLaw law;
+  };
+  // i, j: nodes.
+  struct EdgeLink {
+    int i, j, place;
+    Point mirror;
+    SpringLaw law;
+  };
 
  public:
-  MassSpring(const Network& network, const Layout& layout)
-      : System(unknowns_from<D>(
-            layout, [&](int i) -> Point { return Point::Constant(network.node_mass[i]); })),
-        layout_(layout),
-        links_(network.links),
-        anchors_(network.anchors),
-        weight_(unknowns_from<D>(layout,
-                                 [&](int i) -> Point {
-                                   const Point g = network.gravity.head<D>();
-                                   const Point mg = network.node_mass[i] * g;
-                                   if (network.load.size() == 0) return mg;
-                                   return mg + network.load.segment<D>(D * i);
-                                 })),
-        constant_energy_(network.constant_energy) {
-    for (const Network::ImageLink& image : network.image_links) {
-      images_.push_back({image.i, image.j, image.mirror.head<D>(), image.law});
-    }
-    const auto linear = [](const auto& spring) { return spring.law.is_linear(); };
-    linear_ = network.uses_constant_stiffness && std::ranges::all_of(links_, linear) &&
-              std::ranges::all_of(images_, linear) && std::ranges::all_of(anchors_, linear);
-    const auto needs_tension = [](const auto& spring) { return spring.law.holds_in_tension_only; };
-    needs_tension_ = std::ranges::any_of(links_, needs_tension) ||
-                     std::ranges::any_of(images_, needs_tension) ||
-                     std::ranges::any_of(anchors_, needs_tension);
-    make_pattern();
-  }
+  explicit MassSpring(const Network& network)
+      : MassSpring(network, {network.node_mass.size(), network.zero_coordinates}) {}
 
   double potential(const Vec& q) const override {
     double v = constant_energy_ - weight_.dot(q);
-    for_all_springs(
-        [&](const auto& spring) { v += spring_energy(spring.law, between(q, spring)); });
+    for_all(q, [&](const SpringLaw& law, const Point& d) { v += spring_energy(law, d); });
     return v;
   }
 
   void force(const Vec& q, Vec& f) const override {
     f = weight_;
-    for (const auto& link : links_) {
+    for (const Link& link : links_) {
       const Point on_i = spring_force(link.law, between(q, link));
-      layout_.add(on_i, link.i, f);
-      layout_.subtract(on_i, link.j, f);
+      f.segment<D>(link.i) += on_i;
+      f.segment<D>(link.j) -= on_i;
     }
-    for (const auto& image : images_) {
+    for (const Image& image : images_) {
       const Point on_i = spring_force(image.law, between(q, image));
-      layout_.add(on_i, image.i, f);
-      layout_.subtract(image.mirror.cwiseProduct(on_i), image.j, f);
+      f.segment<D>(image.i) += on_i;
+      f.segment<D>(image.j) -= image.mirror.cwiseProduct(on_i);
     }
-    for (const auto& anchor : anchors_) {
-      layout_.add(spring_force(anchor.law, between(q, anchor)), anchor.i, f);
+    for (const Anchor& anchor : anchors_) {
+      f.segment<D>(anchor.i) += spring_force(anchor.law, between(q, anchor));
+    }
+    for (const EdgeLink& link : edge_links_) {
+      const Point on_i = spring_force(link.law, edge_between(q, link));
+      layout_.add(on_i, link.i, f);
+      layout_.add(-link.mirror.cwiseProduct(on_i), link.j, f);
+    }
+    for (const Anchor& anchor : edge_anchors_) {
+      layout_.add(spring_force(anchor.law, edge_between(q, anchor)), anchor.i, f);
     }
   }
 
+  // With S = diag(mirror) and d = S x_j - x_i: K_ii -= B, K_jj -= S B S, K_ij += B S; where i = j
+  // all three are one block.
   void stiffness(const Vec& q, SymmetricMatrix& k) const override {
     k.coeffs().setZero();
     for (std::size_t e = 0; e < links_.size(); ++e) {
-      const auto& link = links_[e];
+      const Link& link = links_[e];
       const Block b = spring_stiffness(link.law, between(q, link));
       subtract_from_diagonal(k, link.i, b);
       subtract_from_diagonal(k, link.j, b);
-      add_below_diagonal(k, std::min(link.i, link.j), std::max(link.i, link.j), place_[e], b);
+      add_below_diagonal(k, std::min(link.i, link.j), link_places_[e], b);
     }
-    // With S = diag(mirror) and d = S x_j - x_i: K_ii -= B, K_jj -= S B S, K_ij += B S.
     for (std::size_t e = 0; e < images_.size(); ++e) {
       const auto& [i, j, mirror, law] = images_[e];
       const Block b = spring_stiffness(law, between(q, images_[e]));
@@ -103,12 +159,26 @@ class MassSpring final : public System {
         subtract_from_diagonal(k, i, -(bs + sb));
       } else {
         // The block's rows belong to the later node.
-        add_below_diagonal(k, std::min(i, j), std::max(i, j), place_[links_.size() + e],
-                           i > j ? bs : sb);
+        add_below_diagonal(k, std::min(i, j), image_places_[e], i > j ? bs : sb);
       }
     }
-    for (const auto& anchor : anchors_) {
+    for (const Anchor& anchor : anchors_) {
       subtract_from_diagonal(k, anchor.i, spring_stiffness(anchor.law, between(q, anchor)));
+    }
+    for (const EdgeLink& link : edge_links_) {
+      const Block b = spring_stiffness(link.law, edge_between(q, link));
+      const Block bs = b * link.mirror.asDiagonal(), sb = link.mirror.asDiagonal() * b;
+      edge_subtract_from_diagonal(k, link.i, b);
+      edge_subtract_from_diagonal(k, link.j, sb * link.mirror.asDiagonal());
+      if (link.i == link.j) {
+        edge_subtract_from_diagonal(k, link.i, -(bs + sb));
+      } else {
+        edge_add_below_diagonal(k, link, link.i > link.j ? bs : sb);
+      }
+    }
+    for (const Anchor& anchor : edge_anchors_) {
+      edge_subtract_from_diagonal(k, anchor.i,
+                                  spring_stiffness(anchor.law, edge_between(q, anchor)));
     }
   }
 
@@ -116,40 +186,124 @@ class MassSpring final : public System {
   bool stiffness_is_constant() const override { return linear_; }
 
   bool holds_at(const Vec& q) const override {
-    if (!needs_tension_) return true;
-    bool holds = true;
-    for_all_springs([&](const auto& spring) {
-      // A spring drawn at its rest length may be shorter by what rounding makes of it.
-      holds = holds && (!spring.law.holds_in_tension_only ||
-                        between(q, spring).norm() >= (1 - 1e-12) * spring.law.rest_length);
-    });
-    return holds;
+    // A spring drawn at its rest length may be shorter by what rounding makes of it.
+    const auto is_in_tension = [&](const EdgeLink& link) {
+      return edge_between(q, link).norm() >= (1 - 1e-12) * link.law.rest_length;
+    };
+    const auto anchor_is = [&](const Anchor& anchor) {
+      return edge_between(q, anchor).norm() >= (1 - 1e-12) * anchor.law.rest_length;
+    };
+    return std::ranges::all_of(links_in_tension_, is_in_tension) &&
+           std::ranges::all_of(anchors_in_tension_, anchor_is);
   }
 
  private:
-  Index nodes() const { return layout_.nodes(); }
+  MassSpring(const Network& network, const Layout<D>& layout)
+      : System(masses(network, layout)),
+        layout_(layout),
+        weight_(weights(network, layout)),
+        constant_energy_(network.constant_energy) {
+    Pattern<D> pattern(layout_);
+    for (const auto& link : network.links) pattern.join(link.i, link.j);
+    for (const auto& link : network.image_links) pattern.join(link.i, link.j);
+    pattern_ = pattern.make();
+    for (const auto& [i, j, law, holds] : network.links) {
+      take_link({i, j, pattern.place(i, j), Point::Ones(), law}, holds, true);
+    }
+    for (const auto& [i, j, mirror, law, holds] : network.image_links) {
+      const Point signs = Eigen::Map<const Point>(mirror.data());
+      take_link({i, j, pattern.place(i, j), signs, law}, holds, false);
+    }
+    for (const auto& [i, place, law, holds] : network.anchors) {
+      take_anchor({i, Eigen::Map<const Point>(place.data()), law}, holds);
+    }
+    linear_ = network.uses_constant_stiffness;
+    const Vec anywhere = Vec::Zero(size());
+    for_all(anywhere, [&](const SpringLaw& law, const Point&) { linear_ &= law.is_linear(); });
+  }
 
+  static Vec masses(const Network& network, const Layout<D>& layout) {
+    Vec mass(layout.first(static_cast<int>(layout.nodes())));
+    for (int i = 0; i < layout.nodes(); ++i) {
+      mass.segment(layout.first(i), layout.count(i)).setConstant(network.node_mass[i]);
+    }
+    return mass;
+  }
+  // M g + load.
+  static Vec weights(const Network& network, const Layout<D>& layout) {
+    Vec weight = masses(network, layout);
+    for (int i = 0; i < layout.nodes(); ++i) {
+      for (int a = 0; a < layout.count(i); ++a) {
+        const int d = layout.axis(i, a);
+        weight[layout.first(i) + a] *= network.gravity[d];
+        if (network.load.size() > 0) weight[layout.first(i) + a] += network.load[D * i + d];
+      }
+    }
+    return weight;
+  }
+
+  void take_link(const EdgeLink& link, Holds holds, bool is_plain) {
+    if (holds == Holds::in_tension) links_in_tension_.push_back(link);
+    if (!layout_.is_full(link.i) || !layout_.is_full(link.j)) {
+      edge_links_.push_back(link);
+    } else if (is_plain) {
+      links_.push_back({layout_.first(link.i), layout_.first(link.j), link.law});
+      link_places_.push_back(link.place);
+    } else {
+      images_.push_back({layout_.first(link.i), layout_.first(link.j), link.mirror, link.law});
+      image_places_.push_back(link.place);
+    }
+  }
+  void take_anchor(const Anchor& anchor, Holds holds) {
+    if (holds == Holds::in_tension) anchors_in_tension_.push_back(anchor);
+    if (layout_.is_full(anchor.i)) {
+      anchors_.push_back({layout_.first(anchor.i), anchor.point, anchor.law});
+    } else {
+      edge_anchors_.push_back(anchor);
+    }
+  }
+
+  // Calls action(law, d) for every spring.
   template <class Action>
-  void for_all_springs(const Action& action) const {
-    for (const auto& link : links_) action(link);
-    for (const auto& image : images_) action(image);
-    for (const auto& anchor : anchors_) action(anchor);
+  void for_all(const Vec& q, const Action& action) const {
+    for (const Link& link : links_) action(link.law, between(q, link));
+    for (const Image& image : images_) action(image.law, between(q, image));
+    for (const Anchor& anchor : anchors_) action(anchor.law, between(q, anchor));
+    for (const EdgeLink& link : edge_links_) action(link.law, edge_between(q, link));
+    for (const Anchor& anchor : edge_anchors_) action(anchor.law, edge_between(q, anchor));
   }
 
-  Point between(const Vec& q, const Network::Link& link) const {
-    return layout_.at(q, link.j) - layout_.at(q, link.i);
+  static Point between(const Vec& q, const Link& link) {
+    return q.segment<D>(link.j) - q.segment<D>(link.i);
   }
-  Point between(const Vec& q, const Image& image) const {
-    return image.mirror.cwiseProduct(layout_.at(q, image.j)) - layout_.at(q, image.i);
+  static Point between(const Vec& q, const Image& image) {
+    return image.mirror.cwiseProduct(q.segment<D>(image.j)) - q.segment<D>(image.i);
   }
-  Point between(const Vec& q, const Network::Anchor& anchor) const {
-    return anchor.point.head<D>() - layout_.at(q, anchor.i);
+  static Point between(const Vec& q, const Anchor& anchor) {
+    return anchor.point - q.segment<D>(anchor.i);
+  }
+  Point edge_between(const Vec& q, const EdgeLink& link) const {
+    return link.mirror.cwiseProduct(layout_.at(q, link.j)) - layout_.at(q, link.i);
+  }
+  Point edge_between(const Vec& q, const Anchor& anchor) const {
+    return anchor.point - layout_.at(q, anchor.i);
   }
 
-  // The column of node j's coordinate a holds the rows a, a + 1, ... of its own block, then the
-  // rows of each neighbour i > j in ascending order. So a block is found by its node's first column
-  // and its place below it: nothing is searched for during assembly.
-  void subtract_from_diagonal(SymmetricMatrix& k, int node, const Block& b) const {
+  // Of a node whose first unknown is `first` and whose D coordinates are all unknowns.
+  static void subtract_from_diagonal(SymmetricMatrix& k, int first, const Block& b) {
+    for (int d = 0; d < D; ++d) {
+      double* column = k.valuePtr() + k.outerIndexPtr()[first + d];
+      for (int row = d; row < D; ++row) column[row - d] -= b(row, d);
+    }
+  }
+  static void add_below_diagonal(SymmetricMatrix& k, int first, int place, const Block& b) {
+    for (int d = 0; d < D; ++d) {
+      double* column = k.valuePtr() + k.outerIndexPtr()[first + d] + (D - d) + place;
+      for (int row = 0; row < D; ++row) column[row] += b(row, d);
+    }
+  }
+  // Of a node with fewer.
+  void edge_subtract_from_diagonal(SymmetricMatrix& k, int node, const Block& b) const {
     const int count = layout_.count(node);
     for (int c = 0; c < count; ++c) {
       double* column = k.valuePtr() + k.outerIndexPtr()[layout_.first(node) + c];
@@ -158,95 +312,41 @@ class MassSpring final : public System {
       }
     }
   }
-  void add_below_diagonal(SymmetricMatrix& k, int node, int below, int place,
-                          const Block& b) const {
+  void edge_add_below_diagonal(SymmetricMatrix& k, const EdgeLink& link, const Block& b) const {
+    const int node = std::min(link.i, link.j), below = std::max(link.i, link.j);
     const int columns = layout_.count(node), rows = layout_.count(below);
     for (int c = 0; c < columns; ++c) {
       double* column =
-          k.valuePtr() + k.outerIndexPtr()[layout_.first(node) + c] + (columns - c) + place;
-      for (int r = 0; r < rows; ++r) {
-        column[r] += b(layout_.axis(below, r), layout_.axis(node, c));
-      }
+          k.valuePtr() + k.outerIndexPtr()[layout_.first(node) + c] + (columns - c) + link.place;
+      for (int r = 0; r < rows; ++r) column[r] += b(layout_.axis(below, r), layout_.axis(node, c));
     }
   }
 
-  void make_pattern() {
-    std::vector<std::vector<int>> below(nodes());  // the neighbours i > j of each node j
-    const auto join = [&](int i, int j) {
-      if (i != j) below[std::min(i, j)].push_back(std::max(i, j));
-    };
-    for (const auto& link : links_) join(link.i, link.j);
-    for (const auto& image : images_) join(image.i, image.j);
-    Index nonzeros = 0;
-    for (auto& list : below) {
-      std::ranges::sort(list);
-      list.erase(std::ranges::unique(list).begin(), list.end());
-      nonzeros += D * (D + 1) / 2 + D * D * std::ssize(list);
-    }
-    pattern_.resize(size(), size());
-    pattern_.reserve(nonzeros);
-    for (int node = 0; node < nodes(); ++node) {
-      const Index end = layout_.first(node + 1);
-      for (Index column = layout_.first(node); column < end; ++column) {
-        pattern_.startVec(column);
-        for (Index row = column; row < end; ++row) pattern_.insertBack(row, column) = 0;
-        for (const int i : below[node]) {
-          for (Index row = layout_.first(i); row < layout_.first(i + 1); ++row) {
-            pattern_.insertBack(row, column) = 0;
-          }
-        }
-      }
-    }
-    pattern_.finalize();
-    std::vector<std::vector<int>> rows_before(nodes());  // of each neighbour, in its node's columns
-    for (int node = 0; node < nodes(); ++node) {
-      int rows = 0;
-      for (const int i : below[node]) {
-        rows_before[node].push_back(rows);
-        rows += layout_.count(i);
-      }
-    }
-    const auto place = [&](int i, int j) {
-      const auto& list = below[std::min(i, j)];
-      if (i == j) return 0;  // on the diagonal, where no place is needed
-      return rows_before[std::min(i, j)][static_cast<std::size_t>(
-          std::ranges::lower_bound(list, std::max(i, j)) - list.begin())];
-    };
-    for (const auto& link : links_) place_.push_back(place(link.i, link.j));
-    for (const auto& image : images_) place_.push_back(place(image.i, image.j));
-  }
-
-  Layout layout_;
-  std::vector<Network::Link> links_;
+  Layout<D> layout_;
+  std::vector<Link> links_;
   std::vector<Image> images_;
-  std::vector<Network::Anchor> anchors_;
+  std::vector<Anchor> anchors_;
+  std::vector<int> link_places_, image_places_;  // as in EdgeLink
+  std::vector<EdgeLink> edge_links_;             // with an end that has fewer unknowns
+  std::vector<Anchor> edge_anchors_;             // likewise, by nodes
+  std::vector<EdgeLink> links_in_tension_;       // once more, those that hold in tension only
+  std::vector<Anchor> anchors_in_tension_;
   Vec weight_;  // M g + load [N]
   double constant_energy_;
-  bool linear_, needs_tension_;
+  bool linear_ = false;
   SymmetricMatrix pattern_;
-  std::vector<int> place_;  // rows between its lower node's own block and each link's block
 };
-
-template <int D>
-std::unique_ptr<System> make(const Network& network) {
-  if (network.zero_coordinates.empty()) {
-    const FullLayout<D> layout(network.node_mass.size());
-    return std::make_unique<MassSpring<D, FullLayout<D>>>(network, layout);
-  }
-  const PartialLayout<D> layout(network.zero_coordinates);
-  return std::make_unique<MassSpring<D, PartialLayout<D>>>(network, layout);
-}
 
 }  // namespace
 
 std::unique_ptr<System> make_mass_spring(const Network& network) {
   switch (network.dimension) {
     case 1:
-      return make<1>(network);
+      return std::make_unique<MassSpring<1>>(network);
     case 2:
-      return make<2>(network);
+      return std::make_unique<MassSpring<2>>(network);
     case 3:
-      return make<3>(network);
+      return std::make_unique<MassSpring<3>>(network);
     default:
       throw std::invalid_argument("a network has 1, 2 or 3 dimensions");
   }

@@ -14,6 +14,7 @@ struct Network {
   struct Link {
     int i, j;
     SpringLaw law;
+    Holds holds = Holds::always;
   };
   // A spring between node i and the mirror image of node j, diag(mirror) x_j with entries 1 and -1;
   // i = j is a spring that crosses the mirror at a right angle.
@@ -21,12 +22,14 @@ struct Network {
     int i, j;
     Eigen::Vector3d mirror;
     SpringLaw law;
+    Holds holds = Holds::always;
   };
   // A spring between a free node and a fixed point [m].
   struct Anchor {
     int i;
     Eigen::Vector3d point;
     SpringLaw law;
+    Holds holds = Holds::always;
   };
 
   int dimension = 3;                                  // D = 1, 2 or 3

@@ -13,9 +13,6 @@ struct SpringLaw {
   double stiffness = 0;    // k [N/m], >= 0
   double rest_length = 0;  // l0 [m], >= 0
   double quartic = 0;      // c [N/m^3], >= 0
-  // Whether it stands for something that it is equal to only while it is not compressed, l >= l0:
-  // springs in series through massless nodes, which fold up where this one would push.
-  bool holds_in_tension_only = false;
 
   // Whether its force is linear in the difference of its ends.
   bool is_linear() const { return rest_length == 0 && quartic == 0; }
@@ -39,6 +36,10 @@ struct SpringLaw {
     return stiffness + 3.0 * quartic * s * s;
   }
 };
+
+// Whether a spring only stands for others as long as it is not compressed, l >= l0: for springs in
+// series through massless nodes, which fold up where this one would push.
+enum class Holds { always, in_tension };
 
 // One spring between x_i and x_j in D = 1, 2 or 3 dimensions, as functions of d = x_j - x_i [m],
 // l = |d|, n = d/l. Real is double, or std::complex<double> for complex-step differentiation.

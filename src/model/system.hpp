@@ -53,7 +53,7 @@ class System {
   // True only where K is the same at every q, so that the motion is linear.
   virtual bool stiffness_is_constant() const = 0;
 
-  // Whether this system is, at q, still what it stands for (see SpringLaw::holds_in_tension_only).
+  // Whether this system is, at q, still what it stands for (see Holds in spring.hpp).
   // Integrators ask after each step and go no further where it is not.
   virtual bool holds_at(const Vec&) const { return true; }
   // The systems that this one is made of where no force couples them, each with its own run of

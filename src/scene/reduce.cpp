@@ -48,7 +48,7 @@ void ReducedScene::condense(std::vector<Spring>& springs) {
 }
 
 void ReducedScene::leave_out_static_springs(const std::vector<Spring>& springs) {
-  for (const auto& [ends, law] : springs) {
+  for (const auto& [ends, law, holds] : springs) {
     const Node &a = nodes_[ends[0]], &b = nodes_[ends[1]];
     if (a.pinned && b.pinned) static_energy_ += law.energy((b.position - a.position).norm());
   }

@@ -24,6 +24,7 @@ struct Node {
 struct Spring {
   std::array<std::size_t, 2> nodes{};
   SpringLaw law;
+  Holds holds = Holds::always;  // as drawn; a reduction may put another in the place of several
 };
 
 // What the user drew: nodes, springs, gravity; nothing derived and nothing left out.

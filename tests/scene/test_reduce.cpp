@@ -51,7 +51,7 @@ void for_random_scenes(const Check& check) {
 // V of all springs and of the weight of the free nodes, spring by spring over all nodes.
 double potential_by_hand(const Scene& scene, const std::vector<Node>& nodes) {
   double v = 0;
-  for (const auto& [ends, law] : scene.springs)
+  for (const auto& [ends, law, holds] : scene.springs)
     v += law.energy((nodes[ends[1]].position - nodes[ends[0]].position).norm());
   for (const Node& node : nodes) {
     if (!node.pinned) v -= node.mass * scene.gravity.dot(node.position);
@@ -65,7 +65,7 @@ Vec force_by_hand(const Scene& scene, const std::vector<Node>& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (nodes[i].pinned) continue;
     Eigen::Vector3d on_node = nodes[i].mass * scene.gravity;
-    for (const auto& [ends, law] : scene.springs) {
+    for (const auto& [ends, law, holds] : scene.springs) {
       if (ends[0] != i && ends[1] != i) continue;
       const Eigen::Vector3d d =
           nodes[ends[0] == i ? ends[1] : ends[0]].position - nodes[i].position;

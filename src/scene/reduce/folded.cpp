@@ -26,8 +26,7 @@ ImageOf image_of(std::size_t i, const Mirrors& mirrors, const std::vector<Vector
 // Which springs may be added: those between the same ends in the same way, of the same length.
 auto ends(const Folded::Spring& spring) {
   const auto [low, high] = std::minmax(spring.a, spring.b);
-  return std::tuple(low, high, spring.mirror[0], spring.mirror[1], spring.mirror[2],
-                    spring.law.holds_in_tension_only);
+  return std::tuple(low, high, spring.mirror[0], spring.mirror[1], spring.mirror[2], spring.holds);
 }
 
 // One spring for each set of images, as stiff as all of them, at the place of the first.
@@ -77,7 +76,8 @@ Folded folded(const Body& body, const Mirrors& mirrors) {
   }
   for (const qddot::Spring& spring : body.springs) {
     const ImageOf &a = result.images[spring.nodes[0]], &b = result.images[spring.nodes[1]];
-    Folded::Spring image{a.original, b.original, a.signs.cwiseProduct(b.signs), spring.law};
+    Folded::Spring image{a.original, b.original, a.signs.cwiseProduct(b.signs), spring.law,
+                         spring.holds};
     // The image of a node on a plane is that node.
     const unsigned planes = result.on_planes[a.original] | result.on_planes[b.original];
     for (int d = 0; d < mirrors.count; ++d) {

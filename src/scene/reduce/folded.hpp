@@ -26,6 +26,7 @@ struct Folded {
     std::size_t a, b;        // originals
     Eigen::Vector3d mirror;  // the spring ends at y_a and at diag(mirror) y_b
     SpringLaw law;
+    Holds holds;
   };
   std::vector<Spring> springs;
 };

@@ -111,7 +111,7 @@ class Search {
       if (std::abs(plane.normal.dot(body_.gravity)) > rounding * body_.gravity.norm()) return {};
     }
     const auto exactly = images(plane, tolerance_, speed_tolerance_);
-    if (!exactly || !maps_springs(*exactly)) return {};
+    if (!exactly || !moves_any(*exactly) || !maps_springs(*exactly)) return {};
     return std::pair(plane, *exactly);
   }
 
@@ -158,6 +158,14 @@ class Search {
     return true;
   }
 
+  // Where all nodes lie on the plane, that is for the dimension to say.
+  bool moves_any(const Images& images) const {
+    for (std::size_t i = 0; i < body_.free; ++i) {
+      if (images[i] != static_cast<int>(i)) return true;
+    }
+    return false;
+  }
+
   bool maps_springs(const Images& images) const {
     for (const Spring& spring : body_.springs) {
       const auto [a, b] = spring.nodes;
@@ -166,11 +174,12 @@ class Search {
           ends_.between(static_cast<std::size_t>(images[a]), static_cast<std::size_t>(images[b]));
       if (own.size() != other.size()) return false;
       for (std::size_t e = 0; e < own.size(); ++e) {
-        const SpringLaw &one = body_.springs[own[e]].law, &two = body_.springs[other[e]].law;
+        const Spring &drawn = body_.springs[own[e]], &image = body_.springs[other[e]];
+        const SpringLaw &one = drawn.law, &two = image.law;
         if (!nearly(one.rest_length, two.rest_length, tolerance_) ||
             !nearly(one.stiffness, two.stiffness, rounding * one.stiffness) ||
             !nearly(one.quartic, two.quartic, rounding * one.quartic) ||
-            one.holds_in_tension_only != two.holds_in_tension_only) {
+            drawn.holds != image.holds) {
           return false;
         }
       }

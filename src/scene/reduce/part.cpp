@@ -21,16 +21,16 @@ std::vector<int> numbers_of(const Body& body, const Folded& half, bool with_pins
 
 void add_spring(const Folded::Spring& spring, const Folded& half, const std::vector<int>& numbers,
                 Network& network) {
-  const auto& [a, b, mirror, law] = spring;
+  const auto& [a, b, mirror, law, holds] = spring;
   const int i = numbers[a], j = numbers[b];
   if (i == no_number) {
-    network.anchors.push_back({j, mirror.cwiseProduct(half.y[a]), law});
+    network.anchors.push_back({j, mirror.cwiseProduct(half.y[a]), law, holds});
   } else if (j == no_number) {
-    network.anchors.push_back({i, mirror.cwiseProduct(half.y[b]), law});
+    network.anchors.push_back({i, mirror.cwiseProduct(half.y[b]), law, holds});
   } else if (mirror != Eigen::Vector3d::Ones()) {
-    network.image_links.push_back({i, j, mirror, law});
+    network.image_links.push_back({i, j, mirror, law, holds});
   } else {
-    network.links.push_back({i, j, law});
+    network.links.push_back({i, j, law, holds});
   }
 }
 

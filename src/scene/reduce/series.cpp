@@ -32,7 +32,7 @@ class Condenser {
     for (std::size_t e = 0; e < springs_.size(); ++e) {
       if (!is_gone[e]) left.push_back(springs_[e]);
     }
-    for (const Series& series : all) left.push_back({series.ends, series.law});
+    for (const Series& series : all) left.push_back({series.ends, series.law, series.holds});
     springs_ = std::move(left);
     return all;
   }
@@ -96,9 +96,8 @@ class Condenser {
     // A series drawn at its rest length may be shorter by what rounding makes of it.
     if (length < (1 - 1e-12) * rest_length) return {};
     Series series{ends,
-                  {.stiffness = 1 / compliance,
-                   .rest_length = rest_length,
-                   .holds_in_tension_only = rest_length > 0},
+                  {.stiffness = 1 / compliance, .rest_length = rest_length},
+                  rest_length > 0 ? Holds::in_tension : Holds::always,
                   {}};
     double shift = 0, share = 0;
     for (std::size_t j = 0; j < joints.size(); ++j) {

@@ -18,6 +18,7 @@ namespace qddot {
 struct Series {
   std::array<std::size_t, 2> ends{};
   SpringLaw law;  // of the one spring
+  Holds holds = Holds::in_tension;
   // The massless nodes from ends[0] to ends[1]. With d = x_1 - x_0 and n = d/l, node j is at
   //   x_j = x_0 + shift_j n + share_j d.
   struct Joint {

@@ -10,7 +10,7 @@ namespace {
 // Springs with the same key may be added.
 auto key(const Spring& spring) {
   const auto [low, high] = std::minmax(spring.nodes[0], spring.nodes[1]);
-  return std::tuple(low, high, spring.law.rest_length, spring.law.holds_in_tension_only);
+  return std::tuple(low, high, spring.law.rest_length, spring.holds);
 }
 
 }  // namespace
@@ -27,14 +27,14 @@ std::vector<Spring> merged_springs(const std::vector<Spring>& springs) {
     SpringLaw& sum = sums[order[first]];
     const SpringLaw& law = springs[order[i]].law;
     sum.rest_length = law.rest_length;
-    sum.holds_in_tension_only = law.holds_in_tension_only;
     sum.stiffness += law.stiffness;
     sum.quartic += law.quartic;
   }
 
   std::vector<Spring> merged;
   for (std::size_t i = 0; i < springs.size(); ++i) {
-    if (sums[i].stiffness > 0 || sums[i].quartic > 0) merged.push_back({springs[i].nodes, sums[i]});
+    if (sums[i].stiffness > 0 || sums[i].quartic > 0)
+      merged.push_back({springs[i].nodes, sums[i], springs[i].holds});
   }
   return merged;
 }

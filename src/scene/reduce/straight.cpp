@@ -12,6 +12,7 @@ struct LineSpring {
   int i, j;  // j = -1: none
   double s, c;
   SpringLaw law;
+  Holds holds;
 
   double difference(const std::vector<double>& x) const {
     return c - x[i] + (j < 0 ? 0 : s * x[j]);
@@ -20,12 +21,12 @@ struct LineSpring {
 
 std::vector<LineSpring> springs_of(const Network& network) {
   std::vector<LineSpring> all;
-  for (const auto& [i, j, law] : network.links) all.push_back({i, j, 1, 0, law});
+  for (const auto& [i, j, law, holds] : network.links) all.push_back({i, j, 1, 0, law, holds});
   for (const auto& image : network.image_links) {
-    all.push_back({image.i, image.j, image.mirror[0], 0, image.law});
+    all.push_back({image.i, image.j, image.mirror[0], 0, image.law, image.holds});
   }
   for (const auto& anchor : network.anchors) {
-    all.push_back({anchor.i, -1, 0, anchor.point[0], anchor.law});
+    all.push_back({anchor.i, -1, 0, anchor.point[0], anchor.law, anchor.holds});
   }
   return all;
 }
@@ -33,7 +34,7 @@ std::vector<LineSpring> springs_of(const Network& network) {
 bool may_be_straightened(const std::vector<LineSpring>& springs) {
   return std::ranges::all_of(springs,
                              [](const LineSpring& spring) {
-                               return spring.law.quartic == 0 && !spring.law.holds_in_tension_only;
+                               return spring.law.quartic == 0 && spring.holds == Holds::always;
                              }) &&
          std::ranges::any_of(springs,
                              [](const LineSpring& spring) { return spring.law.rest_length > 0; });
