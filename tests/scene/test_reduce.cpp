@@ -8,6 +8,7 @@
 #include "src/scene/generators.hpp"
 #include "src/scene/reduce.hpp"
 #include "tests/measure.hpp"
+#include "tests/scene/drawn.hpp"
 
 using namespace qddot;
 
@@ -48,16 +49,6 @@ void for_random_scenes(const Check& check) {
   for (const int dimension : {1, 2, 3, 3}) check(random_scene(random, dimension), random);
 }
 
-// V of all springs and of the weight of the free nodes, spring by spring over all nodes.
-double potential_by_hand(const Scene& scene, const std::vector<Node>& nodes) {
-  double v = 0;
-  for (const auto& [ends, law, holds] : scene.springs)
-    v += law.energy((nodes[ends[1]].position - nodes[ends[0]].position).norm());
-  for (const Node& node : nodes) {
-    if (!node.pinned) v -= node.mass * scene.gravity.dot(node.position);
-  }
-  return v;
-}
 
 // The force on each free node, one after the other.
 Vec force_by_hand(const Scene& scene, const std::vector<Node>& nodes) {

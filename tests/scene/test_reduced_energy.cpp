@@ -1,0 +1,156 @@
+// A reduced system is that of the scene's own energies, written in its unknowns: T and V of all
+// nodes and springs at expand(q, v), and f and K the derivatives of that V. Whatever was reduced.
+#include <boost/test/unit_test.hpp>
+
+#include "tests/measure.hpp"
+#include "tests/scene/drawn.hpp"
+
+using namespace qddot;
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+struct Case {
+  const char* name;
+  Scene scene;
+  Reduction reduction;
+  Index unknowns;  // with it
+};
+
+Scene with_parallel_springs() {
+  Scene scene = draw("chain", {{"nodes", 5}});
+  scene.springs.push_back(scene.springs[1]);
+  std::swap(scene.springs.back().nodes[0], scene.springs.back().nodes[1]);
+  scene.springs.push_back({{0, 4}, {.stiffness = 0, .rest_length = 1}});
+  return scene;
+}
+
+Scene two_chains_and_a_stray() {
+  Scene scene = draw("chain", {{"nodes", 4}});
+  const Scene other = turned(draw("chain", {{"nodes", 3}}), some_rotation(), {0, 5, 0});
+  for (const Spring& spring : other.springs) {
+    scene.springs.push_back({{spring.nodes[0] + 4, spring.nodes[1] + 4}, spring.law});
+  }
+  scene.nodes.insert(scene.nodes.end(), other.nodes.begin(), other.nodes.end());
+  scene.nodes.push_back({.position = {1, 2, 3}, .velocity = {0.5, 0, 1}, .mass = 2});
+  return scene;
+}
+
+Scene hanging_line(double length) {
+  Scene scene{.dimension = 3, .gravity = {0, 0, -2}};
+  scene.nodes = {{.position = {1, 2, 0}, .pinned = true},
+                 {.position = {1, 2, -1}, .mass = 0.3},
+                 {.position = {1, 2, -2.1}, .velocity = {0, 0, 0.4}, .mass = 0.7}};
+  scene.springs = {{{0, 1}, {90, length}}, {{2, 1}, {60, length}}};
+  return scene;
+}
+
+// Unknowns: pins, planes and mirrors by hand.
+std::vector<Case> cases() {
+  const Eigen::Vector3d shift(3, -2, 7);
+  const Scene cloth = draw("cloth", {{"nodes", 5}}), even = draw("cloth", {{"nodes", 4}});
+  return {
+      {"pins", draw("lattice", {{"nodes_x", 3}, {"nodes_y", 2}, {"nodes_z", 2}}), Reduction::pins,
+       4 * 3},
+      {"duplicates", with_parallel_springs(), Reduction::duplicates, 8},
+      {"free flight", two_chains_and_a_stray(), Reduction::free_flight, 6 + 4},
+      {"parts", two_chains_and_a_stray(), Reduction::parts, 6 + 4},
+      {"plane", draw("chain", {{"nodes", 6}}), Reduction::dimension, 10},
+      {"tilted plane", draw("orbit"), Reduction::dimension, 2},
+      {"line", hanging_line(0.5), Reduction::dimension, 2},
+      // Of 25 nodes 2 are pinned; 5 lie on the mirror with two coordinates each, 9 beside it.
+      {"mirror through nodes", cloth, Reduction::mirror, 9 * 3 + 5 * 2},
+      {"mirror between nodes", even, Reduction::mirror, 7 * 3},
+      {"tilted mirror", turned(cloth, some_rotation(), shift), Reduction::mirror, 9 * 3 + 5 * 2},
+      // One corner of the square and nothing of its middle.
+      {"two mirrors", square(), Reduction::mirror, 2},
+      {"two mirrors in space", turned(square(), some_rotation(), shift), Reduction::mirror, 2},
+      {"straight line", hanging_line(0.9), Reduction::constant_stiffness, 2},
+      {"no rest lengths", hanging_line(0), Reduction::constant_stiffness, 2},
+  };
+}
+
+// Another state of the reduced system.
+State moved(const ReducedScene& reduced, double change, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> part(-change, change);
+  State state = reduced.initial();
+  for (double& x : state.q) x += part(random);
+  for (double& v : state.v) v += part(random);
+  return state;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(reduced_energy)
+
+BOOST_AUTO_TEST_CASE(each_reduction_is_found_and_can_be_left_out) {
+  for (const auto& [name, scene, reduction, unknowns] : cases()) {
+    BOOST_TEST_CONTEXT(name) {
+      const ReducedScene with(scene), without(scene, Reductions().without(reduction));
+      BOOST_TEST(has(with, reduction));
+      BOOST_TEST(!has(without, reduction));
+      BOOST_TEST(with.system().size() == unknowns);
+      BOOST_TEST(without.system().size() >= unknowns);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_start_is_the_scene_as_drawn) {
+  for (const auto& [name, scene, reduction, unknowns] : cases()) {
+    const ReducedScene reduced(scene);
+    const auto nodes = reduced.expand(reduced.initial());
+    // Positions of about 10 m, turned there and back.
+    BOOST_TEST(farthest(nodes, scene.nodes) < 50 * eps * 10, name);
+    for (std::size_t i = 0; i < nodes.size(); ++i) BOOST_TEST(nodes[i].mass == scene.nodes[i].mass);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(energies_are_those_of_all_nodes_and_springs) {
+  for (const auto& [name, scene, reduction, unknowns] : cases()) {
+    for (const Reductions& set : {Reductions(), Reductions().without(reduction),
+                                  Reductions::only({}), Reductions::only({reduction})}) {
+      const ReducedScene reduced(scene, set);
+      for (const unsigned seed : {1u, 2u}) {
+        State state = moved(reduced, 0.05, seed);
+        // An unknown of a pinned node never moves; what a line has become is linear only until a
+        // spring turns.
+        if (!set.has(Reduction::pins)) state = reduced.initial();
+        state.t = 0.3;
+        const auto nodes = reduced.expand(state);
+        const double v = potential_by_hand(scene, nodes), t = kinetic_by_hand(nodes);
+        // Tens of springs of up to 1e6 N/m stretched by 0.1 m, each rounded a few times, and
+        // rest lengths known to eps of the place, k l eps.
+        BOOST_TEST(std::abs(reduced.potential(state) - v) < 1e-13 * (std::abs(v) + 1e5), name);
+        BOOST_TEST(std::abs(reduced.kinetic(state) - t) < 100 * eps * (t + 1), name);
+        BOOST_TEST(reduced.energy(state) == reduced.kinetic(state) + reduced.potential(state));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(force_and_stiffness_are_derivatives_of_the_scenes_own_potential) {
+  for (const auto& [name, scene, reduction, unknowns] : cases()) {
+    BOOST_TEST_CONTEXT(name) {
+      const ReducedScene reduced(scene);
+      const State state = moved(reduced, 0.02, 3);
+      const auto v = [&](const Vec& q) {
+        const State at{0, q, state.v};
+        return Vec::Constant(1, potential_by_hand(scene, reduced.expand(at)));
+      };
+      const auto f = [&](const Vec& q) { return force_at(reduced.system(), q); };
+      const Vec slope = finite_difference_jacobian(v, state.q, 1e-3).transpose();
+      const Vec force = f(state.q);
+      const double scale = force.cwiseAbs().maxCoeff();
+      // Fourth-order differences at 1e-3 of lengths above 0.2: truncation 1e-9 of the stiffest
+      // spring's force, rounding eps V / 1e-3.
+      BOOST_TEST(distance(slope, -force) < 1e-7 * scale);
+      const Eigen::MatrixXd k = dense(stiffness_at(reduced.system(), state.q));
+      BOOST_TEST(distance(finite_difference_jacobian(f, state.q, 1e-3), k) <
+                 1e-7 * k.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
