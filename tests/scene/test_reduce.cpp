@@ -49,7 +49,6 @@ void for_random_scenes(const Check& check) {
   for (const int dimension : {1, 2, 3, 3}) check(random_scene(random, dimension), random);
 }
 
-
 // The force on each free node, one after the other.
 Vec force_by_hand(const Scene& scene, const std::vector<Node>& nodes) {
   std::vector<double> f;

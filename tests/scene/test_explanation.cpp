@@ -1,0 +1,103 @@
+#include <boost/test/unit_test.hpp>
+
+#include "src/scene/explain.hpp"
+#include "tests/scene/drawn.hpp"
+
+using namespace qddot;
+
+namespace {
+
+Explanation explained(const Scene& scene, const Reductions& reductions = {}) {
+  return explain(scene, ReducedScene(scene, reductions));
+}
+
+// Three nodes on the x axis between two pins, springs shorter or longer than drawn.
+Scene strut(double strain) {
+  Scene scene;
+  for (int i = 0; i < 5; ++i) {
+    scene.nodes.push_back({.position = {0.5 * i, 0, 0}, .mass = 1, .pinned = i == 0 || i == 4});
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    scene.springs.push_back({{i, i + 1}, {100, 0.5 / (1 + strain)}});
+  }
+  return scene;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != text.npos;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(explanation)
+
+BOOST_AUTO_TEST_CASE(it_counts_unknowns_and_gives_the_stable_step) {
+  const Scene scene = draw("oscillator", {{"mass", 4}, {"stiffness", 100}});
+  const Explanation e = explained(scene);
+  BOOST_TEST(e.drawn_unknowns == 2);
+  BOOST_TEST(e.unknowns == 1);
+  BOOST_TEST(e.stiffness_is_constant);
+  BOOST_TEST(e.omega_max == 5, boost::test_tools::tolerance(1e-4));
+  BOOST_TEST(e.omega_bound >= 5 * (1 - 1e-15));
+  BOOST_TEST(contains(in_words(e, scene), "1 unknowns of 2"));
+  BOOST_TEST(contains(in_words(e, scene), "0.4 s"));
+}
+
+BOOST_AUTO_TEST_CASE(a_strut_that_may_buckle_out_of_its_line_is_told_so) {
+  const Explanation e = explained(strut(-0.1));
+  BOOST_TEST(e.unknowns == 1);  // on the line, and mirrored: the middle one stays
+  // Each of the three may leave the line in two directions; along it nothing is unstable.
+  BOOST_TEST(e.unstable == 6);
+  BOOST_TEST(e.unstable_left_out == 6);
+  BOOST_TEST(e.fastest == 2u);
+  // Across, K = -(tau/l) L with the chain's L, the largest eigenvalue of which is
+  // 4 sin^2(3 pi / 8): growth^2 = |tau| / l times that.
+  const double tension = 100 * (0.5 - 0.5 / 0.9);
+  const double growth = std::sqrt(-tension / 0.5 * 4 * std::pow(std::sin(3 * M_PI / 8), 2));
+  BOOST_TEST(e.growth == growth, boost::test_tools::tolerance(1e-6));
+  const std::string words = in_words(e, strut(-0.1));
+  BOOST_TEST(contains(words, "indefinite"));
+  BOOST_TEST(contains(words, "--no-reduce dimension,mirror"));
+}
+
+BOOST_AUTO_TEST_CASE(a_string_in_tension_has_nothing_to_tell) {
+  const Explanation e = explained(strut(0.1));
+  BOOST_TEST(e.unstable == 0);
+  BOOST_TEST(e.unstable_left_out == 0);
+  BOOST_TEST(contains(in_words(e, strut(0.1)), "semidefinite"));
+}
+
+BOOST_AUTO_TEST_CASE(directions_that_are_kept_are_not_left_out) {
+  const Explanation e =
+      explained(strut(-0.1), Reductions().without(Reduction::dimension).without(Reduction::mirror));
+  BOOST_TEST(e.unknowns == 9);
+  BOOST_TEST(e.unstable == 6);
+  BOOST_TEST(e.unstable_left_out == 0);
+}
+
+BOOST_AUTO_TEST_CASE(scenes_without_unknowns_and_with_massless_nodes_are_explained) {
+  Scene pinned = strut(0);
+  for (Node& node : pinned.nodes) node.pinned = true;
+  BOOST_TEST(contains(in_words(explained(pinned), pinned), "nothing is left"));
+  Scene massless = strut(0.1);
+  massless.nodes[2].mass = 0;
+  massless.springs[1].law.quartic = 1;
+  const Explanation e = explained(massless);
+  BOOST_TEST(std::isinf(e.omega_bound));
+  BOOST_TEST(contains(in_words(e, massless), "no explicit method"));
+}
+
+BOOST_AUTO_TEST_CASE(every_generator_is_explained) {
+  for (const Generator& generator : generators()) {
+    const Scene scene = draw(generator.name);
+    const Explanation e = explained(scene);
+    BOOST_TEST(e.unknowns < e.drawn_unknowns, generator.name);
+    BOOST_TEST(std::isfinite(e.omega_max), generator.name);
+    BOOST_TEST(e.unstable == 0, generator.name);
+    for (const Finding& finding : e.findings) {
+      BOOST_TEST(contains(in_words(e, scene), finding.what));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
