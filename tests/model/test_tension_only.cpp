@@ -34,7 +34,7 @@ Sample sample(Kind kind, int dimension, double length, bool needs_tension = true
   for (double& a : along) a = coordinate(random);
   for (double& a : x) a = coordinate(random);
   along *= length / along.norm();
-  const Eigen::Vector3d turned(-1, 1, -1);
+  const Vec turned{{-1, 1, -1}};
   Sample s{{.dimension = dimension, .node_mass = Vec::Ones(2)}, Vec(2 * dimension)};
   Vec other = 3 * x;
   s.network.links = {{0, 1, compressed}};
