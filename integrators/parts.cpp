@@ -1,7 +1,6 @@
 #include "integrators/parts.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 #include "integrators/registry.hpp"
 
@@ -33,45 +32,38 @@ void Parts::start(Piece& piece) {
 
 Outcome Parts::run_to(State& state, double t_stop) {
   for (Piece& piece : pieces_) piece.begin = piece.state;
-  const Outcome outcome = run_all(t_stop);
-  if (outcome != Outcome::reached_end) step_back();
+  Outcome outcome = Outcome::reached_end;
+  double t_end = t_stop;
+  const auto is_there = [&](const Piece& piece) { return piece.state.t == t_end; };
+  // Each failure is a new end, earlier than the last; pieces that went beyond it run to it anew.
+  while (!std::ranges::all_of(pieces_, is_there)) {
+    for (Piece& piece : pieces_) {
+      if (is_there(piece)) continue;
+      const Outcome own = run_piece(piece, t_end);
+      if (own == Outcome::reached_end) continue;
+      outcome = own;
+      explain(piece.integrator->message_);
+      t_end = piece.state.t;
+    }
+  }
   gather(state);
   return outcome;
 }
 
-Outcome Parts::run_all(double t_stop) {
-  for (Piece& piece : pieces_) {
-    Outcome outcome = Outcome::solver_failed;
-    try {
-      outcome = piece.integrator->run_to(piece.state, t_stop);
-    } catch (const std::exception& error) {
-      piece.integrator->explain(error.what());
-    }
-    if (outcome != Outcome::reached_end) {
-      explain(piece.integrator->message_);
-      return outcome;
-    }
-    piece.state.t = t_stop;
-  }
-  return Outcome::reached_end;
-}
-
-void Parts::step_back() {
-  const auto time = [](const Piece& piece) { return piece.state.t; };
-  const double begin = pieces_.front().begin.t;
-  // A piece may fail earlier on the way to a new end, but each time it is an earlier one.
-  for (double t = std::ranges::min(pieces_ | std::views::transform(time)); t >= begin;) {
-    for (Piece& piece : pieces_) {
-      if (piece.state.t == t) continue;
+Outcome Parts::run_piece(Piece& piece, double t_end) {
+  Outcome outcome = Outcome::solver_failed;
+  try {
+    if (piece.state.t != piece.begin.t) {
       piece.state = piece.begin;
-      if (t == begin) continue;
       start(piece);
-      if (piece.integrator->run_to(piece.state, t) == Outcome::reached_end) piece.state.t = t;
     }
-    const double least = std::ranges::min(pieces_ | std::views::transform(time));
-    if (least == t) return;
-    t = least;
+    if (piece.state.t == t_end) return Outcome::reached_end;
+    outcome = piece.integrator->run_to(piece.state, t_end);
+  } catch (const std::exception& error) {
+    piece.integrator->explain(error.what());
   }
+  if (outcome == Outcome::reached_end) piece.state.t = t_end;
+  return outcome;
 }
 
 void Parts::gather(State& state) {

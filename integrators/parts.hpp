@@ -9,7 +9,9 @@ namespace qddot {
 
 // Runs a system whose parts no force couples (System::parts): each by an integrator of its own,
 // with steps of its own where the method is adaptive, as one run with one outcome. Counts are the
-// sums over the parts. Where a part fails, the others are brought to the time that it reached.
+// sums over the parts. Where a part fails, the others are brought to the time that it reached; of
+// several that fail the earliest decides. A run that is stopped from outside ends where all were
+// last together, at its start or an observer's time: there is no time to bring them farther.
 class Parts final : public Integrator {
  public:
   Parts(const Method& method, const System& system, const Knobs& knobs);
@@ -25,10 +27,8 @@ class Parts final : public Integrator {
   Outcome run_to(State& state, double t_stop) override;
 
   void start(Piece& piece);
-  // Brings the pieces to t_stop from where they are; the first failure ends it.
-  Outcome run_all(double t_stop);
-  // Brings all pieces to the time of the one that is behind, from `begin`.
-  void step_back();
+  // Brings the piece to t_end from where it begins, whether or not it has run from there before.
+  Outcome run_piece(Piece& piece, double t_end);
   void gather(State& state);
 
   std::vector<Piece> pieces_;

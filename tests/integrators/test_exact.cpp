@@ -1,0 +1,250 @@
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include <boost/test/unit_test.hpp>
+
+#include "src/model/divided.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(exact)
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+const Method& method = method_named("exact");
+
+Run run_exact(const Problem& p, double t_end, double h) {
+  const auto system = make_mass_spring(p.network);
+  Run r = run(method, *system, p.initial, t_end, {.step_size = h});
+  BOOST_TEST(r.summary.message == "");
+  BOOST_TEST(r.state.t == t_end);
+  return r;
+}
+
+// linear_chain with every mode in motion, and its closed form: with x_i = i at rest,
+//   q_i(t) = i + sum_j sin(i j pi / (n + 1)) (a_j cos w_j t + b_j / w_j sin w_j t).
+struct Chain {
+  static constexpr int n = 9;
+  static constexpr double mass = 0.3, stiffness = 200;
+
+  Chain() : a(n), b(n) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> amplitude(-1, 1);
+    for (double& x : a) x = 0.1 * amplitude(random);
+    for (double& x : b) x = amplitude(random);
+  }
+  static double omega(int j) {
+    return 2 * std::sqrt(stiffness / mass) * std::sin(j * M_PI / (2 * (n + 1)));
+  }
+  State at(double t) const {
+    State s{t, Vec::LinSpaced(n, 1, n), Vec::Zero(n)};
+    for (int j = 1; j <= n; ++j) {
+      const double w = omega(j), c = std::cos(w * t), d = std::sin(w * t);
+      for (int i = 1; i <= n; ++i) {
+        const double shape = std::sin(i * j * M_PI / (n + 1));
+        s.q[i - 1] += shape * (a[j - 1] * c + b[j - 1] / w * d);
+        s.v[i - 1] += shape * (b[j - 1] * c - a[j - 1] * w * d);
+      }
+    }
+    return s;
+  }
+  Problem problem() const { return {linear_chain(n, mass, stiffness), at(0)}; }
+
+  Vec a, b;
+};
+
+// An overall tolerance for a motion of n unknowns: a phase w t rounds with each of its factors,
+// each step rounds all that it puts together.
+double rounding(double w, double t, double steps, Index n) {
+  return static_cast<double>(n) * eps * (10 * w * t + 4 * steps + 10);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(the_registry_knows_it_as_a_method_without_error_for_constant_stiffness) {
+  BOOST_TEST(std::ranges::count(methods(), "exact", &Method::name) == 1);
+  BOOST_TEST(method.order == 0);
+  BOOST_TEST((method.knob == Knob::step_size));
+  BOOST_TEST(method.needs_constant_stiffness);
+  BOOST_TEST(std::ranges::count(methods(), true, &Method::needs_constant_stiffness) == 1);
+  BOOST_TEST(std::ranges::count(general_methods(), "exact", &Method::name) == 0);
+  BOOST_TEST(applies_to(method, *make_mass_spring(linear_hammock(2).network)));
+  BOOST_TEST(!applies_to(method, *make_mass_spring(hammock(2).network)));
+}
+
+BOOST_AUTO_TEST_CASE(oscillator_follows_its_closed_form_at_small_and_absurdly_large_steps) {
+  const Oscillator o;
+  const double amplitude = std::hypot(o.x0, o.v0 / o.omega());
+  for (const double periods : {0.25, 1.0, 300.7}) {
+    const double t = periods * o.period();
+    for (const double h : {0.01, 0.37, 2 / o.omega(), 17.0, 1e9}) {
+      const Run r = run_exact(o.problem(), t, h);
+      const double tolerance =
+          amplitude * rounding(o.omega(), t, static_cast<double>(r.summary.counts.steps), 1);
+      BOOST_TEST(std::abs(r.state.q[0] - o.position(t)) < tolerance);
+      BOOST_TEST(std::abs(r.state.v[0] - o.velocity(t)) < tolerance * o.omega());
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(chain_follows_its_closed_form_at_small_and_absurdly_large_steps) {
+  const Chain chain;
+  const double w = Chain::omega(Chain::n);
+  for (const double t : {0.1, 3.0, 100.0}) {
+    for (const double h : {0.01, 0.5, 1e6}) {
+      const Run r = run_exact(chain.problem(), t, h);
+      // Positions up to n; speeds w times the displacements, which are below 1.
+      const double tolerance = rounding(w, t, static_cast<double>(r.summary.counts.steps), 9) * 9;
+      BOOST_TEST(distance(r.state.q, chain.at(t).q) < tolerance);
+      BOOST_TEST(distance(r.state.v, chain.at(t).v) < tolerance * w);
+      BOOST_TEST(distance(chain.at(t + 1e-9).v, chain.at(t).v) > tolerance * w);  // would be seen
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_step_makes_no_difference) {
+  for (const int dimension : {1, 2, 3}) {
+    const Problem p = linear_hammock(dimension);
+    const double t = 7.3;
+    const State whole = run_exact(p, t, 1e4).state;
+    for (const double h : {0.003, 0.1, 1.0, 5.0}) {
+      const Run r = run_exact(p, t, h);
+      // 12 unknowns of some 10 m and 100 m/s, below 25 rad/s.
+      const double tolerance =
+          100 * rounding(25, t, static_cast<double>(r.summary.counts.steps), 12);
+      BOOST_TEST(distance(r.state, whole) < tolerance);
+    }
+    const auto system = make_mass_spring(p.network);
+    const Run verlet = run(method_named("verlet"), *system, p.initial, t, {.step_size = 0.003});
+    BOOST_TEST(distance(verlet.state, whole) > 1e-5);  // as any step error is
+  }
+}
+
+BOOST_AUTO_TEST_CASE(it_refuses_a_stiffness_that_varies_and_massless_nodes_at_once) {
+  Problem massless = linear_hammock(2);
+  massless.network.node_mass[1] = 0;
+  for (const auto& [p, outcome] : {std::pair(hammock(2), Outcome::stiffness_varies),
+                                   std::pair(massless, Outcome::singular_mass)}) {
+    const auto system = make_mass_spring(p.network);
+    const Run r = run(method, *system, p.initial, 1, {.step_size = 0.01});
+    BOOST_TEST(name(r.summary.outcome) == name(outcome));
+    BOOST_TEST(r.summary.message == advice(outcome));
+    BOOST_TEST(same(r.state, p.initial));
+    BOOST_TEST(same(r.summary.counts, Counts{}));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(it_gives_up_on_too_many_unknowns_with_their_number) {
+  const auto system = make_mass_spring(linear_chain(2001, 1, 1));
+  const State start{0, Vec::LinSpaced(2001, 1, 2001), Vec::Ones(2001)};
+  const Run r = run(method, *system, start, 1, {.step_size = 1});
+  BOOST_TEST(name(r.summary.outcome) == "solver_failed");
+  BOOST_TEST(r.summary.message ==
+             "2001 unknowns are too many for all modes; at most 2000 are allowed");
+  BOOST_TEST(same(r.state, start));
+}
+
+BOOST_AUTO_TEST_CASE(parts_have_their_modes_each_for_itself) {
+  // More unknowns than it would take of one system.
+  std::vector<std::unique_ptr<System>> parts;
+  constexpr int count = 250, size = 9;
+  for (int i = 0; i < count; ++i) parts.push_back(make_mass_spring(Chain().problem().network));
+  const Divided system(std::move(parts));
+  const Chain chain;
+  const State start{0, chain.at(0).q.replicate<count, 1>(), chain.at(0).v.replicate<count, 1>()};
+  const Run r = run(method, system, start, 3, {.step_size = 3});
+  BOOST_TEST(system.size() > 2000);
+  BOOST_TEST(r.summary.message == "");
+  BOOST_TEST(distance(r.state.q.tail(size), chain.at(3).q) <
+             9 * rounding(Chain::omega(size), 3, 1, size));
+}
+
+BOOST_AUTO_TEST_CASE(free_masses_fly_on_parabolas_at_every_step) {
+  const Network network{.dimension = 3, .gravity = {1, 0, -9.81}, .node_mass = Vec{{0.3, 20}}};
+  const State start{1, Vec::LinSpaced(6, -1, 3), Vec::LinSpaced(6, 5, -4)};
+  const Vec g = Vec{{1, 0, -9.81}}.replicate(2, 1);
+  for (const double h : {0.01, 1.0, 1e5}) {
+    const double dt = 10;
+    const Run r = run_exact({network, start}, start.t + dt, h);
+    // Up to 500 m, and a rounding in each step.
+    const double steps = static_cast<double>(r.summary.counts.steps);
+    BOOST_TEST(distance(r.state.q, start.q + dt * start.v + 0.5 * dt * dt * g) <
+               8 * eps * 500 * steps);
+    BOOST_TEST(distance(r.state.v, start.v + dt * g) < 8 * eps * 100 * steps);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_free_pair_falls_with_its_centre_and_swings_about_it) {
+  // Relative coordinate with w^2 = k (1/m1 + 1/m2) = 100; the centre's w^2 = 0 may come out as
+  // some eps 100, which bends its parabola of 30 m by that times t^2.
+  Problem p{{.dimension = 1, .gravity = {2, 0, 0}, .node_mass = Vec{{1, 3}}}, {}};
+  p.network.links = {{0, 1, {75}}};
+  p.initial = {0, Vec{{-1, 2}}, Vec{{4, -2}}};
+  const double t = 5;
+  for (const double h : {0.05, 1.0, 1e3}) {
+    const State s = run_exact(p, t, h).state;
+    const double centre = 1.25 - 0.5 * t + t * t;
+    const double apart = 3 * std::cos(10 * t) - 0.6 * std::sin(10 * t);
+    const double tolerance = 10 * eps * 100 * t * t * 30;
+    BOOST_TEST(std::abs((s.q[0] + 3 * s.q[1]) / 4 - centre) < tolerance);
+    BOOST_TEST(std::abs(s.q[1] - s.q[0] - apart) < tolerance);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(it_keeps_the_energy_and_runs_backwards_to_its_start) {
+  for (const int dimension : {1, 2, 3}) {
+    Problem p = linear_hammock(dimension);
+    const auto system = make_mass_spring(p.network);
+    const double energy = total_energy(*system, p.initial), scale = std::abs(energy) + 1000;
+    for (const double h : {0.01, 3.7, 1e3}) {
+      const State there = run_exact(p, 20, h).state;
+      // 12 modes; each of up to 2000 steps rounds.
+      const double steps = std::ceil(20 / h);
+      BOOST_TEST(std::abs(total_energy(*system, there) - energy) < 12 * eps * scale * (10 + steps));
+      const State back = run_exact({p.network, {0, there.q, -there.v}}, 20, h).state;
+      BOOST_TEST(distance(back.q, p.initial.q) < 100 * rounding(25, 20, steps, 12));
+      BOOST_TEST(distance(back.v, -p.initial.v) < 100 * rounding(25, 20, steps, 12));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(it_counts_one_force_a_step_and_one_eigenproblem_a_run) {
+  const Problem p = linear_hammock(2);
+  const auto system = make_mass_spring(p.network);
+  const auto integrator = make_integrator(method, *system, {.step_size = 0.01});
+  State end = p.initial;
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    State state = p.initial;
+    const Summary summary = integrator->advance(state, 0.374, {{0.1, 0.2}, [](const State&) {}});
+    BOOST_TEST(same(
+        summary.counts,
+        {.steps = 38, .force_evaluations = 38, .stiffness_evaluations = 1, .factorizations = 1}));
+    BOOST_TEST(state.t == 0.374);
+    if (repeat > 0) BOOST_TEST(same(state, end));
+    end = state;
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_and_a_stop_end_the_run_at_the_last_step) {
+  const Problem p = linear_hammock(2);
+  const auto system = make_mass_spring(p.network);
+  std::stop_source budget;
+  for (const bool stops : {false, true}) {
+    Relay relay(*system);
+    relay.after_force = [&, calls = 0](const Vec&, Vec& f) mutable {
+      if (++calls < 20) return;
+      if (stops) budget.request_stop();
+      if (!stops) f[3] = NAN;
+    };
+    const Run r = run(method, relay, p.initial, 1, {.step_size = 0.01}, {}, budget.get_token());
+    BOOST_TEST(name(r.summary.outcome) == (stops ? "over_budget" : "not_finite"));
+    BOOST_TEST(r.summary.counts.steps == (stops ? 20 : 19));
+    BOOST_TEST(r.state.t == (stops ? 0.2 : 0.19));
+    BOOST_TEST(is_finite(r.state));
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

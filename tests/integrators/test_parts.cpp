@@ -1,0 +1,189 @@
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/pieces.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(parts)
+
+namespace {
+
+constexpr double t_end = start_time + 0.6137;  // no whole number of steps
+Knobs knobs_for(const Method& method) { return knobs_of(method, 0.01, 1e-6); }
+
+// Whether the parts of `whole` are where each run alone is, to the last bit.
+bool are_alone(const Run& whole, const Together& together, const std::vector<Run>& alone) {
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    if (!same(together.part(whole.state, i), alone[i].state)) return false;
+  }
+  return true;
+}
+
+std::vector<Run> runs_alone(const Method& method, const std::vector<Piece>& pieces,
+                            const Observer& observer = {}) {
+  std::vector<Run> alone;
+  for (const Piece& one : pieces) {
+    alone.push_back(run(method, one, t_end, knobs_for(method), observer));
+    BOOST_TEST(alone.back().summary.message == "");
+  }
+  return alone;
+}
+
+// Remembers what it is shown.
+struct Film {
+  explicit Film(std::vector<double> times)
+      : observer{std::move(times), [this](const State& s) { states.push_back(s); }} {}
+  std::vector<State> states;
+  Observer observer;
+};
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(every_method_takes_each_part_as_if_it_were_alone) {
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const std::vector<Piece> pieces = pieces_for(method);
+      const Together together(pieces);
+      const Run whole = run(method, together, t_end, knobs_for(method));
+      const std::vector<Run> alone = runs_alone(method, pieces);
+      BOOST_TEST(whole.summary.message == "");
+      BOOST_TEST(whole.state.t == t_end);
+      BOOST_TEST(whole.summary.t_reached == t_end);
+      BOOST_TEST(are_alone(whole, together, alone));
+      Counts sum;
+      for (const Run& one : alone) sum = sum + one.summary.counts;
+      BOOST_TEST(same(whole.summary.counts, sum));
+      BOOST_TEST(sum.steps > 0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(adaptive_methods_take_for_each_part_the_steps_that_it_needs) {
+  const Oscillator slow{.stiffness = 2}, fast{.stiffness = 20000};  // 1 and 100 rad/s
+  for (const Method& method : methods_of(Knob::rtol)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const std::vector<Piece> pieces = {piece(slow.problem()), piece(fast.problem())};
+      const std::vector<Run> alone = runs_alone(method, pieces);
+      const Together together(pieces);
+      const Run whole = run(method, together, t_end, knobs_for(method));
+      BOOST_TEST(are_alone(whole, together, alone));
+      BOOST_TEST(10 * alone[0].summary.counts.steps < alone[1].summary.counts.steps);
+
+      // As one system both take the steps of the fast one: that is what is seen above.
+      Problem joined = slow.problem();
+      joined.network.node_mass = Vec::Constant(2, slow.mass);
+      joined.network.anchors.push_back({1, {0, 0, 0}, {fast.stiffness}});
+      const auto system = make_mass_spring(joined.network);
+      const Run one = run(method, *system, together.start, t_end, knobs_for(method));
+      BOOST_TEST(one.summary.message == "");
+      BOOST_TEST(!are_alone(one, together, alone));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_observer_sees_all_parts_at_the_same_time) {
+  const std::vector<double> times = {start_time + 0.013, start_time + 0.2, start_time + 1. / 3,
+                                     t_end};
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const std::vector<Piece> pieces = pieces_for(method);
+      const Together together(pieces);
+      Film film(times);
+      const Run whole = run(method, together, t_end, knobs_for(method), film.observer);
+      BOOST_TEST(whole.summary.message == "");
+      BOOST_TEST_REQUIRE(film.states.size() == times.size());
+      for (std::size_t i = 0; i < pieces.size(); ++i) {
+        Film own(times);
+        run(method, pieces[i], t_end, knobs_for(method), own.observer);
+        for (std::size_t k = 0; k < times.size(); ++k) {
+          BOOST_TEST(film.states[k].t == times[k]);
+          BOOST_TEST(same(together.part(film.states[k], i), own.states[k]));
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed) {
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      std::vector<Piece> pieces = pieces_for(method);
+      pieces.push_back(giving_up(-0.2, "no more"));
+      const Together together(pieces);
+      const auto integrator = make_integrator(method, *together.system, knobs_for(method));
+      const double early = start_time + 0.1;
+      State first = together.start, failed = together.start, second = together.start;
+      const Summary a = integrator->advance(first, early);
+      const Summary b = integrator->advance(failed, t_end);
+      const Summary c = integrator->advance(second, early);
+      BOOST_TEST(a.message == "");
+      BOOST_TEST(b.message == "no more");
+      BOOST_TEST(c.message == "");
+      BOOST_TEST(same(first, second));
+      BOOST_TEST(same(a.counts, c.counts));
+      BOOST_TEST(c.t_reached == early);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing) {
+  const Piece nothing = {[] { return make_mass_spring({.dimension = 2}); }, {start_time, {}, {}}};
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const std::vector<Piece> pieces = pieces_for(method);
+      const auto group = [](std::vector<Piece> few) {
+        const State start = Together(few).start;
+        return Piece{[few] { return std::move(Together(few).system); }, start};
+      };
+      const Together flat(pieces), nested({group({}), nothing, group({pieces[0], nothing}),
+                                           group({group({pieces[1]}), pieces[2]})});
+      const Run a = run(method, flat, t_end, knobs_for(method));
+      const Run b = run(method, nested, t_end, knobs_for(method));
+      BOOST_TEST(b.summary.message == "");
+      BOOST_TEST(same(a.state, b.state));
+      BOOST_TEST(same(a.summary.counts, b.summary.counts));
+
+      const Run empty = run(method, Together({group({}), nothing}), t_end, knobs_for(method));
+      BOOST_TEST(empty.summary.message == "");
+      BOOST_TEST(empty.state.t == t_end);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_to_its_own_start_changes_nothing) {
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Together together(pieces_for(method));
+      const Run r = run(method, together, start_time, knobs_for(method));
+      BOOST_TEST(r.summary.message == "");
+      BOOST_TEST(same(r.state, together.start));
+      BOOST_TEST(same(r.summary.counts, Counts{}));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_one_part_is_refused_for_all_are) {
+  Problem massless = Oscillator().problem();
+  massless.network.node_mass.setZero();
+  for (const Method& method : methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      std::vector<Piece> pieces = pieces_for(method);
+      const auto outcome = [&] {
+        const Together together(pieces);
+        const Run r = run(method, together, t_end, knobs_for(method));
+        if (r.summary.outcome != Outcome::reached_end) {
+          BOOST_TEST(same(r.state, together.start));
+          BOOST_TEST(same(r.summary.counts, Counts{}));
+        }
+        return name(r.summary.outcome);
+      };
+      pieces.push_back(piece(hammock(2)));
+      BOOST_TEST(outcome() ==
+                 (method.needs_constant_stiffness ? "stiffness_varies" : "reached_end"));
+      pieces.back() = piece(massless);
+      BOOST_TEST(outcome() == (method.accepts_massless ? "reached_end" : "singular_mass"));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

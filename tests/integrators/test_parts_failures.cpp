@@ -1,0 +1,170 @@
+#include <algorithm>
+
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/pieces.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(parts_failures)
+
+namespace {
+
+constexpr double t_end = start_time + 0.9;
+Knobs knobs_for(const Method& method) { return knobs_of(method, 0.01, 1e-6); }
+const Observer early{{start_time + 0.05}, [](const State&) {}};
+
+// To the last bit; but where an adaptive method, which chooses its steps by where it began and
+// where it stops, had to go back to an observer's time, as well as its tolerance of 1e-6 lets it.
+void check_same(const Method& method, const State& a, const State& b, bool to_the_bit) {
+  if (to_the_bit || method.knob == Knob::step_size) {
+    BOOST_TEST(same(a, b));
+  } else {
+    BOOST_TEST(a.t == b.t);
+    BOOST_TEST(distance(a, b) < 1e-3);
+  }
+}
+
+// Runs `bad` among others, at each place, without and with an observer that looks in before: all
+// end at the time that it reaches alone, and each where it is alone at that time.
+void check_failure(const Method& method, const Piece& bad, Outcome outcome) {
+  const std::vector<Piece> good = pieces_for(method);
+  const Knobs knobs = knobs_for(method);
+  for (const Observer& observer : {Observer{}, early}) {
+    const Run alone = run(method, bad, t_end, knobs, observer);
+    BOOST_TEST(name(alone.summary.outcome) == name(outcome));
+    BOOST_TEST(alone.state.t > start_time + 0.05);
+    BOOST_TEST(alone.state.t < t_end);
+    for (std::size_t place = 0; place <= good.size(); ++place) {
+      BOOST_TEST_CONTEXT(method.name << ", place " << place << ", " << observer.times.size()) {
+        std::vector<Piece> pieces = good;
+        pieces.insert(pieces.begin() + static_cast<std::ptrdiff_t>(place), bad);
+        const Together together(pieces);
+        const Run r = run(method, together, t_end, knobs, observer);
+        BOOST_TEST(name(r.summary.outcome) == name(outcome));
+        BOOST_TEST(r.summary.message == alone.summary.message);
+        BOOST_TEST(r.state.t == alone.state.t);
+        BOOST_TEST(r.summary.t_reached == r.state.t);
+        BOOST_TEST(same(together.part(r.state, place), alone.state));
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+          if (i == place) continue;
+          const Run own = run(method, pieces[i], r.state.t, knobs, observer);
+          check_same(method, together.part(r.state, i), own.state, observer.times.empty());
+        }
+      }
+    }
+  }
+}
+
+// A mass that swings back on a spring which may not be compressed, after a quarter of a period.
+Piece string(double quarter_period) {
+  const double omega = M_PI / (2 * quarter_period);
+  Problem p{{.dimension = 1, .node_mass = Vec::Ones(1)}, {0, Vec{{1.5}}, Vec::Zero(1)}};
+  p.network.anchors = {
+      {0,
+       {0, 0, 0},
+       {.stiffness = omega * omega, .rest_length = 1, .holds_in_tension_only = true}}};
+  return piece(p);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_part_that_diverges_ends_the_run_of_all_at_its_last_step) {
+  for (const Method& method : methods_of(Knob::step_size)) {
+    if (method.implicit) continue;
+    // In steps of 1/100 s; explicit Euler has no limit and grows fourfold a step at h w = 4.
+    const double omega = 200 * std::max(2.0, method.stability_limit);
+    check_failure(method, piece(Oscillator{.mass = 1, .stiffness = omega * omega}.problem()),
+                  Outcome::diverged);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_part_that_throws_ends_the_run_of_all_at_its_last_step) {
+  for (const Method& method : methods()) {
+    check_failure(method, giving_up(-0.2, "no more"), Outcome::solver_failed);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_part_that_goes_slack_ends_the_run_of_all_at_its_last_step) {
+  for (const Method& method : general_methods()) {
+    check_failure(method, string(0.3), Outcome::went_slack);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(of_several_parts_that_fail_the_earliest_decides_in_any_order) {
+  for (const Method& method : general_methods()) {
+    const std::vector<Piece> bad = {string(0.4), giving_up(-0.5, "late"), giving_up(0.2, "early"),
+                                    piece(hammock(2))};
+    const Run first = run(method, bad[2], t_end, knobs_for(method));
+    BOOST_TEST(first.summary.message == "early");
+    std::vector<std::size_t> order = {0, 1, 2, 3};
+    do {
+      BOOST_TEST_CONTEXT(method.name << " " << order[0] << order[1] << order[2] << order[3]) {
+        std::vector<Piece> pieces;
+        for (const std::size_t i : order) pieces.push_back(bad[i]);
+        const Together together(pieces);
+        const Run r = run(method, together, t_end, knobs_for(method));
+        BOOST_TEST(r.summary.message == "early");
+        BOOST_TEST(name(r.summary.outcome) == "solver_failed");
+        // Where its last step was depends on where an adaptive method wanted to stop.
+        if (method.knob == Knob::step_size) BOOST_TEST(r.state.t == first.state.t);
+        BOOST_TEST(std::abs(r.state.t - first.state.t) < 0.05);
+        BOOST_TEST(r.summary.t_reached == r.state.t);
+        for (std::size_t i = 0; i < order.size(); ++i) {
+          const Run own = run(method, pieces[i], r.state.t, knobs_for(method));
+          BOOST_TEST(own.summary.message == "");
+          check_same(method, together.part(r.state, i), own.state, false);
+        }
+      }
+    } while (std::ranges::next_permutation(order).found);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_out_of_time_ends_where_all_parts_last_were_together) {
+  for (const Method& method : methods()) {
+    for (std::size_t place = 0; place < 4; ++place) {
+      BOOST_TEST_CONTEXT(method.name << ", place " << place) {
+        std::stop_source budget;
+        const std::shared_ptr<System> oscillator = make_mass_spring(Oscillator().problem().network);
+        // Asks to stop at a force well after the observer's time, whatever the steps.
+        double seen = 0;
+        const Piece last_straw = {[&] {
+                                    auto relay = std::make_unique<Relay>(*oscillator);
+                                    relay->after_force = [&](const Vec& q, Vec&) {
+                                      if (q[0] <= -0.2) budget.request_stop();
+                                    };
+                                    return relay;
+                                  },
+                                  piece(Oscillator().problem()).start};
+        std::vector<Piece> pieces = pieces_for(method);
+        pieces.insert(pieces.begin() + static_cast<std::ptrdiff_t>(place), last_straw);
+        const Together together(pieces);
+        State shown;
+        const Observer observer{{start_time + 0.05}, [&](const State& s) {
+                                  shown = s;
+                                  seen = s.t;
+                                }};
+        const Run r = run(method, together, t_end, knobs_for(method), observer, budget.get_token());
+        BOOST_TEST(name(r.summary.outcome) == "over_budget");
+        BOOST_TEST(r.summary.message == advice(Outcome::over_budget));
+        BOOST_TEST(seen == start_time + 0.05);
+        BOOST_TEST(r.summary.t_reached == seen);
+        BOOST_TEST(same(r.state, shown));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_step_that_no_part_can_take_is_refused_for_all) {
+  for (const Method& method : methods_of(Knob::step_size)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Together together(pieces_for(method));
+      const Run r = run(method, together, t_end, {.step_size = 0});
+      BOOST_TEST(name(r.summary.outcome) == "step_too_small");
+      BOOST_TEST(r.summary.message == advice(Outcome::step_too_small));
+      BOOST_TEST(same(r.state, together.start));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
