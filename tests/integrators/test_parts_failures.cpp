@@ -60,10 +60,7 @@ void check_failure(const Method& method, const Piece& bad, Outcome outcome) {
 Piece string(double quarter_period) {
   const double omega = M_PI / (2 * quarter_period);
   Problem p{{.dimension = 1, .node_mass = Vec::Ones(1)}, {0, Vec{{1.5}}, Vec::Zero(1)}};
-  p.network.anchors = {
-      {0,
-       {0, 0, 0},
-       {.stiffness = omega * omega, .rest_length = 1, .holds_in_tension_only = true}}};
+  p.network.anchors = {{0, {0, 0, 0}, {omega * omega, 1}, Holds::in_tension}};
   return piece(p);
 }
 

@@ -92,15 +92,15 @@ BOOST_AUTO_TEST_CASE(what_is_free_feels_held_nodes_as_points) {
     rest.node_mass = p.network.node_mass.tail(5);
     rest.links.clear();
     rest.anchors.clear();
-    for (const auto& [i, j, law] : p.network.links) {
+    for (const auto& [i, j, law, holds] : p.network.links) {
       if (std::min(i, j) > 0) {
-        rest.links.push_back({i - 1, j - 1, law});
+        rest.links.push_back({i - 1, j - 1, law, holds});
       } else {
-        rest.anchors.push_back({std::max(i, j) - 1, point, law});
+        rest.anchors.push_back({std::max(i, j) - 1, point, law, holds});
       }
     }
-    for (const auto& [i, place, law] : p.network.anchors) {
-      if (i > 0) rest.anchors.push_back({i - 1, place, law});
+    for (const auto& [i, place, law, holds] : p.network.anchors) {
+      if (i > 0) rest.anchors.push_back({i - 1, place, law, holds});
     }
     std::vector<bool> is_held(p.initial.q.size(), false);
     std::fill_n(is_held.begin(), dimension, true);
@@ -119,15 +119,15 @@ BOOST_AUTO_TEST_CASE(what_is_free_feels_held_nodes_as_points) {
 }
 
 BOOST_AUTO_TEST_CASE(whether_stiffness_is_constant_and_the_system_holds_is_up_to_the_system) {
-  const auto held = [](const SpringLaw& law) {
-    Network network{.dimension = 1, .node_mass = Vec::Ones(2), .links = {{0, 1, law}}};
+  const auto held = [](const SpringLaw& law, Holds holds = Holds::always) {
+    Network network{.dimension = 1, .node_mass = Vec::Ones(2), .links = {{0, 1, law, holds}}};
     return Held(make_mass_spring(network), {true, false});
   };
   BOOST_TEST(held({.stiffness = 1}).stiffness_is_constant());
   BOOST_TEST(!held({1, 1}).stiffness_is_constant());
-  const SpringLaw string{.stiffness = 1, .rest_length = 1, .holds_in_tension_only = true};
-  BOOST_TEST(held(string).holds_at(Vec{{0, 1.5}}));
-  BOOST_TEST(!held(string).holds_at(Vec{{0, 0.5}}));
+  const Held string = held({1, 1}, Holds::in_tension);
+  BOOST_TEST(string.holds_at(Vec{{0, 1.5}}));
+  BOOST_TEST(!string.holds_at(Vec{{0, 0.5}}));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -25,8 +25,8 @@ struct Sample {
 };
 
 Sample sample(Kind kind, int dimension, double length, bool needs_tension = true) {
-  const SpringLaw law{
-      .stiffness = 40, .rest_length = rest_length, .holds_in_tension_only = needs_tension};
+  const SpringLaw law{.stiffness = 40, .rest_length = rest_length};
+  const Holds holds = needs_tension ? Holds::in_tension : Holds::always;
   const SpringLaw compressed{.stiffness = 10, .rest_length = 50};
   std::mt19937 random(3);
   std::uniform_real_distribution<double> coordinate(0.5, 1);
@@ -42,19 +42,19 @@ Sample sample(Kind kind, int dimension, double length, bool needs_tension = true
   s.network.image_links = {{1, 0, turned, compressed}};
   switch (kind) {
     case Kind::link:
-      s.network.links.push_back({1, 0, law});
+      s.network.links.push_back({1, 0, law, holds});
       other = x + along;
       break;
     case Kind::image:
-      s.network.image_links.push_back({0, 1, turned, law});
+      s.network.image_links.push_back({0, 1, turned, law, holds});
       other = turned.head(dimension).cwiseProduct(x + along);
       break;
     case Kind::own_image:  // as long as twice the way to the plane
-      s.network.image_links.push_back({0, 0, {-1, 1, 1}, law});
+      s.network.image_links.push_back({0, 0, {-1, 1, 1}, law, holds});
       x[0] = length / 2;
       break;
     case Kind::anchor:
-      s.network.anchors.push_back({0, in_space(x + along), law});
+      s.network.anchors.push_back({0, in_space(x + along), law, holds});
   }
   s.q << x, other;
   return s;
@@ -96,8 +96,7 @@ BOOST_AUTO_TEST_CASE(without_such_springs_a_system_holds_everywhere) {
 BOOST_AUTO_TEST_CASE(it_takes_all_of_several) {
   for_all([](Kind kind, int dimension) {
     Sample s = sample(kind, dimension, 2 * rest_length);
-    SpringLaw law{.stiffness = 1, .rest_length = 0.1, .holds_in_tension_only = true};
-    s.network.anchors.push_back({1, {30, 0, 0}, law});
+    s.network.anchors.push_back({1, {30, 0, 0}, {1, 0.1}, Holds::in_tension});
     BOOST_TEST(s.holds());
     s.network.anchors.back().law.rest_length = 100;
     BOOST_TEST(!s.holds());
