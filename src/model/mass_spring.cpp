@@ -3,76 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "src/model/block_pattern.hpp"
 #include "src/model/layout.hpp"
 
 namespace qddot {
 namespace {
-
-// Where each block of K stands, in the pattern of a network. The column of node j's coordinate a
-// holds the rows a, a + 1, ... of its own block, then the rows of each neighbour i > j in ascending
-// order. So a block is found by its node's first column and its place below it: nothing is searched
-// for during assembly.
-template <int D>
-class Pattern {
- public:
-  using Block = Eigen::Matrix<double, D, D>;
-
-  explicit Pattern(const Layout<D>& layout) : layout_(layout), below_(layout.nodes()) {}
-
-  void join(int i, int j) {
-    if (i != j) below_[std::min(i, j)].push_back({std::max(i, j), 0});
-  }
-
-  // To be called once, after all joins.
-  SymmetricMatrix make() {
-    const Index n = layout_.first(static_cast<int>(layout_.nodes()));
-    Index nonzeros = 0;
-    for (int node = 0; node < layout_.nodes(); ++node) {
-      auto& list = below_[node];
-      std::ranges::sort(list, {}, &Neighbour::node);
-      list.erase(std::ranges::unique(list, {}, &Neighbour::node).begin(), list.end());
-      int rows = 0;
-      for (Neighbour& neighbour : list) {
-        neighbour.rows_before = rows;
-        rows += layout_.count(neighbour.node);
-      }
-      const int count = layout_.count(node);
-      nonzeros += count * (count + 1) / 2 + count * rows;
-    }
-    SymmetricMatrix pattern(n, n);
-    pattern.reserve(nonzeros);
-    for (int node = 0; node < layout_.nodes(); ++node) {
-      const int end = layout_.first(node + 1);
-      for (int column = layout_.first(node); column < end; ++column) {
-        pattern.startVec(column);
-        for (int row = column; row < end; ++row) pattern.insertBack(row, column) = 0;
-        for (const Neighbour& neighbour : below_[node]) {
-          const int last = layout_.first(neighbour.node + 1);
-          for (int row = layout_.first(neighbour.node); row < last; ++row) {
-            pattern.insertBack(row, column) = 0;
-          }
-        }
-      }
-    }
-    pattern.finalize();
-    return pattern;
-  }
-
-  // The rows between the own block of the first of two joined nodes and the block of both.
-  int place(int i, int j) const {
-    if (i == j) return 0;
-    const auto& list = below_[std::min(i, j)];
-    return std::ranges::lower_bound(list, std::max(i, j), {}, &Neighbour::node)->rows_before;
-  }
-
- private:
-  struct Neighbour {
-    int node, rows_before;
-  };
-
-  const Layout<D>& layout_;
-  std::vector<std::vector<Neighbour>> below_;  // the neighbours i > j of each node j
-};
 
 // Springs between nodes all of whose coordinates are unknowns are kept apart, by their first
 // unknowns alone; the few that touch a node on a mirror go through the layout.
@@ -203,7 +138,7 @@ class MassSpring final : public System {
         layout_(layout),
         weight_(weights(network, layout)),
         constant_energy_(network.constant_energy) {
-    Pattern<D> pattern(layout_);
+    BlockPattern<D> pattern(layout_);
     for (const auto& link : network.links) pattern.join(link.i, link.j);
     for (const auto& link : network.image_links) pattern.join(link.i, link.j);
     pattern_ = pattern.make();

@@ -63,7 +63,8 @@ Real spring_energy(const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d) {
 
 // The force on x_i [N], tau n = -dV/dx_i; the force on x_j is its opposite.
 template <class Real, int D>
-[[gnu::always_inline]] inline Eigen::Matrix<Real, D, 1> spring_force(const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d) {
+[[gnu::always_inline]] inline Eigen::Matrix<Real, D, 1> spring_force(
+    const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d) {
   const Real l = spring_length(d);
   return d * (std::abs(l) > 0 ? law.tension(l) / l : Real(0));
 }
