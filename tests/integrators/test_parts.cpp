@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed) {
   for (const Method& method : methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       std::vector<Piece> pieces = pieces_for(method);
-      pieces.push_back(giving_up(-0.2, "no more"));
+      pieces.insert(pieces.begin(), giving_up(-0.2, "no more"));
       const Together together(pieces);
       const auto integrator = make_integrator(method, *together.system, knobs_for(method));
       const double early = start_time + 0.1;
@@ -122,6 +122,14 @@ BOOST_AUTO_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed) {
       BOOST_TEST(same(first, second));
       BOOST_TEST(same(a.counts, c.counts));
       BOOST_TEST(c.t_reached == early);
+
+      std::stop_source budget;
+      budget.request_stop();
+      integrator->advance(failed, t_end);
+      State stopped = together.start;
+      const Summary d = integrator->advance(stopped, t_end, {}, budget.get_token());
+      BOOST_TEST(d.message == advice(Outcome::over_budget));
+      BOOST_TEST(same(stopped, together.start));
     }
   }
 }
