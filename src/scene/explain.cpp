@@ -16,8 +16,8 @@
 namespace qddot {
 namespace {
 
-// Beyond that the factorisations take more than some seconds.
-constexpr Index largest_examined = 300000;
+// Beyond that the factorisations take more than about a second.
+constexpr Index largest_examined = 100000;
 
 void find_fastest(Explanation& explanation, const ReducedScene& all) {
   try {
