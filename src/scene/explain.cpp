@@ -57,7 +57,9 @@ std::string step_sentence(const Explanation& e) {
 }
 
 std::string stability_sentence(const Explanation& e, const Scene& scene) {
-  if (!e.is_examined) return "whether K is indefinite at the start was not examined: too large";
+  if (!e.is_examined)
+    return "whether K is indefinite at the start is not known: the scene, or its numbers, are too "
+           "large";
   if (e.unstable == 0) return "K is negative semidefinite at the start: no direction grows";
   std::string sentence =
       fmt::format("K is indefinite at the start, in {} direction{} (springs are compressed)",
@@ -93,9 +95,14 @@ Explanation explain(const Scene& scene, const ReducedScene& reduced) {
   e.is_examined = e.drawn_unknowns <= largest_examined;
   if (!e.is_examined || e.unknowns == 0) return e;
   const ReducedScene all(scene, Reductions::all_directions());
-  e.unstable = unstable_directions(all.system(), all.initial().q);
-  if (e.unstable == 0) return e;
-  e.unstable_left_out = std::max(0, e.unstable - unstable_directions(system, q));
+  try {
+    e.unstable = unstable_directions(all.system(), all.initial().q);
+    if (e.unstable == 0) return e;
+    e.unstable_left_out = std::max(0, e.unstable - unstable_directions(system, q));
+  } catch (const std::runtime_error&) {
+    e.is_examined = false;  // stiffnesses that overflow
+    return e;
+  }
   find_fastest(e, all);
   return e;
 }

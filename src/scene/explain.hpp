@@ -22,10 +22,11 @@ struct Explanation {
   int unstable_left_out = 0;  // of these, how many the reduced motion never takes
   double growth = 0;          // of the fastest [1/s], 0 where it is not known
   std::size_t fastest = 0;    // the node that the fastest moves most
-  bool is_examined = true;    // false: too large for that
+  bool is_examined = true;    // false: too large for that, or K overflows
 };
 
-// `scene`: as it starts, and reduced.
+// `scene`: as it starts, and reduced. Never throws for what a scene holds, as each sidecar needs
+// it.
 Explanation explain(const Scene& scene, const ReducedScene& reduced);
 
 // In some lines, each ended by a line feed.

@@ -87,6 +87,16 @@ BOOST_AUTO_TEST_CASE(scenes_without_unknowns_and_with_massless_nodes_are_explain
   BOOST_TEST(contains(in_words(e, massless), "no explicit method"));
 }
 
+BOOST_AUTO_TEST_CASE(numbers_that_overflow_are_explained_too) {
+  Scene extreme = strut(0.1);
+  extreme.nodes[1].position.x() = 1e308;
+  extreme.nodes[2].position = {-1e308, 1e308, 0};
+  for (Spring& spring : extreme.springs) spring.law.stiffness = 1e308;
+  const Explanation e = explained(extreme);
+  BOOST_TEST(!e.is_examined);
+  BOOST_TEST(contains(in_words(e, extreme), "not known"));
+}
+
 BOOST_AUTO_TEST_CASE(every_generator_is_explained) {
   for (const Generator& generator : generators()) {
     const Scene scene = draw(generator.name);

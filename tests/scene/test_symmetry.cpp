@@ -129,6 +129,16 @@ BOOST_AUTO_TEST_CASE(a_node_without_mass_is_not_pulled_out_of_a_line) {
   BOOST_TEST(ReducedScene(with(scene, [](Scene& s) { s.nodes[1].mass = 1; })).system().size() > 1);
 }
 
+BOOST_AUTO_TEST_CASE(coordinates_whose_lengths_overflow_are_left_as_they_are) {
+  const Scene far = with(turned(chain(), some_rotation(), {0, 0, 0}), [](Scene& s) {
+    for (Node& node : s.nodes) node.position *= 1e200;
+  });
+  const ReducedScene reduced(far);
+  BOOST_TEST(!is_flat(far));
+  BOOST_TEST(reduced.initial().q.allFinite());
+  BOOST_TEST(reduced.system().size() == 15);
+}
+
 BOOST_AUTO_TEST_CASE(what_lies_in_a_mirror_is_a_plane_and_no_mirror) {
   const ReducedScene reduced(chain(), Reductions().without(Reduction::dimension));
   BOOST_TEST(!has(reduced, Reduction::mirror));

@@ -93,6 +93,12 @@ Frame frame_of(const Body& body, int dimension) {
     }
   }
 
+  // Beyond that, lengths overflow.
+  constexpr double largest = 1e150;
+  for (const double size : {largest_coordinate(body.x), largest_coordinate(body.v),
+                            body.gravity.lpNorm<Eigen::Infinity>()}) {
+    if (size > largest) return frame;
+  }
   const Span span = span_of(body);
   if (span.rank() == 0 || span.rank() >= frame.dimension) return frame;
   for (int d = 0; d < 3; ++d) {
