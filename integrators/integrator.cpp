@@ -7,6 +7,12 @@
 #include "integrators/method.hpp"
 
 namespace qddot {
+namespace {
+
+// Beyond |v| = 1e30 m/s nothing of a motion is left, and numbers are still far from overflow.
+constexpr double largest_speed_squared = 1e60;
+
+}  // namespace
 
 std::string_view name(Outcome outcome) {
   switch (outcome) {
@@ -72,6 +78,7 @@ std::string_view advice(Outcome outcome) {
 Summary Integrator::advance(State& state, double t_end, const Observer& observer,
                             std::stop_token stop) {
   counts_ = {};
+  seconds_ = {};
   message_.clear();
   stop_ = std::move(stop);
   Outcome outcome;
@@ -82,7 +89,14 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
     explain(error.what());
   }
   if (outcome != Outcome::reached_end && message_.empty()) message_ = advice(outcome);
-  return {outcome, state.t, counts_, message_};
+  return {outcome, state.t, counts_, seconds_, message_};
+}
+
+Outcome Integrator::judge(const State& state) const {
+  const double speed_squared = state.v.squaredNorm();
+  if (std::isnan(speed_squared)) return Outcome::not_finite;
+  if (!(speed_squared < largest_speed_squared)) return Outcome::diverged;
+  return system_.holds_at(state.q) ? Outcome::reached_end : Outcome::went_slack;
 }
 
 Outcome Integrator::run(State& state, double t_end, const Observer& observer) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <stop_token>
@@ -35,12 +36,41 @@ std::string_view advice(Outcome outcome);  // one sentence: what it means and wh
 struct Counts {
   std::int64_t steps = 0, rejected = 0, force_evaluations = 0, stiffness_evaluations = 0,
                factorizations = 0, solves = 0, newton_iterations = 0;
+  std::int64_t indefinite_factorizations = 0;  // of the factorisations, in SUNDIALS' methods
+  // Of methods of variable order: the orders of all steps added up, and how often it was lowered.
+  std::int64_t order_sum = 0, order_reductions = 0;
+  std::int64_t stability_limited_steps = 0;  // of adaptive explicit methods: held to 1/w_max
+};
+
+// Where the time of a run went [s]; zero unless Knobs::timed.
+struct Seconds {
+  double force = 0, stiffness = 0, factorization = 0, solve = 0;
+};
+
+// Adds the time from its construction to its end to one of them.
+class Stopwatch {
+ public:
+  Stopwatch(Seconds* seconds, double Seconds::*which) : seconds_(seconds), which_(which) {
+    if (seconds_) start_ = std::chrono::steady_clock::now();
+  }
+  ~Stopwatch() {
+    using seconds = std::chrono::duration<double>;
+    if (seconds_) seconds_->*which_ += seconds(std::chrono::steady_clock::now() - start_).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  Seconds* seconds_;  // may be none
+  double Seconds::*which_;
+  std::chrono::steady_clock::time_point start_;
 };
 
 struct Summary {
   Outcome outcome = Outcome::solver_failed;
   double t_reached = 0;  // [s]
   Counts counts;
+  Seconds seconds;
   std::string message = "advance was not called";  // one sentence; empty where the end was reached
 };
 
@@ -48,7 +78,12 @@ struct Summary {
 struct Knobs {
   double step_size = 0;  // h [s], of fixed-step methods
   double rtol = 0;       // relative tolerance of adaptive ones,
-  double atol = 0;       // and the absolute one, in m for q and m/s for v; 0 = the same number
+  double atol = 0;       // and the absolute one, in m for q and m/s for v; 0: rtol times these:
+  double length = 1;     // [m], what a position is large or small by
+  double speed = 1;      // [m/s], likewise a velocity
+  int max_order = 0;     // of methods of variable order; 0: their own
+  bool stability_detection = false;  // CVODE's, which lowers the order where BDF is not stable
+  bool timed = false;                // whether to fill Summary::seconds
 };
 
 // Looks at a run from outside: `see` is called at each of `times` [s] (ascending, after the start,
@@ -80,20 +115,30 @@ class Integrator {
   virtual Outcome run_to(State& state, double t_stop) = 0;
 
   const System& system() const { return system_; }
+  const Method& method() const { return method_; }
   const Knobs& knobs() const { return knobs_; }
   Counts& counts() { return counts_; }
+  // Where to add the time that something takes, if anywhere.
+  Seconds* seconds() { return knobs_.timed ? &seconds_ : nullptr; }
   bool must_stop() const { return stop_.stop_requested(); }
+  // Whether a state can be accepted: reached_end, or else why not (not_finite, diverged,
+  // went_slack).
+  Outcome judge(const State& state) const;
   // Says more than the outcome's advice does.
   void explain(std::string message) { message_ = std::move(message); }
 
-  // The system's force and stiffness, counted.
-  void force(const Vec& q, Vec& f) {
+  // The force and stiffness of the system, or of one that is a part of its forces; counted.
+  void force(const Vec& q, Vec& f) { force(system_, q, f); }
+  void force(const System& part, const Vec& q, Vec& f) {
     ++counts_.force_evaluations;
-    system_.force(q, f);
+    const Stopwatch watch(seconds(), &Seconds::force);
+    part.force(q, f);
   }
-  void stiffness(const Vec& q, SymmetricMatrix& k) {
+  void stiffness(const Vec& q, SymmetricMatrix& k) { stiffness(system_, q, k); }
+  void stiffness(const System& part, const Vec& q, SymmetricMatrix& k) {
     ++counts_.stiffness_evaluations;
-    system_.stiffness(q, k);
+    const Stopwatch watch(seconds(), &Seconds::stiffness);
+    part.stiffness(q, k);
   }
 
  private:
@@ -105,6 +150,7 @@ class Integrator {
   const System& system_;
   Knobs knobs_;
   Counts counts_;
+  Seconds seconds_;
   std::stop_token stop_;
   std::string message_;
 };

@@ -33,6 +33,7 @@ struct Method {
   bool needs_stiffness = false;
   bool accepts_massless = false;
   bool needs_constant_stiffness = false;
+  bool varies_order = false;  // up to `order`, or to Knobs::max_order
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
 };
 

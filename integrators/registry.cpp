@@ -5,19 +5,37 @@
 #include "integrators/parts.hpp"
 
 // One line a method; each is defined in the file of its name or of its family.
-#define QDDOT_METHODS(METHOD) \
-  METHOD(explicit_euler)      \
-  METHOD(symplectic_euler)    \
-  METHOD(semi_implicit_euler) \
-  METHOD(implicit_euler)      \
-  METHOD(verlet)              \
-  METHOD(kahan_li8)           \
-  METHOD(exact)               \
-  METHOD(arkode_dirk2)        \
-  METHOD(arkode_dirk3)        \
-  METHOD(arkode_dirk4)        \
-  METHOD(arkode_dirk5)        \
-  METHOD(ida)
+#define QDDOT_METHODS(METHOD)      \
+  METHOD(explicit_euler)           \
+  METHOD(symplectic_euler)         \
+  METHOD(semi_implicit_euler)      \
+  METHOD(implicit_euler)           \
+  METHOD(verlet)                   \
+  METHOD(kahan_li8)                \
+  METHOD(exact)                    \
+  METHOD(arkode_dirk2)             \
+  METHOD(arkode_dirk3)             \
+  METHOD(arkode_dirk4)             \
+  METHOD(arkode_dirk5)             \
+  METHOD(arkode_dirk2_klu)         \
+  METHOD(arkode_dirk3_klu)         \
+  METHOD(arkode_dirk4_klu)         \
+  METHOD(arkode_dirk5_klu)         \
+  METHOD(arkode_erk2)              \
+  METHOD(arkode_erk3)              \
+  METHOD(arkode_erk4)              \
+  METHOD(arkode_erk5)              \
+  METHOD(arkode_erk6)              \
+  METHOD(arkode_erk8)              \
+  METHOD(arkode_implicit_euler)    \
+  METHOD(arkode_implicit_midpoint) \
+  METHOD(arkode_sdirk2)            \
+  METHOD(arkode_trbdf2)            \
+  METHOD(ida)                      \
+  METHOD(ida_klu)                  \
+  METHOD(cvode_bdf)                \
+  METHOD(cvode_bdf_klu)            \
+  METHOD(cvode_adams)
 
 namespace qddot {
 

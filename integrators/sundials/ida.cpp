@@ -1,36 +1,51 @@
 // SUNDIALS IDA: variable-order (1 to 5), variable-step BDF in fixed-leading-coefficient form on
 //   F(y, y') = (q' - v, M v' - f(q)),
-// the stock way: Newton with KLU on dF/dy + c dF/dy' = [[c I, -I], [-K, c M]]. Everything that is
-// not set here is left at IDA's default. (Hindmarsh et al., ACM TOMS 31:3 (2005) 363-396.)
+// by Newton's method on dF/dy + c dF/dy' = [[c I, -I], [-K, c M]], with the structured n x n matrix
+// or the stock way with KLU. (Hindmarsh et al., ACM TOMS 31:3 (2005) 363-396.) Everything that is
+// not set here is left at IDA's default.
+//
+// M may be singular. Of a massless node, 0 = f is a constraint on its position, and its velocity is
+// that of index 2: v = q'. Both follow from the other nodes, so they are algebraic to IDA and left
+// out of its error test (Brenan, Campbell, Petzold, Numerical Solution of IVPs in DAEs, section
+// 5.2). The start is made consistent: IDACalcIC finds the position, and the velocity is that in
+// which f stays zero, 0 = (K v)_massless.
 #include <fmt/format.h>
 #include <ida/ida.h>
 
 #include "integrators/registry.hpp"
-#include "integrators/sundials/support.hpp"
+#include "integrators/sundials/orders.hpp"
+#include "integrators/sundials/stepper.hpp"
+#include "src/algebra/effective_mass.hpp"
 
 namespace qddot {
 namespace {
 
-using sundials::check;
-using sundials::Halves;
+using namespace sundials;
 
-struct FreeIda {
-  void operator()(void* memory) const { IDAFree(&memory); }
-};
-
-class Ida final : public sundials::Stock {
+template <MakeMatrix make_matrix>
+class Ida final : public Stepper {
  public:
   Ida(const Method& method, const System& system, const Knobs& knobs)
-      : Stock(method, system, knobs), rate_(check(N_VClone(y()))) {
-    N_VConst(0, y());
-    N_VConst(0, rate_.get());
-    memory_.reset(check(IDACreate(context())));
-    check(IDASetErrHandlerFn(ida(), keep_message, this), "IDASetErrHandlerFn");
+      : Stepper(method, system, knobs, make_matrix),
+        rate_(clone(y())),
+        memory_(check(IDACreate(context()))) {
+    auto* self = static_cast<Stepper*>(this);
+    check(IDASetErrHandlerFn(ida(), keep_message, self), "IDASetErrHandlerFn");
     check(IDAInit(ida(), residual, 0, y(), rate_.get()), "IDAInit");
-    check(IDASetUserData(ida(), this), "IDASetUserData");
-    check(IDASStolerances(ida(), rtol(), atol()), "IDASStolerances");
-    check(IDASetLinearSolver(ida(), linear_solver(), matrix()), "IDASetLinearSolver");
+    check(IDASetUserData(ida(), self), "IDASetUserData");
+    check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
+    check(IDASetLinearSolver(ida(), matrix().solver(), matrix().matrix()), "IDASetLinearSolver");
     check(IDASetJacFn(ida(), jacobian), "IDASetJacFn");
+    if (knobs.max_order > 0) {
+      check(IDASetMaxOrd(ida(), std::min(knobs.max_order, method.order)), "IDASetMaxOrd");
+    }
+    if (!system.has_massless()) return;
+    is_differential_ = clone(y());
+    Halves is_differential(is_differential_.get());
+    is_differential.q = (system.mass().array() > 0).cast<double>();
+    is_differential.v = is_differential.q;
+    check(IDASetId(ida(), is_differential_.get()), "IDASetId");
+    check(IDASetSuppressAlg(ida(), SUNTRUE), "IDASetSuppressAlg");
   }
 
  private:
@@ -38,10 +53,21 @@ class Ida final : public sundials::Stock {
 
   void start(const State& state) override {
     load(state);
-    Halves rate(rate_.get());
-    rate.q = state.v;
-    rate.v = force_at(Halves(y()).q).cwiseQuotient(system().mass());  // consistent: F = 0
+    orders_ = {};
+    is_consistent_ = !system().has_massless();
+    set_rate_of_masses();
     check(IDAReInit(ida(), state.t, y(), rate_.get()), "IDAReInit");
+  }
+
+  // y' = (v, M^-1 f), where there is mass.
+  void set_rate_of_masses() {
+    const Halves at(y());
+    Halves rate(rate_.get());
+    rate.q = at.v;
+    rate.v = force_at(system(), at.q);
+    for (Index i = 0; i < system().size(); ++i) {
+      rate.v[i] = system().mass()[i] > 0 ? rate.v[i] / system().mass()[i] : 0;
+    }
   }
 
   void set_stop_time(double t_stop) override {
@@ -49,26 +75,62 @@ class Ida final : public sundials::Stock {
   }
 
   int take_step(double t_stop, double& t) override {
+    if (!is_consistent_) {
+      const double t_start = t;
+      if (const int flag = make_consistent(t_start, t_stop); flag < 0) return flag;
+      is_consistent_ = true;
+    }
     return IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
   }
 
-  static int residual(realtype, N_Vector y, N_Vector rate, N_Vector residual, void* user) {
-    auto& self = *static_cast<Ida*>(user);
+  int make_consistent(double t_start, double t_stop) {
+    const int flag = IDACalcIC(ida(), IDA_YA_YDP_INIT, t_stop);
+    if (flag < 0) return flag;
+    check(IDAGetConsistentIC(ida(), y(), rate_.get()), "IDAGetConsistentIC");
+    follow();
+    set_rate_of_masses();
+    check(IDAReInit(ida(), t_start, y(), rate_.get()), "IDAReInit");
+    return 0;
+  }
+
+  // Gives massless nodes the velocity in which their forces stay balanced: the other nodes', times
+  // so large a mass that they keep theirs to rounding, (a M - K) x = a M v.
+  void follow() {
+    Halves at(y());
+    const SymmetricMatrix& k = stiffness_at(at.q);
+    const double stiffest = k.coeffs().cwiseAbs().maxCoeff();
+    const double a = 1e18 * stiffest / system().mass().maxCoeff();
+    EffectiveMass heavy(system());
+    if (heavy.factorize(a, 1, k) == EffectiveMass::Definiteness::singular) return;
+    Vec x;
+    heavy.solve(a * system().mass().cwiseProduct(at.v), x);
+    for (Index i = 0; i < system().size(); ++i) {
+      if (system().mass()[i] == 0) at.v[i] = x[i];
+    }
+  }
+
+  void note_step() override {
+    int order = 0;
+    check(IDAGetLastOrder(ida(), &order), "IDAGetLastOrder");
+    orders_.note(order);
+  }
+
+  static int residual(double, N_Vector y, N_Vector rate, N_Vector residual, void* user) {
+    auto& self = *static_cast<Ida*>(static_cast<Stepper*>(user));
     return self.guarded([&] {
       const Halves at(y), change(rate);
       Halves out(residual);
       out.q = change.q - at.v;
-      out.v = self.system().mass().cwiseProduct(change.v) - self.force_at(at.q);
+      out.v = self.system().mass().cwiseProduct(change.v) - self.force_at(self.system(), at.q);
       return std::isfinite(out.v.sum());
     });
   }
 
-  static int jacobian(realtype, realtype c, N_Vector y, N_Vector, N_Vector, SUNMatrix jacobian,
-                      void* user, N_Vector, N_Vector, N_Vector) {
-    auto& self = *static_cast<Ida*>(user);
+  static int jacobian(double, double c, N_Vector y, N_Vector, N_Vector, SUNMatrix, void* user,
+                      N_Vector, N_Vector, N_Vector) {
+    auto& self = *static_cast<Ida*>(static_cast<Stepper*>(user));
     return self.guarded([&] {
-      const Index n = self.system().size();
-      self.fill(jacobian, Halves(y).q, c, -1, Vec::Constant(n, -1), c * self.system().mass());
+      self.matrix().set_implicit_form(c, self.stiffness_at(Halves(y).q));
       return true;
     });
   }
@@ -81,48 +143,62 @@ class Ida final : public sundials::Stock {
     check(IDAGetNumLinSolvSetups(ida(), &setups), "IDAGetNumLinSolvSetups");
     check(IDAGetNumNonlinSolvIters(ida(), &iterations), "IDAGetNumNonlinSolvIters");
     set_counts({steps, failed_tests, failed_solves, setups, iterations});
+    orders_.into(counts());
   }
 
-  Outcome outcome_of(int flag) const override {
+  Cause cause_of(int flag) const override {
+    if (!is_consistent_) return Cause::consistent_start;
     switch (flag) {
       case IDA_ERR_FAIL:
+        return Cause::error_test;
       case IDA_TOO_MUCH_ACC:
-        return Outcome::step_too_small;
+        return Cause::accuracy;
       case IDA_CONV_FAIL:
       case IDA_NLS_FAIL:
-        return Outcome::newton_failed;
+        return Cause::convergence;
       case IDA_LSETUP_FAIL:
-        return Outcome::indefinite_matrix;
+        return Cause::setup;
+      case IDA_FIRST_RES_FAIL:
+        return Cause::first_force;
       case IDA_RES_FAIL:
       case IDA_REP_RES_ERR:
-      case IDA_FIRST_RES_FAIL:
-        return Outcome::not_finite;
+        return Cause::force;
       default:
-        return Outcome::solver_failed;
+        return Cause::other;
     }
   }
 
   std::string flag_name(int flag) const override {
     const std::unique_ptr<char, decltype(&std::free)> text(IDAGetReturnFlagName(flag), std::free);
-    return text ? text.get() : "IDA";
+    return fmt::format("IDA {}", text ? text.get() : "");
   }
 
-  sundials::Vector rate_;  // y'
-  std::unique_ptr<void, FreeIda> memory_;
+  Orders orders_;
+  Vector rate_;             // y'
+  Vector is_differential_;  // 1, or 0 for the entries of massless nodes; none without such nodes
+  bool is_consistent_ = true;
+  std::unique_ptr<void, FreeMemoryBy<IDAFree>> memory_;
 };
 
-}  // namespace
-
-Method ida() {
-  return {.name = "ida",
-          .summary = "SUNDIALS IDA, adaptive BDF of order 1 to 5 in residual form, stock KLU",
-          .source = "Hindmarsh et al., SUNDIALS, ACM TOMS 31:3 (2005) 363-396",
+template <MakeMatrix make_matrix>
+Method ida(const char* name, const char* solver) {
+  return {.name = name,
+          .summary = fmt::format("SUNDIALS IDA, adaptive BDF of order 1 to 5 in residual form, {}",
+                                 solver),
+          .source = "Hindmarsh et al., SUNDIALS, ACM TOMS 31:3 (2005) 363-396, section 2.3",
           .order = 5,
           .family = Family::sundials,
           .knob = Knob::rtol,
           .implicit = true,
           .needs_stiffness = true,
-          .make = create<Ida>};
+          .accepts_massless = true,
+          .varies_order = true,
+          .make = create<Ida<make_matrix>>};
 }
+
+}  // namespace
+
+Method ida() { return ida<make_structured>("ida", "n x n solves"); }
+Method ida_klu() { return ida<make_klu>("ida_klu", "stock KLU"); }
 
 }  // namespace qddot

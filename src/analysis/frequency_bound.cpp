@@ -5,14 +5,18 @@
 namespace qddot {
 
 double frequency_bound(const System& system, const Vec& q) {
-  if (system.size() == 0) return 0;
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
-  k = k.cwiseAbs();
-  const Vec row_sums = k.selfadjointView<Eigen::Lower>() * Vec::Ones(system.size());
+  return frequency_bound(system.mass(), k);
+}
+
+double frequency_bound(const Vec& mass, const SymmetricMatrix& k) {
+  if (mass.size() == 0) return 0;
+  const SymmetricMatrix sizes = k.cwiseAbs();
+  const Vec row_sums = sizes.selfadjointView<Eigen::Lower>() * Vec::Ones(mass.size());
   double largest = 0;
-  for (Index i = 0; i < system.size(); ++i) {
-    if (row_sums[i] > 0) largest = std::max(largest, row_sums[i] / system.mass()[i]);
+  for (Index i = 0; i < mass.size(); ++i) {
+    if (row_sums[i] > 0) largest = std::max(largest, row_sums[i] / mass[i]);
   }
   return std::sqrt(largest);
 }

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "integrators/integrator.hpp"
+
+namespace qddot::sundials {
+
+// Why a library of SUNDIALS gave up, whatever its own flag for it is.
+enum class Cause {
+  error_test,        // the estimated error of a step stayed too large however short the step
+  accuracy,          // the tolerances ask for more than rounding allows
+  convergence,       // Newton's iteration did not converge however short the step
+  setup,             // no factors could be made
+  force,             // f or K is not finite however short the step
+  first_force,       // f is not finite at the start
+  consistent_start,  // no positions of massless nodes were found that balance them
+  fast_steps,        // the small steps inside a large one failed
+  end_too_close,     // the time to run is below rounding
+  other,
+};
+
+Outcome outcome_of(Cause cause);
+// What happened, as the beginning of a sentence, and what to turn, as the end of it.
+const char* what_happened(Cause cause);
+const char* what_to_turn(Cause cause, bool has_fixed_step);
+
+}  // namespace qddot::sundials

@@ -1,0 +1,161 @@
+// SUNDIALS CVODE on y' = (v, M^-1 f(q)): variable-order, variable-step linear multistep methods.
+// BDF of order 1 to 5 by Newton's method with the structured n x n matrix or the stock way with
+// KLU, and Adams-Moulton of order 1 to 12 by fixed-point iteration. What is not set here is CVODE's
+// default.
+#include <cvode/cvode.h>
+#include <fmt/format.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include "integrators/registry.hpp"
+#include "integrators/sundials/orders.hpp"
+#include "integrators/sundials/stepper.hpp"
+
+namespace qddot {
+namespace {
+
+using namespace sundials;
+
+class Cvode : public Stepper {
+ public:
+  Cvode(const Method& method, const System& system, const Knobs& knobs, int formula,
+        MakeMatrix make_matrix)
+      : Stepper(method, system, knobs, make_matrix),
+        memory_(check(CVodeCreate(formula, context()))) {
+    auto* self = static_cast<Stepper*>(this);
+    check(CVodeSetErrHandlerFn(memory(), keep_message, self), "CVodeSetErrHandlerFn");
+    check(CVodeInit(memory(), right_hand_side, 0, y()), "CVodeInit");
+    check(CVodeSetUserData(memory(), self), "CVodeSetUserData");
+    check(CVodeSVtolerances(memory(), rtol(), atol()), "CVodeSVtolerances");
+    check(CVodeSetMaxHnilWarns(memory(), -1), "CVodeSetMaxHnilWarns");
+    if (knobs.max_order > 0) {
+      check(CVodeSetMaxOrd(memory(), std::min(knobs.max_order, method.order)), "CVodeSetMaxOrd");
+    }
+    if (has_matrix()) {
+      check(CVodeSetLinearSolver(memory(), matrix().solver(), matrix().matrix()),
+            "CVodeSetLinearSolver");
+      check(CVodeSetLinSysFn(memory(), linear_system), "CVodeSetLinSysFn");
+      check(CVodeSetStabLimDet(memory(), knobs.stability_detection), "CVodeSetStabLimDet");
+    } else {
+      fixed_point_.reset(check(SUNNonlinSol_FixedPoint(y(), 0, context())));
+      check(CVodeSetNonlinearSolver(memory(), fixed_point_.get()), "CVodeSetNonlinearSolver");
+    }
+  }
+
+ private:
+  void* memory() const { return memory_.get(); }
+
+  void start(const State& state) override {
+    load(state);
+    orders_ = {};
+    check(CVodeReInit(memory(), state.t, y()), "CVodeReInit");
+  }
+
+  void set_stop_time(double t_stop) override {
+    check(CVodeSetStopTime(memory(), t_stop), "CVodeSetStopTime");
+  }
+
+  int take_step(double t_stop, double& t) override {
+    return CVode(memory(), t_stop, y(), &t, CV_ONE_STEP);
+  }
+
+  void note_step() override {
+    int order = 0;
+    check(CVodeGetLastOrder(memory(), &order), "CVodeGetLastOrder");
+    orders_.note(order);
+  }
+
+  static int linear_system(double, N_Vector y, N_Vector, SUNMatrix, int jok, int* jcur,
+                           double gamma, void* self, N_Vector, N_Vector, N_Vector) {
+    return static_cast<Cvode*>(static_cast<Stepper*>(self))->set_matrix(y, jok, jcur, gamma);
+  }
+
+  void collect_counts() override {
+    long steps = 0, failed_tests = 0, failed_solves = 0, setups = 0, iterations = 0;
+    check(CVodeGetNumSteps(memory(), &steps), "CVodeGetNumSteps");
+    check(CVodeGetNumErrTestFails(memory(), &failed_tests), "CVodeGetNumErrTestFails");
+    check(CVodeGetNumStepSolveFails(memory(), &failed_solves), "CVodeGetNumStepSolveFails");
+    check(CVodeGetNumLinSolvSetups(memory(), &setups), "CVodeGetNumLinSolvSetups");
+    check(CVodeGetNumNonlinSolvIters(memory(), &iterations), "CVodeGetNumNonlinSolvIters");
+    if (!has_matrix()) setups = iterations = 0;
+    set_counts({steps, failed_tests, failed_solves, setups, iterations});
+    orders_.into(counts());
+  }
+
+  Cause cause_of(int flag) const override {
+    switch (flag) {
+      case CV_ERR_FAILURE:
+        return Cause::error_test;
+      case CV_TOO_MUCH_ACC:
+        return Cause::accuracy;
+      case CV_TOO_CLOSE:
+        return Cause::end_too_close;
+      case CV_CONV_FAILURE:
+        return Cause::convergence;
+      case CV_LSETUP_FAIL:
+        return Cause::setup;
+      case CV_FIRST_RHSFUNC_ERR:
+        return Cause::first_force;
+      case CV_RHSFUNC_FAIL:
+      case CV_REPTD_RHSFUNC_ERR:
+      case CV_UNREC_RHSFUNC_ERR:
+        return Cause::force;
+      default:
+        return Cause::other;
+    }
+  }
+
+  std::string flag_name(int flag) const override {
+    const std::unique_ptr<char, decltype(&std::free)> text(CVodeGetReturnFlagName(flag), std::free);
+    return fmt::format("CVODE {}", text ? text.get() : "");
+  }
+
+  Orders orders_;
+  std::unique_ptr<_generic_SUNNonlinearSolver, FreeBy<SUNNonlinSolFree>> fixed_point_;
+  std::unique_ptr<void, FreeMemoryBy<CVodeFree>> memory_;
+};
+
+template <MakeMatrix make_matrix>
+class Bdf final : public Cvode {
+ public:
+  Bdf(const Method& method, const System& system, const Knobs& knobs)
+      : Cvode(method, system, knobs, CV_BDF, make_matrix) {}
+};
+class Adams final : public Cvode {
+ public:
+  Adams(const Method& method, const System& system, const Knobs& knobs)
+      : Cvode(method, system, knobs, CV_ADAMS, nullptr) {}
+};
+
+template <MakeMatrix make_matrix>
+Method bdf(const char* name, const char* solver) {
+  return {.name = name,
+          .summary = fmt::format("SUNDIALS CVODE, adaptive BDF of order 1 to 5, {}", solver),
+          .source = "Hindmarsh et al., SUNDIALS, ACM TOMS 31:3 (2005) 363-396, section 2.1",
+          .order = 5,
+          .family = Family::sundials,
+          .knob = Knob::rtol,
+          .implicit = true,
+          .needs_stiffness = true,
+          .varies_order = true,
+          .make = create<Bdf<make_matrix>>};
+}
+
+}  // namespace
+
+Method cvode_bdf() { return bdf<make_structured>("cvode_bdf", "n x n solves"); }
+Method cvode_bdf_klu() { return bdf<make_klu>("cvode_bdf_klu", "stock KLU"); }
+
+Method cvode_adams() {
+  return {.name = "cvode_adams",
+          .summary =
+              "SUNDIALS CVODE, adaptive Adams-Moulton of order 1 to 12 by fixed-point "
+              "iteration",
+          .source = "Hindmarsh et al., SUNDIALS, ACM TOMS 31:3 (2005) 363-396, section 2.1",
+          .order = 12,
+          .family = Family::sundials,
+          .knob = Knob::rtol,
+          .varies_order = true,
+          .make = create<Adams>};
+}
+
+}  // namespace qddot

@@ -1,0 +1,75 @@
+// ARKODE's adaptive diagonally implicit Runge-Kutta methods of order 2 to 5 by Newton's method,
+// each with the structured n x n matrix and the stock way with KLU. Orders and error estimates are
+// those of the named table.
+#include <fmt/format.h>
+
+#include "integrators/registry.hpp"
+#include "integrators/sundials/arkode.hpp"
+
+namespace qddot {
+namespace {
+
+using namespace sundials;
+
+struct Table {
+  int order;
+  ARKODE_DIRKTableID id;
+  const char* name;
+  const char* source;
+};
+constexpr Table tables[] = {
+    {2, ARKODE_SDIRK_2_1_2, "SDIRK_2_1_2", "SUNDIALS 6.4.1 ARKODE guide, table SDIRK_2_1_2"},
+    {3, ARKODE_KVAERNO_4_2_3, "KVAERNO_4_2_3",
+     "Kvaerno, BIT Numerical Mathematics 44 (2004) 489-502"},
+    {4, ARKODE_SDIRK_5_3_4, "SDIRK_5_3_4",
+     "Hairer and Wanner, Solving ODEs II, table IV.6.5, SDIRK4(3)5"},
+    {5, ARKODE_ESDIRK547L2SA_7_4_5, "ESDIRK547L2SA_7_4_5",
+     "Kennedy and Carpenter, Applied Numerical Mathematics 146 (2019), ESDIRK5(4)7L[2]SA"}};
+
+template <int order, MakeMatrix make_matrix>
+class Dirk final : public Arkode {
+  static constexpr Table table = tables[order - 2];
+
+ public:
+  Dirk(const Method& method, const System& system, const Knobs& knobs)
+      : Arkode(method, system, knobs,
+               {.implicit_table = ButcherTable(check(ARKodeButcherTable_LoadDIRK(table.id))).get()},
+               nullptr, right_hand_side, make_matrix, system) {}
+};
+
+template <int order, MakeMatrix make_matrix>
+Method dirk(const char* suffix, const char* solver) {
+  static_assert(tables[order - 2].order == order);
+  const Table& table = tables[order - 2];
+  return {.name = fmt::format("arkode_dirk{}{}", order, suffix),
+          .summary = fmt::format("SUNDIALS ARKODE, adaptive DIRK of order {}, ARKODE_{}, {}", order,
+                                 table.name, solver),
+          .source = table.source,
+          .order = order,
+          .family = Family::sundials,
+          .knob = Knob::rtol,
+          .implicit = true,
+          .needs_stiffness = true,
+          .make = create<Dirk<order, make_matrix>>};
+}
+template <int order>
+Method structured() {
+  return dirk<order, make_structured>("", "n x n solves");
+}
+template <int order>
+Method stock() {
+  return dirk<order, make_klu>("_klu", "stock KLU");
+}
+
+}  // namespace
+
+Method arkode_dirk2() { return structured<2>(); }
+Method arkode_dirk3() { return structured<3>(); }
+Method arkode_dirk4() { return structured<4>(); }
+Method arkode_dirk5() { return structured<5>(); }
+Method arkode_dirk2_klu() { return stock<2>(); }
+Method arkode_dirk3_klu() { return stock<3>(); }
+Method arkode_dirk4_klu() { return stock<4>(); }
+Method arkode_dirk5_klu() { return stock<5>(); }
+
+}  // namespace qddot

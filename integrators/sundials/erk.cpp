@@ -1,0 +1,106 @@
+// ARKODE's adaptive explicit Runge-Kutta methods of order 2 to 8. Their error test does not see an
+// instability of modes that hardly move yet, so steps are held to what the stiffest mode allows,
+// h <= y/w_max, with the table's own stability limit y on vibrations and Gershgorin's bound of
+// w_max at the positions of now and then.
+#include <fmt/format.h>
+
+#include "integrators/registry.hpp"
+#include "integrators/sundials/arkode.hpp"
+#include "integrators/sundials/imaginary_stability.hpp"
+#include "src/analysis/frequency_bound.hpp"
+
+namespace qddot {
+namespace {
+
+using namespace sundials;
+
+// w_max changes with the positions, much less than these do in so many steps.
+constexpr int steps_with_one_bound = 50;
+// ARKODE takes its own fraction of the bound, which must be below 1.
+constexpr double fraction = 0.99;
+
+struct Table {
+  int order;
+  ARKODE_ERKTableID id;
+  const char* name;
+  const char* source;
+};
+constexpr Table tables[] = {
+    {2, ARKODE_HEUN_EULER_2_1_2, "HEUN_EULER_2_1_2", "Heun's method with Euler's inside it"},
+    {3, ARKODE_BOGACKI_SHAMPINE_4_2_3, "BOGACKI_SHAMPINE_4_2_3",
+     "Bogacki and Shampine, Applied Mathematics Letters 2:4 (1989) 321-325"},
+    {4, ARKODE_ZONNEVELD_5_3_4, "ZONNEVELD_5_3_4",
+     "Zonneveld (1963); Hairer, Norsett and Wanner, Solving ODEs I, table II.4.2"},
+    {5, ARKODE_DORMAND_PRINCE_7_4_5, "DORMAND_PRINCE_7_4_5",
+     "Dormand and Prince, J. Computational and Applied Mathematics 6 (1980) 19-26"},
+    {6, ARKODE_VERNER_8_5_6, "VERNER_8_5_6",
+     "Verner, SIAM J. Numerical Analysis 15:4 (1978) 772-790"},
+    {8, ARKODE_FEHLBERG_13_7_8, "FEHLBERG_13_7_8", "Fehlberg, NASA TR R-287 (1968)"}};
+
+template <int which>
+class Erk final : public Arkode {
+ public:
+  Erk(const Method& method, const System& system, const Knobs& knobs)
+      : Erk(method, system, knobs,
+            ButcherTable(check(ARKodeButcherTable_LoadERK(tables[which].id)))) {}
+
+ private:
+  Erk(const Method& method, const System& system, const Knobs& knobs, ButcherTable table)
+      : Arkode(method, system, knobs, {.explicit_table = table.get()}, right_hand_side, nullptr,
+               nullptr, system),
+        limit_(imaginary_stability(*table)),
+        k_(system.stiffness_pattern()) {
+    check(ARKStepSetStabilityFn(memory(), stable_step, this), "ARKStepSetStabilityFn");
+    check(ARKStepSetCFLFraction(memory(), fraction), "ARKStepSetCFLFraction");
+  }
+
+  void start(const State& state) override {
+    Arkode::start(state);
+    calls_ = 0;
+  }
+
+  static int stable_step(N_Vector y, double, double* h, void* user) {
+    auto& self = *static_cast<Erk*>(user);
+    return self.guarded([&] {
+      if (self.calls_++ % steps_with_one_bound == 0) {
+        self.q_ = Halves(y).q;
+        self.stiffness(self.q_, self.k_);
+        self.w_max_ = frequency_bound(self.system().mass(), self.k_);
+      }
+      *h = self.w_max_ > 0 ? self.limit_ / (fraction * self.w_max_) : INFINITY;
+      return true;
+    });
+  }
+
+  double limit_;
+  SymmetricMatrix k_;
+  Vec q_;
+  double w_max_ = 0;
+  std::int64_t calls_ = 0;
+};
+
+template <int which>
+Method erk() {
+  const Table& table = tables[which];
+  return {.name = fmt::format("arkode_erk{}", table.order),
+          .summary = fmt::format("SUNDIALS ARKODE, adaptive explicit of order {}, ARKODE_{}, "
+                                 "steps held to 1/w_max",
+                                 table.order, table.name),
+          .source = table.source,
+          .order = table.order,
+          .family = Family::sundials,
+          .knob = Knob::rtol,
+          .needs_stiffness = true,
+          .make = create<Erk<which>>};
+}
+
+}  // namespace
+
+Method arkode_erk2() { return erk<0>(); }
+Method arkode_erk3() { return erk<1>(); }
+Method arkode_erk4() { return erk<2>(); }
+Method arkode_erk5() { return erk<3>(); }
+Method arkode_erk6() { return erk<4>(); }
+Method arkode_erk8() { return erk<5>(); }
+
+}  // namespace qddot

@@ -1,0 +1,58 @@
+// Newton's equations as SUNDIALS' users solve them: KLU on the sparse 2n x 2n matrix. Its entries
+// are written at once in their places, so that SUNDIALS need not copy a Jacobian and add I to it.
+#include <algorithm>
+
+#include <sunlinsol/sunlinsol_klu.h>
+#include <sunmatrix/sunmatrix_sparse.h>
+
+#include "integrators/sundials/newton_matrix.hpp"
+#include "integrators/sundials/vector.hpp"
+#include "src/model/first_order.hpp"
+
+namespace qddot::sundials {
+namespace {
+
+class Klu final : public NewtonMatrix {
+ public:
+  Klu(const System& system, SUNContext context)
+      : NewtonMatrix(context),
+        mass_(system.mass()),
+        pattern_(system),
+        vector_(make_stock_vector(system.size(), context)),
+        entries_(check(SUNSparseMatrix(2 * system.size(), 2 * system.size(),
+                                       std::ssize(pattern_.rows()), CSC_MAT, context))),
+        klu_(check(SUNLinSol_KLU(vector_.get(), entries_.get(), context))) {
+    std::ranges::copy(pattern_.column_starts(), SM_INDEXPTRS_S(entries_.get()));
+    std::ranges::copy(pattern_.rows(), SM_INDEXVALS_S(entries_.get()));
+  }
+
+ private:
+  void set_explicit_form(double gamma, const SymmetricMatrix& k) override {
+    fill(1, -gamma, -gamma * mass_.cwiseInverse(), k, Vec::Ones(mass_.size()));
+  }
+  void set_implicit_form(double c, const SymmetricMatrix& k) override {
+    fill(c, -1, Vec::Constant(mass_.size(), -1), k, c * mass_);
+  }
+  void fill(double alpha, double beta, const Vec& s, const SymmetricMatrix& k, const Vec& e) {
+    pattern_.fill(alpha, beta, s, k, e, SM_DATA_S(entries_.get()));
+  }
+
+  int factorize() override { return SUNLinSolSetup(klu_.get(), entries_.get()); }
+  int solve(N_Vector b, N_Vector x) override {
+    return SUNLinSolSolve(klu_.get(), entries_.get(), x, b, 0);
+  }
+
+  const Vec& mass_;
+  FirstOrderPattern pattern_;
+  Vector vector_;
+  Matrix entries_;
+  LinearSolver klu_;
+};
+
+}  // namespace
+
+std::unique_ptr<NewtonMatrix> make_klu(const System& system, SUNContext context) {
+  return std::make_unique<Klu>(system, context);
+}
+
+}  // namespace qddot::sundials

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+
+#include "integrators/integrator.hpp"
+#include "integrators/sundials/support.hpp"
+
+namespace qddot::sundials {
+
+// The matrix of SUNDIALS' Newton iterations on y = (q, v), and the solver with it. SUNDIALS decides
+// when it is made anew and from which K; to SUNDIALS itself it is a SUNMatrix without entries and a
+// SUNLinearSolver that knows them. K is borrowed and must not change between set_... and the
+// set-up that follows.
+class NewtonMatrix {
+ public:
+  explicit NewtonMatrix(SUNContext context);
+  virtual ~NewtonMatrix() = default;
+  NewtonMatrix(const NewtonMatrix&) = delete;
+  NewtonMatrix& operator=(const NewtonMatrix&) = delete;
+
+  // I - gamma J of y' = (v, M^-1 f(q)), J = [[0, I], [M^-1 K, 0]].
+  virtual void set_explicit_form(double gamma, const SymmetricMatrix& k) = 0;
+  // c dF/dy' + dF/dy = [[c I, -I], [-K, c M]] of F = (q' - v, M v' - f(q)).
+  virtual void set_implicit_form(double c, const SymmetricMatrix& k) = 0;
+
+  SUNMatrix matrix() const { return matrix_.get(); }
+  SUNLinearSolver solver() const { return solver_.get(); }
+
+  // Where the time that it takes is to be added, if anywhere.
+  void time_into(Seconds* seconds) { seconds_ = seconds; }
+  // How many of the matrices were indefinite so far: compressed springs outweighed the mass.
+  std::int64_t indefinite() const { return indefinite_; }
+  void forget_counts() { indefinite_ = 0; }
+
+ protected:
+  void count_indefinite() { ++indefinite_; }
+
+ private:
+  // Both return 0, or 1 where a smaller step may help.
+  virtual int factorize() = 0;
+  virtual int solve(N_Vector b, N_Vector x) = 0;
+
+  static int setup_callback(SUNLinearSolver solver, SUNMatrix);
+  static int solve_callback(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, double);
+
+  Matrix matrix_;
+  LinearSolver solver_;
+  Seconds* seconds_ = nullptr;
+  std::int64_t indefinite_ = 0;
+};
+
+// The second-order structure: eliminating one half leaves the symmetric n x n matrix
+// M - gamma^2 K, gamma = 1/c (derivation in structured.cpp).
+std::unique_ptr<NewtonMatrix> make_structured(const System& system, SUNContext context);
+// The stock way: KLU on all 2n x 2n entries.
+std::unique_ptr<NewtonMatrix> make_klu(const System& system, SUNContext context);
+
+}  // namespace qddot::sundials

@@ -1,0 +1,39 @@
+#include "integrators/sundials/newton_test.hpp"
+
+#include <sunnonlinsol/sunnonlinsol_newton.h>
+
+namespace qddot::sundials {
+namespace {
+
+// Both as fractions of the tolerance for the error of a step: what may be left, and a first
+// correction that is nothing beside it.
+constexpr double largest_rest = 0.1;
+constexpr double negligible = 1e-3;
+// Since the corrections shrink by theta at least 1/3 as a rule, more iterations mean old factors.
+constexpr int most_iterations = 10;
+
+}  // namespace
+
+NewtonTest::NewtonTest(N_Vector y, SUNContext context)
+    : solver_(check(SUNNonlinSol_Newton(y, context))) {}
+
+void NewtonTest::attach() {
+  check(SUNNonlinSolSetConvTestFn(solver(), has_converged, this), "SUNNonlinSolSetConvTestFn");
+  check(SUNNonlinSolSetMaxIters(solver(), most_iterations), "SUNNonlinSolSetMaxIters");
+}
+
+int NewtonTest::has_converged(SUNNonlinearSolver solver, N_Vector, N_Vector correction, double,
+                              N_Vector weight, void* user) {
+  auto& self = *static_cast<NewtonTest*>(user);
+  int iteration = 0;
+  if (SUNNonlinSolGetCurIter(solver, &iteration) != SUN_NLS_SUCCESS) return SUN_NLS_CONV_RECVR;
+  const double size = N_VWrmsNorm(correction, weight);
+  const double theta = size / self.last_size_;
+  self.last_size_ = size;
+  if (size <= negligible) return SUN_NLS_SUCCESS;
+  if (iteration == 0) return SUN_NLS_CONTINUE;
+  if (!(theta < 1)) return SUN_NLS_CONV_RECVR;
+  return theta / (1 - theta) * size <= largest_rest ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
+}
+
+}  // namespace qddot::sundials

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "integrators/integrator.hpp"
+
+namespace qddot::sundials {
+
+// What a method of variable order did with it.
+class Orders {
+ public:
+  // Of each accepted step, the order that it was taken with.
+  void note(int order) {
+    sum_ += order;
+    reductions_ += order < last_;
+    last_ = order;
+  }
+  void into(Counts& counts) const {
+    counts.order_sum = sum_;
+    counts.order_reductions = reductions_;
+  }
+
+ private:
+  std::int64_t sum_ = 0, reductions_ = 0;
+  int last_ = 0;
+};
+
+}  // namespace qddot::sundials

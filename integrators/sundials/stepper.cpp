@@ -1,0 +1,168 @@
+#include "integrators/sundials/stepper.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "integrators/step_times.hpp"
+
+namespace qddot::sundials {
+namespace {
+
+// A run whose steps, so many in a row, are on the mean below this fraction of its length creeps up
+// to a point that it will not pass.
+constexpr int steps_in_a_row = 1000;
+constexpr double smallest_mean_step = 1e-12;
+
+// Of constant steps there is no error to test; the tolerance is that of Newton's iteration alone,
+// which is to leave nothing of its own.
+constexpr double newton_rtol = 1e-10;
+
+}  // namespace
+
+Stepper::Stepper(const Method& method, const System& system, const Knobs& knobs,
+                 MakeMatrix make_matrix, const System& implicit_part)
+    : Integrator(method, system, knobs),
+      implicit_part_(implicit_part),
+      context_(make_context()),
+      y_(make_matrix == make_klu ? make_stock_vector(system.size(), context())
+                                 : make_vector(system.size(), context())),
+      atol_(clone(y())),
+      per_mass_(system.mass().cwiseInverse()),
+      q_(system.size()),
+      f_(system.size()),
+      next_{0, Vec(system.size()), Vec(system.size())} {
+  Halves absolute(atol());
+  const bool is_given = knobs.atol > 0;
+  absolute.q.setConstant(is_given ? knobs.atol : rtol() * knobs.length);
+  absolute.v.setConstant(is_given ? knobs.atol : rtol() * knobs.speed);
+  if (!make_matrix) return;
+  k_ = implicit_part.stiffness_pattern();
+  matrix_ = make_matrix(implicit_part, context());
+  matrix_->time_into(seconds());
+}
+
+double Stepper::rtol() const { return has_fixed_step() ? newton_rtol : knobs().rtol; }
+
+void Stepper::load(const State& state) {
+  Halves halves(y());
+  halves.q = state.q;
+  halves.v = state.v;
+  if (has_matrix()) matrix().forget_counts();
+}
+
+void Stepper::set_counts(const OwnCounts& own) {
+  counts().steps = own.steps;
+  counts().rejected = own.failed_tests + own.failed_solves;
+  counts().factorizations = own.setups;
+  counts().newton_iterations = counts().solves = own.iterations;
+  if (has_matrix()) counts().indefinite_factorizations = matrix().indefinite();
+}
+
+const Vec& Stepper::force_at(const System& part, const Eigen::Map<Vec>& q) {
+  q_ = q;
+  force(part, q_, f_);
+  return f_;
+}
+
+bool Stepper::set_rate(const System& part, N_Vector y, N_Vector rate) {
+  const Halves at(y);
+  Halves change(rate);
+  change.q = at.v;
+  change.v = per_mass_.cwiseProduct(force_at(part, at.q));
+  return std::isfinite(change.v.sum());
+}
+
+const SymmetricMatrix& Stepper::stiffness_at(const Eigen::Map<Vec>& q) {
+  q_ = q;
+  stiffness(implicit_part_, q_, k_);
+  return k_;
+}
+
+int Stepper::right_hand_side(double, N_Vector y, N_Vector rate, void* user) {
+  auto& self = *static_cast<Stepper*>(user);
+  return self.guarded([&] { return self.set_rate(self.system(), y, rate); });
+}
+
+int Stepper::set_matrix(N_Vector y, bool jok, int* jcur, double gamma) noexcept {
+  return guarded([&] {
+    if (!jok) stiffness_at(Halves(y).q);
+    *jcur = !jok;
+    matrix().set_explicit_form(gamma, k_);
+    return true;
+  });
+}
+
+void Stepper::keep_message(int, const char*, const char*, char* message, void* self) {
+  try {
+    static_cast<Stepper*>(self)->said_ = message;
+  } catch (...) {  // out of memory for a message: the flag alone has to do
+  }
+}
+
+Outcome Stepper::run_to(State& state, double t_stop) {
+  parked_ = nullptr;
+  said_.clear();
+  try {
+    const Outcome outcome =
+        has_fixed_step() ? take_fixed_steps(state, t_stop) : take_chosen_steps(state, t_stop);
+    collect_counts();
+    return outcome;
+  } catch (...) {
+    collect_counts();
+    throw;
+  }
+}
+
+Outcome Stepper::take_chosen_steps(State& state, double t_stop) {
+  const double creep = steps_in_a_row * smallest_mean_step * (t_stop - state.t);
+  double t_mark = state.t;
+  set_stop_time(t_stop);
+  for (std::int64_t steps = 1; state.t < t_stop; ++steps) {
+    const Outcome outcome = take_one(state, t_stop);
+    if (outcome != Outcome::reached_end) return outcome;
+    if (steps % steps_in_a_row != 0) continue;
+    if (state.t - t_mark < creep) return failure(Cause::error_test, "creeping", state.t);
+    t_mark = state.t;
+  }
+  return Outcome::reached_end;
+}
+
+Outcome Stepper::take_fixed_steps(State& state, double t_stop) {
+  const StepTimes times(state.t, t_stop, knobs().step_size);
+  if (!times.can_be_taken()) return Outcome::step_too_small;
+  for (double i = 1; i <= times.count(); ++i) {
+    // No stop time: a first step that ends on one is returned by ARKODE 6.4.1 as its half.
+    set_step_size(times.length(i));
+    const Outcome outcome = take_one(state, times.after(i));
+    if (outcome != Outcome::reached_end) return outcome;
+    state.t = times.after(i);
+  }
+  return Outcome::reached_end;
+}
+
+Outcome Stepper::take_one(State& state, double t_stop) {
+  if (must_stop()) return Outcome::over_budget;
+  double t = state.t;
+  const int flag = take_step(t_stop, t);
+  if (parked_) std::rethrow_exception(parked_);
+  if (flag < 0) return failure(flag, state.t);
+  const Halves halves(y());
+  next_.q = halves.q;
+  next_.v = halves.v;
+  next_.t = t;
+  if (const Outcome outcome = judge(next_); outcome != Outcome::reached_end) return outcome;
+  std::swap(state, next_);
+  note_step();
+  return Outcome::reached_end;
+}
+
+Outcome Stepper::failure(Cause cause, const std::string& flag, double t) {
+  std::ranges::replace(said_, '\n', ' ');
+  explain(fmt::format("{} at t = {:.6g} s: {} ({}{}{})", what_happened(cause), t,
+                      what_to_turn(cause, has_fixed_step()), flag, said_.empty() ? "" : ": ",
+                      said_));
+  return outcome_of(cause);
+}
+
+}  // namespace qddot::sundials

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "integrators/integrator.hpp"
+#include "integrators/method.hpp"
+#include "integrators/sundials/cause.hpp"
+#include "integrators/sundials/newton_matrix.hpp"
+#include "integrators/sundials/vector.hpp"
+
+namespace qddot::sundials {
+
+// Makes the matrix of Newton's iteration; none (nullptr) where there is no such iteration.
+using MakeMatrix = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext);
+
+// What ARKODE, CVODE and IDA share: the first-order form y = (q, v) in a vector of length 2n, steps
+// one by one up to a stop time (of the library's choice, or of constant length where the method's
+// knob is a step size), and the boundary to C, across which no exception passes.
+class Stepper : public Integrator {
+ public:
+  // Newton's matrix is that of `implicit_part`, which has the unknowns of the system: itself, or
+  // the part of its forces that is treated implicitly.
+  Stepper(const Method& method, const System& system, const Knobs& knobs, MakeMatrix make_matrix,
+          const System& implicit_part);
+  Stepper(const Method& method, const System& system, const Knobs& knobs, MakeMatrix make_matrix)
+      : Stepper(method, system, knobs, make_matrix, system) {}
+
+ protected:
+  // One internal step that does not pass the stop time; sets t [s] to the time reached.
+  virtual int take_step(double t_stop, double& t) = 0;
+  virtual void set_stop_time(double t_stop) = 0;
+  // The length of all steps from now on [s]; called where the knob is a step size.
+  virtual void set_step_size(double) {}
+  // Called after each accepted step.
+  virtual void note_step() {}
+  // Asks the library for its own counters and gives them to set_counts.
+  virtual void collect_counts() = 0;
+  virtual Cause cause_of(int flag) const = 0;
+  virtual std::string flag_name(int flag) const = 0;
+
+  SUNContext context() const { return context_.get(); }
+  N_Vector y() const { return y_.get(); }
+  NewtonMatrix& matrix() const { return *matrix_; }
+  bool has_matrix() const { return matrix_ != nullptr; }
+  bool has_fixed_step() const { return method().knob == Knob::step_size; }
+  double rtol() const;
+  // Per entry of y: rtol times the size of positions and velocities, or what the user gave.
+  N_Vector atol() const { return atol_.get(); }
+  void load(const State& state);
+
+  // What SUNDIALS counts by itself; forces and stiffnesses are counted where they are evaluated.
+  struct OwnCounts {
+    long steps, failed_tests, failed_solves, setups, iterations;
+  };
+  // Into counts(): each iteration of Newton's method is one solve, each set-up one factorisation.
+  void set_counts(const OwnCounts& own);
+
+  // Runs the body of a C callback: 0 done, 1 recoverable (a result is not finite, so that SUNDIALS
+  // tries a smaller step), -1 with the exception parked until SUNDIALS has returned.
+  template <class Body>
+  int guarded(Body body) noexcept {
+    try {
+      return body() ? 0 : 1;
+    } catch (...) {
+      parked_ = std::current_exception();
+      return -1;
+    }
+  }
+
+  // f(q) of a part of the system into a scratch vector; counted.
+  const Vec& force_at(const System& part, const Eigen::Map<Vec>& q);
+  // y' = (v, M^-1 f(q)); false where that is not finite.
+  bool set_rate(const System& part, N_Vector y, N_Vector rate);
+  // K(q) of the implicit part, kept until the next; counted.
+  const SymmetricMatrix& stiffness_at(const Eigen::Map<Vec>& q);
+
+  // Callbacks of ARKODE and CVODE, whose user data is the Stepper: y' of the whole system, and
+  // Newton's matrix I - gamma J of the implicit part, with K anew unless `jok`.
+  static int right_hand_side(double t, N_Vector y, N_Vector rate, void* self);
+  int set_matrix(N_Vector y, bool jok, int* jcur, double gamma) noexcept;
+  // SUNDIALS' error handler: keeps the words for the summary in place of printing them.
+  static void keep_message(int code, const char* module, const char* function, char* message,
+                           void* self);
+
+  // The run ends at t [s] because of what the library's flag says, or for this reason.
+  Outcome failure(int flag, double t) { return failure(cause_of(flag), flag_name(flag), t); }
+  Outcome failure(Cause cause, const std::string& flag, double t);
+
+ private:
+  Outcome run_to(State& state, double t_stop) final;
+  Outcome take_chosen_steps(State& state, double t_stop);
+  Outcome take_fixed_steps(State& state, double t_stop);
+  Outcome take_one(State& state, double t_stop);
+
+  const System& implicit_part_;
+  Context context_;
+  Vector y_, atol_;
+  std::unique_ptr<NewtonMatrix> matrix_;
+  Vec per_mass_;  // 1/m
+  Vec q_, f_;
+  SymmetricMatrix k_;
+  State next_;
+  std::exception_ptr parked_;
+  std::string said_;
+};
+
+}  // namespace qddot::sundials

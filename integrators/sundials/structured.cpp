@@ -1,0 +1,89 @@
+// Newton's equations of a second-order system, 2n x 2n, from one symmetric n x n matrix.
+//   (I - gamma J)(a, b) = (r, s):                a - gamma b = r,   b - gamma M^-1 K a = s
+// With b = (a - r)/gamma from the first row, M gamma times the second is
+//   (M - gamma^2 K) a = M (r + gamma s).
+// Of the implicit form, c = 1/gamma:              c a - b = r,   c M b - K a = s
+//   (M - gamma^2 K) a = gamma (M r + gamma s),   b = c a - r.
+// No product with K is needed, so the factors may belong to another gamma or an older K than the
+// step at hand, which is when Newton's iteration takes a few more rounds.
+#include "integrators/sundials/newton_matrix.hpp"
+#include "src/algebra/effective_mass.hpp"
+
+namespace qddot::sundials {
+namespace {
+
+// LDL' of an indefinite matrix is made without pivoting and may lose any number of digits; Newton's
+// iteration makes up for half of them.
+constexpr double largest_residual = 1e-8;
+
+class Structured final : public NewtonMatrix {
+ public:
+  Structured(const System& system, SUNContext context)
+      : NewtonMatrix(context), mass_(system.mass()), factors_(system), b_(system.size()) {}
+
+ private:
+  void set_explicit_form(double gamma, const SymmetricMatrix& k) override {
+    gamma_ = gamma;
+    is_implicit_ = false;
+    k_ = &k;
+  }
+  void set_implicit_form(double c, const SymmetricMatrix& k) override {
+    gamma_ = 1 / c;
+    is_implicit_ = true;
+    k_ = &k;
+  }
+
+  int factorize() override {
+    definiteness_ = factors_.factorize(1, gamma_ * gamma_, *k_);
+    if (definiteness_ == EffectiveMass::Definiteness::singular) return 1;
+    if (definiteness_ == EffectiveMass::Definiteness::indefinite) count_indefinite();
+    return 0;
+  }
+
+  int solve(N_Vector right, N_Vector x) override {
+    const Halves rs(right);
+    Halves ab(x);
+    if (is_implicit_) {
+      b_ = gamma_ * (mass_.cwiseProduct(rs.q) + gamma_ * rs.v);
+    } else {
+      b_ = mass_.cwiseProduct(rs.q + gamma_ * rs.v);
+    }
+    factors_.solve(b_, a_);
+    if (definiteness_ == EffectiveMass::Definiteness::indefinite && !is_solved()) return 1;
+    if (is_implicit_) {
+      ab.v = a_ / gamma_ - rs.q;
+    } else {
+      ab.v = (a_ - rs.q) / gamma_;
+    }
+    ab.q = a_;
+    return 0;
+  }
+
+  // Whether (M - gamma^2 K) a = b to the digits that are needed, if need be after one refinement.
+  bool is_solved() {
+    for (int refinements = 0;; ++refinements) {
+      residual_ = b_ - mass_.cwiseProduct(a_);
+      residual_ += k_->selfadjointView<Eigen::Lower>() * (gamma_ * gamma_ * a_);
+      if (residual_.norm() <= largest_residual * b_.norm()) return true;
+      if (refinements == 1) return false;
+      factors_.solve(residual_, correction_);
+      a_ += correction_;
+    }
+  }
+
+  const Vec& mass_;
+  EffectiveMass factors_;
+  EffectiveMass::Definiteness definiteness_ = EffectiveMass::Definiteness::singular;
+  const SymmetricMatrix* k_ = nullptr;
+  double gamma_ = 0;
+  bool is_implicit_ = false;
+  Vec b_, a_, residual_, correction_;
+};
+
+}  // namespace
+
+std::unique_ptr<NewtonMatrix> make_structured(const System& system, SUNContext context) {
+  return std::make_unique<Structured>(system, context);
+}
+
+}  // namespace qddot::sundials
