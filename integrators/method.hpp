@@ -35,7 +35,9 @@ struct Method {
   bool needs_stiffness = false;
   bool accepts_massless = false;
   bool needs_constant_stiffness = false;
-  bool needs_split = false;  // asks for System::split()
+  // Takes the forces of System::split(), of which a system may have none when the method is made:
+  // it may be asked for from start() on.
+  bool needs_split = false;
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
 };
 
