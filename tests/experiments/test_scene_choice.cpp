@@ -29,7 +29,7 @@ Scene pairs(std::optional<double> stiff_above) {
   return scene;
 }
 
-const Method split = {.name = "divider", .needs_split = true};
+const Method split = {.name = "divider", .summary = "none", .source = "none", .needs_split = true};
 
 }  // namespace
 

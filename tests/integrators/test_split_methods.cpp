@@ -26,7 +26,11 @@ class SumOfForces final : public FixedStep {
   Vec stiff_{system().size()}, soft_{system().size()};
 };
 
-const Method method = {.name = "sum_of_forces", .needs_split = true, .make = create<SumOfForces>};
+const Method method = {.name = "sum_of_forces",
+                       .summary = "a sum",
+                       .source = "none",
+                       .needs_split = true,
+                       .make = create<SumOfForces>};
 
 constexpr Knobs knobs = {.step_size = 1e-3};
 
