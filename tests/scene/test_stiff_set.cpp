@@ -195,11 +195,28 @@ BOOST_AUTO_TEST_CASE(of_springs_that_become_one_the_one_is_stiff_if_any_is) {
   };
   const double one = 55 * 0.1 * 0.1, two = 25 * 0.2 * 0.2;  // 110 N/m of 0.9 m, 50 N/m of 0.8 m
   const auto close = boost::test_tools::tolerance(100 * eps);
-  BOOST_TEST(stiff(30) == one + two, close);
-  BOOST_TEST(stiff(45) == one + two, close);
-  BOOST_TEST(stiff(60) == one, close);
-  BOOST_TEST(stiff(70) == 0);   // no more than
-  BOOST_TEST(stiff(100) == 0);  // though their sum is: none was drawn so
+  for (const bool is_reversed : {false, true}) {
+    if (is_reversed) std::ranges::reverse(scene.springs);
+    BOOST_TEST(stiff(30) == one + two, close);
+    BOOST_TEST(stiff(45) == one + two, close);
+    BOOST_TEST(stiff(60) == one, close);
+    BOOST_TEST(stiff(70) == 0);   // no more than
+    BOOST_TEST(stiff(100) == 0);  // though their sum is: none was drawn so
+  }
+}
+
+BOOST_AUTO_TEST_CASE(images_on_both_sides_of_the_border_are_one_stiff_spring) {
+  // Edges of 80 N/m stretched by 0.4 m, opposite ones being images of each other; one of the four
+  // is stiffer by a rounding.
+  for (const std::size_t edge : {0u, 2u, 4u, 6u}) {
+    Scene scene = named(square(), 80);
+    scene.springs[edge].law.stiffness = std::nextafter(80, 100);
+    const ReducedScene reduced(scene);
+    BOOST_TEST(has(reduced, Reduction::mirror));
+    BOOST_TEST(adds_up(reduced, reduced.initial().q));
+    BOOST_TEST(stiff_of(reduced, reduced.initial().q).v == 2 * 40 * 0.4 * 0.4,
+               boost::test_tools::tolerance(100 * eps));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_series_is_stiff_where_the_spring_that_it_is_would_be) {

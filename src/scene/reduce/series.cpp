@@ -101,18 +101,15 @@ class Condenser {
     const double length = (nodes_[ends[1]].position - nodes_[ends[0]].position).norm();
     // A series drawn at its rest length may be shorter by what rounding makes of it.
     if (length < (1 - 1e-12) * rest_length) return {};
-    Series series{ends,
-                  {.stiffness = 1 / compliance, .rest_length = rest_length},
-                  rest_length > 0 ? Holds::in_tension : Holds::always,
-                  false,
-                  {}};
-    series.stiff = is_stiff(series.law, stiff_above_);
+    const SpringLaw law{.stiffness = 1 / compliance, .rest_length = rest_length};
+    const Holds holds = rest_length > 0 ? Holds::in_tension : Holds::always;
+    Series series{ends, law, holds, is_stiff(law, stiff_above_), {}};
     double shift = 0, share = 0;
     for (std::size_t j = 0; j < joints.size(); ++j) {
       // L_e = l_e + k/k_e (l - l0).
-      const SpringLaw& law = springs_[chain_[j]].law;
-      const double part = series.law.stiffness / law.stiffness;
-      shift += law.rest_length - part * rest_length;
+      const SpringLaw& own = springs_[chain_[j]].law;
+      const double part = law.stiffness / own.stiffness;
+      shift += own.rest_length - part * rest_length;
       share += part;
       series.joints.push_back({joints[j], shift, share});
     }
