@@ -26,11 +26,11 @@ std::string method_names() {
 void print_methods(bool as_csv) {
   if (as_csv) {
     Csv csv({"name", "order", "family", "knob", "implicit", "symplectic", "needs_stiffness",
-             "accepts_massless", "needs_constant_stiffness", "summary", "source"});
+             "accepts_massless", "needs_constant_stiffness", "needs_split", "summary", "source"});
     for (const Method& m : methods()) {
       csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.implicit),
               yes(m.symplectic), yes(m.needs_stiffness), yes(m.accepts_massless),
-              yes(m.needs_constant_stiffness), m.summary, m.source);
+              yes(m.needs_constant_stiffness), yes(m.needs_split), m.summary, m.source);
     }
     fmt::print("{}", csv.text());
     return;

@@ -36,13 +36,15 @@ std::string sundials_version() {
 std::string code_hash() { return build_info::source_hash; }
 
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& scene) {
+  const auto stiff_above = scene.stiff_above ? nlohmann::json(*scene.stiff_above) : nullptr;
   return {{"command_line", command_line},
           {"scene",
            {{"name", scene.name},
             {"hash", content_hash(scene)},
             {"dimension", scene.dimension},
             {"nodes", scene.nodes.size()},
-            {"springs", scene.springs.size()}}},
+            {"springs", scene.springs.size()},
+            {"stiff_above", stiff_above}}},
           {"version", build_info::version},
           {"source_hash", build_info::source_hash},
           {"compiler", build_info::compiler},

@@ -57,12 +57,20 @@ Reductions reductions_of(const SceneChoice& choice) {
 }
 
 void require_fit(const Method& method, const ReducedScene& scene, const std::string& source) {
-  if (!applies_to(method, scene.system())) {
+  const auto why = misfit(method, scene.system());
+  const auto others = [&] {
+    return names_where([&](const Method& other) { return applies_to(other, scene.system()); });
+  };
+  if (why == Outcome::stiffness_varies) {
     throw InvalidInput(fmt::format(
-        "{}: {} needs a K that is the same everywhere, and here it is not; allowed are "
-        "{}",
-        source, method.name,
-        names_where([](const Method& other) { return !other.needs_constant_stiffness; })));
+        "{}: {} needs a K that is the same everywhere, and here it is not; allowed are {}", source,
+        method.name, others()));
+  }
+  if (why == Outcome::no_stiff_set) {
+    throw InvalidInput(
+        fmt::format("{}: stiff_above: it is missing, and {} takes the forces of stiff springs "
+                    "apart; allowed are finite numbers above 0 in N/m, or the methods {}",
+                    source, method.name, others()));
   }
   const auto massless = scene.massless_nodes();
   if (!massless.empty() && !method.accepts_massless) {

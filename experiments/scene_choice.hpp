@@ -31,9 +31,9 @@ Scene started(const Scene& drawn, const SceneChoice& choice);
 // All reductions but those that the user does without. Throws InvalidInput for an unknown name.
 Reductions reductions_of(const SceneChoice& choice);
 
-// Throws InvalidInput unless the method can be used on the scene: K must be constant for some, and
-// no node without mass may be left for most; the sentence names the node and the methods that take
-// it. `source` names the scene.
+// Throws InvalidInput unless the method can be used on the scene: K must be constant for some,
+// stiff springs be named for others, and no node without mass may be left for most; the sentence
+// names the node and the methods that take it. `source` names the scene.
 void require_fit(const Method& method, const ReducedScene& scene, const std::string& source);
 
 // The methods named in `list` (a,b,...), or all that can be used on the scene if it is empty;

@@ -38,6 +38,8 @@ std::string_view name(Outcome outcome) {
       return "stiffness_varies";
     case Outcome::went_slack:
       return "went_slack";
+    case Outcome::no_stiff_set:
+      return "no_stiff_set";
   }
   return "unknown";
 }
@@ -71,6 +73,9 @@ std::string_view advice(Outcome outcome) {
       return "springs in series through a massless node came under compression, where they are no "
              "longer equal to one spring: keep the node (--no-reduce massless) and take a method "
              "that accepts massless nodes";
+    case Outcome::no_stiff_set:
+      return "the scene names no stiff springs, whose forces this method takes apart: give it "
+             "stiff_above, or take another method";
   }
   return "";
 }
@@ -106,7 +111,7 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer) {
     return Outcome::not_finite;
   }
   if (system_.has_massless() && !method_.accepts_massless) return Outcome::singular_mass;
-  if (!applies_to(method_, system_)) return Outcome::stiffness_varies;
+  if (const auto why = misfit(method_, system_)) return *why;
 
   const bool moves = system_.size() > 0 && t_end > state.t;
   const auto go_to = [&](double t) {

@@ -27,6 +27,7 @@ enum class Outcome {
   over_budget,        // stopped from outside
   stiffness_varies,   // a method for constant K, and a system whose K is not
   went_slack,         // the system no longer is what it stands for (System::holds_at)
+  no_stiff_set,       // a method that takes stiff forces apart, and none are named (System::split)
 };
 
 std::string_view name(Outcome outcome);    // as above

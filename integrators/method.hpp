@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "integrators/integrator.hpp"
@@ -34,12 +36,28 @@ struct Method {
   bool accepts_massless = false;
   bool needs_constant_stiffness = false;
   bool varies_order = false;  // up to `order`, or to Knobs::max_order
+  // Takes the forces of System::split(), of which a system may have none when the method is made:
+  // it may be asked for from start() on.
+  bool needs_split = false;
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
 };
 
-// Whether the method can be used on the system at all, as far as K decides.
+// Whether the system's forces are divided into stiff and soft ones, in each of its parts that has
+// unknowns.
+inline bool is_split(const System& system) {
+  if (system.parts().empty()) return system.size() == 0 || system.split();
+  return std::ranges::all_of(system.parts(), [](const auto& part) { return is_split(*part); });
+}
+
+// Why the method cannot be used on the system at all, whatever its masses; nothing where it can.
+inline std::optional<Outcome> misfit(const Method& method, const System& system) {
+  if (method.needs_constant_stiffness && !system.stiffness_is_constant())
+    return Outcome::stiffness_varies;
+  if (method.needs_split && !is_split(system)) return Outcome::no_stiff_set;
+  return {};
+}
 inline bool applies_to(const Method& method, const System& system) {
-  return !method.needs_constant_stiffness || system.stiffness_is_constant();
+  return !misfit(method, system);
 }
 
 // For Method::make: constructs an integrator of class T.

@@ -90,6 +90,18 @@ inline Problem random_network(std::mt19937& random, int dimension, int nodes, do
   return p;
 }
 
+// The network with a split in which every other spring of each kind is stiff, the first one too.
+inline Network with_split(Network network) {
+  const auto name_stiff = [](auto& springs) {
+    for (std::size_t e = 0; e < springs.size(); e += 2) springs[e].stiff = true;
+  };
+  name_stiff(network.links);
+  name_stiff(network.image_links);
+  name_stiff(network.anchors);
+  network.offers_split = true;
+  return network;
+}
+
 // A smooth nonlinear motion: four masses in a row between two pins, braced across, sagging and
 // swinging under gravity; springs are stretched and compressed in turn, one is quartic. Its
 // frequencies are below 25 rad/s and no spring comes near zero length.

@@ -2,7 +2,7 @@
 
 namespace qddot {
 
-Held::Held(std::unique_ptr<System> system, std::vector<bool> is_held)
+Held::Held(std::shared_ptr<const System> system, std::vector<bool> is_held)
     : System(system->mass()), system_(std::move(system)) {
   Index entry = 0;
   for (Index column = 0; column < size(); ++column) {
@@ -10,6 +10,10 @@ Held::Held(std::unique_ptr<System> system, std::vector<bool> is_held)
     for (SymmetricMatrix::InnerIterator at(stiffness_pattern(), column); at; ++at, ++entry) {
       if (is_held[column] || is_held[at.row()]) entries_.push_back(entry);
     }
+  }
+  if (const Split* split = system_->split()) {
+    split_ = {std::make_shared<Held>(split->stiff, is_held),
+              std::make_shared<Held>(split->soft, is_held)};
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "src/model/system.hpp"
@@ -13,7 +14,7 @@ namespace qddot {
 class Held final : public System {
  public:
   // `is_held`: for each unknown of `system`.
-  Held(std::unique_ptr<System> system, std::vector<bool> is_held);
+  Held(std::shared_ptr<const System> system, std::vector<bool> is_held);
 
   double potential(const Vec& q) const override { return system_->potential(q); }
   void force(const Vec& q, Vec& f) const override;
@@ -21,11 +22,13 @@ class Held final : public System {
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
   bool holds_at(const Vec& q) const override { return system_->holds_at(q); }
+  const Split* split() const override { return split_ ? &*split_ : nullptr; }
 
  private:
-  std::unique_ptr<System> system_;
+  std::shared_ptr<const System> system_;
   std::vector<Index> unknowns_;  // the held ones
   std::vector<Index> entries_;   // of the pattern, those in a row or column of a held one
+  std::optional<Split> split_;   // of the system, held likewise
 };
 
 }  // namespace qddot

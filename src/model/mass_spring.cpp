@@ -1,6 +1,7 @@
 #include "src/model/mass_spring.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include "src/model/block_pattern.hpp"
@@ -8,6 +9,23 @@
 
 namespace qddot {
 namespace {
+
+// The network with its stiff springs alone, or with all but these.
+Network only(Network network, bool stiff) {
+  const auto is_other = [&](const auto& spring) { return spring.stiff != stiff; };
+  std::erase_if(network.links, is_other);
+  std::erase_if(network.image_links, is_other);
+  std::erase_if(network.anchors, is_other);
+  if (stiff) {
+    network.gravity.setZero();
+    network.load = network.stiff_load;
+    network.constant_energy = 0;
+  } else if (network.stiff_load.size() > 0) {
+    network.load -= network.stiff_load;
+  }
+  network.offers_split = false;
+  return network;
+}
 
 // Springs between nodes all of whose coordinates are unknowns are kept apart, by their first
 // unknowns alone; the few that touch a node on a mirror go through the layout.
@@ -119,6 +137,7 @@ class MassSpring final : public System {
 
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override { return linear_; }
+  const Split* split() const override { return split_ ? &*split_ : nullptr; }
 
   bool holds_at(const Vec& q) const override {
     // A spring drawn at its rest length may be shorter by what rounding makes of it.
@@ -142,19 +161,23 @@ class MassSpring final : public System {
     for (const auto& link : network.links) pattern.join(link.i, link.j);
     for (const auto& link : network.image_links) pattern.join(link.i, link.j);
     pattern_ = pattern.make();
-    for (const auto& [i, j, law, holds] : network.links) {
+    for (const auto& [i, j, law, holds, stiff] : network.links) {
       take_link({i, j, pattern.place(i, j), Point::Ones(), law}, holds, true);
     }
-    for (const auto& [i, j, mirror, law, holds] : network.image_links) {
+    for (const auto& [i, j, mirror, law, holds, stiff] : network.image_links) {
       const Point signs = Eigen::Map<const Point>(mirror.data());
       take_link({i, j, pattern.place(i, j), signs, law}, holds, false);
     }
-    for (const auto& [i, place, law, holds] : network.anchors) {
+    for (const auto& [i, place, law, holds, stiff] : network.anchors) {
       take_anchor({i, Eigen::Map<const Point>(place.data()), law}, holds);
     }
     linear_ = network.uses_constant_stiffness;
     const Vec anywhere = Vec::Zero(size());
     for_all(anywhere, [&](const SpringLaw& law, const Point&) { linear_ &= law.is_linear(); });
+    if (network.offers_split) {
+      split_ = {std::make_shared<MassSpring>(only(network, true)),
+                std::make_shared<MassSpring>(only(network, false))};
+    }
   }
 
   static Vec masses(const Network& network, const Layout<D>& layout) {
@@ -270,6 +293,7 @@ class MassSpring final : public System {
   double constant_energy_;
   bool linear_ = false;
   SymmetricMatrix pattern_;
+  std::optional<Split> split_;
 };
 
 }  // namespace

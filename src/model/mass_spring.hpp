@@ -15,6 +15,7 @@ struct Network {
     int i, j;
     SpringLaw law;
     Holds holds = Holds::always;
+    bool stiff = false;
   };
   // A spring between node i and the mirror image of node j, diag(mirror) x_j with entries 1 and -1;
   // i = j is a spring that crosses the mirror at a right angle.
@@ -23,6 +24,7 @@ struct Network {
     Eigen::Vector3d mirror;
     SpringLaw law;
     Holds holds = Holds::always;
+    bool stiff = false;
   };
   // A spring between a free node and a fixed point [m].
   struct Anchor {
@@ -30,6 +32,7 @@ struct Network {
     Eigen::Vector3d point;
     SpringLaw law;
     Holds holds = Holds::always;
+    bool stiff = false;
   };
 
   int dimension = 3;                                  // D = 1, 2 or 3
@@ -44,6 +47,8 @@ struct Network {
   std::vector<unsigned> zero_coordinates{};
   Vec load{};                           // constant forces beside the weight [N], D N; empty = none
   bool uses_constant_stiffness = true;  // false: K counts as varying even where it is constant
+  bool offers_split = false;            // whether the system is to have a split() by `stiff`
+  Vec stiff_load{};                     // what of the load is stiff, as the load; empty = none
 };
 
 // The network as a System with an unknown for each of the D N coordinates that may move, in order:

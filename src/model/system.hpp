@@ -22,6 +22,8 @@ struct State {
   Vec q, v;
 };
 
+struct Split;
+
 // The mechanics of the lecture's Lagrangian L = T - V with T = 1/2 v'Mv: everything that the
 // equation of motion M q'' = f(q) is made of, and nothing of how it is stepped through time.
 // SI units. Signs: f = -dV/dq and K = df/dq = -d2V/dq2, so K is negative semidefinite at rest
@@ -59,9 +61,20 @@ class System {
   // The systems that this one is made of where no force couples them, each with its own run of
   // consecutive unknowns, in order; empty where it is one whole.
   virtual std::span<const std::unique_ptr<System>> parts() const { return {}; }
+  // This system's forces divided into stiff and soft ones; nullptr where no springs are named
+  // stiff, and where there are parts(), each of which has its own.
+  virtual const Split* split() const { return nullptr; }
 
  private:
   Vec mass_;
+};
+
+// A system divided by its springs: f = stiff->force + soft->force, and V and K are sums likewise.
+// Both have all of its unknowns and masses, and it holds where both do; the pattern of each one's K
+// is that of its own springs alone. Weight, loads and constants are the soft one's, but for the
+// loads that stand for stiff springs. Either may be without springs.
+struct Split {
+  std::shared_ptr<const System> stiff, soft;
 };
 
 // Kinetic plus potential energy [J] of a state.

@@ -90,6 +90,10 @@ Explanation explain(const Scene& scene, const ReducedScene& reduced) {
   e.unknowns = system.size();
   e.findings = reduced.findings();
   e.stiffness_is_constant = system.stiffness_is_constant();
+  e.stiff_springs =
+      static_cast<std::size_t>(std::ranges::count_if(scene.springs, [&](const Spring& spring) {
+        return is_stiff(spring.law, scene.stiff_above);
+      }));
   e.omega_bound = frequency_bound(system, q);
   e.omega_max = lanczos(system, q);
   e.is_examined = e.drawn_unknowns <= largest_examined;
@@ -116,6 +120,10 @@ std::string in_words(const Explanation& e, const Scene& scene) {
   };
   for (const Finding& finding : e.findings) line(name(finding.reduction), finding.what);
   if (!e.stiffness_is_constant && e.unknowns > 0) line("K", "changes with the positions");
+  if (scene.stiff_above) {
+    line("stiff", fmt::format("{} of {} springs are stiff (above {:.4g} N/m)", e.stiff_springs,
+                              scene.springs.size(), *scene.stiff_above));
+  }
   line("step", step_sentence(e));
   if (e.unknowns > 0) line("stability", stability_sentence(e, scene));
   if (e.unstable_left_out > 0) line("", left_out_sentence(e));

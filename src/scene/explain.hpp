@@ -14,6 +14,7 @@ struct Explanation {
   Index unknowns = 0;
   std::vector<Finding> findings;
   bool stiffness_is_constant = false;
+  std::size_t stiff_springs = 0;  // of the springs as drawn, where the scene names stiff ones
   // At the start, of the system that is left:
   double omega_bound = 0;  // w_max is at most that [rad/s], by Gershgorin; infinite without mass
   double omega_max = 0;    // by Lanczos, to about 1e-4; NaN where that does not converge

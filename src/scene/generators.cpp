@@ -16,6 +16,7 @@
   GENERATOR(pendulum)               \
   GENERATOR(chain)                  \
   GENERATOR(cloth)                  \
+  GENERATOR(framed_cloth)           \
   GENERATOR(lattice)
 
 namespace qddot {

@@ -11,12 +11,16 @@
 namespace qddot {
 
 ReducedScene::ReducedScene(const Scene& scene, const Reductions& reductions)
-    : nodes_(scene.nodes), dimension_(scene.dimension), gravity_(scene.gravity) {
+    : nodes_(scene.nodes),
+      dimension_(scene.dimension),
+      gravity_(scene.gravity),
+      stiff_above_(scene.stiff_above) {
   for (Node& node : nodes_) {
     if (node.pinned) node.velocity.setZero();
   }
   if (reductions.has(Reduction::pins)) leave_out_pins();
   std::vector<Spring> springs = scene.springs;
+  for (Spring& spring : springs) spring.stiff = is_stiff(spring.law, stiff_above_);
   if (reductions.has(Reduction::duplicates)) merge(springs);
   if (reductions.has(Reduction::massless)) condense(springs);
   leave_out_static_springs(springs);
@@ -37,7 +41,7 @@ void ReducedScene::merge(std::vector<Spring>& springs) {
 }
 
 void ReducedScene::condense(std::vector<Spring>& springs) {
-  series_ = condense_series(nodes_, springs);
+  series_ = condense_series(nodes_, springs, stiff_above_);
   if (series_.empty()) return;
   std::vector<std::size_t> condensed;
   for (const Series& series : series_) {
@@ -48,7 +52,7 @@ void ReducedScene::condense(std::vector<Spring>& springs) {
 }
 
 void ReducedScene::leave_out_static_springs(const std::vector<Spring>& springs) {
-  for (const auto& [ends, law, holds] : springs) {
+  for (const auto& [ends, law, holds, stiff] : springs) {
     const Node &a = nodes_[ends[0]], &b = nodes_[ends[1]];
     if (a.pinned && b.pinned) static_energy_ += law.energy((b.position - a.position).norm());
   }
@@ -81,7 +85,8 @@ void ReducedScene::build(const std::vector<Component>& components,
   std::vector<std::unique_ptr<System>> systems;
   Index n = 0;
   for (const Component& component : components) {
-    const Body body = make_body(component, nodes_, springs, gravity_);
+    Body body = make_body(component, nodes_, springs, gravity_);
+    body.offers_split = stiff_above_.has_value();
     Part& part = parts_.emplace_back(body, dimension_, reductions);
     systems.push_back(part.take_system());
     n += part.initial().q.size();
@@ -98,7 +103,7 @@ void ReducedScene::build(const std::vector<Component>& components,
     findings_.push_back(std::move(finding));
   }
   if (systems.empty()) {
-    system_ = make_mass_spring({.dimension = dimension_});
+    system_ = make_mass_spring({.dimension = dimension_, .offers_split = stiff_above_.has_value()});
   } else if (systems.size() == 1) {
     system_ = std::move(systems.front());
   } else {

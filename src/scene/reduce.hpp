@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ namespace qddot {
 //   dimension, mirror   see reduce/frame.hpp, reduce/mirror.hpp and, for the system,
 //   reduce/part.hpp constant_stiffness  springs of rest length zero; on a line, see
 //   reduce/straight.hpp
-// Dimension, mirror and constant stiffness are found for each part by itself.
+// Dimension, mirror and constant stiffness are found for each part by itself. Where the scene names
+// stiff springs, each part's system offers a split() by them; everything else is as without.
 class ReducedScene {
  public:
   // The scene must be valid (see validate); it is taken as drawn, wherever it says it starts.
@@ -70,6 +72,7 @@ class ReducedScene {
   std::vector<Node> nodes_;  // as drawn, condensed ones in their places
   int dimension_;
   Eigen::Vector3d gravity_;
+  std::optional<double> stiff_above_;
   std::vector<Series> series_;
   std::vector<std::size_t> flying_;
   std::vector<Part> parts_;

@@ -31,6 +31,10 @@ struct Entry {
     if (std::isfinite(x) && x >= 0) return;
     refuse(field, fmt::format("{} is not allowed; allowed are finite numbers from 0", x));
   }
+  void check_positive(const char* field, double x) const {
+    if (std::isfinite(x) && x > 0) return;
+    refuse(field, fmt::format("{} is not allowed; allowed are finite numbers above 0", x));
+  }
 };
 
 void check_node(const Entry& entry, const Node& node) {
@@ -89,9 +93,8 @@ void validate(const Scene& scene, const std::string& source) {
     whole.refuse("dimension",
                  fmt::format("{} is not allowed; allowed are 1, 2 and 3", scene.dimension));
   whole.check_finite("gravity", scene.gravity);
-  if (scene.until && !(std::isfinite(*scene.until) && *scene.until > 0))
-    whole.refuse("until", fmt::format("{} is not allowed; allowed are finite numbers above 0",
-                                      *scene.until));
+  if (scene.until) whole.check_positive("until", *scene.until);
+  if (scene.stiff_above) whole.check_positive("stiff_above", *scene.stiff_above);
   for (std::size_t i = 0; i < scene.nodes.size(); ++i)
     check_node({source, "nodes", i}, scene.nodes[i]);
   for (std::size_t i = 0; i < scene.springs.size(); ++i)

@@ -24,7 +24,9 @@ struct Node {
 struct Spring {
   std::array<std::size_t, 2> nodes{};
   SpringLaw law;
-  Holds holds = Holds::always;  // as drawn; a reduction may put another in the place of several
+  // As drawn; a reduction may put another in the place of several, and names those that are stiff.
+  Holds holds = Holds::always;
+  bool stiff = false;
 };
 
 // What the user drew: nodes, springs, gravity; nothing derived and nothing left out.
@@ -38,12 +40,21 @@ struct Scene {
   // Whether its motion begins with the nodes not where they are drawn but at the stable equilibrium
   // that is reached from there, with the velocities as drawn.
   bool starts_at_equilibrium = false;
+  // Springs with more stiffness [N/m] are the stiff ones, for methods that take their forces apart
+  // from the others' (System::split); none are named where it is missing. Changes no motion.
+  std::optional<double> stiff_above{};
 };
+
+// Whether a spring of that law is one of the stiff ones of a scene.
+inline bool is_stiff(const SpringLaw& law, std::optional<double> stiff_above) {
+  return stiff_above && law.stiffness > *stiff_above;
+}
 
 // Throws InvalidInput, in a sentence that starts with `source` and names node or spring and field,
 // unless every number is finite, dimension is 1, 2 or 3, masses, stiffnesses and rest lengths are
-// not negative, each spring joins two different existing nodes, and no spring with rest_length > 0
-// starts with coincident ends (its direction would be undefined).
+// not negative, `until` and `stiff_above` are above 0, each spring joins two different existing
+// nodes, and no spring with rest_length > 0 starts with coincident ends (its direction would be
+// undefined).
 void validate(const Scene& scene, const std::string& source);
 
 // Hash of everything in the scene that decides its motion, its name left out; the same on every

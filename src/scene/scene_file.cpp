@@ -75,7 +75,8 @@ Spring spring_in(const Table& table, const std::vector<Node>& nodes) {
 }
 
 void add_nodes_and_springs(const Table& file, const SceneLimits& limits, Scene& scene) {
-  file.allow_keys({"name", "dimension", "gravity", "until", "start", "nodes", "springs"});
+  file.allow_keys(
+      {"name", "dimension", "gravity", "until", "start", "stiff_above", "nodes", "springs"});
   scene.dimension = file.integer("dimension", 1, 3);
   const std::vector<Table> nodes = file.tables("nodes"), springs = file.tables("springs");
   require_within(limits, {nodes.size(), springs.size()}, file.place());
@@ -122,10 +123,10 @@ Scene parse_scene(const std::string& text, const std::string& path,
         path));
   Scene scene;
   if (file.has("generator")) {
-    file.allow_keys({"name", "until", "start", "generator"});
+    file.allow_keys({"name", "until", "start", "stiff_above", "generator"});
     scene = generated(file.table("generator"), limits);
   } else if (file.has("mesh")) {
-    file.allow_keys({"name", "dimension", "gravity", "until", "start", "mesh"});
+    file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "mesh"});
     if (file.has("dimension")) file.integer("dimension", 3, 3);
     add_mesh(file.table("mesh"), folder, read, limits, scene);
   } else {
@@ -134,6 +135,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
   scene.name = file.has("name") ? file.text("name") : std::filesystem::path(path).stem().string();
   if (file.has("until")) scene.until = file.number("until", positive);
   if (file.has("gravity")) scene.gravity = file.vector("gravity", scene.dimension);
+  if (file.has("stiff_above")) scene.stiff_above = file.number("stiff_above", positive);
   scene.starts_at_equilibrium = starts_at_equilibrium(file);
   validate(scene, path);
   return scene;

@@ -127,6 +127,7 @@ std::string to_toml(const Scene& scene, std::size_t most) {
   out.line("gravity", scene.gravity, scene.dimension);
   if (scene.until) out.line("until", *scene.until);
   out.line("start", scene.starts_at_equilibrium ? "equilibrium" : "drawn");
+  if (scene.stiff_above) out.line("stiff_above", *scene.stiff_above);
   for (const Node& node : scene.nodes) {
     add_node(node, scene.dimension, out);
     require_readable();

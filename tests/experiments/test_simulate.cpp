@@ -199,6 +199,7 @@ BOOST_AUTO_TEST_CASE(every_table_has_a_sidecar_that_says_where_it_comes_from) {
     const auto json = nlohmann::json::parse(read_all(folder / name));
     BOOST_TEST((json.at("command_line") == with({PROGRAM_FOLDER "/simulate"}, arguments)));
     BOOST_TEST(json.at("scene").at("hash") == content_hash(load_scene("orbit")));
+    BOOST_TEST(json.at("scene").at("stiff_above").is_null());
     for (const char* key : {"version", "compiler", "flags", "cpu"}) {
       BOOST_TEST(!json.at(key).get<std::string>().empty(), key);
     }

@@ -10,6 +10,7 @@ dimension = 2
 gravity = [0.0, -9.81]
 until = 0.5
 start = "drawn"
+stiff_above = 1e2
 [[nodes]]
 position = [0.0, 0.0]
 pinned = true
@@ -77,6 +78,9 @@ max = [0.5, 9, 9]
        "until = 0.1\nstart = \"equilibrium\"\n[generator]\nkind = \"cloth\"\nnodes = 4\nside = "
        "2.5\n"
        "bending_stiffness = 0\n"},
+      {"frame.toml",
+       "stiff_above = 1_000\n[generator]\nkind = \"framed_cloth\"\nnodes = 3\nframe_stiffness = "
+       "2e3\n"},
       {"lattice.toml",
        "name = \"\"\ngenerator = {kind = 'lattice', nodes_x = 3, nodes_y = 2, nodes_z = 2}\n"},
       {"chain.toml",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -79,9 +80,13 @@ inline Counts operator+(const Counts& a, const Counts& b) {
 
 // Pieces that the method applies to: of different sizes, dimensions and frequencies.
 inline std::vector<Piece> pieces_for(const Method& method) {
-  const bool constant = method.needs_constant_stiffness;
-  return {piece(constant ? linear_hammock(2) : hammock(2)), piece(Oscillator().problem()),
-          piece(linear_hammock(3))};
+  std::vector<Piece> pieces;
+  for (Problem& p : std::array{method.needs_constant_stiffness ? linear_hammock(2) : hammock(2),
+                               Oscillator().problem(), linear_hammock(3)}) {
+    if (method.needs_split) p.network = with_split(p.network);
+    pieces.push_back(piece(p));
+  }
+  return pieces;
 }
 
 inline Run run(const Method& method, const Together& whole, double t_end, const Knobs& knobs,

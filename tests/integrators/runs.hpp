@@ -37,11 +37,11 @@ inline const Method& method_named(std::string_view name) {
   return *found;
 }
 
-// The methods that take any K; `exact` has tests of its own.
+// The methods that take any system; others have tests of their own.
 inline std::vector<Method> general_methods() {
   std::vector<Method> list;
   for (const Method& method : methods()) {
-    if (!method.needs_constant_stiffness) list.push_back(method);
+    if (!method.needs_constant_stiffness && !method.needs_split) list.push_back(method);
   }
   return list;
 }

@@ -162,12 +162,12 @@ BOOST_AUTO_TEST_CASE(every_outcome_has_a_name_and_every_failure_its_advice) {
        {Outcome::reached_end, Outcome::diverged, Outcome::newton_failed, Outcome::indefinite_matrix,
         Outcome::step_too_small, Outcome::singular_mass, Outcome::not_finite,
         Outcome::solver_failed, Outcome::over_budget, Outcome::stiffness_varies,
-        Outcome::went_slack}) {
+        Outcome::went_slack, Outcome::no_stiff_set}) {
     names.insert(name(outcome));
     BOOST_TEST(name(outcome) != "unknown");
     BOOST_TEST(advice(outcome).empty() == (outcome == Outcome::reached_end));
   }
-  BOOST_TEST(names.size() == 11);
+  BOOST_TEST(names.size() == 12);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

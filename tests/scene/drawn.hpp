@@ -63,7 +63,7 @@ inline bool has(const ReducedScene& scene, Reduction reduction) {
 // V of all springs and of the weight of the free nodes, spring by spring over all nodes.
 inline double potential_by_hand(const Scene& scene, const std::vector<Node>& nodes) {
   double v = 0;
-  for (const auto& [ends, law, holds] : scene.springs)
+  for (const auto& [ends, law, holds, stiff] : scene.springs)
     v += law.energy((nodes[ends[1]].position - nodes[ends[0]].position).norm());
   for (const Node& node : nodes) {
     if (!node.pinned) v -= node.mass * scene.gravity.dot(node.position);

@@ -22,6 +22,8 @@ inline std::string first_difference(const Scene& a, const Scene& b) {
   if (!same_bits(a.gravity, b.gravity)) return "gravity";
   if (a.until.has_value() != b.until.has_value()) return "until";
   if (a.until && !same_bits(*a.until, *b.until)) return "until";
+  if (a.stiff_above.has_value() != b.stiff_above.has_value()) return "stiff_above";
+  if (a.stiff_above && !same_bits(*a.stiff_above, *b.stiff_above)) return "stiff_above";
   if (a.starts_at_equilibrium != b.starts_at_equilibrium) return "start";
   if (a.nodes.size() != b.nodes.size()) return "nodes";
   for (std::size_t i = 0; i < a.nodes.size(); ++i) {

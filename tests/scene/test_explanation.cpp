@@ -97,6 +97,26 @@ BOOST_AUTO_TEST_CASE(numbers_that_overflow_are_explained_too) {
   BOOST_TEST(contains(in_words(e, extreme), "not known"));
 }
 
+BOOST_AUTO_TEST_CASE(stiff_springs_are_counted_where_they_are_named) {
+  Scene scene = strut(0.1);
+  BOOST_TEST(!contains(in_words(explained(scene), scene), "  stiff "));
+  scene.springs[1].law.stiffness = 12345;
+  scene.stiff_above = 234.56;
+  BOOST_TEST(explained(scene).stiff_springs == 1u);
+  BOOST_TEST(contains(in_words(explained(scene), scene),
+                      "  stiff               1 of 4 springs are stiff (above 234.6 N/m)\n"));
+  scene.stiff_above = 12345;
+  BOOST_TEST(explained(scene).stiff_springs == 0u);
+  BOOST_TEST(contains(in_words(explained(scene), scene), "0 of 4 springs are stiff"));
+}
+
+BOOST_AUTO_TEST_CASE(a_stiff_frame_alone_bounds_explicit_steps_some_thirty_times_below_the_cloth) {
+  const Explanation cloth = explained(draw("cloth")), framed = explained(draw("framed_cloth"));
+  BOOST_TEST(framed.omega_max / cloth.omega_max == 30, boost::test_tools::tolerance(0.05));
+  BOOST_TEST(framed.unknowns == cloth.unknowns);
+  BOOST_TEST(framed.stiff_springs == 116u);
+}
+
 BOOST_AUTO_TEST_CASE(every_generator_is_explained) {
   for (const Generator& generator : generators()) {
     const Scene scene = draw(generator.name);

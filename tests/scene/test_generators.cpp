@@ -167,6 +167,49 @@ BOOST_AUTO_TEST_CASE(smallest_cloth_has_four_sides_and_two_diagonals) {
   BOOST_TEST((census(scene, 3) == expected));
 }
 
+BOOST_AUTO_TEST_CASE(framed_cloth_is_the_cloth_with_stiff_borders) {
+  for (const double n : {2., 3., 30.}) {
+    const Scene cloth = draw("cloth", {{"nodes", n}}),
+                framed = draw("framed_cloth", {{"nodes", n}});
+    BOOST_TEST((framed.gravity == cloth.gravity));
+    BOOST_TEST(*framed.until == *cloth.until);
+    BOOST_TEST_REQUIRE(framed.nodes.size() == cloth.nodes.size());
+    for (std::size_t i = 0; i < cloth.nodes.size(); ++i) {
+      BOOST_TEST((framed.nodes[i].position == cloth.nodes[i].position));
+      BOOST_TEST(framed.nodes[i].mass == cloth.nodes[i].mass);
+      BOOST_TEST(framed.nodes[i].pinned == cloth.nodes[i].pinned);
+    }
+    const auto on_border = [&](const Spring& spring) {
+      const Eigen::Vector3d a = cloth.nodes[spring.nodes[0]].position,
+                            b = cloth.nodes[spring.nodes[1]].position;
+      const double last = cloth.nodes.back().position.x();
+      const auto shared = [&](int d) { return a[d] == b[d] && (a[d] == 0 || a[d] == last); };
+      return (shared(0) || shared(1)) && (b - a).norm() < 1.5 / (n - 1);
+    };
+    int stiff = 0;
+    BOOST_TEST_REQUIRE(framed.springs.size() == cloth.springs.size());
+    for (std::size_t e = 0; e < cloth.springs.size(); ++e) {
+      const Spring &a = cloth.springs[e], &b = framed.springs[e];
+      BOOST_TEST((a.nodes == b.nodes));
+      BOOST_TEST(a.law.rest_length == b.law.rest_length);
+      BOOST_TEST(b.law.stiffness == (on_border(a) ? 1.3e6 : a.law.stiffness));
+      BOOST_TEST(is_stiff(b.law, framed.stiff_above) == on_border(a));
+      stiff += on_border(a);
+    }
+    BOOST_TEST(stiff == 4 * (n - 1));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_frame_no_stiffer_than_its_cloth_is_not_stiff) {
+  for (const double frame : {1e-12, 999., 1000., std::nextafter(1000, 2000), 1001., 1e12}) {
+    const Scene scene = draw("framed_cloth", {{"nodes", 4}, {"frame_stiffness", frame}});
+    const auto stiff = std::ranges::count_if(scene.springs, [&](const Spring& spring) {
+      return is_stiff(spring.law, scene.stiff_above);
+    });
+    BOOST_TEST(stiff == (frame > 1000 ? 12 : 0), frame);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(lattice_joins_each_node_to_its_26_neighbours_and_pins_one_face) {
   const Scene scene = draw("lattice");
   BOOST_TEST(scene.nodes.size() == 1536u);

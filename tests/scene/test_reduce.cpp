@@ -55,7 +55,7 @@ Vec force_by_hand(const Scene& scene, const std::vector<Node>& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (nodes[i].pinned) continue;
     Eigen::Vector3d on_node = nodes[i].mass * scene.gravity;
-    for (const auto& [ends, law, holds] : scene.springs) {
+    for (const auto& [ends, law, holds, stiff] : scene.springs) {
       if (ends[0] != i && ends[1] != i) continue;
       const Eigen::Vector3d d =
           nodes[ends[0] == i ? ends[1] : ends[0]].position - nodes[i].position;

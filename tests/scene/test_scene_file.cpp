@@ -87,6 +87,25 @@ BOOST_AUTO_TEST_CASE(every_kind_of_scene_may_start_at_equilibrium) {
                        {"rest", "allowed", "\"drawn\" and \"equilibrium\""}));
 }
 
+BOOST_AUTO_TEST_CASE(every_kind_of_scene_may_name_its_stiff_springs) {
+  const std::string generated = "[generator]\nkind = 'orbit'\n";
+  for (const std::string& text : {two_links, mesh_scene, generated}) {
+    BOOST_TEST(!parsed(text).stiff_above);
+    BOOST_TEST(parsed("stiff_above = 2.5\n" + text).stiff_above.value() == 2.5);
+    BOOST_TEST(parsed("stiff_above = 3\n" + text).stiff_above.value() == 3);
+    for (const std::string value :
+         {"0", "-1", "-0.0", "nan", "inf", "-inf", "'3'", "true", "[3]", "{k = 3}", "2020-01-01"}) {
+      const std::string message = refusal("stiff_above = " + value + "\n" + text);
+      BOOST_TEST(names_all(message, {"a.toml:1: stiff_above: ", "allowed", "above 0"}), message);
+    }
+  }
+  // A generator may name its own; the file's word is the last.
+  const std::string framed = "[generator]\nkind = 'framed_cloth'\nnodes = 3\n";
+  BOOST_TEST(parsed(framed).stiff_above.value() > 1000);
+  BOOST_TEST(parsed("stiff_above = 7\n" + framed).stiff_above.value() == 7);
+  BOOST_TEST(names_all(refusal(framed + "stiff_above = 7\n"), {"stiff_above", "not a parameter"}));
+}
+
 BOOST_AUTO_TEST_CASE(a_file_is_read_as_its_text) {
   const Folder folder;
   const Scene read = read_scene(folder.write("bare.toml", with(two_links, "name", "#")));
@@ -153,6 +172,7 @@ BOOST_AUTO_TEST_CASE(the_hash_sees_all_that_moves) {
   BOOST_TEST(hash(with(two_links, "two links", "other")) == base);
   BOOST_TEST(hash(with(two_links, "0.1, 0.0", "0.1, -0.0")) == base);
   BOOST_TEST(hash(with(two_links, "mass = 0.1", "mass = 9")) == base);  // pinned
+  BOOST_TEST(hash("stiff_above = 500\n" + two_links) == base);          // moves nothing
   for (const auto& [old_part, new_part] :
        std::vector<std::pair<std::string, std::string>>{{"-9.81", "-9.80"},
                                                         {"0.1, 0.0", "0.1, 1e-300"},

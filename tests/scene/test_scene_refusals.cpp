@@ -45,6 +45,7 @@ BOOST_AUTO_TEST_CASE(malformed_values_are_named) {
        {"[0.0, -9.81]", "-9.81", {":3:", "gravity", "-9.81", "2 finite numbers"}},
        {"until = 0.5", "until = 0", {":4:", "until", "0", "above 0"}},
        {"until = 0.5", "until = inf", {":4:", "until", "inf", "above 0"}},
+       {"until = 0.5", "stiff_abov = 1", {":4:", "stiff_abov", "unknown", "stiff_above"}},
        {"until = 0.5", "untill = 0.5", {":4:", "untill", "unknown", "until"}},
        {"[0.1, 0.0]", "[nan, 0.0]", {":6:", "nodes[0].position", "nan", "finite"}},
        {"[0.1, 0.0]", "[0.1, 0.0, 0.0]", {":6:", "nodes[0].position", "2 finite numbers"}},

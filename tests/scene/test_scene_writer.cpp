@@ -70,6 +70,7 @@ Scene random_scene(unsigned seed) {
   scene.dimension = 1 + static_cast<int>(numbers.below(3));
   scene.starts_at_equilibrium = numbers.below(2) == 0;
   if (numbers.below(2)) scene.until = std::abs(numbers.any()) + 1e-300;
+  if (numbers.below(2)) scene.stiff_above = std::abs(numbers.any()) + 1e-300;
   const auto vector = [&] {
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
     for (int k = 0; k < scene.dimension; ++k) x[k] = numbers.any();
@@ -104,7 +105,8 @@ BOOST_AUTO_TEST_CASE(every_generator_is_read_back_to_the_bit) {
 BOOST_AUTO_TEST_CASE(meshes_and_files_are_read_back_to_the_bit) {
   const std::string bending = with(mesh_scene, "scale = 2", "scale = 0.3\nbending_stiffness = 2");
   for (const std::string& text :
-       {two_links, mesh_scene, bending, "start = 'equilibrium'\n" + two_links}) {
+       {two_links, mesh_scene, bending, "start = 'equilibrium'\n" + two_links,
+        "stiff_above = 1e3\n" + mesh_scene}) {
     const Scene scene = parsed(text);
     BOOST_TEST(first_difference(scene, read_back(scene)) == "", text);
   }
@@ -202,6 +204,7 @@ BOOST_AUTO_TEST_CASE(negative_control_one_bit_is_a_difference) {
   BOOST_TEST(changed([](Scene& s) { s.gravity[0] = -0.0; }) == "gravity");
   BOOST_TEST(changed([](Scene& s) { s.nodes[0].velocity[1] = 5e-324; }) == "velocity");
   BOOST_TEST(changed([](Scene& s) { s.nodes[0].mass = std::nextafter(0.1, 1); }) == "mass");
+  BOOST_TEST(changed([](Scene& s) { s.stiff_above = 1; }) == "stiff_above");
   BOOST_TEST(changed([](Scene& s) { s.springs[0].law.rest_length += 1e-16; }) == "rest_length");
 }
 

@@ -1,62 +1,14 @@
-// A square cloth of N x N nodes with structural, shear and bending springs (Provot, Graphics
-// Interface 1995), pinned at the two corners of one side, let go flat and horizontal.
-#include "src/scene/generators.hpp"
-#include "src/scene/generators/ranges.hpp"
+// A square cloth, pinned at the two corners of one side, let go flat and horizontal.
+#include "src/scene/generators/cloth_grid.hpp"
 
 namespace qddot {
-namespace {
-
-SceneSize size_of_cloth(const GeneratorValues& p) {
-  const auto n = static_cast<std::size_t>(p.at("nodes"));
-  const std::size_t structural = 2 * n * (n - 1), shear = 2 * (n - 1) * (n - 1);
-  const std::size_t bending = 2 * n * (n - 2);
-  return {.nodes = n * n, .springs = structural + shear + bending};
-}
-
-}  // namespace
 
 Generator cloth() {
   return {.name = "cloth",
           .summary = "a square cloth on two pinned corners, let go flat and horizontal",
-          .parameters = {{"nodes", 30, 2, 4000, "how many nodes along a side", true},
-                         {"side", 1, least, most, "the side in m"},
-                         {"mass", 0.5, least, most, "of the whole cloth in kg"},
-                         {"structural_stiffness", 1000, 0, most, "between neighbours in N/m"},
-                         {"shear_stiffness", 500, 0, most, "across the cells' diagonals in N/m"},
-                         {"bending_stiffness", 100, 0, most, "between second neighbours in N/m"},
-                         {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
-                         {"until", 0.1, least, most, "the horizon in s"}},
-          .size = size_of_cloth,
-          .draw = [](const GeneratorValues& p) {
-            const int count = static_cast<int>(p.at("nodes"));
-            const double spacing = p.at("side") / (count - 1);
-            Scene scene{.gravity = {0, 0, -p.at("gravity")}, .until = p.at("until")};
-            for (int i = 0; i < count; ++i) {
-              for (int j = 0; j < count; ++j) {
-                scene.nodes.push_back({.position = {spacing * i, spacing * j, 0},
-                                       .mass = p.at("mass") / (count * count),
-                                       .pinned = j == 0 && (i == 0 || i == count - 1)});
-              }
-            }
-            const auto join = [&](int i, int j, int i2, int j2, double stiffness) {
-              if (i2 >= count || j2 >= count || j2 < 0) return;
-              const auto a = static_cast<std::size_t>(i * count + j);
-              const auto b = static_cast<std::size_t>(i2 * count + j2);
-              const double rest = (scene.nodes[b].position - scene.nodes[a].position).norm();
-              scene.springs.push_back({{a, b}, {stiffness, rest}});
-            };
-            for (int i = 0; i < count; ++i) {
-              for (int j = 0; j < count; ++j) {
-                join(i, j, i + 1, j, p.at("structural_stiffness"));
-                join(i, j, i, j + 1, p.at("structural_stiffness"));
-                join(i, j, i + 1, j + 1, p.at("shear_stiffness"));
-                join(i, j, i + 1, j - 1, p.at("shear_stiffness"));
-                join(i, j, i + 2, j, p.at("bending_stiffness"));
-                join(i, j, i, j + 2, p.at("bending_stiffness"));
-              }
-            }
-            return scene;
-          }};
+          .parameters = cloth_parameters(),
+          .size = cloth_size,
+          .draw = draw_cloth};
 }
 
 }  // namespace qddot

@@ -36,7 +36,8 @@ Body make_body(const Component& component, const std::vector<Node>& nodes,
   };
   for (const std::size_t e : component.springs) {
     const auto [a, b] = springs[e].nodes;
-    body.springs.push_back({{number(a), number(b)}, springs[e].law, springs[e].holds});
+    body.springs.push_back(
+        {{number(a), number(b)}, springs[e].law, springs[e].holds, springs[e].stiff});
   }
   return body;
 }

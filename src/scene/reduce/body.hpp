@@ -19,6 +19,7 @@ struct Body {
   std::vector<Spring> springs{};          // between numbers of this body
   Eigen::Vector3d gravity =
       Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
+  bool offers_split = false;    // whether its system is to have a split() by stiff springs
 };
 
 Body make_body(const Component& component, const std::vector<Node>& nodes,

@@ -47,6 +47,7 @@ std::vector<Folded::Spring> summed(const std::vector<Folded::Spring>& springs, d
     }
     sum.law.stiffness += next.law.stiffness;
     sum.law.quartic += next.law.quartic;
+    sum.stiff = sum.stiff || next.stiff;
     is_summed[order[i]] = true;
   }
   std::vector<Folded::Spring> left;
@@ -76,8 +77,8 @@ Folded folded(const Body& body, const Mirrors& mirrors) {
   }
   for (const qddot::Spring& spring : body.springs) {
     const ImageOf &a = result.images[spring.nodes[0]], &b = result.images[spring.nodes[1]];
-    Folded::Spring image{a.original, b.original, a.signs.cwiseProduct(b.signs), spring.law,
-                         spring.holds};
+    Folded::Spring image{a.original, b.original,   a.signs.cwiseProduct(b.signs),
+                         spring.law, spring.holds, spring.stiff};
     // The image of a node on a plane is that node.
     const unsigned planes = result.on_planes[a.original] | result.on_planes[b.original];
     for (int d = 0; d < mirrors.count; ++d) {

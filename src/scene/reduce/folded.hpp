@@ -27,6 +27,7 @@ struct Folded {
     Eigen::Vector3d mirror;  // the spring ends at y_a and at diag(mirror) y_b
     SpringLaw law;
     Holds holds;
+    bool stiff;
   };
   std::vector<Spring> springs;
 };

@@ -21,16 +21,16 @@ std::vector<int> numbers_of(const Body& body, const Folded& half, bool with_pins
 
 void add_spring(const Folded::Spring& spring, const Folded& half, const std::vector<int>& numbers,
                 Network& network) {
-  const auto& [a, b, mirror, law, holds] = spring;
+  const auto& [a, b, mirror, law, holds, stiff] = spring;
   const int i = numbers[a], j = numbers[b];
   if (i == no_number) {
-    network.anchors.push_back({j, mirror.cwiseProduct(half.y[a]), law, holds});
+    network.anchors.push_back({j, mirror.cwiseProduct(half.y[a]), law, holds, stiff});
   } else if (j == no_number) {
-    network.anchors.push_back({i, mirror.cwiseProduct(half.y[b]), law, holds});
+    network.anchors.push_back({i, mirror.cwiseProduct(half.y[b]), law, holds, stiff});
   } else if (mirror != Eigen::Vector3d::Ones()) {
-    network.image_links.push_back({i, j, mirror, law, holds});
+    network.image_links.push_back({i, j, mirror, law, holds, stiff});
   } else {
-    network.links.push_back({i, j, law, holds});
+    network.links.push_back({i, j, law, holds, stiff});
   }
 }
 
@@ -49,6 +49,7 @@ Part::Part(const Body& body, int dimension, const Reductions& reductions) {
 
   Network network{.dimension = axes};
   network.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
+  network.offers_split = body.offers_split;
   std::vector<double> q, v;
   std::vector<bool> is_held;
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {

@@ -9,8 +9,13 @@ constexpr std::size_t none = static_cast<std::size_t>(-1);
 
 class Condenser {
  public:
-  Condenser(const std::vector<Node>& nodes, std::vector<Spring>& springs)
-      : nodes_(nodes), springs_(springs), touching_(nodes.size()), is_seen_(nodes.size(), false) {
+  Condenser(const std::vector<Node>& nodes, std::vector<Spring>& springs,
+            std::optional<double> stiff_above)
+      : nodes_(nodes),
+        springs_(springs),
+        stiff_above_(stiff_above),
+        touching_(nodes.size()),
+        is_seen_(nodes.size(), false) {
     for (std::size_t e = 0; e < springs.size(); ++e) {
       for (const std::size_t node : springs[e].nodes) {
         if (is_massless(node)) touching_[node].push_back(e);
@@ -32,7 +37,8 @@ class Condenser {
     for (std::size_t e = 0; e < springs_.size(); ++e) {
       if (!is_gone[e]) left.push_back(springs_[e]);
     }
-    for (const Series& series : all) left.push_back({series.ends, series.law, series.holds});
+    for (const Series& series : all)
+      left.push_back({series.ends, series.law, series.holds, series.stiff});
     springs_ = std::move(left);
     return all;
   }
@@ -95,16 +101,15 @@ class Condenser {
     const double length = (nodes_[ends[1]].position - nodes_[ends[0]].position).norm();
     // A series drawn at its rest length may be shorter by what rounding makes of it.
     if (length < (1 - 1e-12) * rest_length) return {};
-    Series series{ends,
-                  {.stiffness = 1 / compliance, .rest_length = rest_length},
-                  rest_length > 0 ? Holds::in_tension : Holds::always,
-                  {}};
+    const SpringLaw law{.stiffness = 1 / compliance, .rest_length = rest_length};
+    const Holds holds = rest_length > 0 ? Holds::in_tension : Holds::always;
+    Series series{ends, law, holds, is_stiff(law, stiff_above_), {}};
     double shift = 0, share = 0;
     for (std::size_t j = 0; j < joints.size(); ++j) {
       // L_e = l_e + k/k_e (l - l0).
-      const SpringLaw& law = springs_[chain_[j]].law;
-      const double part = series.law.stiffness / law.stiffness;
-      shift += law.rest_length - part * rest_length;
+      const SpringLaw& own = springs_[chain_[j]].law;
+      const double part = law.stiffness / own.stiffness;
+      shift += own.rest_length - part * rest_length;
       share += part;
       series.joints.push_back({joints[j], shift, share});
     }
@@ -113,6 +118,7 @@ class Condenser {
 
   const std::vector<Node>& nodes_;
   std::vector<Spring>& springs_;
+  std::optional<double> stiff_above_;
   std::vector<std::vector<std::size_t>> touching_;  // the springs of each massless node
   std::vector<bool> is_seen_;
   std::vector<std::size_t> chain_;
@@ -134,8 +140,9 @@ void Series::place(std::vector<Node>& nodes) const {
   }
 }
 
-std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<Spring>& springs) {
-  return Condenser(nodes, springs).condense();
+std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<Spring>& springs,
+                                    std::optional<double> stiff_above) {
+  return Condenser(nodes, springs, stiff_above).condense();
 }
 
 }  // namespace qddot

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "src/scene/scene.hpp"
@@ -19,6 +20,7 @@ struct Series {
   std::array<std::size_t, 2> ends{};
   SpringLaw law;  // of the one spring
   Holds holds = Holds::in_tension;
+  bool stiff = false;
   // The massless nodes from ends[0] to ends[1]. With d = x_1 - x_0 and n = d/l, node j is at
   //   x_j = x_0 + shift_j n + share_j d.
   struct Joint {
@@ -35,7 +37,9 @@ struct Series {
 // All series of the scene that are exact at its start: through massless nodes on two springs
 // without quartic term, between two ends no closer than l0 apart. What becomes of the springs:
 // `springs` loses those in series and gains the one for each. Massless nodes that are left are
-// those which cannot be condensed.
-std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<Spring>& springs);
+// those which cannot be condensed. Like a drawn one, the one spring is stiff where it has more
+// stiffness than `stiff_above`: the ends of a long series feel a soft spring, however stiff each.
+std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<Spring>& springs,
+                                    std::optional<double> stiff_above);
 
 }  // namespace qddot

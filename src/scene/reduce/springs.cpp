@@ -21,20 +21,22 @@ std::vector<Spring> merged_springs(const std::vector<Spring>& springs) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return key(springs[a]) < key(springs[b]); });
 
-  std::vector<SpringLaw> sums(springs.size());  // at the first spring of each key, else zero
+  std::vector<Spring> sums(springs.size());  // at the first spring of each key, else without law
   for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
     if (i == 0 || key(springs[order[i]]) != key(springs[order[first]])) first = i;
-    SpringLaw& sum = sums[order[first]];
-    const SpringLaw& law = springs[order[i]].law;
-    sum.rest_length = law.rest_length;
-    sum.stiffness += law.stiffness;
-    sum.quartic += law.quartic;
+    Spring& sum = sums[order[first]];
+    const Spring& next = springs[order[i]];
+    sum.law.rest_length = next.law.rest_length;
+    sum.law.stiffness += next.law.stiffness;
+    sum.law.quartic += next.law.quartic;
+    sum.stiff = sum.stiff || next.stiff;
   }
 
   std::vector<Spring> merged;
   for (std::size_t i = 0; i < springs.size(); ++i) {
-    if (sums[i].stiffness > 0 || sums[i].quartic > 0)
-      merged.push_back({springs[i].nodes, sums[i], springs[i].holds});
+    const auto& law = sums[i].law;
+    if (law.stiffness > 0 || law.quartic > 0)
+      merged.push_back({springs[i].nodes, law, springs[i].holds, sums[i].stiff});
   }
   return merged;
 }

@@ -13,6 +13,7 @@ struct LineSpring {
   double s, c;
   SpringLaw law;
   Holds holds;
+  bool stiff;
 
   double difference(const std::vector<double>& x) const {
     return c - x[i] + (j < 0 ? 0 : s * x[j]);
@@ -21,12 +22,14 @@ struct LineSpring {
 
 std::vector<LineSpring> springs_of(const Network& network) {
   std::vector<LineSpring> all;
-  for (const auto& [i, j, law, holds] : network.links) all.push_back({i, j, 1, 0, law, holds});
+  for (const auto& [i, j, law, holds, stiff] : network.links) {
+    all.push_back({i, j, 1, 0, law, holds, stiff});
+  }
   for (const auto& image : network.image_links) {
-    all.push_back({image.i, image.j, image.mirror[0], 0, image.law, image.holds});
+    all.push_back({image.i, image.j, image.mirror[0], 0, image.law, image.holds, image.stiff});
   }
   for (const auto& anchor : network.anchors) {
-    all.push_back({anchor.i, -1, 0, anchor.point[0], anchor.law, anchor.holds});
+    all.push_back({anchor.i, -1, 0, anchor.point[0], anchor.law, anchor.holds, anchor.stiff});
   }
   return all;
 }
@@ -54,12 +57,17 @@ std::vector<double> coordinates(const Network& network, const Vec& q) {
 Network with_loads(Network network, const std::vector<LineSpring>& springs,
                    const std::vector<double>& x) {
   if (network.load.size() == 0) network.load = Vec::Zero(network.node_mass.size());
+  if (network.offers_split) network.stiff_load = Vec::Zero(network.node_mass.size());
   for (const LineSpring& spring : springs) {
     const double direction = spring.difference(x) < 0 ? -1 : 1;
     const double k = spring.law.stiffness, l0 = spring.law.rest_length;
     const double pull = k * direction * l0;  // V = 1/2 k d^2 - pull d + 1/2 k l0^2
-    network.load[spring.i] -= pull;
-    if (spring.j >= 0) network.load[spring.j] += spring.s * pull;
+    const auto pull_in = [&](Vec& load) {
+      load[spring.i] -= pull;
+      if (spring.j >= 0) load[spring.j] += spring.s * pull;
+    };
+    pull_in(network.load);
+    if (spring.stiff) pull_in(network.stiff_load);
     network.constant_energy += 0.5 * k * l0 * l0 - pull * spring.c;
   }
   for (auto& link : network.links) link.law.rest_length = 0;

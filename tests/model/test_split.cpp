@@ -1,0 +1,237 @@
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+
+#include "src/model/divided.hpp"
+#include "src/model/held.hpp"
+#include "src/model/mass_spring.hpp"
+#include "tests/measure.hpp"
+#include "tests/model/random_images.hpp"
+#include "tests/problems.hpp"
+
+using namespace qddot;
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+// Networks of all kinds of springs, some of them stiff, with loads, and a point of each.
+template <class Check>
+void for_split_networks(const Check& check) {
+  std::mt19937 random(5);
+  const auto name_stiff = [&](auto& springs) {
+    for (auto& spring : springs) spring.stiff = random() % 3 == 0;
+  };
+  const auto offer = [&](Network network, const Vec& q) {
+    name_stiff(network.links);
+    name_stiff(network.image_links);
+    name_stiff(network.anchors);
+    network.offers_split = true;
+    check(network, q);
+  };
+  for_random_images([&](const ImageSample& sample) { offer(sample.network, sample.q); });
+  for (const int dimension : {1, 2, 3}) {
+    const Problem p = random_network(random, dimension, 7, 1.2);
+    offer(p.network, p.initial.q);
+  }
+}
+
+template <class Keep>
+Network filtered(Network network, const Keep& keep) {
+  const auto is_out = [&](const auto& spring) { return !keep(spring); };
+  std::erase_if(network.links, is_out);
+  std::erase_if(network.image_links, is_out);
+  std::erase_if(network.anchors, is_out);
+  return network;
+}
+
+// The springs of one kind as a system of their own, which has no split.
+std::unique_ptr<System> alone(Network network, bool stiff) {
+  network.offers_split = false;
+  if (stiff) {
+    network.gravity.setZero();
+    network.load.setZero();
+    network.constant_energy = 0;
+  }
+  return make_mass_spring(
+      filtered(network, [&](const auto& spring) { return spring.stiff == stiff; }));
+}
+
+bool same_pattern(const System& a, const System& b) {
+  const SymmetricMatrix &p = a.stiffness_pattern(), &r = b.stiffness_pattern();
+  return p.nonZeros() == r.nonZeros() &&
+         std::equal(p.outerIndexPtr(), p.outerIndexPtr() + p.cols() + 1, r.outerIndexPtr()) &&
+         std::equal(p.innerIndexPtr(), p.innerIndexPtr() + p.nonZeros(), r.innerIndexPtr());
+}
+
+// Whether f, K and V of the two are those of the whole but for the rounding of some 60 springs of
+// up to 1e5 J, N and N/m, summed in another order.
+bool adds_up(const System& whole, const System& stiff, const System& soft, const Vec& q) {
+  constexpr double rounding = 60 * eps * 1e5;
+  const Eigen::MatrixXd k = dense(stiffness_at(stiff, q)) + dense(stiffness_at(soft, q));
+  return stiff.mass() == whole.mass() && soft.mass() == whole.mass() &&
+         std::abs(stiff.potential(q) + soft.potential(q) - whole.potential(q)) < rounding &&
+         distance(force_at(stiff, q) + force_at(soft, q), force_at(whole, q)) < rounding &&
+         distance(k, dense(stiffness_at(whole, q))) < rounding;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(split)
+
+BOOST_AUTO_TEST_CASE(stiff_and_soft_forces_stiffnesses_and_energies_are_those_of_the_whole) {
+  for_split_networks([](const Network& network, const Vec& q) {
+    const auto whole = make_mass_spring(network);
+    const Split* split = whole->split();
+    BOOST_TEST_REQUIRE(split);
+    BOOST_TEST(adds_up(*whole, *split->stiff, *split->soft, q));
+    BOOST_TEST(adds_up(*whole, *split->stiff, *split->soft, 1.3 * q));
+  });
+}
+
+BOOST_AUTO_TEST_CASE(a_spring_counted_twice_or_not_at_all_is_noticed) {
+  for_split_networks([](const Network& network, const Vec& q) {
+    const auto whole = make_mass_spring(network);
+    for (const bool stiff : {false, true}) {
+      Network other = network;
+      other.anchors.front().stiff = stiff;
+      const Split* split = whole->split();
+      const auto changed = make_mass_spring(other);
+      const bool is_same = stiff == network.anchors.front().stiff;
+      BOOST_TEST(adds_up(*whole, *changed->split()->stiff, *split->soft, q) == is_same);
+      BOOST_TEST(adds_up(*whole, *split->stiff, *changed->split()->soft, q) == is_same);
+    }
+  });
+}
+
+BOOST_AUTO_TEST_CASE(each_is_the_network_of_its_springs_alone_with_the_pattern_of_these) {
+  int fewer = 0, all = 0;
+  for_split_networks([&](const Network& network, const Vec& q) {
+    const auto whole = make_mass_spring(network);
+    for (const bool stiff : {true, false}) {
+      const System& half = stiff ? *whole->split()->stiff : *whole->split()->soft;
+      const auto expected = alone(network, stiff);
+      BOOST_TEST(same_pattern(half, *expected));
+      BOOST_TEST(half.potential(q) == expected->potential(q));
+      BOOST_TEST((force_at(half, q) == force_at(*expected, q)));
+      BOOST_TEST((dense(stiffness_at(half, q)) == dense(stiffness_at(*expected, q))));
+      BOOST_TEST(!half.split());
+    }
+    fewer += !same_pattern(*whole->split()->stiff, *whole);
+    ++all;
+  });
+  // A third of the springs seldom joins all that all of them join.
+  BOOST_TEST(fewer > all / 2);
+}
+
+BOOST_AUTO_TEST_CASE(a_split_is_there_where_it_is_asked_for_and_changes_nothing_else) {
+  for_split_networks([](Network network, const Vec& q) {
+    const auto with = make_mass_spring(network);
+    network.offers_split = false;
+    const auto without = make_mass_spring(network);
+    BOOST_TEST(!without->split());
+    BOOST_TEST(with->potential(q) == without->potential(q));
+    BOOST_TEST((force_at(*with, q) == force_at(*without, q)));
+    BOOST_TEST((dense(stiffness_at(*with, q)) == dense(stiffness_at(*without, q))));
+  });
+}
+
+BOOST_AUTO_TEST_CASE(either_may_be_without_springs) {
+  for_split_networks([](Network network, const Vec& q) {
+    for (const bool stiff : {true, false}) {
+      const auto name_all = [&](auto& springs) {
+        for (auto& spring : springs) spring.stiff = stiff;
+      };
+      name_all(network.links);
+      name_all(network.image_links);
+      name_all(network.anchors);
+      const auto whole = make_mass_spring(network);
+      const Split& split = *whole->split();
+      const System &all = stiff ? *split.stiff : *split.soft,
+                   &none = stiff ? *split.soft : *split.stiff;
+      BOOST_TEST(adds_up(*whole, *split.stiff, *split.soft, q));
+      BOOST_TEST(same_pattern(all, *whole));
+      BOOST_TEST(dense(stiffness_at(none, q)).cwiseAbs().maxCoeff() == 0);
+      BOOST_TEST(none.stiffness_is_constant());
+      // Every diagonal entry is there, and what is left of the pull is weight and load.
+      for (Index i = 0; i < none.size(); ++i) {
+        BOOST_TEST(SymmetricMatrix::InnerIterator(none.stiffness_pattern(), i).row() == i);
+      }
+      BOOST_TEST((force_at(none, q) == force_at(none, 2 * q)));
+      if (!stiff) BOOST_TEST(force_at(none, q).cwiseAbs().maxCoeff() == 0);
+    }
+  });
+}
+
+BOOST_AUTO_TEST_CASE(loads_that_stand_for_stiff_springs_are_theirs) {
+  Network network{.dimension = 1, .gravity = {3, 0, 0}, .node_mass = Vec::Ones(2)};
+  network.links = {{0, 1, {.stiffness = 100}, Holds::always, true}, {0, 1, {.stiffness = 7}}};
+  network.offers_split = true;
+  network.load = Vec{{-50, 70}};
+  network.stiff_load = Vec{{-60, 60}};
+  const auto whole = make_mass_spring(network);
+  const Vec q{{1, 3}};
+  // On the first: weight 3, load -50, springs 107 (3 - 1), all in numbers without rounding.
+  BOOST_TEST((force_at(*whole, q) == Vec{{3 - 50 + 214, 3 + 70 - 214}}));
+  BOOST_TEST((force_at(*whole->split()->stiff, q) == Vec{{-60 + 200, 60 - 200}}));
+  BOOST_TEST((force_at(*whole->split()->soft, q) == Vec{{3 + 10 + 14, 3 + 10 - 14}}));
+  BOOST_TEST(adds_up(*whole, *whole->split()->stiff, *whole->split()->soft, q));
+}
+
+BOOST_AUTO_TEST_CASE(each_says_of_its_own_springs_whether_k_is_constant_and_the_system_holds) {
+  Network network{.dimension = 1, .node_mass = Vec::Ones(2)};
+  network.anchors = {{0, {0, 0, 0}, {10, 1}, Holds::in_tension, true},
+                     {1, {0, 0, 0}, {10, 0}, Holds::always, false},
+                     {1, {0, 0, 0}, {10, 1}, Holds::in_tension, false}};
+  network.offers_split = true;
+  const auto whole = make_mass_spring(network);
+  const Split& split = *whole->split();
+  for (const auto& [q, stiff_holds, soft_holds] : {std::tuple(Vec{{1.5, 1.5}}, true, true),
+                                                   {Vec{{0.5, 1.5}}, false, true},
+                                                   {Vec{{1.5, 0.5}}, true, false}}) {
+    BOOST_TEST(split.stiff->holds_at(q) == stiff_holds);
+    BOOST_TEST(split.soft->holds_at(q) == soft_holds);
+    BOOST_TEST(whole->holds_at(q) == (stiff_holds && soft_holds));
+  }
+  network.anchors.pop_back();
+  const auto soft_linear = make_mass_spring(network);
+  BOOST_TEST(!soft_linear->stiffness_is_constant());
+  BOOST_TEST(!soft_linear->split()->stiff->stiffness_is_constant());
+  BOOST_TEST(soft_linear->split()->soft->stiffness_is_constant());
+  network.uses_constant_stiffness = false;
+  BOOST_TEST(!make_mass_spring(network)->split()->soft->stiffness_is_constant());
+}
+
+BOOST_AUTO_TEST_CASE(what_is_held_is_held_in_both) {
+  std::mt19937 random(9);
+  for_split_networks([&](Network network, const Vec& q) {
+    std::vector<bool> is_held(static_cast<std::size_t>(q.size()));
+    for (std::size_t i = 0; i < is_held.size(); ++i) is_held[i] = random() % 3 == 0;
+    const Held held(make_mass_spring(network), is_held);
+    const Split* split = held.split();
+    BOOST_TEST_REQUIRE(split);
+    BOOST_TEST(adds_up(held, *split->stiff, *split->soft, q));
+    const Vec stiff = force_at(*split->stiff, q), soft = force_at(*split->soft, q);
+    for (std::size_t i = 0; i < is_held.size(); ++i) {
+      if (is_held[i]) BOOST_TEST((stiff[Index(i)] == 0 && soft[Index(i)] == 0));
+    }
+    BOOST_TEST(same_pattern(*split->stiff, *alone(network, true)));
+    network.offers_split = false;
+    BOOST_TEST(!Held(make_mass_spring(network), is_held).split());
+  });
+}
+
+BOOST_AUTO_TEST_CASE(parts_have_a_split_each_and_their_sum_has_none) {
+  std::vector<std::unique_ptr<System>> parts;
+  for (const int dimension : {2, 3}) {
+    parts.push_back(make_mass_spring(with_split(hammock(dimension).network)));
+  }
+  const Divided divided(std::move(parts));
+  BOOST_TEST(!divided.split());
+  for (const auto& part : divided.parts()) BOOST_TEST(part->split());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
