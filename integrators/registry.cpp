@@ -27,6 +27,11 @@
   METHOD(arkode_erk5)              \
   METHOD(arkode_erk6)              \
   METHOD(arkode_erk8)              \
+  METHOD(arkode_imex3)             \
+  METHOD(arkode_imex4)             \
+  METHOD(arkode_imex5)             \
+  METHOD(arkode_mri3)              \
+  METHOD(arkode_mri4)              \
   METHOD(arkode_implicit_euler)    \
   METHOD(arkode_implicit_midpoint) \
   METHOD(arkode_sdirk2)            \

@@ -1,0 +1,139 @@
+// ARKODE's multirate infinitesimal steps for scenes that name their stiff springs: with
+//   y' = (v, M^-1 f_stiff(q)) + (0, M^-1 f_soft(q)),
+// the soft forces are evaluated a few times in a step h, and between these times the stiff ones
+// alone move the nodes, pushed by polynomials of the soft ones, in m steps of h/m of an explicit
+// method of the same order: m = w_max(stiff)/w_max(soft), so that both steps are as fine beside
+// what they resolve. (Sandu, SIAM J. Numerical Analysis 57:5 (2019) 2300-2327.)
+#include <arkode/arkode_mristep.h>
+#include <fmt/format.h>
+
+#include "integrators/registry.hpp"
+#include "integrators/sundials/arkode.hpp"
+#include "src/analysis/frequency_bound.hpp"
+
+namespace qddot {
+namespace {
+
+using namespace sundials;
+
+struct Pair {
+  int order;
+  ARKODE_MRITableID slow;
+  ARKODE_ERKTableID fast;
+  const char* name;
+};
+constexpr Pair pairs[] = {
+    {3, ARKODE_MRI_GARK_ERK33a, ARKODE_BOGACKI_SHAMPINE_4_2_3, "MRI_GARK_ERK33a"},
+    {4, ARKODE_MRI_GARK_ERK45a, ARKODE_ZONNEVELD_5_3_4, "MRI_GARK_ERK45a"}};
+
+// Far more than the ratio of any two springs asks for.
+constexpr double most_fast_steps = 1e6;
+
+struct FreeInner {
+  void operator()(MRIStepInnerStepper stepper) const { MRIStepInnerStepper_Free(&stepper); }
+};
+using InnerStepper = std::unique_ptr<_MRIStepInnerStepper, FreeInner>;
+
+template <int order>
+class Mri final : public Stepper {
+  static constexpr Pair pair = pairs[order - 3];
+
+ public:
+  Mri(const Method& method, const System& system, const Knobs& knobs)
+      : Stepper(method, system, knobs, nullptr),
+        fast_(check(ARKStepCreate(stiff_rate, nullptr, 0, y(), context()))) {
+    auto* self = static_cast<Stepper*>(this);
+    const ButcherTable table(check(ARKodeButcherTable_LoadERK(pair.fast)));
+    check(ARKStepSetUserData(fast_.get(), self), "ARKStepSetUserData");
+    check(ARKStepSetErrHandlerFn(fast_.get(), keep_message, self), "ARKStepSetErrHandlerFn");
+    check(ARKStepSetTables(fast_.get(), table->q, table->p, nullptr, table.get()),
+          "ARKStepSetTables");
+    check(ARKStepSetMaxNumSteps(fast_.get(), -1), "ARKStepSetMaxNumSteps");
+    MRIStepInnerStepper inner = nullptr;
+    check(ARKStepCreateMRIStepInnerStepper(fast_.get(), &inner),
+          "ARKStepCreateMRIStepInnerStepper");
+    inner_.reset(inner);
+    slow_.reset(check(MRIStepCreate(soft_rate, nullptr, 0, y(), inner, context())));
+    check(MRIStepSetUserData(slow_.get(), self), "MRIStepSetUserData");
+    check(MRIStepSetErrHandlerFn(slow_.get(), keep_message, self), "MRIStepSetErrHandlerFn");
+    const Coupling coupling(check(MRIStepCoupling_LoadTable(pair.slow)));
+    check(MRIStepSetCoupling(slow_.get(), coupling.get()), "MRIStepSetCoupling");
+  }
+
+ private:
+  using Coupling = std::unique_ptr<MRIStepCouplingMem, FreeBy<MRIStepCoupling_Free>>;
+
+  void start(const State& state) override {
+    load(state);
+    const Split& split = *system().split();
+    const double stiff = frequency_bound(*split.stiff, state.q);
+    const double soft = frequency_bound(*split.soft, state.q);
+    fast_steps_ = soft > 0 ? std::clamp(std::ceil(stiff / soft), 1.0, most_fast_steps) : 1;
+    check(ARKStepReInit(fast_.get(), stiff_rate, nullptr, state.t, y()), "ARKStepReInit");
+    check(MRIStepReInit(slow_.get(), soft_rate, nullptr, state.t, y()), "MRIStepReInit");
+  }
+
+  void set_step_size(double h) override {
+    check(ARKStepSetFixedStep(fast_.get(), h / fast_steps_), "ARKStepSetFixedStep");
+    check(MRIStepSetFixedStep(slow_.get(), h), "MRIStepSetFixedStep");
+  }
+  void set_stop_time(double) override {}
+
+  int take_step(double t_stop, double& t) override {
+    return MRIStepEvolve(slow_.get(), t_stop, y(), &t, ARK_ONE_STEP);
+  }
+
+  // e = (0, M^-1 f_soft).
+  static int soft_rate(double, N_Vector y, N_Vector rate, void* user) {
+    auto& self = *static_cast<Mri*>(static_cast<Stepper*>(user));
+    return self.guarded([&] {
+      const bool is_finite = self.set_rate(*self.system().split()->soft, y, rate);
+      Halves(rate).q.setZero();
+      return is_finite;
+    });
+  }
+  static int stiff_rate(double, N_Vector y, N_Vector rate, void* user) {
+    auto& self = *static_cast<Mri*>(static_cast<Stepper*>(user));
+    return self.guarded([&] { return self.set_rate(*self.system().split()->stiff, y, rate); });
+  }
+
+  void collect_counts() override {
+    long steps = 0;
+    check(MRIStepGetNumSteps(slow_.get(), &steps), "MRIStepGetNumSteps");
+    set_counts({steps, 0, 0, 0, 0});
+  }
+
+  Cause cause_of(int flag) const override { return cause_of_arkode(flag); }
+  std::string flag_name(int flag) const override {
+    const std::unique_ptr<char, decltype(&std::free)> text(MRIStepGetReturnFlagName(flag),
+                                                           std::free);
+    return fmt::format("ARKODE {}", text ? text.get() : "");
+  }
+
+  double fast_steps_ = 1;  // of each step
+  std::unique_ptr<void, FreeMemoryBy<ARKStepFree>> fast_;
+  InnerStepper inner_;
+  std::unique_ptr<void, FreeMemoryBy<MRIStepFree>> slow_;
+};
+
+template <int order>
+Method mri() {
+  static_assert(pairs[order - 3].order == order);
+  return {
+      .name = fmt::format("arkode_mri{}", order),
+      .summary = fmt::format("SUNDIALS ARKODE, explicit multirate of order {}, ARKODE_{}: stiff "
+                             "springs at a small step inside",
+                             order, pairs[order - 3].name),
+      .source = "Sandu, SIAM J. Numerical Analysis 57:5 (2019) 2300-2327",
+      .order = order,
+      .family = Family::sundials,
+      .needs_split = true,
+      .make = create<Mri<order>>};
+}
+
+}  // namespace
+
+Method arkode_mri3() { return mri<3>(); }
+Method arkode_mri4() { return mri<4>(); }
+
+}  // namespace qddot
