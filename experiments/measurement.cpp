@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/deadline.hpp"
+#include "experiments/tolerance_scales.hpp"
 #include "integrators/registry.hpp"
 
 namespace qddot {
@@ -30,16 +31,21 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-Knobs knobs_for(const Method& method, double value) {
-  return method.knob == Knob::step_size ? Knobs{.step_size = value} : Knobs{.rtol = value};
+Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
+                const OrderChoice& orders) {
+  Knobs knobs;
+  (method.knob == Knob::step_size ? knobs.step_size : knobs.rtol) = value;
+  knobs.max_order = orders.max_order;
+  knobs.stability_detection = orders.stability_detection;
+  return with_tolerance_scales(knobs, scene);
 }
 
 Point measure(const Method& method, double value, const ReducedScene& scene, double until,
               const Reference& reference, const Effort& effort) {
   Point point{.method = &method, .value = value};
+  const Knobs knobs = knobs_for(method, value, scene, effort.orders);
   std::unique_ptr<Integrator> integrator;
-  point.setup = seconds_of(
-      [&] { integrator = make_integrator(method, scene.system(), knobs_for(method, value)); });
+  point.setup = seconds_of([&] { integrator = make_integrator(method, scene.system(), knobs); });
 
   State state = scene.initial();
   const Deadline deadline(effort.seconds);

@@ -18,14 +18,22 @@ struct Point {
   Counts counts{};
 };
 
-// How long a point may take, and how often it is timed.
+// What methods of variable order may do; the others do not care.
+struct OrderChoice {
+  int max_order = 0;                 // 0: their own
+  bool stability_detection = false;  // CVODE's
+};
+
+// How long a point may take, how often it is timed, and how it is run.
 struct Effort {
   double seconds = 10;  // for one run; slower ones become over_budget
   int repeats = 5;      // timed runs; fewer, but one, where they would take half of that together
+  OrderChoice orders{};
 };
 
-// What the user turns, as the method's kind takes it.
-Knobs knobs_for(const Method& method, double value);
+// What the user turns, as the method's kind takes it, with the scene's tolerance scales.
+Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
+                const OrderChoice& orders = {});
 
 // Runs the method once untimed and then up to `repeats` times, at least once. Runs too short for
 // the clock are timed in batches. Single thread.

@@ -17,10 +17,12 @@
 #include "experiments/catalogue.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/node_table.hpp"
+#include "experiments/order_options.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/tolerance_scales.hpp"
 #include "experiments/whole_file.hpp"
 #include "integrators/registry.hpp"
 #include "src/analysis/frequency_bound.hpp"
@@ -37,6 +39,7 @@ struct Arguments {
   SceneChoice scene;
   std::string method, final_path, trajectory_path, energy_path, written_scene_path;
   double step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0, energy_every = 0;
+  OrderChoice orders;
   std::vector<double> every;
   bool list_methods = false, list_scenes = false, csv = false, explain = false;
 };
@@ -46,7 +49,10 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--method", a.method, "a method's name (--list-methods)");
   app.add_option("--step-size", a.step_size, "h in s, for methods of fixed step");
   app.add_option("--rtol", a.rtol, "relative tolerance, for adaptive methods");
-  app.add_option("--atol", a.atol, "absolute tolerance in m and m/s (default: the same as --rtol)");
+  app.add_option("--atol", a.atol,
+                 "absolute tolerance in m and m/s (default: --rtol times the scene's extent, and "
+                 "times the speed that it starts towards)");
+  add_order_options(app, a.orders);
   app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
   app.add_option("--final", a.final_path, "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
   app.add_option("--trajectory", a.trajectory_path, "CSV of all nodes over time: t,node,x,...");
@@ -160,7 +166,12 @@ Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& metho
   if (fixed) require_positive(a.step_size, "--step-size", "h in s");
   if (!fixed) require_positive(a.rtol, "--rtol", "a relative tolerance");
   if (app.count("--atol") > 0) require_positive(a.atol, "--atol", "an absolute tolerance");
-  return {a.step_size, a.rtol, a.atol};
+  require_orders(app, a.orders, method);
+  return {.step_size = a.step_size,
+          .rtol = a.rtol,
+          .atol = a.atol,
+          .max_order = a.orders.max_order,
+          .stability_detection = a.orders.stability_detection};
 }
 
 // A place for the scene that is asked for, taken before anything else is done.
@@ -256,6 +267,23 @@ std::string step_warning(const Method& method, const Knobs& knobs, const Reduced
       h, limit, limit / w, method.name, w);
 }
 
+std::string in_words(const Counts& c) {
+  std::string words =
+      fmt::format("{} steps, {} force and {} stiffness evaluations, {} factorisations", c.steps,
+                  c.force_evaluations, c.stiffness_evaluations, c.factorizations);
+  if (c.indefinite_factorizations > 0) {
+    words += fmt::format(", {} of them indefinite", c.indefinite_factorizations);
+  }
+  if (c.order_sum > 0) {
+    words +=
+        fmt::format(", mean order {:.2f}, lowered {} times", order_mean(c), c.order_reductions);
+  }
+  if (c.stability_limited_steps > 0) {
+    words += fmt::format(", {} steps held to the stability limit", c.stability_limited_steps);
+  }
+  return words;
+}
+
 int explain_only(const Arguments& a) {
   const Scene start = started(load(a.scene), a.scene);
   fmt::print("{}", in_words(explain(start, ReducedScene(start, reductions_of(a.scene))), start));
@@ -297,7 +325,8 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   State state = scene.initial();
   output.see(state);
   const Summary summary =
-      make_integrator(method, scene.system(), knobs)->advance(state, until, output.observer());
+      make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene))
+          ->advance(state, until, output.observer());
 
   if (output.is_asked_for()) {
     nlohmann::json origin = provenance(command_line, drawn, start, scene);
@@ -305,12 +334,8 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
     origin["t_reached"] = summary.t_reached;
     output.finish(state, origin);
   }
-  const Counts& c = summary.counts;
-  fmt::print(
-      "{} on {}: {} at t = {:g} s after {} steps, {} force and {} stiffness evaluations, "
-      "{} factorisations\n",
-      method.name, drawn.name, name(summary.outcome), summary.t_reached, c.steps,
-      c.force_evaluations, c.stiffness_evaluations, c.factorizations);
+  fmt::print("{} on {}: {} at t = {:g} s after {}\n", method.name, drawn.name,
+             name(summary.outcome), summary.t_reached, in_words(summary.counts));
   const std::string warning = step_warning(method, knobs, scene);
   if (summary.outcome == Outcome::reached_end) {
     if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);

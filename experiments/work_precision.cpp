@@ -16,6 +16,7 @@
 #include "experiments/csv.hpp"
 #include "experiments/front.hpp"
 #include "experiments/ladder.hpp"
+#include "experiments/order_options.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scene_choice.hpp"
@@ -43,6 +44,7 @@ void declare(CLI::App& app, Arguments& a) {
                  "seconds that one run of a point may take; slower ones become over_budget")
       ->take_last()
       ->capture_default_str();
+  add_order_options(app, a.effort.orders);
   app.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
 }
 
@@ -65,6 +67,10 @@ const std::vector<std::string> point_columns = {"scene",
                                                 "factorizations",
                                                 "solves",
                                                 "newton_iterations",
+                                                "indefinite_factorizations",
+                                                "order_mean",
+                                                "order_reductions",
+                                                "stability_limited_steps",
                                                 "timed_runs",
                                                 "family",
                                                 "order"};
@@ -82,7 +88,9 @@ void tabulate(Csv& csv, const std::string& scene, const std::vector<Point>& poin
             measured(p.errors.position), measured(p.errors.velocity), measured(p.errors.energy),
             measured(p.time), measured(p.time_min), measured(p.setup), c.steps, c.rejected,
             c.force_evaluations, c.stiffness_evaluations, c.factorizations, c.solves,
-            c.newton_iterations, p.timed_runs, family_name(p.method->family), p.method->order);
+            c.newton_iterations, c.indefinite_factorizations, order_mean(c), c.order_reductions,
+            c.stability_limited_steps, p.timed_runs, family_name(p.method->family),
+            p.method->order);
   }
 }
 
@@ -118,6 +126,7 @@ int work_precision(const CLI::App& app, const Arguments& a,
     throw InvalidInput(fmt::format(
         "--repeats {} is not allowed; it is a whole number from 1 to 1000", a.effort.repeats));
   }
+  require_orders(app, a.effort.orders);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
   const Scene start = started(drawn, a.scene);

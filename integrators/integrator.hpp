@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -66,6 +67,13 @@ class Stopwatch {
   double Seconds::*which_;
   std::chrono::steady_clock::time_point start_;
 };
+
+// The mean order of the steps of a method of variable order; no number for the others.
+inline double order_mean(const Counts& counts) {
+  return counts.order_sum > 0
+             ? static_cast<double>(counts.order_sum) / static_cast<double>(counts.steps)
+             : std::numeric_limits<double>::quiet_NaN();
+}
 
 struct Summary {
   Outcome outcome = Outcome::solver_failed;

@@ -20,6 +20,7 @@ void Parts::start(const State& state) {
     const Index n = piece.integrator->system().size();
     piece.state = {state.t, state.q.segment(piece.first, n), state.v.segment(piece.first, n)};
     piece.integrator->counts_ = {};
+    piece.integrator->seconds_ = {};
     start(piece);
   }
 }
@@ -69,6 +70,7 @@ Outcome Parts::run_piece(Piece& piece, double t_end) {
 void Parts::gather(State& state) {
   Counts& sum = counts();
   sum = {};
+  seconds_ = {};
   for (const Piece& piece : pieces_) {
     const Index n = piece.state.q.size();
     state.q.segment(piece.first, n) = piece.state.q;
@@ -81,6 +83,14 @@ void Parts::gather(State& state) {
     sum.factorizations += own.factorizations;
     sum.solves += own.solves;
     sum.newton_iterations += own.newton_iterations;
+    sum.indefinite_factorizations += own.indefinite_factorizations;
+    sum.order_sum += own.order_sum;
+    sum.order_reductions += own.order_reductions;
+    sum.stability_limited_steps += own.stability_limited_steps;
+    seconds_.force += piece.integrator->seconds_.force;
+    seconds_.stiffness += piece.integrator->seconds_.stiffness;
+    seconds_.factorization += piece.integrator->seconds_.factorization;
+    seconds_.solve += piece.integrator->seconds_.solve;
   }
   state.t = pieces_.front().state.t;
 }

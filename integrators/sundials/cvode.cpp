@@ -137,6 +137,7 @@ Method bdf(const char* name, const char* solver) {
           .implicit = true,
           .needs_stiffness = true,
           .varies_order = true,
+          .detects_instability = true,
           .make = create<Bdf<make_matrix>>};
 }
 

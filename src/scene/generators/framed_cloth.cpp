@@ -11,7 +11,7 @@ namespace {
 
 std::vector<GeneratorParameter> parameters() {
   auto all = cloth_parameters();
-  all.push_back({"frame_stiffness", 1.3e6, least, most, "between neighbours on a border in N/m"});
+  all.push_back({"frame_stiffness", 1e7, least, most, "between neighbours on a border in N/m"});
   return all;
 }
 
