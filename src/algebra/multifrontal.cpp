@@ -76,6 +76,8 @@ class Multifrontal : public Factors {
     for (const auto [source, target] : fronts_.entries(f)) columns[target] = -s * k[source];
     for (const auto [source, target] : fronts_.diagonal(f))
       columns[target] += a * diagonal_[source];
+    // The columns that fill up the last strip are those of the identity.
+    for (int j = f.pivots; j < f.pivot_height(); ++j) columns[Index{j} * (f.height() + 1)] = 1;
     const auto children = fronts_.children(f);
     if (!children.empty()) clear(updates_.get() + f.update, f.below_height(), f.below_height());
     for (const int child : children) add_update(fronts_.all()[child], f);
@@ -135,14 +137,14 @@ class Multifrontal : public Factors {
   bool divide(const Front& f, int j, bool only_positive) {
     const int k = std::min(height, f.pivots - j * height), first = f.first + j * height;
     const double* a = column(f, j * height);
-    Block block(a + j * height, f.height(), k);
+    const Block block(a + j * height, f.height());
     if (!block.regular || (only_positive && block.negative > 0)) return false;
     negative_ += block.negative;
     std::copy_n(block.pivot, k, pivot_.get() + first);
     std::copy_n(block.inverse, k, inverse_.get() + first);
-    block.store_unit_lower(factor(f, j, j * height));
+    std::copy_n(block.l, k * height, factor(f, j, j * height));
     for (int i = j + 1; i < f.strips(); ++i)
-      divide_strip(a + i * height, f.height(), block, factor(f, i, j * height));
+      divide_strip(a + i * height, f.height(), block, k, factor(f, i, j * height));
     return true;
   }
 
@@ -174,21 +176,19 @@ class Multifrontal : public Factors {
 
   // Of L z = b: the front's pivots of z, and what they take off the rows below.
   void forward(const Front& f) {
-    double* z = y_.get() + f.first;
+    double* z = gathered_.get();
+    std::copy_n(y_.get() + f.first, f.pivots, z);
+    std::fill(z + f.pivots, z + f.height(), 0.0);
     for (int j = 0; j < f.pivot_strips(); ++j) {
-      double sum[height];
-      multiply(factor(f, j, 0), stride(f), z, j * height, 1, sum);
       const int k = std::min(height, f.pivots - j * height);
-      solve_unit_lower(factor(f, j, j * height), sum, z + j * height, k);
+      double* zj = z + j * height;
+      solve_lower(factor(f, j, j * height), k, zj);
+      subtract_product(factor(f, j + 1, j * height), stride(f), zj, k, f.strips() - j - 1,
+                       zj + height);
     }
-    const auto rows = fronts_.rows(f);
-    double sum[product_strips * height];
-    for (int i = 0; i < f.below_strips(); i += product_strips) {
-      const int strips = std::min(product_strips, f.below_strips() - i);
-      multiply(factor(f, f.pivot_strips() + i, 0), stride(f), z, f.pivots, strips, sum);
-      const int end = std::min(f.below, (i + strips) * height);
-      for (int r = i * height; r < end; ++r) y_.get()[rows[r]] -= sum[r - i * height];
-    }
+    std::copy_n(z, f.pivots, y_.get() + f.first);
+    z += f.pivot_height();
+    for (const int row : fronts_.rows(f)) y_.get()[row] += *z++;
   }
 
   // Of L' x = y: the front's pivots of x.
@@ -196,15 +196,15 @@ class Multifrontal : public Factors {
     double* x = gathered_.get();
     std::copy_n(y_.get() + f.first, f.pivots, x);
     std::fill(x + f.pivots, x + f.pivot_height(), 0.0);
-    const auto rows = fronts_.rows(f);
-    for (int r = 0; r < f.below; ++r) x[f.pivot_height() + r] = y_.get()[rows[r]];
-    std::fill(x + f.pivot_height() + f.below, x + f.height(), 0.0);
+    double* below = x + f.pivot_height();
+    for (const int row : fronts_.rows(f)) *below++ = y_.get()[row];
+    std::fill(below, x + f.height(), 0.0);
     for (int j = f.pivot_strips(); j-- > 0;) {
       const int k = std::min(height, f.pivots - j * height);
-      double sum[height];
-      multiply_transposed(factor(f, j + 1, j * height), stride(f), x + (j + 1) * height,
-                          f.strips() - j - 1, k, sum);
-      solve_unit_upper(factor(f, j, j * height), sum, x + j * height, k);
+      double* xj = x + j * height;
+      subtract_transposed(factor(f, j + 1, j * height), stride(f), xj + height, k,
+                          f.strips() - j - 1, xj);
+      solve_upper(factor(f, j, j * height), k, xj);
     }
     std::copy_n(x, f.pivots, y_.get() + f.first);
   }

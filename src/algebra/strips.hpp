@@ -20,8 +20,14 @@ constexpr int lanes = __BIGGEST_ALIGNMENT__ / sizeof(double);
 constexpr int vectors = height / lanes;  // in a column of a strip
 constexpr int tile_strips = lanes == 8 ? 3 : 1;
 constexpr int tile_columns = lanes;
-constexpr int product_strips = lanes == 8 ? 4 : 1;
 using Lanes = double __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
+
+using Places = long __attribute__((vector_size(lanes * sizeof(long))));
+constexpr Places first_places = [] {
+  if constexpr (lanes == 8) return Places{0, 1, 2, 3, 4, 5, 6, 7};
+  if constexpr (lanes == 4) return Places{0, 1, 2, 3};
+  if constexpr (lanes == 2) return Places{0, 1};
+}();
 
 inline Lanes load(const double* x) { return *reinterpret_cast<const Lanes*>(x); }
 inline void store(double* x, Lanes value) { *reinterpret_cast<Lanes*>(x) = value; }
@@ -73,41 +79,60 @@ inline void subtract(double* c, Index ld, const double* a, Index stride, const d
   }
 }
 
-// A = L D L' of the k <= 8 pivots of a block without pivoting; A: the lower triangle of columns
-// `ld` apart.
+// Entry i of a strip's column, in every lane.
+inline Lanes splat(const Lanes* x, int i) {
+  return __builtin_shuffle(x[i / lanes], Places{} + i % lanes);
+}
+
+// Which entries of a column stand below (above) entry i, the others 0.
+inline Lanes below(Lanes x, int v, int i) { return first_places + v * lanes > i ? x : Lanes{}; }
+inline Lanes above(Lanes x, int v, int i) { return first_places + v * lanes < i ? x : Lanes{}; }
+
+// A = L D L' of 8 pivots without pivoting.
 struct Block {
-  double ld[height][height] = {};  // columns of L D
-  double pivot[height] = {}, inverse[height] = {};
-  int pivots, negative = 0;
+  double l[height * height];   // without the diagonal; L' above it
+  double ld[height * height];  // columns of L D
+  double pivot[height], inverse[height];
+  int negative = 0;
   bool regular = true;  // every pivot is a number that can be divided by
 
-  Block(const double* a, Index a_ld, int k) : pivots(k) {
-    for (int j = 0; j < k; ++j) {
-      for (int i = 0; i < height; ++i) ld[j][i] = a[j * a_ld + i];
+  // A: the lower triangle of columns `a_ld` apart.
+  Block(const double* a, Index a_ld) {
+    Lanes x[height][vectors], y[height][vectors];
+#pragma GCC unroll 8
+    for (int j = 0; j < height; ++j) {
+#pragma GCC unroll 4
+      for (int v = 0; v < vectors; ++v) x[j][v] = load(a + j * a_ld + v * lanes);
     }
-    for (int p = 0; p < k; ++p) {
-      pivot[p] = ld[p][p];
+#pragma GCC unroll 8
+    for (int p = 0; p < height; ++p) {
+      const Lanes d = splat(x[p], p);
+#pragma GCC unroll 4
+      for (int v = 0; v < vectors; ++v) y[p][v] = x[p][v] / d;
+#pragma GCC unroll 8
+      for (int j = p + 1; j < height; ++j) {
+#pragma GCC unroll 4
+        for (int v = 0; v < vectors; ++v) x[j][v] -= y[p][v] * splat(x[p], j);
+      }
+#pragma GCC unroll 4
+      for (int v = 0; v < vectors; ++v) {
+        store(ld + p * height + v * lanes, x[p][v]);
+        store(l + p * height + v * lanes, below(y[p][v], v, p));
+      }
+    }
+    for (int p = 0; p < height; ++p) {
+      pivot[p] = ld[p * height + p];
       inverse[p] = 1 / pivot[p];
       negative += pivot[p] < 0;
       regular = regular && std::isfinite(pivot[p]) && std::isfinite(inverse[p]);
-      double l[height];
-      for (int i = 0; i < height; ++i) l[i] = ld[p][i] / pivot[p];
-      for (int j = p + 1; j < k; ++j) {
-        for (int i = 0; i < height; ++i) ld[j][i] -= l[i] * ld[p][j];
-      }
-    }
-  }
-
-  // L without its unit diagonal, zeros there and above.
-  void store_unit_lower(double* l) const {
-    for (int j = 0; j < pivots; ++j) {
-      for (int i = 0; i < height; ++i) l[j * height + i] = i > j ? ld[j][i] / pivot[j] : 0;
+      for (int i = p + 1; i < height; ++i) l[i * height + p] = l[p * height + i];
     }
   }
 };
 
-// A strip of L below a block: L = A (D L')^-1, A's 8 columns `ld` apart.
-inline void divide_strip(const double* a, Index ld, const Block& block, double* l) {
+// A strip of L below a block: L = A (D L')^-1, A's 8 columns `ld` apart. Of L the first k columns
+// are kept.
+inline void divide_strip(const double* a, Index ld, const Block& block, int k, double* l) {
 #pragma GCC unroll 4
   for (int v = 0; v < vectors; ++v) {
     Lanes x[height];
@@ -117,86 +142,101 @@ inline void divide_strip(const double* a, Index ld, const Block& block, double* 
     for (int p = 0; p < height; ++p) {
       x[p] *= block.inverse[p];
 #pragma GCC unroll 8
-      for (int j = p + 1; j < height; ++j) x[j] -= x[p] * block.ld[p][j];
+      for (int j = p + 1; j < height; ++j) x[j] -= x[p] * block.ld[p * height + j];
     }
 #pragma GCC unroll 8
     for (int j = 0; j < height; ++j) {
-      if (j < block.pivots) store(l + j * height + v * lanes, x[j]);
+      if (j < k) store(l + j * height + v * lanes, x[j]);
     }
   }
 }
 
-// y = A x of strips `stride` apart, of k columns.
-template <int strips>
-inline void multiply_tile(const double* a, Index stride, const double* x, int k, double* y) {
-  constexpr int rows = strips * vectors;
-  Lanes sum[rows] = {};
-  for (int p = 0; p < k; ++p, a += height) {
-#pragma GCC unroll 16
-    for (int i = 0; i < rows; ++i)
-      sum[i] += load(a + i / vectors * stride + i % vectors * lanes) * x[p];
+// y = y - A x of strips `stride` apart, of k <= 8 columns.
+inline void subtract_product(const double* a, Index stride, const double* x, int k, int strips,
+                             double* y) {
+  for (int i = 0; i < strips; ++i, a += stride, y += height) {
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) {
+      Lanes even = load(y + v * lanes), odd = {};
+#pragma GCC unroll 8
+      for (int j = 0; j < height; ++j) {
+        if (j < k) (j % 2 ? odd : even) -= load(a + j * height + v * lanes) * x[j];
+      }
+      store(y + v * lanes, even + odd);
+    }
   }
-#pragma GCC unroll 16
-  for (int i = 0; i < rows; ++i) store(y + i * lanes, sum[i]);
 }
 
-// The same for 1 to `product_strips` strips.
-inline void multiply(const double* a, Index stride, const double* x, int k, int strips, double* y) {
-  if constexpr (product_strips == 4) {
-    if (strips == 4) return multiply_tile<4>(a, stride, x, k, y);
-    if (strips == 3) return multiply_tile<3>(a, stride, x, k, y);
-    if (strips == 2) return multiply_tile<2>(a, stride, x, k, y);
+// The sums of `size` vectors' lanes, size a multiple of `lanes`, into size / lanes vectors: by
+// halves, sums of `width` lanes side by side.
+template <int size, int width = 1>
+inline void add_lanes(Lanes* x) {
+  if constexpr (width < lanes) {
+    const Places block = first_places / width, within = first_places % width;
+    const Places first = within + (block - block % 2) * width + block % 2 * lanes;
+#pragma GCC unroll 8
+    for (int i = 0; i < size / 2; ++i) {
+      x[i] = __builtin_shuffle(x[2 * i], x[2 * i + 1], first) +
+             __builtin_shuffle(x[2 * i], x[2 * i + 1], first + width);
+    }
+    add_lanes<size / 2, 2 * width>(x);
   }
-  multiply_tile<1>(a, stride, x, k, y);
 }
 
-// y = A' x for k <= 8 columns of strips `stride` apart.
-inline void multiply_transposed(const double* a, Index stride, const double* x, int strips, int k,
+// y = y - A' x of strips `stride` apart, of k <= 8 columns.
+inline void subtract_transposed(const double* a, Index stride, const double* x, int k, int strips,
                                 double* y) {
   Lanes sum[height][vectors] = {};
-  if (k == height) {
-    for (int i = 0; i < strips; ++i, a += stride, x += height) {
+  for (int i = 0; i < strips; ++i, a += stride, x += height) {
 #pragma GCC unroll 8
-      for (int j = 0; j < height; ++j) {
+    for (int j = 0; j < height; ++j) {
+      if (j >= k) continue;
 #pragma GCC unroll 4
-        for (int v = 0; v < vectors; ++v)
-          sum[j][v] += load(a + j * height + v * lanes) * load(x + v * lanes);
-      }
-    }
-  } else {
-    for (int i = 0; i < strips; ++i, a += stride, x += height) {
-#pragma GCC unroll 8
-      for (int j = 0; j < height; ++j) {
-        if (j >= k) break;
-#pragma GCC unroll 4
-        for (int v = 0; v < vectors; ++v)
-          sum[j][v] += load(a + j * height + v * lanes) * load(x + v * lanes);
-      }
+      for (int v = 0; v < vectors; ++v)
+        sum[j][v] += load(a + j * height + v * lanes) * load(x + v * lanes);
     }
   }
+  Lanes total[height];
+#pragma GCC unroll 8
   for (int j = 0; j < height; ++j) {
-    Lanes total = sum[j][0];
-    for (int v = 1; v < vectors; ++v) total += sum[j][v];
-    y[j] = 0;
-    for (int i = 0; i < lanes; ++i) y[j] += total[i];
+    total[j] = sum[j][0];
+#pragma GCC unroll 4
+    for (int v = 1; v < vectors; ++v) total[j] += sum[j][v];
   }
+  add_lanes<height>(total);
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) store(y + v * lanes, load(y + v * lanes) - total[v]);
 }
 
-// x = L^-1 (x - sum) and x = L'^-1 (x - sum), of a block's k <= 8 pivots; L from store_unit_lower.
-inline void solve_unit_lower(const double* l, const double* sum, double* x, int k) {
-  double z[height] = {};
-  for (int i = 0; i < k; ++i) z[i] = x[i] - sum[i];
-  for (int p = 0; p < k; ++p) {
-    for (int i = 0; i < height; ++i) z[i] -= l[p * height + i] * z[p];
+// x = L^-1 x and x = L'^-1 x for the first k pivots of a block, `l` as in Block; further x are 0.
+inline void solve_lower(const double* l, int k, double* x) {
+  Lanes z[vectors];
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) z[v] = load(x + v * lanes);
+#pragma GCC unroll 8
+  for (int p = 0; p < height; ++p) {
+    if (p >= k) continue;
+    const Lanes pivot = splat(z, p);
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) z[v] -= below(load(l + p * height + v * lanes), v, p) * pivot;
   }
-  for (int i = 0; i < k; ++i) x[i] = z[i];
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) store(x + v * lanes, z[v]);
 }
 
-inline void solve_unit_upper(const double* l, const double* sum, double* x, int k) {
-  for (int p = k; p-- > 0;) {
-    x[p] -= sum[p];
-    for (int i = p + 1; i < k; ++i) x[p] -= l[p * height + i] * x[i];
+inline void solve_upper(const double* l, int k, double* x) {
+  Lanes z[vectors];
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) z[v] = load(x + v * lanes);
+#pragma GCC unroll 8
+  for (int p = height; p-- > 0;) {
+    if (p >= k) continue;
+    const Lanes pivot = splat(z, p);
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) z[v] -= above(load(l + p * height + v * lanes), v, p) * pivot;
   }
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) store(x + v * lanes, z[v]);
 }
 
 }  // namespace qddot::strips
