@@ -15,6 +15,9 @@ struct Graph {
   std::vector<int> start, rows, unknowns;
 };
 
+// As many as a node has. CHOLMOD merges supernodes of few vertices whatever zeros that brings in.
+constexpr int most_unknowns = 3;
+
 bool same_column(const SymmetricMatrix& a, int i, int j) {
   const auto column = [&](int k) {
     return std::span(a.innerIndexPtr() + a.outerIndexPtr()[k],
@@ -29,7 +32,7 @@ Graph block_graph(const SymmetricMatrix& pattern) {
   Graph graph;
   std::vector<int> vertex(n), first;
   for (int j = 0; j < n; ++j) {
-    if (j == 0 || !same_column(whole, j - 1, j)) {
+    if (j == 0 || graph.unknowns.back() == most_unknowns || !same_column(whole, j - 1, j)) {
       first.push_back(j);
       graph.unknowns.push_back(0);
     }

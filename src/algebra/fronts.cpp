@@ -66,8 +66,7 @@ Fronts::Fronts(const SymmetricMatrix& pattern) {
     for (int i = 0; i < f.below; ++i) {
       const Front& parent = all_[parents[s]];
       const int to = position(parent, rows_[f.row_start + i]);
-      // A run does not cross from the pivots to the rows below.
-      if (i > 0 && to == runs_.back().to + runs_.back().length && to != parent.pivot_height()) {
+      if (i > 0 && to == runs_.back().to + runs_.back().length) {
         ++runs_.back().length;
       } else {
         runs_.push_back({i, to, 1});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "src/model/system.hpp"
 
@@ -23,11 +24,10 @@ constexpr int tile_columns = lanes;
 using Lanes = double __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
 
 using Places = long __attribute__((vector_size(lanes * sizeof(long))));
-constexpr Places first_places = [] {
-  if constexpr (lanes == 8) return Places{0, 1, 2, 3, 4, 5, 6, 7};
-  if constexpr (lanes == 4) return Places{0, 1, 2, 3};
-  if constexpr (lanes == 2) return Places{0, 1};
-}();
+constexpr Places first_places = []<std::size_t... i>(std::index_sequence<i...>) {
+  return Places{i...};
+}
+(std::make_index_sequence<lanes>());
 
 inline Lanes load(const double* x) { return *reinterpret_cast<const Lanes*>(x); }
 inline void store(double* x, Lanes value) { *reinterpret_cast<Lanes*>(x) = value; }
