@@ -1,0 +1,134 @@
+#include "src/algebra/elimination.hpp"
+
+#include <algorithm>
+#include <span>
+#include <stdexcept>
+
+#include <suitesparse/cholmod.h>
+
+namespace qddot {
+
+namespace {
+
+// The lower triangle of a graph, column by column, and how many unknowns each vertex is.
+struct Graph {
+  std::vector<int> start, rows, unknowns;
+};
+
+// As many as a node has. CHOLMOD merges supernodes of few vertices whatever zeros that brings in.
+constexpr int most_unknowns = 3;
+
+bool same_column(const SymmetricMatrix& a, int i, int j) {
+  const auto column = [&](int k) {
+    return std::span(a.innerIndexPtr() + a.outerIndexPtr()[k],
+                     a.innerIndexPtr() + a.outerIndexPtr()[k + 1]);
+  };
+  return std::ranges::equal(column(i), column(j));
+}
+
+Graph block_graph(const SymmetricMatrix& pattern) {
+  const SymmetricMatrix whole = pattern.selfadjointView<Eigen::Lower>();
+  const int n = static_cast<int>(pattern.rows());
+  Graph graph;
+  std::vector<int> vertex(n), first;
+  for (int j = 0; j < n; ++j) {
+    if (j == 0 || graph.unknowns.back() == most_unknowns || !same_column(whole, j - 1, j)) {
+      first.push_back(j);
+      graph.unknowns.push_back(0);
+    }
+    vertex[j] = static_cast<int>(first.size()) - 1;
+    ++graph.unknowns.back();
+  }
+  for (const int j : first) {
+    graph.start.push_back(static_cast<int>(graph.rows.size()));
+    for (SymmetricMatrix::InnerIterator entry(pattern, j); entry; ++entry) {
+      const int i = vertex[entry.row()];
+      if (std::ssize(graph.rows) == graph.start.back() || graph.rows.back() != i)
+        graph.rows.push_back(i);
+    }
+  }
+  graph.start.push_back(static_cast<int>(graph.rows.size()));
+  return graph;
+}
+
+// CHOLMOD's workspace and its symbolic factor of a graph.
+class Analysis {
+ public:
+  explicit Analysis(Graph& graph) {
+    cholmod_start(&common_);
+    common_.print = 0;  // failures are returned, not printed
+    common_.supernodal = CHOLMOD_SUPERNODAL;
+    cholmod_sparse view{};
+    view.nrow = view.ncol = graph.unknowns.size();
+    view.nzmax = graph.rows.size();
+    view.p = graph.start.data();
+    view.i = graph.rows.data();
+    view.stype = -1;  // the lower triangle
+    view.itype = CHOLMOD_INT;
+    view.xtype = CHOLMOD_PATTERN;
+    view.dtype = CHOLMOD_DOUBLE;
+    view.sorted = view.packed = 1;
+    factor_ = cholmod_analyze(&view, &common_);
+    if (!factor_) {
+      cholmod_finish(&common_);
+      throw std::runtime_error("CHOLMOD could not analyse: out of memory");
+    }
+  }
+  ~Analysis() {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_finish(&common_);
+  }
+  Analysis(const Analysis&) = delete;
+  Analysis& operator=(const Analysis&) = delete;
+
+  int supernodes() const { return static_cast<int>(factor_->nsuper); }
+  const int* order() const { return static_cast<const int*>(factor_->Perm); }
+  // Of supernode s: its vertices are first()[s] to first()[s + 1], its rows, these included,
+  // rows()[start()[s]] to rows()[start()[s + 1]].
+  const int* first() const { return static_cast<const int*>(factor_->super); }
+  const int* start() const { return static_cast<const int*>(factor_->pi); }
+  const int* rows() const { return static_cast<const int*>(factor_->s); }
+
+ private:
+  cholmod_common common_{};
+  cholmod_factor* factor_ = nullptr;
+};
+
+}  // namespace
+
+Elimination eliminate(const SymmetricMatrix& pattern) {
+  if (pattern.rows() == 0) return {};  // CHOLMOD does not take it
+  Graph graph = block_graph(pattern);
+  const int vertices = static_cast<int>(graph.unknowns.size());
+  const Analysis analysis(graph);
+
+  Elimination result;
+  // Where each vertex begins among the unknowns, as they were and in the new order.
+  std::vector<int> before(vertices + 1), after(vertices + 1), supernode(pattern.rows());
+  for (int v = 0; v < vertices; ++v) {
+    before[v + 1] = before[v] + graph.unknowns[v];
+    after[v + 1] = after[v] + graph.unknowns[analysis.order()[v]];
+  }
+  result.place.resize(pattern.rows());
+  for (int v = 0; v < vertices; ++v) {
+    for (int i = after[v]; i < after[v + 1]; ++i)
+      result.place[before[analysis.order()[v]] + i - after[v]] = i;
+  }
+  for (int s = 0; s < analysis.supernodes(); ++s) {
+    const int first = after[analysis.first()[s]], end = after[analysis.first()[s + 1]];
+    Supernode node{first, end - first, -1, {}};
+    for (int i = first; i < end; ++i) supernode[i] = s;
+    for (int k = analysis.start()[s] + analysis.first()[s + 1] - analysis.first()[s];
+         k < analysis.start()[s + 1]; ++k) {
+      const int v = analysis.rows()[k];
+      for (int i = after[v]; i < after[v + 1]; ++i) node.rows.push_back(i);
+    }
+    result.supernodes.push_back(std::move(node));
+  }
+  for (Supernode& node : result.supernodes) {
+    if (!node.rows.empty()) node.parent = supernode[node.rows.front()];
+  }
+  return result;
+}
+
+}  // namespace qddot

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "src/model/system.hpp"
+
+namespace qddot {
+
+// Pivots that are eliminated together, because the columns of L below them (almost) agree.
+struct Supernode {
+  int first, pivots;      // the unknowns first, ..., first + pivots - 1 of the order
+  int parent;             // the supernode of the first row below, later than this; -1 at a root
+  std::vector<int> rows;  // the rows below the pivots, ascending
+};
+
+// In which order to factorise a symmetric matrix, and where L has entries then.
+struct Elimination {
+  std::vector<int> place;             // place[i]: where unknown i comes in the order
+  std::vector<Supernode> supernodes;  // in postorder: a subtree's lie together, its root last
+};
+
+// Analyses an n x n pattern by CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM TOMS 35:3, 2008), on
+// the graph of its blocks: neighbouring unknowns of the same neighbours, as those of a node are,
+// are one vertex. Throws std::runtime_error when out of memory.
+Elimination eliminate(const SymmetricMatrix& pattern);
+
+}  // namespace qddot

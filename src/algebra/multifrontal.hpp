@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "src/algebra/factors.hpp"
+
+namespace qddot {
+
+// Factors P (a D - s K) P' = L E L' without pivoting, by the multifrontal method (Duff, Reid, ACM
+// TOMS 9:3, 1983; Liu, SIAM Review 34:1, 1992) on the order and supernodes of elimination.hpp.
+// Throws std::bad_alloc or std::runtime_error when out of memory, here only.
+std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal);
+
+}  // namespace qddot

@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+
+#include "src/algebra/cholmod_factors.hpp"
+#include "src/algebra/effective_mass.hpp"
+#include "src/algebra/multifrontal.hpp"
+#include "src/scene/generators.hpp"
+#include "src/scene/reduce.hpp"
+#include "tests/measure.hpp"
+#include "tests/problems.hpp"
+
+using namespace qddot;
+
+BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::Definiteness)
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+// D - K.
+struct Matrix {
+  std::string name;
+  Vec diagonal;
+  SymmetricMatrix k;
+
+  SymmetricMatrix whole(double a, double s) const {
+    SymmetricMatrix sum = -s * k;
+    for (Index i = 0; i < diagonal.size(); ++i) sum.coeffRef(i, i) += a * diagonal[i];
+    return sum.selfadjointView<Eigen::Lower>();
+  }
+};
+
+// |A x - b| over |A| |x| + |b|, in the largest norm: how far the matrix that was solved with is
+// from A.
+double backward_error(Factors& factors, const SymmetricMatrix& a) {
+  if (a.rows() == 0) return 0;
+  const Vec b = Vec::LinSpaced(a.rows(), -1, 2);
+  Vec x(a.rows());
+  factors.solve(b, x);
+  const double norm = (a.cwiseAbs() * Vec::Ones(a.rows())).maxCoeff();
+  return distance(a * x, b) / (norm * x.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
+}
+
+// n eps bounds the backward error where L and D do not grow; rounding errors of random sign add up
+// to its root.
+double tolerance(const SymmetricMatrix& a) {
+  return 10 * eps * std::sqrt(static_cast<double>(a.rows() + 1));
+}
+
+// D - K with the entries of K at the given places below the diagonal, dominated by a diagonal of
+// either sign. Eliminating a pivot keeps it so: no entry grows to more than twice the largest, and
+// each pivot has the sign of its diagonal entry.
+Matrix dominated(const std::string& name, int n, const std::vector<std::pair<int, int>>& places,
+                 double share_negative) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<Eigen::Triplet<double>> entries;
+  Vec sums = Vec::Zero(n);
+  for (const auto& [i, j] : places) {
+    const double value = uniform(random);
+    entries.emplace_back(std::max(i, j), std::min(i, j), value);
+    sums[i] += std::abs(value);
+    sums[j] += std::abs(value);
+  }
+  Vec diagonal(n);
+  for (int i = 0; i < n; ++i) {
+    const bool negative = 0.5 * (uniform(random) + 1) < share_negative;
+    diagonal[i] = (negative ? -1 : 1) * (1 + sums[i]);
+    entries.emplace_back(i, i, 0.0);
+  }
+  SymmetricMatrix k(n, n);
+  k.setFromTriplets(entries.begin(), entries.end());
+  return {name, diagonal, k};
+}
+
+// Patterns with one kind of front each, and with many.
+std::vector<Matrix> patterns(double share_negative) {
+  std::vector<Matrix> all;
+  const auto add = [&](const std::string& name, int n, const auto& joined) {
+    std::vector<std::pair<int, int>> places;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < i; ++j) {
+        if (joined(i, j)) places.emplace_back(i, j);
+      }
+    }
+    all.push_back(dominated(name, n, places, share_negative));
+  };
+  const auto none = [](int, int) { return false; };
+  const auto every = [](int, int) { return true; };
+  for (const int n : {0, 1, 2, 7, 8, 9, 100}) add("diagonal", n, none);
+  // All fillings of a strip of 8, and more pivots than a panel has.
+  for (int n = 2; n <= 34; ++n) add("dense", n, every);
+  for (const int n : {95, 96, 97, 104, 195, 250}) add("dense", n, every);
+  for (const int n : {9, 40, 300}) {
+    add("arrow", n, [=](int i, int) { return i == n - 1; });
+    add("arrow backwards", n, [](int, int j) { return j == 0; });
+    add("chain", n, [](int i, int j) { return i == j + 1; });
+    add("band", n, [](int i, int j) { return i - j <= 11; });
+    add("ring", n, [=](int i, int j) { return i == j + 1 || (i == n - 1 && j == 0); });
+  }
+  add("dense islands", 200, [](int i, int j) { return i / 37 == j / 37; });
+  add("two of 120 and 130 that share 20", 230, [](int i, int j) { return i < 120 || j >= 100; });
+  std::mt19937 random(11);
+  for (const double mean : {0.5, 1.0, 2.0, 5.0, 30.0}) {
+    for (const int n : {30, 150, 400}) {
+      std::bernoulli_distribution chosen(std::min(1.0, mean / n));
+      add("random", n, [&](int, int) { return chosen(random); });
+    }
+  }
+  return all;
+}
+
+// A scene's K away from its start, so that springs are compressed and stretched.
+Matrix displaced(const Generator& generator, const Reductions& reductions) {
+  const ReducedScene scene(generate(generator, {}, "test"), reductions);
+  const System& system = scene.system();
+  std::mt19937 random(13);
+  Vec q = scene.initial().q;
+  const double size = std::max(q.cwiseAbs().maxCoeff(), 1e-3);
+  std::uniform_real_distribution<double> uniform(-1e-2 * size, 1e-2 * size);
+  for (double& x : q) x += uniform(random);
+  return {generator.name, system.mass(), stiffness_at(system, q)};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(multifrontal)
+
+BOOST_AUTO_TEST_CASE(solves_every_pattern_to_round_off) {
+  for (const Matrix& m : patterns(0)) {
+    BOOST_TEST_CONTEXT(m.name << " of " << m.diagonal.size()) {
+      const auto factors = make_multifrontal(m.k, m.diagonal);
+      const SymmetricMatrix a = m.whole(1, 1);
+      BOOST_TEST(factors->factorize_positive(1, 1, m.k));
+      BOOST_TEST(backward_error(*factors, a) < tolerance(a));
+      BOOST_TEST(factors->factorize(1, 1, m.k) == Definiteness::positive);
+      BOOST_TEST(backward_error(*factors, a) < tolerance(a));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(solves_every_pattern_with_pivots_of_either_sign) {
+  for (const Matrix& m : patterns(0.4)) {
+    BOOST_TEST_CONTEXT(m.name << " of " << m.diagonal.size()) {
+      const auto factors = make_multifrontal(m.k, m.diagonal);
+      const SymmetricMatrix a = m.whole(1, 1);
+      const Index negative = (m.diagonal.array() < 0).count();
+      BOOST_TEST(factors->factorize_positive(1, 1, m.k) == (negative == 0));
+      BOOST_TEST(factors->factorize(1, 1, m.k) ==
+                 (negative > 0 ? Definiteness::indefinite : Definiteness::positive));
+      BOOST_TEST(factors->negative_pivots() == negative);
+      BOOST_TEST(backward_error(*factors, a) < tolerance(a));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_matrix_off_by_1e_9_is_seen) {
+  for (const Matrix& m : patterns(0.4)) {
+    if (m.diagonal.size() == 0) continue;
+    const auto factors = make_multifrontal(m.k, m.diagonal);
+    factors->factorize(1 + 1e-9, 1, m.k);
+    const SymmetricMatrix a = m.whole(1, 1);
+    BOOST_TEST(backward_error(*factors, a) > tolerance(a));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_zero_or_infinite_pivot_anywhere_is_singular) {
+  for (const double bad :
+       {0.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    for (const int n : {1, 8, 9, 40}) {
+      for (int at = 0; at < n; ++at) {
+        Matrix m = dominated("diagonal", n, {}, 0.4);
+        const auto factors = make_multifrontal(m.k, Vec::Ones(n));
+        SymmetricMatrix k = m.k;
+        for (int i = 0; i < n; ++i) k.coeffRef(i, i) = i == at ? bad : m.diagonal[i];
+        BOOST_TEST(factors->factorize(0, -1, k) == Definiteness::singular);
+        BOOST_TEST(!factors->factorize_positive(0, -1, k));
+        // And nothing of it is left.
+        BOOST_TEST(factors->factorize_positive(1, 0, m.k));
+        BOOST_TEST(
+            backward_error(*factors, m.whole(0, 0) + SymmetricMatrix(Vec::Ones(n).asDiagonal())) <
+            tolerance(k));
+      }
+    }
+  }
+}
+
+// LDL' multiplies rounding by the growth of its entries, which a small pivot makes large; this
+// leaves room for a factor of 1e4.
+BOOST_AUTO_TEST_CASE(every_scene_is_solved_as_by_cholmod) {
+  int indefinite = 0;
+  for (const Generator& generator : generators()) {
+    for (const auto& reductions : {Reductions{}, Reductions::only({Reduction::pins})}) {
+      const Matrix m = displaced(generator, reductions);
+      const auto factors = make_multifrontal(m.k, m.diagonal);
+      const auto reference = make_cholmod_factors(m.k, m.diagonal);
+      for (const double s : {0.0, 1e-8, 1e-6, 1e-4, 1e-2, 1.0}) {
+        BOOST_TEST_CONTEXT(m.name << " of " << m.diagonal.size() << " unknowns, s = " << s) {
+          const Definiteness signs = factors->factorize(1, s, m.k);
+          BOOST_TEST(signs == reference->factorize(1, s, m.k));
+          BOOST_TEST(signs != Definiteness::singular);
+          BOOST_TEST(factors->negative_pivots() == reference->negative_pivots());
+          const SymmetricMatrix a = m.whole(1, s);
+          const bool positive = signs == Definiteness::positive;
+          indefinite += !positive;
+          BOOST_TEST(backward_error(*factors, a) < (positive ? tolerance(a) : 1e-10));
+          BOOST_TEST(backward_error(*reference, a) < (positive ? tolerance(a) : 1e-10));
+          BOOST_TEST(factors->factorize_positive(1, s, m.k) == positive);
+        }
+      }
+    }
+  }
+  BOOST_TEST(indefinite >= 10);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
