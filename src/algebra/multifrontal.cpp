@@ -46,7 +46,7 @@ class Multifrontal : public Factors {
     for (Index i = 0; i < b.size(); ++i) y_.get()[place[i]] = b[i];
     for (const Front& f : fronts_) forward(f);
     for (Index i = 0; i < b.size(); ++i) y_.get()[i] *= inverse_.get()[i];
-    for (const Front* f = fronts_.end(); f-- != fronts_.begin();) backward(*f);
+    for (const Front* f = fronts_.end(); f != fronts_.begin();) backward(*--f);
     x.resize(b.size());
     for (Index i = 0; i < b.size(); ++i) x[i] = y_.get()[place[i]];
   }
