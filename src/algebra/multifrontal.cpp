@@ -26,7 +26,6 @@ class Multifrontal : public Factors {
         columns_(fronts_.pivot_columns_size),
         scaled_(panel * height * tile_strips),
         pivot_(pattern.rows()),
-        inverse_(pattern.rows()),
         y_(pattern.rows()),
         gathered_(fronts_.largest_height) {}
 
@@ -45,8 +44,8 @@ class Multifrontal : public Factors {
     const auto& place = fronts_.place();
     for (Index i = 0; i < b.size(); ++i) y_.get()[place[i]] = b[i];
     for (const Front& f : fronts_) forward(f);
-    for (Index i = 0; i < b.size(); ++i) y_.get()[i] *= inverse_.get()[i];
-    for (const Front* f = fronts_.end(); f-- != fronts_.begin();) backward(*f);
+    for (Index i = 0; i < b.size(); ++i) y_.get()[i] /= pivot_.get()[i];
+    for (const Front* f = fronts_.end(); f != fronts_.begin();) backward(*--f);
     x.resize(b.size());
     for (Index i = 0; i < b.size(); ++i) x[i] = y_.get()[place[i]];
   }
@@ -141,7 +140,6 @@ class Multifrontal : public Factors {
     if (!block.regular || (only_positive && block.negative > 0)) return false;
     negative_ += block.negative;
     std::copy_n(block.pivot, k, pivot_.get() + first);
-    std::copy_n(block.inverse, k, inverse_.get() + first);
     std::copy_n(block.l, k * height, factor(f, j, j * height));
     for (int i = j + 1; i < f.strips(); ++i)
       divide_strip(a + i * height, f.height(), block, k, factor(f, i, j * height));
@@ -214,7 +212,7 @@ class Multifrontal : public Factors {
   LargeArray l_, updates_;
   LargeArray columns_;  // of the pivots of the front at hand, until they are columns of L
   LargeArray scaled_;   // some of its strips times the pivots
-  LargeArray pivot_, inverse_, y_, gathered_;
+  LargeArray pivot_, y_, gathered_;
   Index negative_ = 0;
 };
 
