@@ -20,6 +20,7 @@ void Parts::start(const State& state) {
     const Index n = piece.integrator->system().size();
     piece.state = {state.t, state.q.segment(piece.first, n), state.v.segment(piece.first, n)};
     piece.integrator->counts_ = {};
+    piece.integrator->seconds_ = {};
     start(piece);
   }
 }
@@ -67,20 +68,14 @@ Outcome Parts::run_piece(Piece& piece, double t_end) {
 }
 
 void Parts::gather(State& state) {
-  Counts& sum = counts();
-  sum = {};
+  counts() = {};
+  seconds_ = {};
   for (const Piece& piece : pieces_) {
     const Index n = piece.state.q.size();
     state.q.segment(piece.first, n) = piece.state.q;
     state.v.segment(piece.first, n) = piece.state.v;
-    const Counts& own = piece.integrator->counts_;
-    sum.steps += own.steps;
-    sum.rejected += own.rejected;
-    sum.force_evaluations += own.force_evaluations;
-    sum.stiffness_evaluations += own.stiffness_evaluations;
-    sum.factorizations += own.factorizations;
-    sum.solves += own.solves;
-    sum.newton_iterations += own.newton_iterations;
+    counts() += piece.integrator->counts_;
+    seconds_ += piece.integrator->seconds_;
   }
   state.t = pieces_.front().state.t;
 }
