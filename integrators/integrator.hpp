@@ -42,11 +42,16 @@ struct Counts {
   // Of methods of variable order: the orders of all steps added up, and how often it was lowered.
   std::int64_t order_sum = 0, order_reductions = 0;
   std::int64_t stability_limited_steps = 0;  // of adaptive explicit methods: held to 1/w_max
+
+  bool operator==(const Counts&) const = default;
+  Counts& operator+=(const Counts& more);
 };
 
 // Where the time of a run went [s]; zero unless Knobs::timed.
 struct Seconds {
   double force = 0, stiffness = 0, factorization = 0, solve = 0;
+
+  Seconds& operator+=(const Seconds& more);
 };
 
 // Adds the time from its construction to its end to one of them.

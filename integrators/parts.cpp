@@ -68,29 +68,14 @@ Outcome Parts::run_piece(Piece& piece, double t_end) {
 }
 
 void Parts::gather(State& state) {
-  Counts& sum = counts();
-  sum = {};
+  counts() = {};
   seconds_ = {};
   for (const Piece& piece : pieces_) {
     const Index n = piece.state.q.size();
     state.q.segment(piece.first, n) = piece.state.q;
     state.v.segment(piece.first, n) = piece.state.v;
-    const Counts& own = piece.integrator->counts_;
-    sum.steps += own.steps;
-    sum.rejected += own.rejected;
-    sum.force_evaluations += own.force_evaluations;
-    sum.stiffness_evaluations += own.stiffness_evaluations;
-    sum.factorizations += own.factorizations;
-    sum.solves += own.solves;
-    sum.newton_iterations += own.newton_iterations;
-    sum.indefinite_factorizations += own.indefinite_factorizations;
-    sum.order_sum += own.order_sum;
-    sum.order_reductions += own.order_reductions;
-    sum.stability_limited_steps += own.stability_limited_steps;
-    seconds_.force += piece.integrator->seconds_.force;
-    seconds_.stiffness += piece.integrator->seconds_.stiffness;
-    seconds_.factorization += piece.integrator->seconds_.factorization;
-    seconds_.solve += piece.integrator->seconds_.solve;
+    counts() += piece.integrator->counts_;
+    seconds_ += piece.integrator->seconds_;
   }
   state.t = pieces_.front().state.t;
 }

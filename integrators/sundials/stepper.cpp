@@ -157,6 +157,14 @@ Outcome Stepper::take_one(State& state, double t_stop) {
   return Outcome::reached_end;
 }
 
+Cause Stepper::named_cause(int flag) {
+  const Cause cause = cause_of(flag);
+  if (is_finite_) return cause;
+  if (cause == Cause::convergence) return Cause::force;
+  if (cause == Cause::force && counts().force_evaluations == 1) return Cause::first_force;
+  return cause;
+}
+
 Outcome Stepper::failure(Cause cause, const std::string& flag, double t) {
   std::ranges::replace(said_, '\n', ' ');
   explain(fmt::format("{} at t = {:.6g} s: {} ({}{}{})", what_happened(cause), t,

@@ -64,11 +64,14 @@ class Stepper : public Integrator {
   void set_counts(const OwnCounts& own);
 
   // Runs the body of a C callback: 0 done, 1 recoverable (a result is not finite, so that SUNDIALS
-  // tries a smaller step), -1 with the exception parked until SUNDIALS has returned.
+  // tries a smaller step), -1 with the exception parked until SUNDIALS has returned; until then
+  // nothing is run again, though a fixed-point iteration tries to.
   template <class Body>
   int guarded(Body body) noexcept {
+    if (parked_) return -1;
     try {
-      return body() ? 0 : 1;
+      is_finite_ = body();
+      return is_finite_ ? 0 : 1;
     } catch (...) {
       parked_ = std::current_exception();
       return -1;
@@ -91,7 +94,7 @@ class Stepper : public Integrator {
                            void* self);
 
   // The run ends at t [s] because of what the library's flag says, or for this reason.
-  Outcome failure(int flag, double t) { return failure(cause_of(flag), flag_name(flag), t); }
+  Outcome failure(int flag, double t) { return failure(named_cause(flag), flag_name(flag), t); }
   Outcome failure(Cause cause, const std::string& flag, double t);
 
  private:
@@ -99,6 +102,9 @@ class Stepper : public Integrator {
   Outcome take_chosen_steps(State& state, double t_stop);
   Outcome take_fixed_steps(State& state, double t_stop);
   Outcome take_one(State& state, double t_stop);
+  // What the flag says, but for forces that are not finite: a library may call these a failure to
+  // converge, and the first one a failure of later ones.
+  Cause named_cause(int flag);
 
   const System& implicit_part_;
   Context context_;
@@ -109,6 +115,7 @@ class Stepper : public Integrator {
   SymmetricMatrix k_;
   State next_;
   std::exception_ptr parked_;
+  bool is_finite_ = true;  // what the last callback computed
   std::string said_;
 };
 

@@ -68,16 +68,6 @@ struct Together {
   State start;
 };
 
-inline Counts operator+(const Counts& a, const Counts& b) {
-  return {.steps = a.steps + b.steps,
-          .rejected = a.rejected + b.rejected,
-          .force_evaluations = a.force_evaluations + b.force_evaluations,
-          .stiffness_evaluations = a.stiffness_evaluations + b.stiffness_evaluations,
-          .factorizations = a.factorizations + b.factorizations,
-          .solves = a.solves + b.solves,
-          .newton_iterations = a.newton_iterations + b.newton_iterations};
-}
-
 // Pieces that the method applies to: of different sizes, dimensions and frequencies.
 inline std::vector<Piece> pieces_for(const Method& method) {
   std::vector<Piece> pieces;

@@ -56,6 +56,12 @@ inline std::vector<Method> methods_of(Knob knob) {
   return list;
 }
 
+inline std::vector<Method> methods_of(Family family, Knob knob) {
+  std::vector<Method> list = methods_of(family);
+  std::erase_if(list, [&](const Method& method) { return method.knob != knob; });
+  return list;
+}
+
 // The larger of the errors in q and in v.
 inline double distance(const State& a, const State& b) {
   return std::max(distance(a.q, b.q), distance(a.v, b.v));
@@ -68,12 +74,12 @@ inline bool is_finite(const State& state) {
 // To the last bit.
 inline bool same(const State& a, const State& b) { return a.t == b.t && a.q == b.q && a.v == b.v; }
 
-inline bool same(const Counts& a, const Counts& b) {
-  return a.steps == b.steps && a.rejected == b.rejected &&
-         a.force_evaluations == b.force_evaluations &&
-         a.stiffness_evaluations == b.stiffness_evaluations &&
-         a.factorizations == b.factorizations && a.solves == b.solves &&
-         a.newton_iterations == b.newton_iterations;
+inline std::ostream& operator<<(std::ostream& out, const Counts& c) {
+  return out << c.steps << " steps, " << c.rejected << " rejected, " << c.force_evaluations
+             << " forces, " << c.stiffness_evaluations << " stiffnesses, " << c.factorizations
+             << " factorisations (" << c.indefinite_factorizations << " indefinite), " << c.solves
+             << " solves, " << c.newton_iterations << " iterations, orders " << c.order_sum << " ("
+             << c.order_reductions << " reductions), " << c.stability_limited_steps << " limited";
 }
 
 // Speaks for another system, and lets a test see or change what it says.

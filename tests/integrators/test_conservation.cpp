@@ -161,11 +161,12 @@ BOOST_AUTO_TEST_CASE(symplectic_methods_keep_the_angular_momentum_of_free_bodies
       for (const Reductions& reductions : with_and_without) {
         BOOST_TEST_CONTEXT(method.name << " in dimension " << dimension) {
           const double lost = change(scene, reductions, method).angular.norm();
-          // 200 steps round x p of up to 100 kg m^2/s; other methods err by their order.
+          // 200 steps round x p of up to 100 kg m^2/s, or leave 1e-10 of it to Newton's iteration;
+          // other methods err by their order, 1 or 2.
           if (method.symplectic) {
-            BOOST_TEST(lost < 1e-10);
+            BOOST_TEST(lost < (method.implicit ? 1e-6 : 1e-10));
           } else {
-            BOOST_TEST(lost > 1e-3);
+            BOOST_TEST(lost > (method.order == 1 ? 1e-3 : 1e-5));
           }
         }
       }

@@ -5,19 +5,6 @@
 
 using namespace qddot;
 
-namespace qddot {
-
-bool operator==(const Counts& a, const Counts& b) { return same(a, b); }
-
-std::ostream& operator<<(std::ostream& out, const Counts& c) {
-  return out << c.steps << " steps, " << c.rejected << " rejected, " << c.force_evaluations
-             << " forces, " << c.stiffness_evaluations << " stiffnesses, " << c.factorizations
-             << " factorisations, " << c.solves << " solves, " << c.newton_iterations
-             << " iterations";
-}
-
-}  // namespace qddot
-
 BOOST_AUTO_TEST_SUITE(counts)
 
 namespace {

@@ -27,12 +27,15 @@ void break_stiffnesses(Relay& relay) {
   };
 }
 
-// A method's run to 1 s on a hammock that breaks.
+constexpr double until = 30;  // s, in which the explicit methods too look at K some ten times
+Knobs knobs_for(const Method& method) { return knobs_of(method, 0.01, 1e-6); }
+
+// A method's run on a hammock that breaks.
 struct BrokenRun {
   BrokenRun(const Method& method, void (*break_it)(Relay&))
-      : integrator(make_integrator(method, relay, {.rtol = 1e-6})) {
+      : integrator(make_integrator(method, relay, knobs_for(method))) {
     break_it(relay);
-    summary = integrator->advance(state, 1);
+    summary = integrator->advance(state, until);
   }
   Problem problem = hammock(2);
   std::unique_ptr<System> system = make_mass_spring(problem.network);
@@ -47,13 +50,14 @@ struct BrokenRun {
 BOOST_AUTO_TEST_CASE(an_exception_in_the_system_becomes_a_failure_with_its_words) {
   for (const Method& method : methods_of(Family::sundials)) {
     for (const auto break_it : {break_forces, break_stiffnesses}) {
+      if (break_it == break_stiffnesses && !method.needs_stiffness) continue;
       BOOST_TEST_CONTEXT(method.name) {
         const BrokenRun r(method, break_it);
         BOOST_TEST(name(r.summary.outcome) == "solver_failed");
         BOOST_TEST(r.summary.message == "the spring broke");
         BOOST_TEST(r.summary.t_reached == r.state.t);
         BOOST_TEST(r.state.t > 0);
-        BOOST_TEST(r.state.t < 1);
+        BOOST_TEST(r.state.t < until);
         BOOST_TEST(is_finite(r.state));
       }
     }
@@ -66,7 +70,7 @@ BOOST_AUTO_TEST_CASE(an_exception_leaves_the_counts_of_what_was_done) {
       const BrokenRun r(method, break_forces);
       BOOST_TEST(r.summary.counts.force_evaluations == 40);
       BOOST_TEST(r.summary.counts.steps > 0);
-      BOOST_TEST(r.summary.counts.newton_iterations > 0);
+      BOOST_TEST((r.summary.counts.newton_iterations > 0) == method.implicit);
     }
   }
 }
@@ -78,7 +82,8 @@ BOOST_AUTO_TEST_CASE(after_an_exception_the_same_integrator_runs_again) {
       r.relay.after_force = nullptr;
       State state = r.problem.initial;
       BOOST_TEST(r.integrator->advance(state, 1).message == "");
-      BOOST_TEST(same(state, run(method, *r.system, r.problem.initial, 1, {.rtol = 1e-6}).state));
+      BOOST_TEST(
+          same(state, run(method, *r.system, r.problem.initial, 1, knobs_for(method)).state));
     }
   }
 }
@@ -97,16 +102,19 @@ BOOST_AUTO_TEST_CASE(a_force_that_becomes_no_number_ends_the_run_at_the_last_acc
         if (q[0] < 0.2) f[0] = NAN;
         if (++calls == 100000) budget.request_stop();
       };
-      const Run r = run(method, relay, p.initial, 1, {.rtol = 1e-6}, {}, budget.get_token());
+      const Run r = run(method, relay, p.initial, 1, knobs_for(method), {}, budget.get_token());
       const auto outcome = r.summary.outcome;
       BOOST_TEST((outcome == Outcome::not_finite || outcome == Outcome::step_too_small),
                  r.summary.message);
       BOOST_TEST(is_finite(r.state));
       BOOST_TEST(r.state.t == r.summary.t_reached);
       BOOST_TEST(r.state.t > 0.15);
-      BOOST_TEST(r.state.q[0] >= 0.2);
-      // Accepted states are on the motion, to 1000 times the tolerance (see the suite `sundials`).
-      BOOST_TEST(std::abs(r.state.q[0] - o.position(r.state.t)) < 1e-3);
+      // The end of a step is a sum and its last stage a solution: the same but for rounding.
+      BOOST_TEST(r.state.q[0] > 0.2 - 1e-15);
+      // Accepted states are where the method goes by itself, to 1000 times the tolerance (see the
+      // suite `sundials`), which with a constant step is that of Newton's iteration.
+      const State whole = run(method, *system, p.initial, r.state.t, knobs_for(method)).state;
+      BOOST_TEST(distance(r.state, whole) < (method.knob == Knob::rtol ? 1e-3 : 1e-7));
     }
   }
 }
@@ -118,10 +126,13 @@ BOOST_AUTO_TEST_CASE(a_message_of_sundials_reaches_the_summary_in_one_line) {
   relay.after_force = [](const Vec&, Vec& f) { f[0] = NAN; };
   for (const Method& method : methods_of(Family::sundials)) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Run r = run(method, relay, p.initial, 1, {.rtol = 1e-6});
+      const Run r = run(method, relay, p.initial, 1, knobs_for(method));
       BOOST_TEST(name(r.summary.outcome) == "not_finite");
-      BOOST_TEST(contains(r.summary.message, "t = 0 s"));
-      BOOST_TEST(contains(r.summary.message, std::string(advice(Outcome::not_finite))));
+      BOOST_TEST(contains(r.summary.message, " at t = 0 s: "));
+      for (const char* library : {"ARKODE", "CVODE", "IDA"}) {
+        const bool is_its = method.summary.find(library) != std::string::npos;
+        BOOST_TEST(contains(r.summary.message, std::string("(") + library + " ") == is_its);
+      }
       BOOST_TEST(!contains(r.summary.message, "\n"));
       BOOST_TEST(same(r.state, p.initial));
     }

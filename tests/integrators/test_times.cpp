@@ -51,7 +51,7 @@ bool repeats(const Method& method) {
   State first = h.problem.initial, second = h.problem.initial;
   const Summary a = integrator->advance(first, 0.503), b = integrator->advance(second, 0.503);
   BOOST_REQUIRE(a.message == "");
-  return same(first, second) && same(a.counts, b.counts) && a.t_reached == b.t_reached &&
+  return same(first, second) && a.counts == b.counts && a.t_reached == b.t_reached &&
          b.message == "";
 }
 
@@ -60,17 +60,18 @@ bool repeats(const Method& method) {
 BOOST_AUTO_TEST_CASE(every_method_lands_on_the_end_exactly_also_between_steps) {
   Hammock h;
   h.problem.initial.t = 0.7;
-  // 10, 10.3 and almost 11 steps; a start and an end that are no binary fractions.
-  for (const double t_end : {1.7, 1.73, 0.7 + 1.0999}) {
+  // 10, 10.3 and almost 11 steps, not too long for Newton's iteration without a line search; a
+  // start and an end that are no binary fractions.
+  for (const double t_end : {1.2, 1.215, 0.7 + 0.54995}) {
     for (const Method& method : general_methods()) {
       BOOST_TEST_CONTEXT(method.name << " to " << t_end) {
-        const Run r = h.run(method, t_end, knobs_of(method, 0.1, 1e-4));
+        const Run r = h.run(method, t_end, knobs_of(method, 0.05, 1e-4));
         if (r.summary.outcome == Outcome::diverged) continue;
         BOOST_TEST(r.summary.message == "");
         BOOST_TEST(r.state.t == t_end);
         BOOST_TEST(r.summary.t_reached == t_end);
         if (method.knob == Knob::step_size)
-          BOOST_TEST(r.summary.counts.steps == (t_end > 1.7 ? 11 : 10));
+          BOOST_TEST(r.summary.counts.steps == (t_end > 1.2 ? 11 : 10));
       }
     }
   }
@@ -96,7 +97,7 @@ BOOST_AUTO_TEST_CASE(a_run_to_its_own_start_changes_nothing) {
       const Run r = h.run(method, 2.5, knobs_of(method, 0.1, 1e-4));
       BOOST_TEST(r.summary.message == "");
       BOOST_TEST(same(r.state, h.problem.initial));
-      BOOST_TEST(same(r.summary.counts, Counts{}));
+      BOOST_TEST(r.summary.counts == (Counts{}));
     }
   }
 }
@@ -124,7 +125,7 @@ BOOST_AUTO_TEST_CASE(an_observer_at_the_ends_of_steps_changes_nothing) {
       const Run watched = h.run(method, 1, knobs, {{0.25, 0.5, 1}, notes.see});
       const Run alone = h.run(method, 1, knobs);
       BOOST_TEST(same(watched.state, alone.state));
-      BOOST_TEST(same(watched.summary.counts, alone.summary.counts));
+      BOOST_TEST(watched.summary.counts == alone.summary.counts);
     }
   }
 }
