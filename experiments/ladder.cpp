@@ -46,6 +46,8 @@ class Stagnation {
  public:
   bool after(const Point& point) {
     if (point.outcome != Outcome::reached_end) return false;
+    // Steps that are held to a stability limit do not answer to the tolerance yet.
+    if (2 * point.counts.stability_limited_steps > point.counts.steps) return false;
     const double error = point.errors.position;
     idle_ = error > 0.8 * best_ ? idle_ + 1 : 0;
     best_ = std::min(best_, error);

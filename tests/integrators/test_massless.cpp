@@ -21,7 +21,7 @@ Vec line(int dimension) { return dimension == 1 ? Vec{{1}} : Vec{{1 / 3., 2 / 3.
 Problem two_springs(int dimension) {
   const Vec u = line(dimension);
   Problem p{{.dimension = dimension, .gravity = g * in_space(u)}, {}};
-  p.network.node_mass = Eigen::Vector2d(0, mass);
+  p.network.node_mass = Vec{{0, mass}};
   p.network.anchors = {{0, {0, 0, 0}, {k1, l1}}};
   p.network.links = {{0, 1, {k2, l2}}};
   p.initial = {0, Vec(2 * dimension), Vec::Zero(2 * dimension)};
@@ -199,8 +199,8 @@ BOOST_AUTO_TEST_CASE(a_massless_node_whose_forces_balance_nowhere_is_refused) {
   // f = -1 - q^2 has no root, and 1 N on a node without springs is not balanced anywhere.
   const Problem p = [] {
     Problem of_two = Oscillator().problem();
-    of_two.network.node_mass = Eigen::Vector2d(1, 0);
-    of_two.network.load = Eigen::Vector2d(0, 1);
+    of_two.network.node_mass = Vec{{1, 0}};
+    of_two.network.load = Vec{{0, 1}};
     of_two.initial = {0, Vec::Ones(2), Vec::Zero(2)};
     return of_two;
   }();

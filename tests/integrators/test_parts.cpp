@@ -106,6 +106,7 @@ BOOST_AUTO_TEST_CASE(an_observer_sees_all_parts_at_the_same_time) {
 
 BOOST_AUTO_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed) {
   for (const Method& method : methods()) {
+    if (method.needs_split) continue;  // which the piece that gives up has not
     BOOST_TEST_CONTEXT(method.name) {
       std::vector<Piece> pieces = pieces_for(method);
       pieces.insert(pieces.begin(), giving_up(-0.2, "no more"));
