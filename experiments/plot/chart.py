@@ -177,7 +177,7 @@ class Chart:
                 *zip(*piece),
                 color=look.color,
                 linestyle=look.family.line,
-                linewidth=1.6,
+                linewidth=look.family.width,
                 zorder=3,
                 **look.marker_style(),
             )

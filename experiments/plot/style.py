@@ -47,12 +47,16 @@ class Family:
     colors: tuple
     line: object
     filled: bool
+    width: float = 1.6
 
 
 FAMILIES = {
     "hand-written": Family("hand-written", WARM, "-", True),
     "sundials": Family("SUNDIALS", COOL, (0, (4, 1.8)), False),
 }
+# The stock way of a method of SUNDIALS, by the end of its name: its own colour, dotted.
+STOCK_SUFFIX = "_klu"
+STOCK = Family("its stock way, KLU", COOL, (0, (1, 1.4)), False, 1.1)
 
 
 def family_look(name):
@@ -75,8 +79,9 @@ class Look:
         luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
         return to_hex([c * min(1.0, 0.42 / max(luminance, 1e-9)) for c in rgb])
 
-    def marker_style(self, size=5.5):
+    def marker_style(self, size=None):
         """The keyword arguments of a matplotlib line that draw the marker."""
+        size = size or 5.5 * min(1.0, self.family.width / 1.4)
         face = self.color if self.family.filled else "white"
         return {
             "marker": self.marker,
@@ -91,11 +96,16 @@ def assign_looks(family_of_method):
     """A look for each method, by its place among the methods of its family.
 
     Colours and markers advance together; their counts have no common divisor, so a pair comes
-    back only after their product (42 methods of one family).
+    back only after their product (42 methods of one family). A stock way looks like the method
+    it belongs to, but for its line.
     """
     seen = {}
     looks = {}
     for method, name in family_of_method.items():
+        if method.removesuffix(STOCK_SUFFIX) in looks:
+            own = looks[method.removesuffix(STOCK_SUFFIX)]
+            looks[method] = Look(own.color, own.marker, STOCK)
+            continue
         index = seen.get(name, 0)
         seen[name] = index + 1
         family = family_look(name)

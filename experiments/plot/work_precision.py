@@ -14,7 +14,7 @@ import measurements
 from band import draw_band
 from chart import Chart
 from sheet import Sheet
-from style import FAINT, assign_looks, family_look, number, use_style
+from style import FAINT, assign_looks, number, use_style
 
 WIDTH = 10.0
 MARGIN = 0.15
@@ -43,16 +43,15 @@ def draw_header(sheet, scene, until):
     sheet.text(MARGIN, 0.54, subtitle, size=10, color=FAINT, va="center")
 
 
-def key_line(name):
+def key_line(family):
     """A sample of the lines of a family."""
-    family = family_look(name)
     color = family.colors[0]
     return Line2D(
         [],
         [],
         color=color,
         linestyle=family.line,
-        linewidth=1.6,
+        linewidth=family.width,
         marker="o",
         markerfacecolor=color if family.filled else "white",
         markeredgewidth=1.2,
@@ -60,13 +59,13 @@ def key_line(name):
     )
 
 
-def draw_key(sheet, runs):
+def draw_key(sheet, looks):
     """How the lines of each family look."""
-    lines = [key_line(name) for name in sorted({run.family for run in runs})]
+    lines = [key_line(family) for family in dict.fromkeys(look.family for look in looks.values())]
     sheet.figure.legend(
         handles=lines,
         loc="center right",
-        bbox_to_anchor=(1 - RIGHT / sheet.width, 1 - 0.54 / sheet.height),
+        bbox_to_anchor=(1 - RIGHT / sheet.width, 1 - 0.25 / sheet.height),
         ncol=max(1, len(lines)),
         frameon=False,
         fontsize=10,
@@ -86,7 +85,7 @@ def draw(runs, front, reference, fallback_scene):
     sheet = Sheet(WIDTH, strip_top + failures.strip_height(failed))
     scene = reference.scene or (runs[0].scene if runs else "") or fallback_scene
     draw_header(sheet, scene, reference.until)
-    draw_key(sheet, runs)
+    draw_key(sheet, looks)
     axes = sheet.axes(LEFT, axes_top, WIDTH - LEFT - RIGHT, axes_height(runs))
     chart = Chart(axes, runs, reference, looks)
     chart.draw()
