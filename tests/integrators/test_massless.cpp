@@ -21,7 +21,7 @@ Vec line(int dimension) { return dimension == 1 ? Vec{{1}} : Vec{{1 / 3., 2 / 3.
 Problem two_springs(int dimension) {
   const Vec u = line(dimension);
   Problem p{{.dimension = dimension, .gravity = g * in_space(u)}, {}};
-  p.network.node_mass = Eigen::Vector2d(0, mass);
+  p.network.node_mass = Vec{{0, mass}};
   p.network.anchors = {{0, {0, 0, 0}, {k1, l1}}};
   p.network.links = {{0, 1, {k2, l2}}};
   p.initial = {0, Vec(2 * dimension), Vec::Zero(2 * dimension)};
@@ -197,6 +197,20 @@ BOOST_AUTO_TEST_CASE(a_massless_node_drawn_out_of_balance_is_brought_to_it_and_m
           BOOST_TEST(distance(other.state, r.state) < 1000 * rtol * 10);
         }
       }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(where_all_nodes_are_massless_all_are_at_rest_in_balance) {
+  Problem p = Oscillator().problem();
+  p.network.node_mass.setZero();
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : accepting(Knob::rtol)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *system, p.initial, 1, {.rtol = 1e-6});
+      BOOST_TEST(r.summary.message == "");
+      BOOST_TEST(std::abs(r.state.q[0]) < 1e-6);
+      BOOST_TEST(r.state.v[0] == 0);
     }
   }
 }
