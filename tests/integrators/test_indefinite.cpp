@@ -40,9 +40,7 @@ constexpr double t_end = 1;  // s, of a period of 1.2 s
 constexpr double compressed = 0.35, in_tension = 1.1;
 
 // In one period errors come to a few tolerances, with BDF to fifty (see the suite `sundials`).
-double largest_factor(const Method& method) {
-  return method.name.starts_with("arkode") ? 20 : 200;
-}
+double largest_factor(const Method& method) { return method.name.starts_with("arkode") ? 20 : 200; }
 
 }  // namespace
 
