@@ -9,9 +9,10 @@ namespace qddot {
 
 // Runs a system whose parts no force couples (System::parts): each by an integrator of its own,
 // with steps of its own where the method is adaptive, as one run with one outcome. Counts and
-// seconds are the sums over the parts. Where a part fails, the others are brought to the time that it reached; of
-// several that fail the earliest decides. A run that is stopped from outside ends where all were
-// last together, at its start or an observer's time: there is no time to bring them farther.
+// seconds are the sums over the parts. Where a part fails, the others are brought to the time that
+// it reached; of several that fail the earliest decides. A run that is stopped from outside ends
+// where all were last together, at its start or an observer's time: there is no time to bring them
+// farther.
 class Parts final : public Integrator {
  public:
   Parts(const Method& method, const System& system, const Knobs& knobs);

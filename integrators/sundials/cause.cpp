@@ -34,7 +34,7 @@ const char* what_happened(Cause cause) {
     case Cause::setup:
       return "the matrix of Newton's iteration, M - gamma^2 K, is singular";
     case Cause::force:
-      return "a force is no finite number, however small the step";
+      return "a force within the next step is no finite number";
     case Cause::first_force:
       return "a force is no finite number";
     case Cause::consistent_start:

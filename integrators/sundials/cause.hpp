@@ -10,7 +10,7 @@ enum class Cause {
   accuracy,          // the tolerances ask for more than rounding allows
   convergence,       // Newton's iteration did not converge however short the step
   setup,             // no factors could be made
-  force,             // f or K is not finite however short the step
+  force,             // f or K is not finite within the next step, a shorter one where that is tried
   first_force,       // f is not finite at the start
   consistent_start,  // no positions of massless nodes were found that balance them
   fast_steps,        // the small steps inside a large one failed

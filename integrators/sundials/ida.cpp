@@ -7,8 +7,11 @@
 // M may be singular. Of a massless node, 0 = f is a constraint on its position, and its velocity is
 // that of index 2: v = q'. Both follow from the other nodes, so they are algebraic to IDA and left
 // out of its error test (Brenan, Campbell, Petzold, Numerical Solution of IVPs in DAEs, section
-// 5.2). The start is made consistent: IDACalcIC finds the position, and the velocity is that in
-// which f stays zero, 0 = (K v)_massless.
+// 5.2). The start is made consistent: IDACalcIC finds the position. There and at the ends of a run
+// the velocity is that in which f stays zero, 0 = (K v)_massless.
+#include <algorithm>
+#include <limits>
+
 #include <fmt/format.h>
 #include <ida/ida.h>
 
@@ -33,8 +36,7 @@ class Ida final : public Stepper {
     check(IDASetErrHandlerFn(ida(), keep_message, self), "IDASetErrHandlerFn");
     check(IDAInit(ida(), residual, 0, y(), rate_.get()), "IDAInit");
     check(IDASetUserData(ida(), self), "IDASetUserData");
-    ignore_velocities_of_massless();
-    check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
+    set_tolerances(rounding_of_velocities());
     check(IDASetLinearSolver(ida(), matrix().solver(), matrix().matrix()), "IDASetLinearSolver");
     check(IDASetJacFn(ida(), jacobian), "IDASetJacFn");
     if (knobs.max_order > 0) {
@@ -52,13 +54,22 @@ class Ida final : public Stepper {
  private:
   void* ida() const { return memory_.get(); }
 
-  // Leaves v = q' of massless nodes out of Newton's test: rounding of q makes it uncertain by
-  // eps |q|/h, which in the first steps can be more than any tolerance, and nothing depends on it.
-  void ignore_velocities_of_massless() {
+  // Sets the tolerances, that of the velocities of massless nodes to at least so much [m/s].
+  void set_tolerances(double of_massless) {
     Halves absolute(atol());
     for (Index i = 0; i < system().size(); ++i) {
-      if (system().mass()[i] == 0) absolute.v[i] = 1e30;
+      if (system().mass()[i] == 0) absolute.v[i] = std::max(atol_of_velocities(), of_massless);
     }
+    check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
+  }
+  double atol_of_velocities() const {
+    return knobs().atol > 0 ? knobs().atol : rtol() * knobs().speed;
+  }
+
+  // Rounding of q makes v = q' of a massless node uncertain by eps |q|/h. The first steps are about
+  // h = rtol |q|/|v|, so that this can be more than the tolerance; times some that they shorten.
+  double rounding_of_velocities() const {
+    return 1e3 * std::numeric_limits<double>::epsilon() / rtol() * knobs().speed;
   }
 
   void start(const State& state) override {
@@ -90,11 +101,17 @@ class Ida final : public Stepper {
       if (const int flag = make_consistent(t_start, t_stop); flag < 0) return flag;
       is_consistent_ = true;
     }
-    return IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
+    const int flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
+    // What is seen: a last step that is short leaves q' of massless nodes as a difference of
+    // positions which are all good to the tolerance.
+    if (flag >= 0 && t == t_stop && system().has_massless()) follow();
+    return flag;
   }
 
   int make_consistent(double t_start, double t_stop) {
+    set_tolerances(1e30);  // whatever q' is beside the positions found, follow() is to say
     const int flag = IDACalcIC(ida(), IDA_YA_YDP_INIT, t_stop);
+    set_tolerances(rounding_of_velocities());
     if (flag < 0) return flag;
     check(IDAGetConsistentIC(ida(), y(), rate_.get()), "IDAGetConsistentIC");
     follow();
@@ -107,7 +124,8 @@ class Ida final : public Stepper {
   // so large a mass that they keep theirs to rounding, (a M - K) x = a M v.
   void follow() {
     Halves at(y());
-    const SymmetricMatrix& k = stiffness_at(at.q);
+    SymmetricMatrix k = system().stiffness_pattern();  // for Newton's matrix keeps the one it is of
+    stiffness(at.q, k);
     const double stiffest = k.coeffs().cwiseAbs().maxCoeff();
     const double heaviest = system().mass().maxCoeff();  // 0 where there are no other nodes
     const double a = heaviest > 0 ? 1e18 * stiffest / heaviest : 0;

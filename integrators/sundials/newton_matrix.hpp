@@ -9,8 +9,8 @@ namespace qddot::sundials {
 
 // The matrix of SUNDIALS' Newton iterations on y = (q, v), and the solver with it. SUNDIALS decides
 // when it is made anew and from which K; to SUNDIALS itself it is a SUNMatrix without entries and a
-// SUNLinearSolver that knows them. K is borrowed and must not change between set_... and the
-// set-up that follows.
+// SUNLinearSolver that knows them. K is borrowed and must not change between set_... and the last
+// solve with the factors made of it, which may look at what is left of the right-hand side.
 class NewtonMatrix {
  public:
   explicit NewtonMatrix(SUNContext context);

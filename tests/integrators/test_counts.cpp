@@ -129,6 +129,12 @@ BOOST_AUTO_TEST_CASE(implicit_euler_takes_what_its_iterations_take_where_k_chang
                           .newton_iterations = c.newton_iterations}));
 }
 
+BOOST_AUTO_TEST_CASE(counts_are_added_one_by_one) {
+  Counts sum{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  sum += {100, 200, 300, 400, 500, 600, 700, 800, 900, 1000, 1100};
+  BOOST_TEST(sum == (Counts{101, 202, 303, 404, 505, 606, 707, 808, 909, 1010, 1111}));
+}
+
 BOOST_AUTO_TEST_CASE(every_method_counts_each_call_that_reaches_the_system) {
   const Problem p = hammock(3);
   const auto system = make_mass_spring(p.network);

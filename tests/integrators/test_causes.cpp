@@ -1,0 +1,156 @@
+#include <set>
+
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/sundials/cause.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(causes)
+
+namespace {
+
+using qddot::sundials::Cause;
+
+constexpr Cause all_causes[] = {
+    Cause::error_test,    Cause::accuracy,    Cause::convergence,      Cause::setup,
+    Cause::force,         Cause::first_force, Cause::consistent_start, Cause::fast_steps,
+    Cause::end_too_close, Cause::other};
+
+// Whether the message is "<what happened> at t = ... s: <what to turn> (FLAG...)" of that cause.
+bool says(const Run& r, Cause cause, const Method& method) {
+  const std::string& text = r.summary.message;
+  const std::string begin = std::string(qddot::sundials::what_happened(cause)) + " at t = ";
+  const std::string turn = std::string(" s: ") +
+                           qddot::sundials::what_to_turn(cause, method.knob == Knob::step_size) +
+                           " (";
+  return r.summary.outcome == qddot::sundials::outcome_of(cause) && text.starts_with(begin) &&
+         text.find(turn) != std::string::npos && text.ends_with(")") &&
+         text.find('\n') == std::string::npos;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(every_cause_has_a_sentence_and_an_outcome_of_its_own_kind) {
+  std::set<std::string> sentences;
+  for (const Cause cause : all_causes) {
+    sentences.insert(qddot::sundials::what_happened(cause));
+    BOOST_TEST((qddot::sundials::outcome_of(cause) != Outcome::reached_end));
+    for (const bool is_fixed : {false, true}) {
+      BOOST_TEST(std::string(qddot::sundials::what_to_turn(cause, is_fixed)).size() > 10);
+    }
+  }
+  BOOST_TEST(sentences.size() == std::size(all_causes));
+  // A knob is named where the method has it.
+  for (const Cause cause : {Cause::convergence, Cause::setup}) {
+    BOOST_TEST(
+        std::string(qddot::sundials::what_to_turn(cause, true)).starts_with("lower --step-size"));
+    BOOST_TEST(
+        std::string(qddot::sundials::what_to_turn(cause, false)).starts_with("lower --rtol"));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_motion_that_collapses_fails_the_error_test) {
+  // f = -1/q^2 draws a mass to 0 in finite time, where there is no motion any more.
+  const Problem p = Oscillator().problem();
+  const auto system = make_mass_spring(p.network);
+  Relay relay(*system);
+  relay.after_force = [](const Vec& q, Vec& f) { f[0] = q[0] > 0 ? -1 / (q[0] * q[0]) : NAN; };
+  relay.after_stiffness = [](const Vec& q, SymmetricMatrix& k) {
+    k.coeffRef(0, 0) = 2 / (q[0] * q[0] * q[0]);
+  };
+  int failed_tests = 0;
+  for (const Method& method : methods_of(Family::sundials, Knob::rtol)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, relay, p.initial, 10, {.rtol = 1e-6});
+      failed_tests += says(r, Cause::error_test, method);
+      // Some follow it up to a speed that is none, and an explicit method may step beyond 0 and is
+      // not allowed another try.
+      BOOST_TEST((says(r, Cause::error_test, method) || says(r, Cause::force, method) ||
+                  r.summary.outcome == Outcome::diverged),
+                 r.summary.message);
+      BOOST_TEST(r.state.q[0] > 0);
+      BOOST_TEST(r.state.t < 1);
+    }
+  }
+  BOOST_TEST(failed_tests >= 8);
+}
+
+BOOST_AUTO_TEST_CASE(a_long_step_on_a_strongly_nonlinear_scene_does_not_converge) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : methods_of(Family::sundials, Knob::step_size)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *system, p.initial, 100, {.step_size = 10});
+      BOOST_TEST(says(r, Cause::convergence, method), r.summary.message);
+      BOOST_TEST(r.state.t < 100);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(more_digits_than_there_are_are_refused) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : methods_of(Family::sundials, Knob::rtol)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *system, p.initial, 1, {.rtol = 1e-17});
+      BOOST_TEST(says(r, Cause::accuracy, method), r.summary.message);
+      BOOST_TEST(same(r.state, p.initial));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_end_below_rounding_is_refused) {
+  Problem p = hammock(2);
+  p.initial.t = 1e9;
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : methods_of(Family::sundials, Knob::rtol)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const double t_end = std::nextafter(1e9, 2e9);
+      const Run r = run(method, *system, p.initial, t_end, {.rtol = 1e-6});
+      BOOST_TEST(says(r, Cause::end_too_close, method), r.summary.message);
+      BOOST_TEST(same(r.state, p.initial));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_stiffness_that_is_no_number_ends_the_run_where_it_starts) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  Relay relay(*system);
+  relay.after_stiffness = [](const Vec&, SymmetricMatrix& k) { k.coeffs().setConstant(NAN); };
+  for (const Method& method : methods_of(Family::sundials)) {
+    if (!method.implicit) continue;
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, relay, p.initial, 1, knobs_of(method, 0.01, 1e-6));
+      BOOST_TEST((says(r, Cause::convergence, method) || says(r, Cause::force, method)),
+                 r.summary.message);
+      BOOST_TEST(same(r.state, p.initial));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_is_named_from_the_first_on) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : methods_of(Family::sundials)) {
+    for (const int first_bad : {1, 30}) {
+      BOOST_TEST_CONTEXT(method.name << " from the force " << first_bad << " on") {
+        Relay relay(*system);
+        relay.after_force = [&, calls = 0](const Vec&, Vec& f) mutable {
+          if (++calls >= first_bad) f[0] = NAN;
+        };
+        const Run r = run(method, relay, p.initial, 1, knobs_of(method, 0.01, 1e-6));
+        // IDA tries shorter steps also from the start.
+        const bool is_first = first_bad == 1 && !method.name.starts_with("ida");
+        BOOST_TEST(says(r, is_first ? Cause::first_force : Cause::force, method),
+                   r.summary.message);
+        BOOST_TEST((r.state.t > 0) == (first_bad > 1));
+        BOOST_TEST(is_finite(r.state));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

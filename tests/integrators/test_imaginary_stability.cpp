@@ -1,0 +1,199 @@
+#include <complex>
+
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/sundials/arkode.hpp"
+#include "integrators/sundials/imaginary_stability.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(imaginary_stability)
+
+namespace {
+
+using namespace qddot::sundials;
+
+ButcherTable erk_table(ARKODE_ERKTableID id) {
+  return ButcherTable(check(ARKodeButcherTable_LoadERK(id)));
+}
+
+// The tables of arkode_erk2 ... arkode_erk8.
+struct Named {
+  const char* method;
+  ARKODE_ERKTableID id;
+};
+constexpr Named tables[] = {
+    {"arkode_erk2", ARKODE_HEUN_EULER_2_1_2}, {"arkode_erk3", ARKODE_BOGACKI_SHAMPINE_4_2_3},
+    {"arkode_erk4", ARKODE_ZONNEVELD_5_3_4},  {"arkode_erk5", ARKODE_DORMAND_PRINCE_7_4_5},
+    {"arkode_erk6", ARKODE_VERNER_8_5_6},     {"arkode_erk8", ARKODE_FEHLBERG_13_7_8}};
+
+// |1 + z + ... + z^p / p!| at z = iy: R of every table whose formula has as many stages as order p.
+double exponential_series(int p, double y) {
+  std::complex<double> sum = 1, term = 1;
+  for (int k = 1; k <= p; ++k) sum += term *= std::complex<double>(0, y / k);
+  return std::abs(sum);
+}
+
+// The y > 0 at which a function that grows there passes `value`.
+template <class Function>
+double where(const Function& f, double value, double low, double high) {
+  for (int halvings = 0; halvings < 60; ++halvings) {
+    const double middle = (low + high) / 2;
+    (f(middle) < value ? low : high) = middle;
+  }
+  return low;
+}
+
+constexpr double growth = 1e-3, resolution = 1e-3;  // as imaginary_stability() says
+
+// A chain of 100 masses that starts at rest, drawn as its slowest mode, whose frequency is
+// 1/64 of w_max: the others move by rounding alone.
+constexpr double rtol = 1e-3;
+constexpr int masses = 100;
+constexpr double mass = 1e-3, stiffness = 1e3;
+const double gershgorin = 2 * std::sqrt(stiffness / mass);
+double frequency(int j) {
+  return 2 * std::sqrt(stiffness / mass) * std::sin(j * M_PI / (2 * (masses + 1)));
+}
+struct SmoothChain {
+  std::unique_ptr<System> system = make_mass_spring(linear_chain(masses, mass, stiffness));
+  State at(double t) const {
+    State s{t, Vec::LinSpaced(masses, 1, masses), Vec(masses)};
+    const Vec shape = Vec::NullaryExpr(
+        masses, [](Index i) { return std::sin(static_cast<double>(i + 1) * M_PI / (masses + 1)); });
+    s.q += std::cos(frequency(1) * t) * shape;
+    s.v = -frequency(1) * std::sin(frequency(1) * t) * shape;
+    return s;
+  }
+  double t_end = 5 * 2 * M_PI / frequency(1);
+
+  // What a run costs, and the larger of its errors in q [m] and v [m/s].
+  struct Ending {
+    Counts counts;
+    double error;
+  };
+  Ending run_by(const Method& method) const {
+    const Run r = run(method, *system, at(0), t_end, {.rtol = rtol});
+    BOOST_TEST(r.summary.message == "");
+    return {r.summary.counts, distance(r.state, at(t_end))};
+  }
+};
+using Ending = SmoothChain::Ending;
+
+// The same methods without the bound on their steps.
+template <ARKODE_ERKTableID id>
+class Unbounded final : public Arkode {
+ public:
+  Unbounded(const Method& method, const System& system, const Knobs& knobs)
+      : Arkode(method, system, knobs, {.explicit_table = erk_table(id).get()}, right_hand_side,
+               nullptr, nullptr, system) {}
+};
+template <ARKODE_ERKTableID id>
+Method unbounded(const char* name) {
+  Method method = method_named(name);
+  method.make = create<Unbounded<id>>;
+  return method;
+}
+std::vector<Method> unbounded_methods() {
+  return {unbounded<ARKODE_HEUN_EULER_2_1_2>("arkode_erk2"),
+          unbounded<ARKODE_BOGACKI_SHAMPINE_4_2_3>("arkode_erk3"),
+          unbounded<ARKODE_ZONNEVELD_5_3_4>("arkode_erk4"),
+          unbounded<ARKODE_DORMAND_PRINCE_7_4_5>("arkode_erk5"),
+          unbounded<ARKODE_VERNER_8_5_6>("arkode_erk6"),
+          unbounded<ARKODE_FEHLBERG_13_7_8>("arkode_erk8")};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(the_amplification_is_the_series_of_exp_where_stages_are_as_many_as_the_order) {
+  struct {
+    ARKODE_ERKTableID id;
+    int p;
+  } const cases[] = {{ARKODE_HEUN_EULER_2_1_2, 2},
+                     {ARKODE_BOGACKI_SHAMPINE_4_2_3, 3},
+                     {ARKODE_ZONNEVELD_5_3_4, 4}};
+  for (const auto& [id, p] : cases) {
+    const ButcherTable table = erk_table(id);
+    for (const double y : {0.0, 0.1, 1.0, 2.0, 5.0, 30.0}) {
+      const double expected = exponential_series(p, y);
+      // Rounding of some ten terms.
+      BOOST_TEST(std::abs(amplification(*table, y) - expected) < 1e-14 * (1 + expected));
+      if (y > 0.5) {
+        BOOST_TEST(std::abs(amplification(*table, y) - exponential_series(p + 1, y)) >
+                   1e-4);  // noticed
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(limits_are_those_of_the_literature_and_what_a_thousandth_of_growth_adds) {
+  // Of order 4, |R|^2 = 1 - y^6/72 + y^8/576 is 1 at y = 2 sqrt 2; of order 3,
+  // 1 - y^4/12 + y^6/36 at y = sqrt 3; of order 2, 1 + y^4/4 only at 0.
+  struct {
+    ARKODE_ERKTableID id;
+    int p;
+    double limit;
+  } const cases[] = {{ARKODE_HEUN_EULER_2_1_2, 2, 0},
+                     {ARKODE_BOGACKI_SHAMPINE_4_2_3, 3, std::sqrt(3)},
+                     {ARKODE_ZONNEVELD_5_3_4, 4, 2 * std::sqrt(2)}};
+  for (const auto& [id, p, limit] : cases) {
+    BOOST_TEST_CONTEXT("order " << p) {
+      const auto series = [p = p](double y) { return exponential_series(p, y); };
+      const double with_growth = where(series, 1 + growth, std::max(limit, 1e-3), limit + 1);
+      const double found = qddot::sundials::imaginary_stability(*erk_table(id));
+      BOOST_TEST(found <= with_growth);
+      BOOST_TEST(found >= with_growth - resolution);
+      BOOST_TEST(with_growth > limit);
+      // y^4/8 = 1e-3 of order 2; the slope of |R| at the limit is 0.29 and 1.9.
+      BOOST_TEST(with_growth - limit < (p == 2 ? 0.3 : 0.01));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(up_to_its_limit_no_table_lets_a_vibration_grow_and_beyond_it_does) {
+  for (const auto& [method, id] : tables) {
+    BOOST_TEST_CONTEXT(method) {
+      const ButcherTable table = erk_table(id);
+      BOOST_TEST(table->q == method_named(method).order);
+      const double limit = qddot::sundials::imaginary_stability(*table);
+      BOOST_TEST(limit > 0.1);
+      BOOST_TEST(limit < 2 * table->stages);
+      for (double y = 0; y <= limit; y += resolution / 7) {
+        if (amplification(*table, y) > 1 + growth + 1e-6) BOOST_ERROR("grows at " << y);
+      }
+      BOOST_TEST(amplification(*table, limit + 1.01 * resolution) > 1 + growth);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(explicit_methods_hold_their_steps_to_the_limit_of_the_stiffest_mode) {
+  const SmoothChain chain;
+  for (const auto& [name, id] : tables) {
+    BOOST_TEST_CONTEXT(name) {
+      const Ending bounded = chain.run_by(method_named(name));
+      const double longest = qddot::sundials::imaginary_stability(*erk_table(id)) / gershgorin;
+      // The mean step is below the limit, most steps are held to it, and none is in vain.
+      BOOST_TEST(static_cast<double>(bounded.counts.steps) * longest >= chain.t_end);
+      BOOST_TEST(static_cast<double>(bounded.counts.steps) * longest < 1.5 * chain.t_end);
+      BOOST_TEST(bounded.counts.stability_limited_steps > bounded.counts.steps / 2);
+      BOOST_TEST(bounded.counts.rejected == 0);
+      // In speeds of up to 31 m/s.
+      BOOST_TEST(bounded.error < 10 * rtol);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(without_that_bound_the_stiffest_modes_grow_until_the_error_test_sees_them) {
+  const SmoothChain chain;
+  for (const Method& method : unbounded_methods()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Ending free = chain.run_by(method), bounded = chain.run_by(method_named(method.name));
+      BOOST_TEST(free.counts.stability_limited_steps == 0);
+      BOOST_TEST(free.counts.rejected > 0);
+      BOOST_TEST(free.error > 10 * bounded.error);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,96 @@
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(indefinite)
+
+namespace {
+
+constexpr int masses = 5;
+constexpr double stiffness = 100;
+
+// A straight column of unit masses and springs along x, each 1/ratio times as long as its room of
+// 1 m. It swings along itself in its slowest mode, which stays linear. For ratios below 1 it would
+// buckle at rates of up to 2 sqrt(k (1/ratio - 1)) = 27/s, but that nothing pushes it off its line,
+// not even rounding: M - gamma^2 K is indefinite where gamma is above 1/27 s.
+struct Column {
+  explicit Column(double ratio) {
+    Problem p{{.dimension = 2, .node_mass = Vec::Ones(masses)}, {}};
+    const SpringLaw law{.stiffness = stiffness, .rest_length = 1 / ratio};
+    p.network.anchors = {{0, {0, 0, 0}, law}, {masses - 1, in_space((masses + 1) * u), law}};
+    for (int i = 0; i + 1 < masses; ++i) p.network.links.push_back({i, i + 1, law});
+    system = make_mass_spring(p.network);
+  }
+  State at(double t) const {
+    const double w = 2 * std::sqrt(stiffness) * std::sin(M_PI / (2 * (masses + 1)));
+    State s{t, Vec(2 * masses), Vec(2 * masses)};
+    for (int i = 0; i < masses; ++i) {
+      const double shape = 0.2 * std::sin((i + 1) * M_PI / (masses + 1));
+      s.q.segment<2>(2 * i) = (i + 1 + shape * std::cos(w * t)) * u;
+      s.v.segment<2>(2 * i) = -w * shape * std::sin(w * t) * u;
+    }
+    return s;
+  }
+  Vec u = Vec{{1, 0}};
+  std::unique_ptr<System> system;
+};
+constexpr double t_end = 1;  // s, of a period of 1.2 s
+constexpr double compressed = 0.35, in_tension = 1.1;
+
+// In one period errors come to a few tolerances, with BDF to fifty (see the suite `sundials`).
+double largest_factor(const Method& method) { return method.name.starts_with("arkode") ? 20 : 200; }
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(steps_on_a_compressed_column_are_right_with_indefinite_matrices) {
+  const Column column(compressed);
+  for (const Method& method : methods_of(Family::sundials, Knob::rtol)) {
+    if (!find_method(method.name + "_klu")) continue;
+    std::int64_t indefinite = 0;
+    for (const double rtol : {1e-2, 1e-3, 1e-4, 1e-5}) {
+      BOOST_TEST_CONTEXT(method.name << " at " << rtol) {
+        Run r = run(method, *column.system, column.at(0), t_end, {.rtol = rtol});
+        BOOST_TEST(r.summary.message == "");
+        BOOST_TEST(distance(r.state, column.at(t_end)) < largest_factor(method) * rtol);
+        indefinite += r.summary.counts.indefinite_factorizations;
+        // LU, which asks for no sign, takes the same steps.
+        const Run klu = run(method_named(method.name + "_klu"), *column.system, column.at(0), t_end,
+                            {.rtol = rtol});
+        r.summary.counts.indefinite_factorizations = 0;
+        BOOST_TEST(klu.summary.counts == r.summary.counts);
+        BOOST_TEST(distance(klu.state, r.state) < 1e-9);  // as in the suite `twins`
+      }
+    }
+    BOOST_TEST(indefinite > 0, method.name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(long_constant_steps_solve_their_equation_where_it_is_no_minimum) {
+  const Column column(compressed);
+  for (const double h : {0.1, 0.3, 1.0}) {
+    const State start = column.at(0);
+    const Run r =
+        run(method_named("arkode_implicit_euler"), *column.system, start, h, {.step_size = h});
+    BOOST_TEST(r.summary.message == "");
+    BOOST_TEST(r.summary.counts.indefinite_factorizations > 0);
+    const Vec a = force_at(*column.system, r.state.q);
+    // A tenth of Newton's 1e-10 of 5 m, times the 400/s^2 of the stiffest mode, times h.
+    BOOST_TEST(distance(r.state.v, start.v + h * a) < 1e-7);
+    BOOST_TEST(distance(r.state.q, start.q + h * r.state.v) < 1e-9);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(matrices_are_positive_where_springs_are_in_tension) {
+  const Column column(in_tension);
+  for (const Method& method : methods_of(Family::sundials)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *column.system, column.at(0), t_end, knobs_of(method, 0.1, 1e-2));
+      BOOST_TEST(r.summary.message == "");
+      BOOST_TEST(r.summary.counts.indefinite_factorizations == 0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

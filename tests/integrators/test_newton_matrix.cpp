@@ -1,0 +1,272 @@
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/sundials/newton_matrix.hpp"
+#include "integrators/sundials/vector.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(newton_matrix)
+
+namespace {
+
+using Eigen::MatrixXd;
+using namespace qddot::sundials;
+
+enum class Form { explicit_gamma, implicit_c };
+constexpr Form both_forms[] = {Form::explicit_gamma, Form::implicit_c};
+
+using Make = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext);
+
+// A Newton matrix of a system and the solver behind it, used as SUNDIALS does.
+class Solver {
+ public:
+  Solver(Make make, const System& system)
+      : x_(make_stock_vector(system.size(), context_.get())),
+        b_(clone(x_.get())),
+        matrix_(make(system, context_.get())) {}
+
+  int factorize(Form form, double gamma, const SymmetricMatrix& k) {
+    if (form == Form::explicit_gamma) matrix_->set_explicit_form(gamma, k);
+    if (form == Form::implicit_c) matrix_->set_implicit_form(1 / gamma, k);
+    return SUNLinSolSetup(matrix_->solver(), matrix_->matrix());
+  }
+  int try_to_solve(const Vec& b, Vec& x) {
+    Eigen::Map<Vec>(N_VGetArrayPointer(b_.get()), b.size()) = b;
+    const int flag = SUNLinSolSolve(matrix_->solver(), matrix_->matrix(), x_.get(), b_.get(), 0);
+    x = Eigen::Map<const Vec>(N_VGetArrayPointer(x_.get()), b.size());
+    return flag;
+  }
+  Vec solve(const Vec& b) {
+    Vec x;
+    BOOST_TEST_REQUIRE(try_to_solve(b, x) == 0);
+    return x;
+  }
+  std::int64_t indefinite() const { return matrix_->indefinite(); }
+
+ private:
+  Context context_ = make_context();
+  Vector x_, b_;
+  std::unique_ptr<NewtonMatrix> matrix_;
+};
+
+MatrixXd dense_mass(const System& system) { return system.mass().asDiagonal(); }
+
+// The 2n x 2n matrix as its definition has it.
+MatrixXd dense_matrix(Form form, const System& system, double gamma, const SymmetricMatrix& k) {
+  const Index n = system.size();
+  const MatrixXd one = MatrixXd::Identity(n, n);
+  MatrixXd a(2 * n, 2 * n);
+  if (form == Form::explicit_gamma) {
+    a << one, -gamma * one, -gamma * dense_mass(system).inverse() * dense(k), one;
+  } else {
+    a << one / gamma, -one, -dense(k), dense_mass(system) / gamma;
+  }
+  return a;
+}
+
+// M - gamma^2 K.
+MatrixXd effective(const System& system, double gamma, const SymmetricMatrix& k) {
+  return dense_mass(system) - gamma * gamma * dense(k);
+}
+bool is_indefinite(const MatrixXd& symmetric) {
+  return Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric).eigenvalues()[0] < 0;
+}
+double condition(const MatrixXd& a) {
+  const Vec sigma = Eigen::JacobiSVD<MatrixXd>(a).singularValues();
+  return sigma[0] / sigma[sigma.size() - 1];
+}
+
+// How far the solution of `solver` is from LU's of the dense matrix, as a multiple of what rounding
+// explains: eps, times the condition of the n x n matrix, times the 1/gamma by which differences of
+// the first half are divided to make the second, times the size of the solution.
+double roundings(Solver& solver, Form form, const System& system, double gamma,
+                 const SymmetricMatrix& k, const Vec& b) {
+  const MatrixXd a = dense_matrix(form, system, gamma, k);
+  const Vec x = a.fullPivLu().solve(b);
+  const double eps = std::numeric_limits<double>::epsilon();
+  const double worst =
+      eps * condition(effective(system, gamma, k)) * (1 + 1 / gamma) * x.lpNorm<Eigen::Infinity>();
+  return distance(solver.solve(b), x) / worst;
+}
+// Sums of up to 36 terms, and LU's own rounding.
+constexpr double most_roundings = 100;
+
+Vec random_vector(std::mt19937& random, Index n) {
+  std::normal_distribution<double> normal;
+  return Vec::NullaryExpr(n, [&] { return normal(random); });
+}
+
+// Two unit masses in 1D, of which a test gives K as it likes.
+Network two_masses() {
+  Network network{.dimension = 1, .node_mass = Vec::Ones(2)};
+  network.links = {{0, 1, {1}}};
+  return network;
+}
+
+// A unit mass at the end of a spring twice as long as its room of 1 m: across it, K = 1.
+Network strut() {
+  Network network{.dimension = 2, .node_mass = Vec::Ones(1)};
+  network.anchors = {{0, {0, 0, 0}, {.stiffness = 1, .rest_length = 2}}};
+  return network;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(both_solvers_solve_the_dense_system_in_both_forms) {
+  std::mt19937 random(1);
+  std::int64_t definite = 0, indefinite = 0;
+  for (const int dimension : {1, 2, 3}) {
+    for (const double stretch : {0.5, 0.9, 1.2}) {
+      const Problem p = random_network(random, dimension, 6, stretch);
+      const auto system = make_mass_spring(p.network);
+      const SymmetricMatrix k = stiffness_at(*system, p.initial.q);
+      Solver structured(make_structured, *system), klu(make_klu, *system);
+      for (const Form form : both_forms) {
+        for (const double gamma : {1e-3, 0.02, 0.1, 0.5}) {
+          BOOST_TEST_CONTEXT(dimension << "D, stretch " << stretch << ", gamma " << gamma) {
+            const bool is_not_positive = is_indefinite(effective(*system, gamma, k));
+            ++(is_not_positive ? indefinite : definite);
+            const std::int64_t before = structured.indefinite();
+            BOOST_TEST_REQUIRE(structured.factorize(form, gamma, k) == 0);
+            BOOST_TEST(structured.indefinite() - before == is_not_positive);
+            BOOST_TEST_REQUIRE(klu.factorize(form, gamma, k) == 0);
+            for (int sample = 0; sample < 3; ++sample) {
+              const Vec b = random_vector(random, 2 * system->size());
+              BOOST_TEST(roundings(structured, form, *system, gamma, k, b) < most_roundings);
+              BOOST_TEST(roundings(klu, form, *system, gamma, k, b) < most_roundings);
+            }
+          }
+        }
+      }
+      BOOST_TEST(klu.indefinite() == 0);  // which LU does not ask about
+    }
+  }
+  // Each kind is seen often.
+  BOOST_TEST(definite > 20);
+  BOOST_TEST(indefinite > 10);
+}
+
+BOOST_AUTO_TEST_CASE(factors_of_another_gamma_are_noticed) {
+  std::mt19937 random(2);
+  const Problem p = random_network(random, 2, 6, 1.2);
+  const auto system = make_mass_spring(p.network);
+  const SymmetricMatrix k = stiffness_at(*system, p.initial.q);
+  const Vec b = random_vector(random, 2 * system->size());
+  for (const Make make : {make_structured, make_klu}) {
+    for (const Form form : both_forms) {
+      Solver solver(make, *system);
+      solver.factorize(form, 0.1, k);
+      BOOST_TEST(roundings(solver, form, *system, 0.1, k, b) < most_roundings);
+      BOOST_TEST(roundings(solver, form, *system, 0.1001, k, b) > 1e6);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(massless_nodes_are_solved_for_in_the_implicit_form) {
+  std::mt19937 random(3);
+  for (const int dimension : {1, 2, 3}) {
+    Problem p = random_network(random, dimension, 6, 1.2);
+    p.network.node_mass[1] = p.network.node_mass[4] = 0;
+    const auto system = make_mass_spring(p.network);
+    const SymmetricMatrix k = stiffness_at(*system, p.initial.q);
+    Solver structured(make_structured, *system), klu(make_klu, *system);
+    for (const double gamma : {1e-3, 0.02, 0.5}) {
+      BOOST_TEST_CONTEXT(dimension << "D, gamma " << gamma) {
+        BOOST_TEST_REQUIRE(structured.factorize(Form::implicit_c, gamma, k) == 0);
+        BOOST_TEST_REQUIRE(klu.factorize(Form::implicit_c, gamma, k) == 0);
+        const Vec b = random_vector(random, 2 * system->size());
+        BOOST_TEST(roundings(structured, Form::implicit_c, *system, gamma, k, b) < most_roundings);
+        BOOST_TEST(roundings(klu, Form::implicit_c, *system, gamma, k, b) < most_roundings);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_singular_matrix_is_refused_so_that_a_smaller_step_is_tried) {
+  const auto compressed = make_mass_spring(strut());
+  const SymmetricMatrix k = stiffness_at(*compressed, Vec{{1, 0}});
+  Network loose = strut();
+  loose.node_mass.setZero();
+  loose.anchors.clear();
+  const auto nothing = make_mass_spring(loose);
+  for (const Form form : both_forms) {
+    // 1 - gamma^2 K = 0 across the spring, exactly.
+    Solver structured(make_structured, *compressed), klu(make_klu, *compressed);
+    BOOST_TEST(structured.factorize(form, 1, k) == 1);
+    BOOST_TEST(structured.indefinite() == 0);
+    BOOST_TEST(klu.factorize(form, 1, k) != 0);
+    BOOST_TEST(structured.factorize(form, 0.5, k) == 0);
+    BOOST_TEST(structured.indefinite() == 0);
+    BOOST_TEST(structured.factorize(form, 2, k) == 0);
+    BOOST_TEST(structured.indefinite() == 1);
+  }
+  // A massless node on no spring.
+  Solver structured(make_structured, *nothing), klu(make_klu, *nothing);
+  const SymmetricMatrix zero = stiffness_at(*nothing, Vec::Zero(2));
+  BOOST_TEST(structured.factorize(Form::implicit_c, 1, zero) == 1);
+  BOOST_TEST(klu.factorize(Form::implicit_c, 1, zero) != 0);
+}
+
+BOOST_AUTO_TEST_CASE(pivots_near_zero_are_made_up_for_by_refinement_or_refused) {
+  // M - K = [[d, -1], [-1, d]] is well conditioned, but its first pivot is d, by which rounding is
+  // divided: without another look a solution is wrong by eps/d.
+  const auto system = make_mass_spring(two_masses());
+  SymmetricMatrix k = system->stiffness_pattern();
+  int solved = 0;
+  for (int digits = 4; digits <= 16; ++digits) {
+    const double d = std::pow(10, -digits);
+    k.coeffRef(0, 0) = k.coeffRef(1, 1) = 1 - d;
+    k.coeffRef(1, 0) = 1;
+    Solver solver(make_structured, *system);
+    for (const Form form : both_forms) {
+      BOOST_TEST_CONTEXT("pivot " << d) {
+        const Eigen::MatrixXd a = dense_matrix(form, *system, 1, k);
+        const Vec b{{1.3, -0.7, 0.4, 2.1}};
+        Vec x;
+        if (solver.factorize(form, 1, k) == 0 && solver.try_to_solve(b, x) == 0) {
+          ++solved;
+          BOOST_TEST(distance(a * x, b) < 1e-7);  // 1e-8 of the n x n system
+        } else {
+          BOOST_TEST(digits > 11);  // where even a second look is wrong by (eps/d)^2 > 1e-10
+        }
+      }
+    }
+  }
+  BOOST_TEST(solved >= 16);
+}
+
+BOOST_AUTO_TEST_CASE(with_older_factors_newton_takes_more_rounds_to_the_same_solution) {
+  std::mt19937 random(4);
+  for (const int dimension : {1, 2, 3}) {
+    for (const Form form : both_forms) {
+      const Problem p = random_network(random, dimension, 6, 1.2);
+      const auto system = make_mass_spring(p.network);
+      const double gamma = 0.05, later_gamma = 1.2 * gamma;
+      const Vec later_q = p.initial.q + 0.02 * random_vector(random, system->size());
+      const SymmetricMatrix k = stiffness_at(*system, p.initial.q);
+      const SymmetricMatrix later_k = stiffness_at(*system, later_q);
+      const MatrixXd a = dense_matrix(form, *system, later_gamma, later_k);
+      const Vec b = random_vector(random, a.rows());
+      const Vec solution = a.fullPivLu().solve(b);
+      for (const Make make : {make_structured, make_klu}) {
+        BOOST_TEST_CONTEXT(dimension << "D") {
+          Solver solver(make, *system);
+          BOOST_TEST_REQUIRE(solver.factorize(form, gamma, k) == 0);
+          Vec x = Vec::Zero(b.size());
+          double first = 0;
+          for (int round = 0; round < 60; ++round) {
+            x += solver.solve(b - a * x);
+            if (round == 0) first = distance(x, solution);
+          }
+          // What one round leaves is far from rounding, what 60 leave is not: with both gammas'
+          // ratio of 1.2 a round leaves at most 1 - 1/1.44 = 0.31 and a little for K.
+          BOOST_TEST(first > 1e-3 * solution.norm());
+          BOOST_TEST(distance(x, solution) < 1e-11 * solution.norm());
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,58 @@
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(twins)
+
+namespace {
+
+// The methods that there are with n x n solves and with stock KLU, by their names without "_klu".
+std::vector<std::string> pairs() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) {
+    if (find_method(method.name + "_klu")) names.push_back(method.name);
+  }
+  return names;
+}
+
+// Solves that round otherwise by some 1e-15, in a hundred stages, change error estimates of 1e-3
+// and less of it by 1e-12 and these the lengths of steps: up to 5e-11 of the end.
+constexpr double by_rounding = 1e-9;
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(n_x_n_solves_and_klu_take_the_same_steps) {
+  BOOST_TEST(pairs().size() == 6);
+  for (const int dimension : {2, 3}) {
+    const Problem p = hammock(dimension);
+    const auto system = make_mass_spring(p.network);
+    for (const std::string& pair : pairs()) {
+      for (const double rtol : {1e-3, 1e-6}) {
+        BOOST_TEST_CONTEXT(pair << " in dimension " << dimension << ", rtol " << rtol) {
+          const Run n_x_n = run(method_named(pair), *system, p.initial, 1, {.rtol = rtol});
+          Run klu = run(method_named(pair + "_klu"), *system, p.initial, 1, {.rtol = rtol});
+          BOOST_TEST(n_x_n.summary.message == "");
+          BOOST_TEST(n_x_n.summary.counts.steps > 5);
+          klu.summary.counts.indefinite_factorizations =
+              n_x_n.summary.counts.indefinite_factorizations;  // which LU does not see
+          BOOST_TEST(n_x_n.summary.counts == klu.summary.counts);
+          BOOST_TEST(distance(n_x_n.state, klu.state) < by_rounding);
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(another_tolerance_is_noticed) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  for (const std::string& pair : pairs()) {
+    const Run a = run(method_named(pair), *system, p.initial, 1, {.rtol = 1e-6});
+    const Run b = run(method_named(pair + "_klu"), *system, p.initial, 1, {.rtol = 1.01e-6});
+    BOOST_TEST(distance(a.state, b.state) > by_rounding);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
