@@ -102,6 +102,7 @@ void Stepper::keep_message(int, const char*, const char*, char* message, void* s
 
 Outcome Stepper::run_to(State& state, double t_stop) {
   parked_ = nullptr;
+  is_finite_ = true;
   said_.clear();
   try {
     const Outcome outcome =
