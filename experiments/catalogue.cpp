@@ -35,9 +35,9 @@ void print_methods(bool as_csv) {
     fmt::print("{}", csv.text());
     return;
   }
-  fmt::print("{:<20} {:>5}  {:<12} {:<9}  {}\n", "name", "order", "family", "knob", "what it is");
+  fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", "name", "order", "family", "knob", "what it is");
   for (const Method& m : methods()) {
-    fmt::print("{:<20} {:>5}  {:<12} {:<9}  {}\n", m.name, m.order, family_name(m.family),
+    fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", m.name, m.order, family_name(m.family),
                knob_name(m.knob), m.summary);
   }
 }

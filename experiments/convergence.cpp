@@ -18,8 +18,8 @@
 #include "experiments/measurement.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/resolved_frequency.hpp"
 #include "experiments/scene_choice.hpp"
-#include "src/analysis/frequency_bound.hpp"
 #include "src/scene/invalid_input.hpp"
 
 namespace qddot {
@@ -63,7 +63,7 @@ std::vector<const Method*> select_fixed_step(const std::vector<std::string>& lis
 // One method down its halvings, a row each; what failed or was not comparable is left empty.
 void tabulate(Csv& csv, const Method& method, const ReducedScene& scene, double until,
               const Reference& reference) {
-  const double w = frequency_bound(scene.system(), scene.initial().q);
+  const double w = resolved_frequency(method, scene.system(), scene.initial().q);
   const double coarsest = method.implicit ? 16 : std::max(16.0, std::ceil(until * w));
   double last_error = 0;
   for (int halving = 0; halving <= most_halvings; ++halving) {

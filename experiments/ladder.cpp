@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "src/analysis/frequency_bound.hpp"
+#include "experiments/resolved_frequency.hpp"
 
 namespace qddot {
 namespace {
@@ -18,7 +18,7 @@ class Rungs {
  public:
   Rungs(const Method& method, const ReducedScene& scene, double until)
       : method_(method), until_(until) {
-    const double w = frequency_bound(scene.system(), scene.initial().q);
+    const double w = resolved_frequency(method, scene.system(), scene.initial().q);
     steps_ = method.implicit ? 2 : std::max(1.0, std::ceil(until * w / 4));
   }
 

@@ -255,6 +255,7 @@ class Output {
 // settles most cases.
 std::string step_warning(const Method& method, const Knobs& knobs, const ReducedScene& scene) {
   if (method.implicit || method.order == 0 || method.knob != Knob::step_size) return "";
+  if (method.needs_split) return "";  // its steps are for the soft springs alone
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
   const double limit = method.stability_limit, h = knobs.step_size;

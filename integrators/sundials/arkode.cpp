@@ -34,11 +34,10 @@ Arkode::Arkode(const Method& method, const System& system, const Knobs& knobs, c
   check(ARKStepSetNonlinearSolver(memory(), newton_->solver()), "ARKStepSetNonlinearSolver");
   newton_->attach();
   // K anew with the factors, and these at least every few steps: the iteration then takes two
-  // rounds a stage where ARKODE's own policy (K every 50 steps, a start at y_n) takes three to
-  // five.
+  // rounds a stage where ARKODE's own policy (K every 50 steps, a start at y_n) takes three.
   check(ARKStepSetJacEvalFrequency(memory(), 1), "ARKStepSetJacEvalFrequency");
   check(ARKStepSetLSetupFrequency(memory(), steps_with_one_matrix), "ARKStepSetLSetupFrequency");
-  // Each stage starts from the last step's parabola, which needs no force of its own.
+  // Each stage starts on the parabola through the last step, which costs no force of its own.
   check(ARKStepSetInterpolantDegree(memory(), 2), "ARKStepSetInterpolantDegree");
   check(ARKStepSetPredictorMethod(memory(), extrapolate), "ARKStepSetPredictorMethod");
 }

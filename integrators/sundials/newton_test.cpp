@@ -9,7 +9,7 @@ namespace {
 // correction that is nothing beside it.
 constexpr double largest_rest = 0.1;
 constexpr double negligible = 1e-3;
-// Since the corrections shrink by theta at least 1/3 as a rule, more iterations mean old factors.
+// Two or three corrections do with factors that are not too old; so many mean that they are.
 constexpr int most_iterations = 10;
 
 }  // namespace
