@@ -97,7 +97,8 @@ BOOST_AUTO_TEST_CASE(both_ways_take_the_same_steps_to_the_same_error) {
     BOOST_TEST_CONTEXT(table.text(row, "method") << " " << table.text(row, "rtol")) {
       const double error = table.value(row, "structured_error");
       BOOST_TEST((error > 0 && error < 0.1));
-      BOOST_TEST(std::abs(table.value(row, "stock_error") / error - 1) < 0.05);
+      // Rounding alone sets them apart, by up to 7e-9 of the error.
+      BOOST_TEST(std::abs(table.value(row, "stock_error") / error - 1) < 1e-6);
       BOOST_TEST(table.value(row, "steps") == table.value(row, "stock_steps"));
       BOOST_TEST(table.value(row, "factorizations") == table.value(row, "stock_factorizations"));
       BOOST_TEST(table.value(row, "steps") > 0);
@@ -119,7 +120,7 @@ BOOST_AUTO_TEST_CASE(the_shares_of_a_runs_time_are_all_of_it) {
         BOOST_TEST((value > 0 && value < 1));
         sum += value;
       }
-      BOOST_TEST(std::abs(sum - 1) < 1e-15 * 10);  // five numbers below 1, each rounded
+      BOOST_TEST(std::abs(sum - 1) < 5 * 2.2e-16);  // five numbers below 1, each rounded
     }
   }
 }
