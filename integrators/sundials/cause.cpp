@@ -7,6 +7,7 @@ Outcome outcome_of(Cause cause) {
     case Cause::error_test:
     case Cause::accuracy:
     case Cause::end_too_close:
+    case Cause::fast_steps:
       return Outcome::step_too_small;
     case Cause::convergence:
     case Cause::consistent_start:
@@ -16,7 +17,6 @@ Outcome outcome_of(Cause cause) {
     case Cause::force:
     case Cause::first_force:
       return Outcome::not_finite;
-    case Cause::fast_steps:
     case Cause::other:
       break;
   }
@@ -40,7 +40,7 @@ const char* what_happened(Cause cause) {
     case Cause::consistent_start:
       return "no positions of the massless nodes were found in which their forces balance";
     case Cause::fast_steps:
-      return "the small steps of the stiff springs failed";
+      return "the small steps of the stiff springs are below rounding";
     case Cause::end_too_close:
       return "the time that is left is below rounding";
     case Cause::other:
@@ -66,7 +66,7 @@ const char* what_to_turn(Cause cause, bool has_fixed_step) {
     case Cause::consistent_start:
       return "draw them nearer to where their springs pull equally";
     case Cause::fast_steps:
-      return "lower --step-size";
+      return "raise --step-size";
     case Cause::end_too_close:
       return "ask for a later end";
     case Cause::other:

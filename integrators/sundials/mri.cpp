@@ -4,6 +4,9 @@
 // alone move the nodes, pushed by polynomials of the soft ones, in m steps of h/m of an explicit
 // method of the same order: m = w_max(stiff)/w_max(soft), so that both steps are as fine beside
 // what they resolve. (Sandu, SIAM J. Numerical Analysis 57:5 (2019) 2300-2327.)
+#include <algorithm>
+#include <cmath>
+
 #include <arkode/arkode_mristep.h>
 #include <fmt/format.h>
 
@@ -74,12 +77,16 @@ class Mri final : public Stepper {
   }
 
   void set_step_size(double h) override {
-    check(ARKStepSetFixedStep(fast_.get(), h / fast_steps_), "ARKStepSetFixedStep");
+    fast_step_ = h / fast_steps_;
+    check(ARKStepSetFixedStep(fast_.get(), fast_step_), "ARKStepSetFixedStep");
     check(MRIStepSetFixedStep(slow_.get(), h), "MRIStepSetFixedStep");
   }
   void set_stop_time(double) override {}
 
   int take_step(double t_stop, double& t) override {
+    // Small steps below the spacing of times there would be taken for ever.
+    const double furthest = std::max(std::abs(t), std::abs(t_stop));
+    if (!(furthest + fast_step_ / 2 > furthest)) return ARK_INNERSTEP_FAIL;
     return MRIStepEvolve(slow_.get(), t_stop, y(), &t, ARK_ONE_STEP);
   }
 
@@ -111,6 +118,7 @@ class Mri final : public Stepper {
   }
 
   double fast_steps_ = 1;  // of each step
+  double fast_step_ = 0;   // [s]
   std::unique_ptr<void, FreeMemoryBy<ARKStepFree>> fast_;
   InnerStepper inner_;
   std::unique_ptr<void, FreeMemoryBy<MRIStepFree>> slow_;

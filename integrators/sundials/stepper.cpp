@@ -161,7 +161,7 @@ Outcome Stepper::take_one(State& state, double t_stop) {
 Cause Stepper::named_cause(int flag) {
   const Cause cause = cause_of(flag);
   if (is_finite_) return cause;
-  if (cause == Cause::convergence) return Cause::force;
+  if (cause == Cause::convergence || cause == Cause::fast_steps) return Cause::force;
   if (cause == Cause::force && counts().force_evaluations == 1) return Cause::first_force;
   return cause;
 }

@@ -103,7 +103,7 @@ class Stepper : public Integrator {
   Outcome take_fixed_steps(State& state, double t_stop);
   Outcome take_one(State& state, double t_stop);
   // What the flag says, but for forces that are not finite: a library may call these a failure to
-  // converge, and the first one a failure of later ones.
+  // converge or of its small steps, and the first one a failure of later ones.
   Cause named_cause(int flag);
 
   const System& implicit_part_;

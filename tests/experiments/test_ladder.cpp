@@ -137,6 +137,31 @@ BOOST_AUTO_TEST_CASE(it_does_not_go_below_what_the_reference_certifies) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(steps_held_to_a_stability_limit_do_not_end_it) {
+  // A slow vibration of two masses that hold together by a spring 1e6 times stiffer: steps that let
+  // this one not grow are far finer than a coarse tolerance asks for.
+  Scene scene{.name = "held", .dimension = 1};
+  scene.nodes = {
+      {.pinned = true}, {.position = {1, 0, 0}, .mass = 1}, {.position = {2, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 1}}, {{1, 2}, {.stiffness = 1e6, .rest_length = 1}}};
+  const ReducedScene held(scene);
+  const Reference reference = make_reference(held, 1, reference_seconds);
+  const auto points = climb(*find_method("arkode_erk4"), held, 1, reference,
+                            {.seconds = 60, .repeats = 1}, [](const Point&) {});
+  const auto is_held = [](const Point& point) {
+    return 2 * point.counts.stability_limited_steps > point.counts.steps;
+  };
+  BOOST_TEST_REQUIRE(points.size() > 4u);
+  // Four rungs of good errors without a gain would end the ladder of any other method.
+  for (std::size_t i = 0; i < 4; ++i) {
+    BOOST_TEST(is_held(points[i]));
+    BOOST_TEST(points[i].errors.position < 1e-4);
+    BOOST_TEST(points[i].errors.position > 0.8 * points[0].errors.position);
+  }
+  BOOST_TEST(!is_held(points.back()));
+  BOOST_TEST(points.back().errors.position < 1e-4 * points[0].errors.position);
+}
+
 BOOST_AUTO_TEST_CASE(where_nothing_moves_one_rung_is_enough) {
   Scene scene{.name = "rest"};
   scene.nodes = {{.mass = 1}};
