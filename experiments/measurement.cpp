@@ -15,6 +15,8 @@ namespace {
 // Shorter than this, a run is timed together with others like it: the clock's own cost (some tens
 // of ns) stays below a thousandth.
 constexpr double shortest_sample = 1e-4;
+// A first run at least so long [s] is a sample like any other: what is cold about it is over soon.
+constexpr double own_warm_up = 0.1;
 
 template <class Work>
 double seconds_of(const Work& work) {
@@ -60,15 +62,21 @@ Point measure(const Method& method, double value, const ReducedScene& scene, dou
 
   const int batch = static_cast<int>(std::ceil(std::min(shortest_sample / first, 1e5)));
   std::vector<double> times;
-  double spent = 0;
+  if (first >= own_warm_up) times.push_back(first);
+  double spent = times.empty() ? 0 : first;
   while (std::ssize(times) < effort.repeats &&
          (times.empty() || spent + first < effort.seconds / 2)) {
     const double sample = seconds_of([&] {
-      for (int i = 0; i < batch; ++i) {
+      for (int i = 0; i < batch && summary.outcome == Outcome::reached_end; ++i) {
         state = scene.initial();
-        integrator->advance(state, until);
+        summary = integrator->advance(state, until);
       }
     });
+    if (summary.outcome != Outcome::reached_end) {  // the time of half a run is none
+      point.outcome = summary.outcome;
+      point.t_reached = summary.t_reached;
+      return point;
+    }
     spent += sample;
     times.push_back(sample / batch);
   }

@@ -35,8 +35,9 @@ struct Effort {
 Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
                 const OrderChoice& orders = {});
 
-// Runs the method once untimed and then up to `repeats` times, at least once. Runs too short for
-// the clock are timed in batches. Single thread.
+// Runs the method once untimed, which a run of 0.1 s need not be, and then up to `repeats` times; a
+// repeat that fails makes the point a failure. Runs too short for the clock are timed in batches.
+// Single thread.
 Point measure(const Method& method, double value, const ReducedScene& scene, double until,
               const Reference& reference, const Effort& effort);
 

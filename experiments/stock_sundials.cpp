@@ -168,13 +168,14 @@ void compare(Csv& csv, const std::string& scene_name, const Pair& pair, double r
   structured.once();
   stock.once();
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  const bool both = structured.has_reached_end() && stock.has_reached_end();
   std::vector<double> structured_times, stock_times, ratios;
-  for (int i = 0; both && i < effort.repeats; ++i) {
+  const auto have_both = [&] { return structured.has_reached_end() && stock.has_reached_end(); };
+  for (int i = 0; have_both() && i < effort.repeats; ++i) {
     structured_times.push_back(structured.once());
     stock_times.push_back(stock.once());
     ratios.push_back(stock_times.back() / structured_times.back());
   }
+  const bool both = have_both();  // a repeat that fails is a failure as well
   const auto error = [&](const Runs& runs) {
     if (!runs.has_reached_end()) return nothing;
     return errors_between(scene, runs.state(), reference.end, reference.energy, reference.scales)

@@ -5,7 +5,8 @@
 //
 //  1. A reference is made by two unlike methods of high order, or exactly where the motion is
 //     linear; what they agree to is the certified floor (reference.json, kept for the next time).
-//  2. Each method runs from coarse to fine: once untimed, then timed several times, one thread.
+//  2. Each method runs from coarse to fine: once untimed unless that takes long, then timed several
+//     times, one thread.
 //  3. points.csv holds every point, the failed ones with the reason; front.csv, for each accuracy
 //     from 1e-1 to 1e-9, the fastest method that reached it.
 #include <unistd.h>

@@ -37,9 +37,34 @@ class Klu final : public NewtonMatrix {
     pattern_.fill(alpha, beta, s, k, e, SM_DATA_S(entries_.get()));
   }
 
-  int factorize() override { return SUNLinSolSetup(klu_.get(), entries_.get()); }
+  void begin_run() override {
+    NewtonMatrix::begin_run();
+    has_pivots_ = false;
+  }
+
+  int factorize() override {
+    const bool pivots = !has_pivots_ && content().symbolic;
+    const int flag = pivots ? choose_pivots() : SUNLinSolSetup(klu_.get(), entries_.get());
+    has_pivots_ = has_pivots_ || flag == SUNLS_SUCCESS;
+    return flag;
+  }
+
+  // SUNDIALS keeps the pivots of its first factors. Those belong to the step sizes of their run and
+  // may be none for the small steps that start the next one; the symbolic analysis does for all.
+  int choose_pivots() {
+    sun_klu_free_numeric(&content().numeric, &content().common);
+    content().numeric =
+        sun_klu_factor(SM_INDEXPTRS_S(entries_.get()), SM_INDEXVALS_S(entries_.get()),
+                       SM_DATA_S(entries_.get()), content().symbolic, &content().common);
+    return content().numeric ? SUNLS_SUCCESS : SUNLS_PACKAGE_FAIL_UNREC;
+  }
+
   int solve(N_Vector b, N_Vector x) override {
     return SUNLinSolSolve(klu_.get(), entries_.get(), x, b, 0);
+  }
+
+  _SUNLinearSolverContent_KLU& content() {
+    return *static_cast<SUNLinearSolverContent_KLU>(klu_->content);
   }
 
   const Vec& mass_;
@@ -47,6 +72,7 @@ class Klu final : public NewtonMatrix {
   Vector vector_;
   Matrix entries_;
   LinearSolver klu_;
+  bool has_pivots_ = false;
 };
 
 }  // namespace

@@ -30,7 +30,8 @@ class NewtonMatrix {
   void time_into(Seconds* seconds) { seconds_ = seconds; }
   // How many of the matrices were indefinite so far: compressed springs outweighed the mass.
   std::int64_t indefinite() const { return indefinite_; }
-  void forget_counts() { indefinite_ = 0; }
+  // What a run made, its counts and KLU's pivots among it, is not for the next.
+  virtual void begin_run() { indefinite_ = 0; }
 
  protected:
   void count_indefinite() { ++indefinite_; }

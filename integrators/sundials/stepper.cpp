@@ -48,7 +48,7 @@ void Stepper::load(const State& state) {
   Halves halves(y());
   halves.q = state.q;
   halves.v = state.v;
-  if (has_matrix()) matrix().forget_counts();
+  if (has_matrix()) matrix().begin_run();
 }
 
 void Stepper::set_counts(const OwnCounts& own) {

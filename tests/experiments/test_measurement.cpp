@@ -1,6 +1,10 @@
+#include <chrono>
+#include <thread>
+
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/measurement.hpp"
+#include "integrators/fixed_step.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/scene_file.hpp"
 
@@ -18,6 +22,54 @@ const ReducedScene& orbit() {
 const Reference& reference() {
   static const Reference made = make_reference(orbit(), until, 1);
   return made;
+}
+
+// Stays where it is. Its runs are counted.
+class Still : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+  static inline int runs = 0;
+
+ protected:
+  void start(const State&) override { ++runs; }
+  Outcome step(const State& now, double, State& next) override {
+    next = now;
+    return Outcome::reached_end;
+  }
+};
+
+// For a tenth of a second, so that a run is a long one on any machine.
+class Slow final : public Still {
+ public:
+  using Still::Still;
+
+ private:
+  void start(const State& state) override {
+    Still::start(state);
+    std::this_thread::sleep_for(std::chrono::milliseconds(101));
+  }
+};
+
+// But for its first run it fails.
+class Once final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  void start(const State&) override { ++runs_; }
+  Outcome step(const State& now, double, State& next) override {
+    next = now;
+    return runs_ == 1 ? Outcome::reached_end : Outcome::newton_failed;
+  }
+
+  int runs_ = 0;
+};
+
+template <class Made>
+Method made_of() {
+  Method method = *find_method("verlet");
+  method.make = create<Made>;
+  return method;
 }
 
 Point measured(const char* method, double value, const Effort& effort) {
@@ -42,8 +94,8 @@ BOOST_AUTO_TEST_CASE(a_point_is_one_run_of_the_method) {
   for (const auto& [name, value] :
        {std::pair("verlet", 1e-2), std::pair("implicit_euler", 1e-3), std::pair("ida", 1e-5)}) {
     const Point point = measured(name, value, {.seconds = 60, .repeats = 2});
-    const auto integrator =
-        make_integrator(*find_method(name), orbit().system(), knobs_for(*find_method(name), value, orbit()));
+    const auto integrator = make_integrator(*find_method(name), orbit().system(),
+                                            knobs_for(*find_method(name), value, orbit()));
     State state = orbit().initial();
     const Summary summary = integrator->advance(state, until);
     const Errors errors =
@@ -80,6 +132,28 @@ BOOST_AUTO_TEST_CASE(a_run_that_fails_is_not_timed) {
   const Point stuck = measured("verlet", 1e-20, {.seconds = 60, .repeats = 3});
   BOOST_TEST((stuck.outcome == Outcome::step_too_small));
   BOOST_TEST(stuck.timed_runs == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_repeat_that_fails_is_a_failure_and_not_a_short_run) {
+  const Point point =
+      measure(made_of<Once>(), until, orbit(), until, reference(), {.seconds = 60, .repeats = 3});
+  BOOST_TEST((point.outcome == Outcome::newton_failed));
+  BOOST_TEST(point.t_reached == 0);
+  BOOST_TEST(point.timed_runs == 0);
+}
+
+BOOST_AUTO_TEST_CASE(only_a_long_run_is_its_own_warm_up) {
+  for (const int repeats : {1, 2}) {
+    const Effort effort{.seconds = 60, .repeats = repeats};
+    Slow::runs = 0;
+    BOOST_TEST(measure(made_of<Slow>(), until, orbit(), until, reference(), effort).timed_runs ==
+               repeats);
+    BOOST_TEST(Slow::runs == repeats);
+    Still::runs = 0;
+    BOOST_TEST(measure(made_of<Still>(), until, orbit(), until, reference(), effort).timed_runs ==
+               repeats);
+    BOOST_TEST(Still::runs > repeats);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(negative_control_another_knob_is_another_point) {
