@@ -19,7 +19,7 @@ from style import FAINT, assign_looks, number, use_style
 WIDTH = 10.0
 MARGIN = 0.15
 LEFT, RIGHT = 0.95, 0.2
-HEADER = 0.8
+HEADER = 1.07
 BAND = 0.25
 BAND_GAP = 0.06
 AXIS_TEXT = 0.68
@@ -64,8 +64,8 @@ def draw_key(sheet, looks):
     lines = [key_line(family) for family in dict.fromkeys(look.family for look in looks.values())]
     sheet.figure.legend(
         handles=lines,
-        loc="center right",
-        bbox_to_anchor=(1 - RIGHT / sheet.width, 1 - 0.25 / sheet.height),
+        loc="center left",
+        bbox_to_anchor=(MARGIN / sheet.width, 1 - 0.83 / sheet.height),
         ncol=max(1, len(lines)),
         frameon=False,
         fontsize=10,
