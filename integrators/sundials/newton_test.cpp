@@ -7,7 +7,7 @@ namespace {
 
 // Both as fractions of the tolerance for the error of a step: what may be left, and a first
 // correction that is nothing beside it.
-constexpr double largest_rest = 0.1;
+constexpr double largest_rest = 3e-3;
 constexpr double negligible = 1e-3;
 // Two or three corrections do with factors that are not too old; so many mean that they are.
 constexpr int most_iterations = 10;
