@@ -64,7 +64,7 @@ const char* what_to_turn(Cause cause, bool has_fixed_step) {
     case Cause::first_force:
       return "look for extreme values in the scene";
     case Cause::consistent_start:
-      return "draw them nearer to where their springs pull equally";
+      return "draw them where their springs, stretched, pull equally";
     case Cause::fast_steps:
       return "raise --step-size";
     case Cause::end_too_close:
