@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <arkode/arkode_arkstep.h>
 
 #include "integrators/sundials/newton_test.hpp"
@@ -28,6 +30,9 @@ class Arkode : public Stepper {
 
  protected:
   void* memory() const { return memory_.get(); }
+  // Holds all steps to h <= y/w_max, with Gershgorin's bound of the largest frequency of a part of
+  // the system, taken anew every few steps. For use in the constructor.
+  void limit_steps(const System& part, double y);
   void start(const State& state) override;
   void collect_counts() override;
 
@@ -40,9 +45,19 @@ class Arkode : public Stepper {
 
   static int linear_system(double t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, int jok, int* jcur,
                            double gamma, void* self, N_Vector, N_Vector, N_Vector);
+  static int stable_step(N_Vector y, double t, double* h, void* self);
 
+  struct Limit {
+    const System& part;
+    double y;
+    Vec q;
+    SymmetricMatrix k;
+    double w_max = 0;
+    std::int64_t calls = 0;
+  };
   ARKRhsFn explicit_rate_, implicit_rate_;
   std::unique_ptr<NewtonTest> newton_;
+  std::optional<Limit> limit_;
   std::unique_ptr<void, FreeMemoryBy<ARKStepFree>> memory_;
 };
 

@@ -1,23 +1,16 @@
 // ARKODE's adaptive explicit Runge-Kutta methods of order 2 to 8. Their error test does not see an
 // instability of modes that hardly move yet, so steps are held to what the stiffest mode allows,
-// h <= y/w_max, with the table's own stability limit y on vibrations and Gershgorin's bound of
-// w_max at the positions of now and then.
+// h <= y/w_max, with the table's own stability limit y on vibrations.
 #include <fmt/format.h>
 
 #include "integrators/registry.hpp"
 #include "integrators/sundials/arkode.hpp"
 #include "integrators/sundials/imaginary_stability.hpp"
-#include "src/analysis/frequency_bound.hpp"
 
 namespace qddot {
 namespace {
 
 using namespace sundials;
-
-// w_max changes with the positions, much less than these do in so many steps.
-constexpr int steps_with_one_bound = 50;
-// ARKODE takes its own fraction of the bound, which must be below 1.
-constexpr double fraction = 0.99;
 
 struct Table {
   int order;
@@ -47,36 +40,9 @@ class Erk final : public Arkode {
  private:
   Erk(const Method& method, const System& system, const Knobs& knobs, ButcherTable table)
       : Arkode(method, system, knobs, {.explicit_table = table.get()}, right_hand_side, nullptr,
-               nullptr, system),
-        limit_(imaginary_stability(*table)),
-        k_(system.stiffness_pattern()) {
-    check(ARKStepSetStabilityFn(memory(), stable_step, this), "ARKStepSetStabilityFn");
-    check(ARKStepSetCFLFraction(memory(), fraction), "ARKStepSetCFLFraction");
+               nullptr, system) {
+    limit_steps(system, imaginary_stability(*table));
   }
-
-  void start(const State& state) override {
-    Arkode::start(state);
-    calls_ = 0;
-  }
-
-  static int stable_step(N_Vector y, double, double* h, void* user) {
-    auto& self = *static_cast<Erk*>(user);
-    return self.guarded([&] {
-      if (self.calls_++ % steps_with_one_bound == 0) {
-        self.q_ = Halves(y).q;
-        self.stiffness(self.q_, self.k_);
-        self.w_max_ = frequency_bound(self.system().mass(), self.k_);
-      }
-      *h = self.w_max_ > 0 ? self.limit_ / (fraction * self.w_max_) : INFINITY;
-      return true;
-    });
-  }
-
-  double limit_;
-  SymmetricMatrix k_;
-  Vec q_;
-  double w_max_ = 0;
-  std::int64_t calls_ = 0;
 };
 
 template <int which>

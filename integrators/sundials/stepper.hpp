@@ -15,10 +15,13 @@ namespace qddot::sundials {
 // Makes the matrix of Newton's iteration; none (nullptr) where there is no such iteration.
 using MakeMatrix = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext);
 
-// The stiff part of a system's forces, or the system itself where there is none, which is to be
-// made but never run.
+// The parts of a system's forces, or the system itself where it has none, which is to be made but
+// never run.
 inline const System& stiff_of(const System& system) {
   return system.split() ? *system.split()->stiff : system;
+}
+inline const System& soft_of(const System& system) {
+  return system.split() ? *system.split()->soft : system;
 }
 
 // What ARKODE, CVODE and IDA share: the first-order form y = (q, v) in a vector of length 2n, steps

@@ -1,0 +1,165 @@
+#include <complex>
+
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/sundials/arkode.hpp"
+#include "src/analysis/frequency_bound.hpp"
+#include "tests/integrators/scenes.hpp"
+#include "tests/integrators/split_relay.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(split_stability)
+
+namespace {
+
+using namespace qddot::sundials;
+
+using Eigen::Matrix2d;
+
+// The tables of arkode_imex3 ... arkode_imex5, and the limits that these hold their steps to.
+struct Named {
+  const char* method;
+  ARKODE_ERKTableID explicit_id;
+  ARKODE_DIRKTableID implicit_id;
+  double limit;
+};
+constexpr Named pairs[] = {
+    {"arkode_imex3", ARKODE_ARK324L2SA_ERK_4_2_3, ARKODE_ARK324L2SA_DIRK_4_2_3, 0.44},
+    {"arkode_imex4", ARKODE_ARK436L2SA_ERK_6_3_4, ARKODE_ARK436L2SA_DIRK_6_3_4, 0.45},
+    {"arkode_imex5", ARKODE_ARK548L2SA_ERK_8_4_5, ARKODE_ARK548L2SA_DIRK_8_4_5, 1.17}};
+constexpr double growth = 1e-3, resolution = 0.01;  // of the limits
+
+struct Pair {
+  explicit Pair(const Named& named)
+      : explicit_table(check(ARKodeButcherTable_LoadERK(named.explicit_id))),
+        implicit_table(check(ARKodeButcherTable_LoadDIRK(named.implicit_id))) {}
+
+  // The spectral radius of a step h on q'' = -(w_f^2 + w_s^2) q, y_f = h w_f, y_s = h w_s:
+  //   R = I + sum b_i z_i,   z_i = (I - a_ii stiff)^-1 (I + sum_j<i a_ij z_j),
+  // where b_i and a_ij stand for the sums of explicit times soft and implicit times stiff, in the
+  // variables (q, v/w), w^2 = w_f^2 + w_s^2, whose length is the energy's.
+  double amplification(double y_f, double y_s) const {
+    const double y = std::hypot(y_f, y_s);
+    if (y == 0) return 1;
+    const Matrix2d soft{{0, 0}, {-y_f * y_f / y, 0}}, stiff{{0, y}, {-y_s * y_s / y, 0}};
+    const auto weighted = [&](double of_soft, double of_stiff) -> Matrix2d {
+      return of_soft * soft + of_stiff * stiff;
+    };
+    std::vector<Matrix2d> stages;
+    Matrix2d end = Matrix2d::Identity();
+    for (int i = 0; i < implicit_table->stages; ++i) {
+      Matrix2d known = Matrix2d::Identity();
+      for (int j = 0; j < i; ++j) {
+        known += weighted(explicit_table->A[i][j], implicit_table->A[i][j]) *
+                 stages[static_cast<std::size_t>(j)];
+      }
+      const Matrix2d matrix = Matrix2d::Identity() - weighted(0, implicit_table->A[i][i]);
+      stages.push_back(matrix.inverse() * known);
+      end += weighted(explicit_table->b[i], implicit_table->b[i]) * stages.back();
+    }
+    // The larger root of x^2 - 2 t x + d.
+    const double t = end.trace() / 2, d = end.determinant();
+    return t * t > d ? std::abs(t) + std::sqrt(t * t - d) : std::sqrt(d);
+  }
+
+  // Over all y_s. A resonance near 3.3, where both eigenvalues are -1, is 1 % wide; from 5 on all
+  // is damped.
+  double largest_amplification(double y_f) const {
+    double largest = 0;
+    for (double y_s = 0; y_s < 5; y_s += 1e-3) {
+      largest = std::max(largest, amplification(y_f, y_s));
+    }
+    for (double y_s = 5; y_s < 1e4; y_s *= 1.01) {
+      largest = std::max(largest, amplification(y_f, y_s));
+    }
+    return largest;
+  }
+
+  ButcherTable explicit_table, implicit_table;
+};
+
+// |R(iy)| of a diagonally implicit table, R(z) = 1 + z b'(I - z A)^-1 1 by a dense solve.
+double implicit_amplification(const ARKodeButcherTableMem& table, double y) {
+  const std::complex<double> z(0, y);
+  const int s = table.stages;
+  Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Identity(s, s);
+  Eigen::VectorXcd b(s);
+  for (int i = 0; i < s; ++i) {
+    b[i] = table.b[i];
+    for (int j = 0; j < s; ++j) matrix(i, j) -= z * table.A[i][j];
+  }
+  const Eigen::VectorXcd ones = Eigen::VectorXcd::Ones(s);
+  return std::abs(1.0 + z * (b.transpose() * matrix.partialPivLu().solve(ones))(0));
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(without_an_explicit_part_it_is_the_amplification_of_the_implicit_table) {
+  for (const Named& named : pairs) {
+    const Pair pair(named);
+    for (const double y : {0.0, 0.1, 1.0, 3.0, 30.0, 1000.0}) {
+      // Rounding of some sixty terms of up to 1e3.
+      BOOST_TEST(std::abs(pair.amplification(0, y) -
+                          implicit_amplification(*pair.implicit_table, y)) < 1e-11,
+                 named.method << " at " << y);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(small_steps_keep_the_amplitude_to_the_order_whatever_part_is_explicit) {
+  for (const Named& named : pairs) {
+    const Pair pair(named);
+    for (const double share : {0.0, 0.3, 0.7, 1.0}) {
+      const auto defect = [&](double y) {
+        return std::abs(pair.amplification(y * std::sqrt(share), y * std::sqrt(1 - share)) - 1);
+      };
+      const int order = method_named(named.method).order;
+      const double observed = std::log2(defect(0.2) / defect(0.1));
+      BOOST_TEST(observed > order + 0.5, named.method << ", " << share << ": " << observed);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(up_to_its_limit_no_vibration_grows_and_beyond_it_one_does) {
+  for (const Named& named : pairs) {
+    BOOST_TEST_CONTEXT(named.method) {
+      const Pair pair(named);
+      for (int i = 0; i <= 44; ++i) {
+        const double y_f = named.limit * i / 44;
+        BOOST_TEST(pair.largest_amplification(y_f) < 1 + growth, "grows at " << y_f);
+      }
+      BOOST_TEST(pair.largest_amplification(named.limit + resolution) > 1 + growth);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(steps_are_held_to_the_limit_of_the_soft_springs) {
+  const ReducedScene scene(generate(*find_generator("framed_cloth"), {{"nodes", 10}}, "test"));
+  const System& system = scene.system();
+  const State& start = scene.initial();
+  const double until = 0.1;
+  // Seven steps a period of the frame's fastest mode, hundreds of those that move: exact to 1e-12.
+  const Vec end = run(method_named("kahan_li8"), system, start, until, {.step_size = 1e-5}).state.q;
+  const double motion = distance(end, start.q);
+  const double soft_bound = frequency_bound(*system.split()->soft, start.q);
+  for (const Named& named : pairs) {
+    const double least = until * soft_bound / named.limit;
+    for (const double rtol : {1e-2, 1e-3}) {
+      BOOST_TEST_CONTEXT(named.method << " at " << rtol) {
+        const Run r = run(method_named(named.method), system, start, until, {.rtol = rtol});
+        const Counts& c = r.summary.counts;
+        BOOST_TEST(r.summary.message == "");
+        // The bound of the frequency varies by some percent on the way.
+        BOOST_TEST(static_cast<double>(c.steps) > 0.9 * least);
+        BOOST_TEST(static_cast<double>(c.steps) < 1.2 * least);
+        BOOST_TEST(c.stability_limited_steps > 0.9 * static_cast<double>(c.steps));
+        BOOST_TEST(c.rejected == 0);
+        // Steps twenty times as long are off by 3e-4 m and more.
+        BOOST_TEST(distance(r.state.q, end) < 1e-3 * motion);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
