@@ -87,13 +87,7 @@ BOOST_AUTO_TEST_CASE(the_steps_show_the_order_of_the_tables) {
   const auto system = make_mass_spring(with_split(p.network));
   const State end = by_kahan_li(*system, p.initial, 1);
   for (const Method& method : split_methods_of(Knob::rtol)) {
-    const auto at = [&](double rtol) {
-      const Run r = run(method, *system, p.initial, 1, {.rtol = rtol});
-      return std::pair(std::log(r.summary.counts.steps), std::log(distance(r.state, end)));
-    };
-    const auto [steps, error] = at(1e-7);
-    const auto [more_steps, less_error] = at(1e-10);
-    const double order = (error - less_error) / (more_steps - steps);
+    const double order = order_by_tolerance(method, *system, p.initial, end, 1e-7);
     // See the suite `sundials`.
     BOOST_TEST(std::abs(order - method.order) < 0.2, method.name << " shows " << order);
   }

@@ -101,19 +101,12 @@ BOOST_AUTO_TEST_CASE(the_steps_of_arkode_show_the_order_of_its_table) {
   const Run exact = run(method_named("kahan_li8"), *system, p.initial, 1, {.step_size = 1. / 512});
   for (const Method& method : methods_of(Family::sundials, Knob::rtol)) {
     if (!method.name.starts_with("arkode")) continue;  // the order varies
-    const auto at = [&](double rtol) {
-      const Run r = run(method, *system, p.initial, 1, {.rtol = rtol});
-      return std::pair(std::log(r.summary.counts.steps), std::log(distance(r.state, exact.state)));
-    };
-    // Each step is as long as its own error allows, so that errors go with steps^-p; a few per cent
-    // of some hundred steps are spent before that.
-    const double rtol = method.order == 2 ? 1e-4 : 1e-8;
-    const auto [steps, error] = at(rtol);
-    const auto [more_steps, less_error] = at(rtol / 1000);
-    const double order = (error - less_error) / (more_steps - steps);
+    // Order 2 takes thousands of steps at 1e-4, order 8 only some ten at 1e-8.
+    const double rtol = method.order == 2 ? 1e-4 : method.order <= 5 ? 1e-7 : 1e-8;
+    const double order = order_by_tolerance(method, *system, p.initial, exact.state, rtol);
     // The higher the order, the fewer the steps, and the more it shows that ARKODE leaves a step as
     // it is until it can be longer by half.
-    BOOST_TEST(std::abs(order - method.order) < (method.order <= 5 ? 0.2 : 0.8),
+    BOOST_TEST(std::abs(order - method.order) < (method.order <= 5 ? 0.2 : 1),
                method.name << " shows " << order);
   }
 }
