@@ -14,6 +14,7 @@
 
 namespace fs = std::filesystem;
 using namespace qddot;
+using namespace std::string_literals;
 
 namespace {
 
@@ -42,7 +43,7 @@ const std::string glued =
 
 void check_mutations(const std::string& name, const std::string& good) {
   std::mt19937 random(2);
-  const std::string spice = "\n \t#-+/0919eanf" + std::string(1, '\0');
+  const std::string spice = "\n \t#-+/0919eanf\0"s;
   for (int round = 0; round < 3000; ++round) {
     std::string text = good;
     for (unsigned edits = 1 + random() % 4; edits > 0; --edits) {
@@ -178,7 +179,7 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
       {"a.obj", square + "f 1 2 1.5\n"},
       {"a.obj", square + "f /1 /2 /3\n"},
       {"a.obj", std::string(10'000'000, 'v')},
-      {"a.obj", "v " + std::string(10'000'000, '1')},
+      {"a.obj", std::string("v ").append(10'000'000, '1')},
       {"a.obj", std::string("\0\x01\xff v\n\x80", 7)},
       {"a.mesh", ""},
       {"a.mesh", std::string(10'000'000, '1')},
