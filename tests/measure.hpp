@@ -9,18 +9,19 @@
 
 namespace qddot {
 
-// The order p of errors ~ C h^p at h, h/2, h/4, ...: the slope of log2(error) over log2(h), by
-// least squares over all of them, so that no single pair decides.
+// The slope of the line through the points (x_i, y_i) by least squares.
+inline double slope(const Vec& x, const Vec& y) {
+  const Vec centred = x.array() - x.mean();
+  return centred.dot(y) / centred.squaredNorm();
+}
+
+// The order p of errors ~ C h^p at h, h/2, h/4, ...: the slope of log2(error) over log2(h) for all
+// of them, so that no single pair decides.
 inline double observed_order(std::span<const double> errors) {
-  const auto count = static_cast<double>(errors.size());
-  const double middle = (count - 1) / 2;
-  double product = 0, square = 0;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const double halvings = static_cast<double>(i) - middle;
-    product -= halvings * std::log2(errors[i]);
-    square += halvings * halvings;
-  }
-  return product / square;
+  const auto count = static_cast<Index>(errors.size());
+  const Vec halvings = Vec::LinSpaced(count, 0, static_cast<double>(count - 1));
+  const Vec logarithms = Eigen::Map<const Vec>(errors.data(), count).array().log() / std::log(2.0);
+  return -slope(halvings, logarithms);
 }
 
 // dg/dq of g: Vec -> Vec, column by column, from the central differences of fourth order

@@ -110,7 +110,7 @@ class Cvode : public Stepper {
   }
 
   Orders orders_;
-  std::unique_ptr<_generic_SUNNonlinearSolver, FreeBy<SUNNonlinSolFree>> fixed_point_;
+  NonlinearSolver fixed_point_;
   std::unique_ptr<void, FreeMemoryBy<CVodeFree>> memory_;
 };
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "integrators/registry.hpp"
+#include "integrators/sundials/additive_tables.hpp"
 #include "integrators/sundials/arkode.hpp"
 
 namespace qddot {
@@ -16,33 +17,19 @@ namespace {
 
 using namespace sundials;
 
-struct Pair {
-  int order;
-  ARKODE_ERKTableID explicit_id;
-  ARKODE_DIRKTableID implicit_id;
-  const char* name;
-  // The largest h w_f at which no vibration q'' = -(w_f^2 + w_s^2) q, w_f explicit, whatever w_s
-  // is, grows by more than a thousandth a step; rounded down.
-  double limit;
-};
-constexpr Pair pairs[] = {
-    {3, ARKODE_ARK324L2SA_ERK_4_2_3, ARKODE_ARK324L2SA_DIRK_4_2_3, "ARK324L2SA", 0.44},
-    {4, ARKODE_ARK436L2SA_ERK_6_3_4, ARKODE_ARK436L2SA_DIRK_6_3_4, "ARK436L2SA", 0.45},
-    {5, ARKODE_ARK548L2SA_ERK_8_4_5, ARKODE_ARK548L2SA_DIRK_8_4_5, "ARK548L2SA", 1.17}};
-
 template <int order>
 class Imex final : public Arkode {
-  static constexpr Pair pair = pairs[order - 3];
+  static constexpr AdditiveTable table = additive_tables[order - 3];
 
  public:
   Imex(const Method& method, const System& system, const Knobs& knobs)
       : Arkode(method, system, knobs,
                {.explicit_table =
-                    ButcherTable(check(ARKodeButcherTable_LoadERK(pair.explicit_id))).get(),
+                    ButcherTable(check(ARKodeButcherTable_LoadERK(table.explicit_id))).get(),
                 .implicit_table =
-                    ButcherTable(check(ARKodeButcherTable_LoadDIRK(pair.implicit_id))).get()},
+                    ButcherTable(check(ARKodeButcherTable_LoadDIRK(table.implicit_id))).get()},
                soft_rate, stiff_rate, make_structured, stiff_of(system)) {
-    limit_steps(soft_of(system), pair.limit);
+    limit_steps(soft_of(system), table.limit);
   }
 
  private:
@@ -62,11 +49,11 @@ class Imex final : public Arkode {
 
 template <int order>
 Method imex() {
-  static_assert(pairs[order - 3].order == order);
+  static_assert(additive_tables[order - 3].order == order);
   return {.name = fmt::format("arkode_imex{}", order),
           .summary = fmt::format("SUNDIALS ARKODE, adaptive IMEX of order {}, ARKODE_{}: stiff "
                                  "springs implicit, n x n solves",
-                                 order, pairs[order - 3].name),
+                                 order, additive_tables[order - 3].name),
           .source = "Kennedy and Carpenter, Applied Numerical Mathematics 44 (2003) 139-181",
           .order = order,
           .family = Family::sundials,

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <sundials/sundials_nonlinearsolver.h>
-
 #include "integrators/sundials/support.hpp"
 
 namespace qddot::sundials {
-
-using NonlinearSolver = std::unique_ptr<_generic_SUNNonlinearSolver, FreeBy<SUNNonlinSolFree>>;
 
 // ARKODE's Newton iteration with a test that trusts no rate of convergence but the one that it
 // sees: with theta = |d_m| / |d_m-1| of the last two corrections, what is left after d_m is about

@@ -7,6 +7,7 @@
 #include <sundials/sundials_context.h>
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_matrix.h>
+#include <sundials/sundials_nonlinearsolver.h>
 
 #include "src/model/system.hpp"
 
@@ -43,6 +44,7 @@ struct FreeMemoryBy {
 using Vector = std::unique_ptr<_generic_N_Vector, FreeBy<N_VDestroy>>;
 using Matrix = std::unique_ptr<_generic_SUNMatrix, FreeBy<SUNMatDestroy>>;
 using LinearSolver = std::unique_ptr<_generic_SUNLinearSolver, FreeBy<SUNLinSolFree>>;
+using NonlinearSolver = std::unique_ptr<_generic_SUNNonlinearSolver, FreeBy<SUNNonlinSolFree>>;
 
 // The two halves of a stacked vector y = (q, v) of length 2n.
 struct Halves {

@@ -97,8 +97,10 @@ BOOST_AUTO_TEST_CASE(both_ways_take_the_same_steps_to_the_same_error) {
     BOOST_TEST_CONTEXT(table.text(row, "method") << " " << table.text(row, "rtol")) {
       const double error = table.value(row, "structured_error");
       BOOST_TEST((error > 0 && error < 0.1));
-      // Rounding alone sets them apart, by up to 2e-6 of the error.
-      BOOST_TEST(std::abs(table.value(row, "stock_error") / error - 1) < 1e-5);
+      // Rounding alone sets them apart, by up to 7e-9 of the error, and by 2e-6 where ARKODE takes
+      // rates from differences of solutions.
+      BOOST_TEST(std::abs(table.value(row, "stock_error") / error - 1) <
+                 (table.text(row, "method").starts_with("arkode") ? 1e-5 : 1e-6));
       BOOST_TEST(table.value(row, "steps") == table.value(row, "stock_steps"));
       BOOST_TEST(table.value(row, "factorizations") == table.value(row, "stock_factorizations"));
       BOOST_TEST(table.value(row, "steps") > 0);

@@ -80,8 +80,7 @@ inline double order_by_tolerance(const Method& method, const System& system, con
     steps[i] = std::log(static_cast<double>(r.summary.counts.steps));
     error[i] = std::log(distance(r.state, exact));
   }
-  const Vec centred = steps.array() - steps.mean();
-  return -centred.dot(error) / centred.squaredNorm();
+  return -slope(steps, error);
 }
 
 inline bool is_finite(const State& state) {

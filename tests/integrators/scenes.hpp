@@ -11,6 +11,12 @@ namespace qddot {
 // A scene as it is and as it is reduced by everything there is.
 inline const Reductions with_and_without[] = {Reductions::only({Reduction::pins}), {}};
 
+// The soft cloth of nodes x nodes in its stiff frame.
+inline ReducedScene framed_cloth(int nodes) {
+  return ReducedScene(
+      generate(*find_generator("framed_cloth"), {{"nodes", nodes}}, "framed_cloth"));
+}
+
 // The nodes of a scene at t_end; throws where that is not reached.
 inline std::vector<Node> nodes_after(const Scene& scene, const Reductions& reductions,
                                      const Method& method, double h, double t_end) {

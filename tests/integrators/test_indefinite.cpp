@@ -60,7 +60,9 @@ BOOST_AUTO_TEST_CASE(steps_on_a_compressed_column_are_right_with_indefinite_matr
                             {.rtol = rtol});
         r.summary.counts.indefinite_factorizations = 0;
         BOOST_TEST(klu.summary.counts == r.summary.counts);
-        BOOST_TEST(distance(klu.state, r.state) < 1e-7);  // as in the suite `twins`, grown
+        // See the suite `twins`; of BDF 8e-14 is seen, of ARKODE at 1e-2 8e-9.
+        BOOST_TEST(distance(klu.state, r.state) <
+                   (method.name.starts_with("arkode") ? 1e-7 : 1e-10));
       }
     }
     BOOST_TEST(indefinite > 0, method.name);

@@ -2,6 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "integrators/sundials/additive_tables.hpp"
 #include "integrators/sundials/arkode.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "tests/integrators/scenes.hpp"
@@ -17,23 +18,16 @@ using namespace qddot::sundials;
 
 using Eigen::Matrix2d;
 
-// The tables of arkode_imex3 ... arkode_imex5, and the limits that these hold their steps to.
-struct Named {
-  const char* method;
-  ARKODE_ERKTableID explicit_id;
-  ARKODE_DIRKTableID implicit_id;
-  double limit;
-};
-constexpr Named pairs[] = {
-    {"arkode_imex3", ARKODE_ARK324L2SA_ERK_4_2_3, ARKODE_ARK324L2SA_DIRK_4_2_3, 0.44},
-    {"arkode_imex4", ARKODE_ARK436L2SA_ERK_6_3_4, ARKODE_ARK436L2SA_DIRK_6_3_4, 0.45},
-    {"arkode_imex5", ARKODE_ARK548L2SA_ERK_8_4_5, ARKODE_ARK548L2SA_DIRK_8_4_5, 1.17}};
 constexpr double growth = 1e-3, resolution = 0.01;  // of the limits
 
+Method imex(const AdditiveTable& table) {
+  return method_named("arkode_imex" + std::to_string(table.order));
+}
+
 struct Pair {
-  explicit Pair(const Named& named)
-      : explicit_table(check(ARKodeButcherTable_LoadERK(named.explicit_id))),
-        implicit_table(check(ARKodeButcherTable_LoadDIRK(named.implicit_id))) {}
+  explicit Pair(const AdditiveTable& table)
+      : explicit_table(check(ARKodeButcherTable_LoadERK(table.explicit_id))),
+        implicit_table(check(ARKodeButcherTable_LoadDIRK(table.implicit_id))) {}
 
   // The spectral radius of a step h on q'' = -(w_f^2 + w_s^2) q, y_f = h w_f, y_s = h w_s:
   //   R = I + sum b_i z_i,   z_i = (I - a_ii stiff)^-1 (I + sum_j<i a_ij z_j),
@@ -96,46 +90,45 @@ double implicit_amplification(const ARKodeButcherTableMem& table, double y) {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(without_an_explicit_part_it_is_the_amplification_of_the_implicit_table) {
-  for (const Named& named : pairs) {
-    const Pair pair(named);
+  for (const AdditiveTable& table : additive_tables) {
+    const Pair pair(table);
     for (const double y : {0.0, 0.1, 1.0, 3.0, 30.0, 1000.0}) {
       // Rounding of some sixty terms of up to 1e3.
       BOOST_TEST(std::abs(pair.amplification(0, y) -
                           implicit_amplification(*pair.implicit_table, y)) < 1e-11,
-                 named.method << " at " << y);
+                 table.name << " at " << y);
     }
   }
 }
 
 BOOST_AUTO_TEST_CASE(small_steps_keep_the_amplitude_to_the_order_whatever_part_is_explicit) {
-  for (const Named& named : pairs) {
-    const Pair pair(named);
+  for (const AdditiveTable& table : additive_tables) {
+    const Pair pair(table);
     for (const double share : {0.0, 0.3, 0.7, 1.0}) {
       const auto defect = [&](double y) {
         return std::abs(pair.amplification(y * std::sqrt(share), y * std::sqrt(1 - share)) - 1);
       };
-      const int order = method_named(named.method).order;
       const double observed = std::log2(defect(0.2) / defect(0.1));
-      BOOST_TEST(observed > order + 0.5, named.method << ", " << share << ": " << observed);
+      BOOST_TEST(observed > table.order + 0.5, table.name << ", " << share << ": " << observed);
     }
   }
 }
 
 BOOST_AUTO_TEST_CASE(up_to_its_limit_no_vibration_grows_and_beyond_it_one_does) {
-  for (const Named& named : pairs) {
-    BOOST_TEST_CONTEXT(named.method) {
-      const Pair pair(named);
+  for (const AdditiveTable& table : additive_tables) {
+    BOOST_TEST_CONTEXT(table.name) {
+      const Pair pair(table);
       for (int i = 0; i <= 44; ++i) {
-        const double y_f = named.limit * i / 44;
+        const double y_f = table.limit * i / 44;
         BOOST_TEST(pair.largest_amplification(y_f) < 1 + growth, "grows at " << y_f);
       }
-      BOOST_TEST(pair.largest_amplification(named.limit + resolution) > 1 + growth);
+      BOOST_TEST(pair.largest_amplification(table.limit + resolution) > 1 + growth);
     }
   }
 }
 
 BOOST_AUTO_TEST_CASE(steps_are_held_to_the_limit_of_the_soft_springs) {
-  const ReducedScene scene(generate(*find_generator("framed_cloth"), {{"nodes", 10}}, "test"));
+  const ReducedScene scene = framed_cloth(10);
   const System& system = scene.system();
   const State& start = scene.initial();
   const double until = 0.1;
@@ -143,11 +136,11 @@ BOOST_AUTO_TEST_CASE(steps_are_held_to_the_limit_of_the_soft_springs) {
   const Vec end = run(method_named("kahan_li8"), system, start, until, {.step_size = 1e-5}).state.q;
   const double motion = distance(end, start.q);
   const double soft_bound = frequency_bound(*system.split()->soft, start.q);
-  for (const Named& named : pairs) {
-    const double least = until * soft_bound / named.limit;
+  for (const AdditiveTable& table : additive_tables) {
+    const double least = until * soft_bound / table.limit;
     for (const double rtol : {1e-2, 1e-3}) {
-      BOOST_TEST_CONTEXT(named.method << " at " << rtol) {
-        const Run r = run(method_named(named.method), system, start, until, {.rtol = rtol});
+      BOOST_TEST_CONTEXT(table.name << " at " << rtol) {
+        const Run r = run(imex(table), system, start, until, {.rtol = rtol});
         const Counts& c = r.summary.counts;
         BOOST_TEST(r.summary.message == "");
         // The bound of the frequency varies by some percent on the way.

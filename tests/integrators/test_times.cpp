@@ -4,9 +4,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "integrators/fixed_step.hpp"
-#include "src/scene/reduce.hpp"
-#include "src/scene/scene_file.hpp"
-#include "tests/integrators/runs.hpp"
+#include "tests/integrators/scenes.hpp"
 
 using namespace qddot;
 
@@ -155,8 +153,7 @@ BOOST_AUTO_TEST_CASE(an_integrator_run_twice_from_one_start_ends_the_same_to_the
 // A run that starts with steps of 1e-6 s ends with steps of 1e-2 s, for which other pivots are
 // good.
 BOOST_AUTO_TEST_CASE(a_stiff_run_is_repeated_though_its_last_steps_are_long) {
-  const ReducedScene scene(
-      parse_scene("[generator]\nkind = 'framed_cloth'\nnodes = 10", "frame", "."));
+  const ReducedScene scene = framed_cloth(10);
   for (const Method& method : methods_of(Knob::rtol)) {
     if (!method.needs_stiffness || method.needs_split) continue;
     BOOST_TEST_CONTEXT(method.name) {

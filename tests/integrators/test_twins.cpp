@@ -17,10 +17,11 @@ std::vector<std::string> pairs() {
   return names;
 }
 
-// Solves that round otherwise by some 1e-15, and rates that are their differences over a part of a
-// step, change error estimates of 1e-3 and less of it by 1e-11 in a hundred stages, and these the
-// lengths of steps: up to 1.1e-9 of the end.
-constexpr double by_rounding = 1e-8;
+// Solves that round otherwise by some 1e-15 change error estimates of 1e-3 and less of it by 1e-12
+// in a hundred stages, and these the lengths of steps: up to 6e-12 of the end is seen. ARKODE's
+// rates are differences of solutions over a part of a step besides, of which its methods of high
+// order at coarse tolerances make 1.1e-9.
+constexpr double by_rounding = 1e-10, by_coarse_rates = 1e-8;
 
 }  // namespace
 
@@ -39,7 +40,9 @@ BOOST_AUTO_TEST_CASE(n_x_n_solves_and_klu_take_the_same_steps) {
           klu.summary.counts.indefinite_factorizations =
               n_x_n.summary.counts.indefinite_factorizations;  // which LU does not see
           BOOST_TEST(n_x_n.summary.counts == klu.summary.counts);
-          BOOST_TEST(distance(n_x_n.state, klu.state) < by_rounding);
+          const bool has_coarse_rates = pair.starts_with("arkode") && rtol > 1e-6;
+          BOOST_TEST(distance(n_x_n.state, klu.state) <
+                     (has_coarse_rates ? by_coarse_rates : by_rounding));
         }
       }
     }
@@ -52,7 +55,7 @@ BOOST_AUTO_TEST_CASE(another_tolerance_is_noticed) {
   for (const std::string& pair : pairs()) {
     const Run a = run(method_named(pair), *system, p.initial, 1, {.rtol = 1e-6});
     const Run b = run(method_named(pair + "_klu"), *system, p.initial, 1, {.rtol = 1.01e-6});
-    BOOST_TEST(distance(a.state, b.state) > by_rounding);
+    BOOST_TEST(distance(a.state, b.state) > by_coarse_rates);
   }
 }
 
