@@ -98,6 +98,12 @@ struct Knobs {
   int max_order = 0;     // of methods of variable order; 0: their own
   bool stability_detection = false;  // CVODE's, which lowers the order where BDF is not stable
   bool timed = false;                // whether to fill Summary::seconds
+  // Of hand-written implicit methods: what part of its first correction, which is of the size of
+  // the step's own error, a nonlinear solve may leave; 0: the method's own choice.
+  double solve_tolerance = 0;
+  // Of generalised-alpha methods: what a step multiplies a vibration of infinite frequency by, from
+  // 0 (gone at once) to 1 (undamped).
+  double spectral_radius = 0.8;
 };
 
 // Looks at a run from outside: `see` is called at each of `times` [s] (ascending, after the start,
@@ -153,6 +159,17 @@ class Integrator {
     ++counts_.stiffness_evaluations;
     const Stopwatch watch(seconds(), &Seconds::stiffness);
     part.stiffness(q, k);
+  }
+  // Likewise System::mean_force, counted as a force, and System::softened_stiffness.
+  void mean_force(const Vec& a, const Vec& b, Vec& f) {
+    ++counts_.force_evaluations;
+    const Stopwatch watch(seconds(), &Seconds::force);
+    system_.mean_force(a, b, f);
+  }
+  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) {
+    ++counts_.stiffness_evaluations;
+    const Stopwatch watch(seconds(), &Seconds::stiffness);
+    system_.softened_stiffness(q, compression, k);
   }
 
  private:

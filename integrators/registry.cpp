@@ -10,6 +10,13 @@
   METHOD(symplectic_euler)         \
   METHOD(semi_implicit_euler)      \
   METHOD(implicit_euler)           \
+  METHOD(implicit_midpoint)        \
+  METHOD(trapezoidal)              \
+  METHOD(generalized_alpha)        \
+  METHOD(hht)                      \
+  METHOD(bdf2)                     \
+  METHOD(trbdf2)                   \
+  METHOD(discrete_gradient)        \
   METHOD(verlet)                   \
   METHOD(kahan_li8)                \
   METHOD(exact)                    \

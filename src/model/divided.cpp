@@ -63,12 +63,20 @@ void Divided::force(const Vec& q, Vec& f) const {
   });
 }
 
-void Divided::stiffness(const Vec& q, SymmetricMatrix& k) const {
+void Divided::mean_force(const Vec& a, const Vec& b, Vec& f) const {
+  for_each(parts_, a, [&](const System& part, const Vec& own, Index at) {
+    Vec on_part(part.size());
+    part.mean_force(own, b.segment(at, part.size()), on_part);
+    f.segment(at, part.size()) = on_part;
+  });
+}
+
+void Divided::softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const {
   // The parts' columns follow one another, and so do their entries.
   Index next = 0;
   for_each(parts_, q, [&](const System& part, const Vec& own, Index) {
     SymmetricMatrix block = part.stiffness_pattern();
-    part.stiffness(own, block);
+    part.softened_stiffness(own, compression, block);
     k.coeffs().segment(next, block.nonZeros()) = block.coeffs();
     next += block.nonZeros();
   });

@@ -22,8 +22,13 @@ void Held::force(const Vec& q, Vec& f) const {
   for (const Index i : unknowns_) f[i] = 0;
 }
 
-void Held::stiffness(const Vec& q, SymmetricMatrix& k) const {
-  system_->stiffness(q, k);
+void Held::mean_force(const Vec& a, const Vec& b, Vec& f) const {
+  system_->mean_force(a, b, f);
+  for (const Index i : unknowns_) f[i] = 0;
+}
+
+void Held::softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const {
+  system_->softened_stiffness(q, compression, k);
   for (const Index entry : entries_) k.valuePtr()[entry] = 0;
 }
 

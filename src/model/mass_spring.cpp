@@ -67,44 +67,38 @@ class MassSpring final : public System {
   }
 
   void force(const Vec& q, Vec& f) const override {
-    f = weight_;
-    for (const Link& link : links_) {
-      const Point on_i = spring_force(link.law, between(q, link));
-      f.segment<D>(link.i) += on_i;
-      f.segment<D>(link.j) -= on_i;
-    }
-    for (const Image& image : images_) {
-      const Point on_i = spring_force(image.law, between(q, image));
-      f.segment<D>(image.i) += on_i;
-      f.segment<D>(image.j) -= image.mirror.cwiseProduct(on_i);
-    }
-    for (const Anchor& anchor : anchors_) {
-      f.segment<D>(anchor.i) += spring_force(anchor.law, between(q, anchor));
-    }
-    for (const EdgeLink& link : edge_links_) {
-      const Point on_i = spring_force(link.law, edge_between(q, link));
-      layout_.add(on_i, link.i, f);
-      layout_.add(-link.mirror.cwiseProduct(on_i), link.j, f);
-    }
-    for (const Anchor& anchor : edge_anchors_) {
-      layout_.add(spring_force(anchor.law, edge_between(q, anchor)), anchor.i, f);
-    }
+    sum_forces(
+        [&](const auto& spring) { return spring_force(spring.law, between(q, spring)); },
+        [&](const auto& spring) { return spring_force(spring.law, edge_between(q, spring)); }, f);
   }
+
+  void mean_force(const Vec& a, const Vec& b, Vec& f) const override {
+    sum_forces(
+        [&](const auto& spring) {
+          return spring_mean_force(spring.law, between(a, spring), between(b, spring));
+        },
+        [&](const auto& spring) {
+          return spring_mean_force(spring.law, edge_between(a, spring), edge_between(b, spring));
+        },
+        f);
+  }
+
+  void stiffness(const Vec& q, SymmetricMatrix& k) const override { softened_stiffness(q, 1, k); }
 
   // With S = diag(mirror) and d = S x_j - x_i: K_ii -= B, K_jj -= S B S, K_ij += B S; where i = j
   // all three are one block.
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override {
+  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
     k.coeffs().setZero();
     for (std::size_t e = 0; e < links_.size(); ++e) {
       const Link& link = links_[e];
-      const Block b = spring_stiffness(link.law, between(q, link));
+      const Block b = spring_stiffness(link.law, between(q, link), compression);
       subtract_from_diagonal(k, link.i, b);
       subtract_from_diagonal(k, link.j, b);
       add_below_diagonal(k, std::min(link.i, link.j), link_places_[e], b);
     }
     for (std::size_t e = 0; e < images_.size(); ++e) {
       const auto& [i, j, mirror, law] = images_[e];
-      const Block b = spring_stiffness(law, between(q, images_[e]));
+      const Block b = spring_stiffness(law, between(q, images_[e]), compression);
       const Block bs = b * mirror.asDiagonal(), sb = mirror.asDiagonal() * b;
       subtract_from_diagonal(k, i, b);
       subtract_from_diagonal(k, j, sb * mirror.asDiagonal());
@@ -116,10 +110,11 @@ class MassSpring final : public System {
       }
     }
     for (const Anchor& anchor : anchors_) {
-      subtract_from_diagonal(k, anchor.i, spring_stiffness(anchor.law, between(q, anchor)));
+      subtract_from_diagonal(k, anchor.i,
+                             spring_stiffness(anchor.law, between(q, anchor), compression));
     }
     for (const EdgeLink& link : edge_links_) {
-      const Block b = spring_stiffness(link.law, edge_between(q, link));
+      const Block b = spring_stiffness(link.law, edge_between(q, link), compression);
       const Block bs = b * link.mirror.asDiagonal(), sb = link.mirror.asDiagonal() * b;
       edge_subtract_from_diagonal(k, link.i, b);
       edge_subtract_from_diagonal(k, link.j, sb * link.mirror.asDiagonal());
@@ -130,8 +125,8 @@ class MassSpring final : public System {
       }
     }
     for (const Anchor& anchor : edge_anchors_) {
-      edge_subtract_from_diagonal(k, anchor.i,
-                                  spring_stiffness(anchor.law, edge_between(q, anchor)));
+      edge_subtract_from_diagonal(
+          k, anchor.i, spring_stiffness(anchor.law, edge_between(q, anchor), compression));
     }
   }
 
@@ -219,6 +214,30 @@ class MassSpring final : public System {
     } else {
       edge_anchors_.push_back(anchor);
     }
+  }
+
+  // f = weight and, of every spring, on_i(spring) on its node i and the opposite on j; of springs
+  // that go through the layout, edge_on_i(spring).
+  template <class OnI, class EdgeOnI>
+  [[gnu::always_inline]] void sum_forces(const OnI& on_i, const EdgeOnI& edge_on_i, Vec& f) const {
+    f = weight_;
+    for (const Link& link : links_) {
+      const Point force = on_i(link);
+      f.segment<D>(link.i) += force;
+      f.segment<D>(link.j) -= force;
+    }
+    for (const Image& image : images_) {
+      const Point force = on_i(image);
+      f.segment<D>(image.i) += force;
+      f.segment<D>(image.j) -= image.mirror.cwiseProduct(force);
+    }
+    for (const Anchor& anchor : anchors_) f.segment<D>(anchor.i) += on_i(anchor);
+    for (const EdgeLink& link : edge_links_) {
+      const Point force = edge_on_i(link);
+      layout_.add(force, link.i, f);
+      layout_.add(-link.mirror.cwiseProduct(force), link.j, f);
+    }
+    for (const Anchor& anchor : edge_anchors_) layout_.add(edge_on_i(anchor), anchor.i, f);
   }
 
   // Calls action(law, d) for every spring.

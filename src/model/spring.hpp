@@ -29,6 +29,11 @@ struct SpringLaw {
     const Real s = l - rest_length;
     return s * (stiffness + quartic * s * s);
   }
+  // (V(b) - V(a))/(b - a) [N], in a form that does not cancel; tension(a) where a = b.
+  double secant(double a, double b) const {
+    const double s = a - rest_length, t = b - rest_length;
+    return 0.5 * (s + t) * (stiffness + 0.5 * quartic * (s * s + t * t));
+  }
   // d tau / dl [N/m].
   template <class Real>
   Real tangent(Real l) const {
@@ -69,17 +74,30 @@ template <class Real, int D>
   return d * (std::abs(l) > 0 ? law.tension(l) / l : Real(0));
 }
 
+// The mean force on x_i [N] of a spring that goes from d0 to d1: the secant (V1 - V0)/(l1 - l0) of
+// its energy in the direction of (d0 + d1)/(l0 + l1). With d1 - d0 it makes V1 - V0 exactly, for
+// (d0 + d1).(d1 - d0) = (l0 + l1)(l1 - l0). Both lengths zero: no force.
+template <int D>
+Eigen::Matrix<double, D, 1> spring_mean_force(const SpringLaw& law,
+                                              const Eigen::Matrix<double, D, 1>& d0,
+                                              const Eigen::Matrix<double, D, 1>& d1) {
+  const double l0 = d0.norm(), l1 = d1.norm();
+  return (d0 + d1) * (l0 + l1 > 0 ? law.secant(l0, l1) / (l0 + l1) : 0);
+}
+
 // The D x D block B = tau' nn' + (tau/l)(I - nn') [N/m]: K_ij = K_ji = B, K_ii and K_jj lose B.
-// Indefinite where the spring is compressed (tau < 0), which is how structures buckle.
+// Indefinite where the spring is compressed (tau < 0), which is how structures buckle; then
+// `compression` scales tau/l.
 template <class Real, int D>
-Eigen::Matrix<Real, D, D> spring_stiffness(const SpringLaw& law,
-                                           const Eigen::Matrix<Real, D, 1>& d) {
+Eigen::Matrix<Real, D, D> spring_stiffness(const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d,
+                                           double compression = 1) {
   using Block = Eigen::Matrix<Real, D, D>;
   const Real l = spring_length(d);
   if (std::abs(l) == 0) return Block::Identity() * law.tangent(l);
   const Real along = law.tangent(l);
   if constexpr (D == 1) return Block(along);
-  const Real across = law.tension(l) / l;
+  Real across = law.tension(l) / l;
+  if (std::real(across) < 0) across *= compression;
   const Eigen::Matrix<Real, D, 1> n = d / l;
   return Block::Identity() * across + (along - across) * (n * n.transpose());
 }

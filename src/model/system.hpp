@@ -52,6 +52,14 @@ class System {
   virtual void stiffness(const Vec& q, SymmetricMatrix& k) const = 0;
   // The n x n pattern that K has at every q, with values zero; made once, copied by each user.
   virtual const SymmetricMatrix& stiffness_pattern() const = 0;
+  // K with the negative transverse part tau/l (I - nn') of every compressed spring scaled by
+  // `compression` from 1, the whole of it, to 0, where the sum of all springs is negative
+  // semidefinite.
+  virtual void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const = 0;
+  // The discrete gradient f of V [N]: f.(b - a) = V(a) - V(b) whatever a and b are, f = force(a)
+  // where b = a, and f keeps linear and angular momentum as a force does (Gonzalez, Journal of
+  // Nonlinear Science 6 (1996) 449-467, spring by spring). a, b: n, f sized by the caller.
+  virtual void mean_force(const Vec& a, const Vec& b, Vec& f) const = 0;
   // True only where K is the same at every q, so that the motion is linear.
   virtual bool stiffness_is_constant() const = 0;
 

@@ -112,6 +112,14 @@ class Relay final : public System {
     system_.stiffness(q, k);
     if (after_stiffness) after_stiffness(q, k);
   }
+  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
+    system_.softened_stiffness(q, compression, k);
+    if (after_stiffness) after_stiffness(q, k);
+  }
+  void mean_force(const Vec& a, const Vec& b, Vec& f) const override {
+    system_.mean_force(a, b, f);
+    if (after_force) after_force(b, f);
+  }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
 

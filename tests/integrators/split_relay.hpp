@@ -19,6 +19,10 @@ class SplitRelay final : public System {
   double potential(const Vec& q) const override { return whole.potential(q); }
   void force(const Vec& q, Vec& f) const override { whole.force(q, f); }
   void stiffness(const Vec& q, SymmetricMatrix& k) const override { whole.stiffness(q, k); }
+  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
+    whole.softened_stiffness(q, compression, k);
+  }
+  void mean_force(const Vec& a, const Vec& b, Vec& f) const override { whole.mean_force(a, b, f); }
   const SymmetricMatrix& stiffness_pattern() const override { return whole.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return whole.stiffness_is_constant(); }
   const Split* split() const override { return &split_; }

@@ -1,0 +1,54 @@
+// Implicit midpoint: with u = q_{n+1/2} - q_n and q_{n+1/2} = (q_n + q_{n+1})/2,
+//   M (u - h/2 v_n) = h^2/4 f(q_n + u)
+//   q_{n+1} = q_n + 2 u,  v_{n+1} = 4 u/h - v_n
+// Order 2, symplectic, time-reversible; keeps quadratic invariants (momenta; the energy where f is
+// linear, at every h). A-stable, but on a stiff nonlinear spring its energy may grow.
+#include "integrators/implicit_step.hpp"
+#include "integrators/registry.hpp"
+
+namespace qddot {
+namespace {
+
+class ImplicitMidpoint final : public ImplicitStep {
+ public:
+  ImplicitMidpoint(const Method& method, const System& system, const Knobs& knobs)
+      : ImplicitStep(method, system, knobs, enough_for_invariants) {}
+
+ private:
+  void start(const State& state) override {
+    ImplicitStep::start(state);
+    force(state.q, a_);
+    a_ = a_.cwiseQuotient(system().mass()).eval();
+  }
+
+  Outcome step(const State& now, double h, State& next) override {
+    const double s = h * h / 4;
+    free_ = h / 2 * now.v;
+    u_ = free_ + s * a_;
+    if (const Outcome outcome = solve_stage(now.q, free_, s, u_); outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    a_ = (u_ - free_) / s;
+    next.q = now.q + 2 * u_;
+    next.v = 4 / h * u_ - now.v;
+    return Outcome::reached_end;
+  }
+
+  Vec a_{system().size()};  // of the last step's middle, which predicts the next
+  Vec free_{system().size()}, u_{system().size()};
+};
+
+}  // namespace
+
+Method implicit_midpoint() {
+  return {.name = "implicit_midpoint",
+          .summary = "symplectic and A-stable; keeps momenta, and energy where f is linear",
+          .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, eq. II.1.7",
+          .order = 2,
+          .implicit = true,
+          .symplectic = true,
+          .needs_stiffness = true,
+          .make = create<ImplicitMidpoint>};
+}
+
+}  // namespace qddot

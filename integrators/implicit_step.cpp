@@ -1,0 +1,170 @@
+#include "integrators/implicit_step.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace qddot {
+namespace {
+
+constexpr int most_iterations = 100;
+constexpr int most_halvings = 30;
+// Corrections that shrink more slowly than this are worth new factors, which cost as much as some
+// ten solves.
+constexpr double slowest_rate = 0.3;
+constexpr double least_compression = 1.0 / 64;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+// Of the positions: where corrections no longer shrink below this, rounding makes them.
+constexpr double rounding = 1e-10;
+
+}  // namespace
+
+ImplicitStep::ImplicitStep(const Method& method, const System& system, const Knobs& knobs,
+                           double solve_tolerance)
+    : FixedStep(method, system, knobs),
+      tolerance_(knobs.solve_tolerance > 0 ? knobs.solve_tolerance : solve_tolerance),
+      x_(system.size()),
+      f_(system.size()),
+      r_(system.size()),
+      p_(system.size()),
+      trial_(system.size()),
+      k_(system.stiffness_pattern()),
+      matrix_(system) {}
+
+void ImplicitStep::start(const State&) {
+  factorized_s_ = last_first_ = 0;
+  compression_ = last_rate_ = 1;
+}
+
+Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& u) {
+  const bool is_linear = system().stiffness_is_constant();
+  bool are_new = false;                  // whether the factors were made in this stage,
+  bool are_of_u = false;                 // and for the u at hand
+  bool are_wanted = s != factorized_s_;  // whether to make them now
+  double first = 0;
+  double last = 0;  // the correction before, if with these factors and of full length
+  residual(q, free, s, u);
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    if (must_stop()) return Outcome::over_budget;
+    if (are_wanted) {
+      if (const Outcome outcome = factorize(q, u, s); outcome != Outcome::reached_end) {
+        return outcome;
+      }
+      are_new = are_of_u = true;
+      are_wanted = false;
+      last = 0;
+    }
+    if (const Outcome outcome = correction(); outcome != Outcome::reached_end) return outcome;
+    const double size = p_.lpNorm<Eigen::Infinity>(), place = (q + u).lpNorm<Eigen::Infinity>();
+    if (iteration == 0) first = size;
+    double rate = 1;
+    if (last > 0) rate = size / last;
+    // One correction tells nothing, but that the last stage was like this one.
+    if (iteration == 0 && !are_new && first <= 2 * last_first_) rate = last_rate_;
+    const bool is_exact = is_linear && compression_ == 1;
+    const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * first;
+    const bool is_rounding =
+        size <= 4 * epsilon * place || (last > 0 && 2 * size > last && size <= rounding * place);
+    if (is_exact || is_solved || is_rounding) {
+      u += p_;
+      last_first_ = first;
+      // What was not seen this time is trusted less the next; with new factors nothing was seen
+      // yet.
+      last_rate_ = are_new ? 1 : (iteration == 0 ? 2 * rate : rate);
+      return Outcome::reached_end;
+    }
+    are_wanted = last > 0 && rate > slowest_rate && !are_of_u;
+    if (are_wanted) continue;
+
+    const double length = is_minimisation() ? search(q, free, s, u) : move(q, free, s, u);
+    if (length == 0 && are_of_u) return Outcome::newton_failed;
+    are_wanted = length < 1;
+    are_of_u = false;
+    last = length == 1 ? size : 0;
+  }
+  return Outcome::newton_failed;
+}
+
+// r = M (u - u*) - s f.
+void ImplicitStep::residual(const Vec& q, const Vec& free, double s, const Vec& u) {
+  stage_force(q, u, f_);
+  r_ = system().mass().cwiseProduct(u - free) - s * f_;
+}
+
+void ImplicitStep::stage_force(const Vec& q, const Vec& u, Vec& f) {
+  x_ = q + u;
+  force(x_, f);
+}
+
+void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compression,
+                                   SymmetricMatrix& k) {
+  x_ = q + u;
+  softened_stiffness(x_, compression, k);
+}
+
+Outcome ImplicitStep::factorize(const Vec& q, const Vec& u, double s) {
+  factorized_s_ = 0;
+  for (compression_ = std::min(1.0, 2 * compression_);; compression_ /= 2) {
+    if (compression_ < least_compression) compression_ = 0;
+    stage_stiffness(q, u, compression_, k_);
+    if (!k_.coeffs().allFinite()) return Outcome::not_finite;
+    ++counts().factorizations;
+    const Stopwatch watch(seconds(), &Seconds::factorization);
+    if (matrix_.factorize_positive(1, s, k_)) break;
+    if (compression_ == 0) {
+      compression_ = least_compression;
+      return Outcome::indefinite_matrix;
+    }
+  }
+  factorized_s_ = s;
+  return Outcome::reached_end;
+}
+
+// p = -(M - s K)^-1 r.
+Outcome ImplicitStep::correction() {
+  const Stopwatch watch(seconds(), &Seconds::solve);
+  matrix_.solve(r_, p_);
+  ++counts().solves;
+  ++counts().newton_iterations;
+  p_ = -p_;
+  return p_.allFinite() ? Outcome::reached_end : Outcome::not_finite;
+}
+
+// Moves u along p by the first of 1, 1/2, 1/4, ... of it that halves the residual, or else
+// decreases g by Armijo's rule; the first test costs nothing, since the next iteration needs that
+// residual. Returns that part, or 0, with u as it was, if there is none.
+double ImplicitStep::search(const Vec& q, const Vec& free, double s, Vec& u) {
+  const double norm = r_.norm(), slope = r_.dot(p_);
+  double g = std::numeric_limits<double>::quiet_NaN();
+  double length = 1;
+  for (int halvings = 0; halvings < most_halvings; ++halvings, length /= 2) {
+    trial_ = u + length * p_;
+    residual(q, free, s, trial_);
+    bool descends = r_.norm() <= 0.5 * norm;
+    if (!descends) {
+      if (std::isnan(g)) g = objective(q, free, s, u);
+      // Near the minimum rounding decides which g is less.
+      descends =
+          objective(q, free, s, trial_) <= g + 1e-4 * length * slope + 8 * epsilon * std::abs(g);
+    }
+    if (descends) {
+      u.swap(trial_);
+      return length;
+    }
+  }
+  residual(q, free, s, u);
+  return 0;
+}
+
+// The same without a g to decrease.
+double ImplicitStep::move(const Vec& q, const Vec& free, double s, Vec& u) {
+  u += p_;
+  residual(q, free, s, u);
+  return 1;
+}
+
+double ImplicitStep::objective(const Vec& q, const Vec& free, double s, const Vec& u) {
+  x_ = q + u;
+  return system().kinetic(u - free) + s * system().potential(x_);
+}
+
+}  // namespace qddot

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "integrators/fixed_step.hpp"
+#include "src/algebra/effective_mass.hpp"
+
+namespace qddot {
+
+// A fixed step with implicit stages. Each stage of M q'' = f(q) asks, whatever the formula, for the
+// displacement u from q_n that solves
+//   M (u - u*) = s f(q_n + u)
+// with a u* from what is known and an s [s^2]; it makes the incremental potential
+//   g(u) = 1/2 (u - u*)' M (u - u*) + s V(q_n + u)
+// stationary, and a minimum is looked for (Martin, Thomaszewski, Grinspun, Gross, SIGGRAPH 2011,
+// section 4). The acceleration of the stage is (u - u*)/s: it costs no force.
+//
+// Newton's method with the last factors of M - s K as long as they converge, and K anew where they
+// do not. Where M - s K is not positive definite, the negative transverse part of compressed
+// springs is scaled by a factor that is halved with each factorisation that fails, down to none,
+// and doubled with each that succeeds, up to all of it. So directions descend, and a step along one
+// that does not decrease g is halved until it does.
+class ImplicitStep : public FixedStep {
+ public:
+  // What a solve leaves is of no use to be less than the step's own error; but a method that keeps
+  // an invariant keeps it no better than its stages are solved.
+  static constexpr double enough = 1e-4, enough_for_invariants = 1e-9;
+
+  // `solve_tolerance`: where the knobs do not say.
+  ImplicitStep(const Method& method, const System& system, const Knobs& knobs,
+               double solve_tolerance = enough);
+
+ protected:
+  // Solves the stage from the prediction in `u`, up to the tolerance times the first correction,
+  // which is what the prediction was wrong by and so of the size of the step's own error.
+  // reached_end, newton_failed, indefinite_matrix, not_finite or over_budget.
+  Outcome solve_stage(const Vec& q, const Vec& free, double s, Vec& u);
+
+  void start(const State&) override;
+
+ private:
+  // What a stage's f and K are; a method with another mean of the forces over the step says so.
+  virtual void stage_force(const Vec& q, const Vec& u, Vec& f);
+  virtual void stage_stiffness(const Vec& q, const Vec& u, double compression, SymmetricMatrix& k);
+  // Whether f is the gradient of a potential, so that there is a g to decrease.
+  virtual bool is_minimisation() const { return true; }
+
+  void residual(const Vec& q, const Vec& free, double s, const Vec& u);
+  Outcome factorize(const Vec& q, const Vec& u, double s);
+  Outcome correction();
+  double search(const Vec& q, const Vec& free, double s, Vec& u);
+  double move(const Vec& q, const Vec& free, double s, Vec& u);
+  double objective(const Vec& q, const Vec& free, double s, const Vec& u);
+
+  const double tolerance_;
+  Vec x_, f_, r_, p_, trial_;
+  SymmetricMatrix k_;
+  EffectiveMass matrix_;
+  double factorized_s_ = 0;  // of the factors at hand; 0: none
+  double compression_ = 1;   // with which they were made
+  // The first correction of the last stage, and the rate at which its corrections shrank.
+  double last_first_ = 0, last_rate_ = 1;
+};
+
+}  // namespace qddot

@@ -1,0 +1,51 @@
+// The trapezoidal rule, which is Newmark's method with beta = 1/4, gamma = 1/2:
+//   q_{n+1} = q_n + h v_n + h^2/4 (a_n + a_{n+1}),  M a = f(q)
+//   v_{n+1} = v_n + h/2 (a_n + a_{n+1})
+// so that M (u - u*) = h^2/4 f(q_n + u), u* = h v_n + h^2/4 a_n. Order 2, A-stable, reversible;
+// conjugate to implicit midpoint and so as good over long times, but not itself symplectic.
+#include "integrators/implicit_step.hpp"
+#include "integrators/registry.hpp"
+
+namespace qddot {
+namespace {
+
+class Trapezoidal final : public ImplicitStep {
+ public:
+  using ImplicitStep::ImplicitStep;
+
+ private:
+  void start(const State& state) override {
+    ImplicitStep::start(state);
+    force(state.q, a_);
+    a_ = a_.cwiseQuotient(system().mass()).eval();
+  }
+
+  Outcome step(const State& now, double h, State& next) override {
+    const double s = h * h / 4;
+    free_ = h * now.v + s * a_;
+    u_ = free_ + s * a_;
+    if (const Outcome outcome = solve_stage(now.q, free_, s, u_); outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    next.q = now.q + u_;
+    next.v = 2 / h * u_ - now.v;  // u = h/2 (v_n + v_{n+1})
+    a_ = (u_ - free_) / s;
+    return Outcome::reached_end;
+  }
+
+  Vec a_{system().size()}, free_{system().size()}, u_{system().size()};
+};
+
+}  // namespace
+
+Method trapezoidal() {
+  return {.name = "trapezoidal",
+          .summary = "Newmark's beta = 1/4, gamma = 1/2 (average acceleration); damps nothing",
+          .source = "Newmark, Journal of the Engineering Mechanics Division 85 (1959) 67-94",
+          .order = 2,
+          .implicit = true,
+          .needs_stiffness = true,
+          .make = create<Trapezoidal>};
+}
+
+}  // namespace qddot

@@ -1,0 +1,143 @@
+#include <limits>
+
+#include <boost/test/unit_test.hpp>
+
+#include "src/model/divided.hpp"
+#include "src/model/held.hpp"
+#include "tests/measure.hpp"
+#include "tests/model/random_images.hpp"
+#include "tests/problems.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(mean_force)
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+Vec mean_force_at(const System& system, const Vec& a, const Vec& b) {
+  Vec f(system.size());
+  system.mean_force(a, b, f);
+  return f;
+}
+
+Vec random_vector(std::mt19937& random, Index n, double size) {
+  std::uniform_real_distribution<double> uniform(-size, size);
+  return Vec::NullaryExpr(n, [&] { return uniform(random); });
+}
+
+// |f.(b - a) + V(b) - V(a)| in units of its rounding: of V, sums of some 50 terms.
+double work_error(const System& system, const Vec& a, const Vec& b) {
+  const double va = system.potential(a), vb = system.potential(b);
+  const double work = mean_force_at(system, a, b).dot(b - a);
+  return std::abs(work + vb - va) / (50 * eps * (std::abs(va) + std::abs(vb) + std::abs(work)));
+}
+
+// Checks systems of all kinds: links, images, nodes on mirrors, quartic springs, in each dimension.
+template <class Check>
+void for_systems(const Check& check) {
+  std::mt19937 random(31);
+  for (const int dimension : {1, 2, 3}) {
+    for (const double stretch : {0.7, 1.3}) {
+      const Problem p = random_network(random, dimension, 6, stretch);
+      check(*make_mass_spring(p.network), p.initial.q, random);
+      for (const bool on_planes : {false, true}) {
+        const ImageSample s = random_images(random, dimension, stretch, on_planes);
+        check(*make_mass_spring(s.network), s.q, random);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(its_work_is_exactly_what_the_potential_loses_however_far_the_way) {
+  for_systems([](const System& system, const Vec& a, std::mt19937& random) {
+    for (const double size : {1e-6, 0.1, 3.0}) {
+      const Vec b = a + random_vector(random, a.size(), size);
+      BOOST_TEST(work_error(system, a, b) < 1);
+    }
+  });
+}
+
+BOOST_AUTO_TEST_CASE(the_force_in_the_middle_does_other_work) {
+  double largest = 0;
+  for_systems([&](const System& system, const Vec& a, std::mt19937& random) {
+    const Vec b = a + random_vector(random, a.size(), 0.1);
+    const double work = force_at(system, (a + b) / 2).dot(b - a);
+    largest = std::max(largest, std::abs(work + system.potential(b) - system.potential(a)));
+  });
+  BOOST_TEST(largest > 1e-3);
+}
+
+BOOST_AUTO_TEST_CASE(it_is_the_force_where_both_ends_are_one_and_the_same_in_both_directions) {
+  for_systems([](const System& system, const Vec& a, std::mt19937& random) {
+    const double scale = force_at(system, a).lpNorm<Eigen::Infinity>();
+    BOOST_TEST(distance(mean_force_at(system, a, a), force_at(system, a)) < 50 * eps * scale);
+    const Vec b = a + random_vector(random, a.size(), 0.3);
+    BOOST_TEST(distance(mean_force_at(system, a, b), mean_force_at(system, b, a)) == 0);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(it_is_the_force_in_the_middle_to_second_order) {
+  for_systems([](const System& system, const Vec& a, std::mt19937& random) {
+    const Vec way = random_vector(random, a.size(), 1);
+    const auto difference = [&](double part) {
+      const Vec b = a + part * way;
+      return distance(mean_force_at(system, a, b), force_at(system, (a + b) / 2));
+    };
+    if (difference(0.01) == 0) return;  // linear springs alone
+    // A quarter of the distance: a sixteenth, but for third-order terms of a few percent.
+    BOOST_TEST(std::abs(difference(0.01) / difference(0.0025) / 16 - 1) < 0.2);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(without_pins_it_has_no_sum_and_no_moment_about_the_way_s_middle) {
+  std::mt19937 random(32);
+  for (int sample = 0; sample < 5; ++sample) {
+    Problem p = random_network(random, 3, 6, 1.2);
+    p.network.anchors.clear();
+    p.network.gravity.setZero();
+    const auto system = make_mass_spring(p.network);
+    const Vec a = p.initial.q, b = a + random_vector(random, a.size(), 0.5);
+    const Vec f = mean_force_at(*system, a, b);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero(), moment = sum;
+    for (Index i = 0; i < a.size(); i += 3) {
+      sum += f.segment<3>(i);
+      moment += ((a + b) / 2).segment<3>(i).head<3>().cross(f.segment<3>(i).head<3>());
+    }
+    const double scale = f.lpNorm<1>();
+    BOOST_TEST(sum.norm() < 50 * eps * scale);
+    BOOST_TEST(moment.norm() < 50 * eps * scale * a.lpNorm<Eigen::Infinity>());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(held_unknowns_feel_none_and_parts_have_their_own) {
+  std::mt19937 random(33);
+  const Problem p = random_network(random, 2, 4, 1.2), other = random_network(random, 2, 3, 0.8);
+  const Vec& a = p.initial.q;
+  const Vec b = a + random_vector(random, a.size(), 0.3);
+  const auto system = make_mass_spring(p.network);
+  std::vector<bool> is_held(static_cast<std::size_t>(a.size()));
+  is_held[2] = is_held[5] = true;
+  const Held held(make_mass_spring(p.network), is_held);
+  Vec expected = mean_force_at(*system, a, b);
+  expected[2] = expected[5] = 0;
+  BOOST_TEST(distance(mean_force_at(held, a, b), expected) == 0);
+
+  std::vector<std::unique_ptr<System>> parts;
+  parts.push_back(make_mass_spring(p.network));
+  parts.push_back(make_mass_spring(other.network));
+  const auto second = make_mass_spring(other.network);
+  const Divided divided(std::move(parts));
+  Vec both_a(a.size() + other.initial.q.size()), both_b = both_a;
+  both_a << a, other.initial.q;
+  both_b << b, 1.1 * other.initial.q;
+  Vec both(both_a.size());
+  both << mean_force_at(*system, a, b),
+      mean_force_at(*second, other.initial.q, 1.1 * other.initial.q);
+  BOOST_TEST(distance(mean_force_at(divided, both_a, both_b), both) == 0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
