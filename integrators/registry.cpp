@@ -12,6 +12,9 @@
   METHOD(implicit_euler)           \
   METHOD(verlet)                   \
   METHOD(kahan_li8)                \
+  METHOD(dprkn6)                   \
+  METHOD(dprkn8)                   \
+  METHOD(dprkn12)                  \
   METHOD(exact)                    \
   METHOD(arkode_dirk2)             \
   METHOD(arkode_dirk3)             \
