@@ -104,7 +104,7 @@ const NystromPair& dprkn12_pair() {
 namespace {
 
 std::unique_ptr<Integrator> make(const Method& method, const System& system, const Knobs& knobs) {
-  return std::make_unique<Nystrom>(method, system, knobs, dprkn12_pair(), 8);
+  return std::make_unique<Nystrom>(method, system, knobs, dprkn12_pair(), 6);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ const NystromPair& dprkn8_pair() {
 namespace {
 
 std::unique_ptr<Integrator> make(const Method& method, const System& system, const Knobs& knobs) {
-  return std::make_unique<Nystrom>(method, system, knobs, dprkn8_pair(), 6);
+  return std::make_unique<Nystrom>(method, system, knobs, dprkn8_pair(), 4);
 }
 
 }  // namespace

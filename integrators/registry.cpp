@@ -11,6 +11,10 @@
   METHOD(semi_implicit_euler)      \
   METHOD(implicit_euler)           \
   METHOD(verlet)                   \
+  METHOD(position_verlet)          \
+  METHOD(rk4)                      \
+  METHOD(blanes_moan4)             \
+  METHOD(blanes_moan6)             \
   METHOD(kahan_li8)                \
   METHOD(dprkn6)                   \
   METHOD(dprkn8)                   \
