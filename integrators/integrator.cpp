@@ -142,6 +142,7 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer) {
     if (outcome == Outcome::reached_end) state.t = t;
     return outcome;
   };
+  t_end_ = t_end;
   if (moves) start(state);
   for (const double t : observer.times) {
     if (const Outcome outcome = go_to(t); outcome != Outcome::reached_end) return outcome;

@@ -107,8 +107,9 @@ struct Knobs {
 };
 
 // Looks at a run from outside: `see` is called at each of `times` [s] (ascending, after the start,
-// at most t_end) and at no other. Steps land on those times exactly; the last one before each is
-// shortened where it must be.
+// at most t_end) and at no other. Steps land on those times exactly, the last one before each
+// shortened where it must be; but for methods that interpolate (Method::interpolates), whose steps
+// are the same with and without an observer.
 struct Observer {
   std::vector<double> times;
   std::function<void(const State&)> see;
@@ -124,14 +125,16 @@ class Integrator {
   Integrator& operator=(const Integrator&) = delete;
 
   // Runs from `state` to t_end >= state.t [s]; each call is a fresh run. On failure `state` is the
-  // last accepted one. Never throws; `stop` ends the run after the step at hand (over_budget).
+  // last accepted one, or the one last observed where no step was taken after it. Never throws;
+  // `stop` ends the run after the step at hand (over_budget).
   Summary advance(State& state, double t_end, const Observer& observer = {},
                   std::stop_token stop = {});
 
  protected:
   // Called once a run, before the first step.
   virtual void start(const State&) {}
-  // Brings `state` from its time to t_stop exactly.
+  // Brings `state` from its time to t_stop exactly. Called for each of the observer's times and for
+  // t_end; a method that interpolates may have gone beyond t_stop, but never beyond t_end.
   virtual Outcome run_to(State& state, double t_stop) = 0;
 
   const System& system() const { return system_; }
@@ -140,6 +143,8 @@ class Integrator {
   Counts& counts() { return counts_; }
   // Where to add the time that something takes, if anywhere.
   Seconds* seconds() { return knobs_.timed ? &seconds_ : nullptr; }
+  // Where the run is to end [s]; known from start() on.
+  double t_end() const { return t_end_; }
   bool must_stop() const { return stop_.stop_requested(); }
   // Whether a state can be accepted: reached_end, or else why not (not_finite, diverged,
   // went_slack).
@@ -182,6 +187,7 @@ class Integrator {
   Knobs knobs_;
   Counts counts_;
   Seconds seconds_;
+  double t_end_ = 0;
   std::stop_token stop_;
   std::string message_;
 };

@@ -28,6 +28,7 @@ void Parts::start(const State& state) {
 void Parts::start(Piece& piece) {
   piece.integrator->message_.clear();
   piece.integrator->stop_ = stop_;
+  piece.integrator->t_end_ = t_end();
   piece.integrator->start(piece.state);
 }
 

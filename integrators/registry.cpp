@@ -18,7 +18,14 @@
   METHOD(trbdf2)                   \
   METHOD(discrete_gradient)        \
   METHOD(verlet)                   \
+  METHOD(position_verlet)          \
+  METHOD(rk4)                      \
+  METHOD(blanes_moan4)             \
+  METHOD(blanes_moan6)             \
   METHOD(kahan_li8)                \
+  METHOD(dprkn6)                   \
+  METHOD(dprkn8)                   \
+  METHOD(dprkn12)                  \
   METHOD(exact)                    \
   METHOD(arkode_dirk2)             \
   METHOD(arkode_dirk3)             \

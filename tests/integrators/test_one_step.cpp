@@ -124,6 +124,31 @@ BOOST_AUTO_TEST_CASE(verlet_is_its_formula) {
   BOOST_TEST(largest_distance("verlet", formula) < rounding);
 }
 
+BOOST_AUTO_TEST_CASE(position_verlet_is_its_formula) {
+  const auto formula = [](const System& system, const State& s) -> State {
+    const Vec middle = s.q + h / 2 * s.v, v = s.v + h * acceleration(system, middle);
+    return {h, middle + h / 2 * v, v};
+  };
+  BOOST_TEST(largest_distance("position_verlet", formula) < rounding);
+}
+
+BOOST_AUTO_TEST_CASE(rk4_is_its_formula_on_the_first_order_form) {
+  const auto formula = [](const System& system, const State& s) -> State {
+    const Index n = s.q.size();
+    const auto rate = [&](const Vec& y) -> Vec {
+      Vec change(2 * n);
+      change << y.tail(n), acceleration(system, y.head(n));
+      return change;
+    };
+    Vec y(2 * n);
+    y << s.q, s.v;
+    const Vec k1 = rate(y), k2 = rate(y + h / 2 * k1), k3 = rate(y + h / 2 * k2);
+    const Vec end = y + h / 6 * (k1 + 2 * k2 + 2 * k3 + rate(y + h * k3));
+    return {h, end.head(n), end.tail(n)};
+  };
+  BOOST_TEST(largest_distance("rk4", formula) < rounding);
+}
+
 BOOST_AUTO_TEST_CASE(kahan_li8_is_17_verlet_steps) {
   const auto formula = [](const System& system, State s) {
     for (const double g : all_gamma()) s = verlet_step(system, s, g * h);

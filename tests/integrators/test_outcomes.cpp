@@ -140,7 +140,9 @@ BOOST_AUTO_TEST_CASE(a_run_stopped_on_its_way_ends_there) {
       BOOST_TEST(name(r.summary.outcome) == "over_budget");
       BOOST_TEST(is_sound(r, 1));
       BOOST_TEST(r.state.t == 0.5);
-      BOOST_TEST(same(r.state, run(method, *h.system, h.problem.initial, 0.5, knobs).state));
+      const State there = run(method, *h.system, h.problem.initial, 0.5, knobs).state;
+      // A method that steps on 0.5 only where that is its end does so within some tolerances.
+      BOOST_TEST(distance(r.state, there) <= (method.interpolates ? 10 * knobs.rtol : 0));
     }
   }
 }

@@ -86,7 +86,14 @@ BOOST_AUTO_TEST_CASE(the_methods_asked_for_are_there_with_their_orders) {
                                                            {"semi_implicit_euler", 1},
                                                            {"implicit_euler", 1},
                                                            {"verlet", 2},
+                                                           {"position_verlet", 2},
+                                                           {"rk4", 4},
+                                                           {"blanes_moan4", 4},
+                                                           {"blanes_moan6", 6},
                                                            {"kahan_li8", 8},
+                                                           {"dprkn6", 6},
+                                                           {"dprkn8", 8},
+                                                           {"dprkn12", 12},
                                                            {"arkode_dirk2", 2},
                                                            {"arkode_dirk3", 3},
                                                            {"arkode_dirk4", 4},
@@ -127,7 +134,7 @@ BOOST_AUTO_TEST_CASE(facts_about_a_method_fit_together) {
       // Without implicitness a massless node has no equation; without steps of its own choice a
       // method has no order to choose.
       if (method.accepts_massless) BOOST_TEST(method.implicit);
-      if (method.varies_order) BOOST_TEST((method.knob == Knob::rtol));
+      if (method.varies_order || method.interpolates) BOOST_TEST((method.knob == Knob::rtol));
       if (method.name.ends_with("_klu"))
         BOOST_TEST(find_method(method.name.substr(0, method.name.size() - 4)));
     }

@@ -169,10 +169,11 @@ BOOST_AUTO_TEST_CASE(a_linear_chain_stays_bounded_below_the_limit_and_explodes_a
   }
 }
 
-BOOST_AUTO_TEST_CASE(verlet_and_kahan_li8_run_backwards_to_their_start) {
-  for (const char* method : {"verlet", "kahan_li8"}) {
-    // 400 steps (of 17 substeps) on numbers of 10, each rounding by 1e-15, which the motion may
-    // enlarge some ten times.
+BOOST_AUTO_TEST_CASE(symmetric_splittings_run_backwards_to_their_start) {
+  for (const char* method :
+       {"verlet", "position_verlet", "blanes_moan4", "blanes_moan6", "kahan_li8"}) {
+    // 400 steps (of up to 17 substeps) on numbers of 10, each rounding by 1e-15, which the motion
+    // may enlarge some ten times.
     BOOST_TEST(return_distance(method_named(method)) < 1e-10);
   }
 }
@@ -182,6 +183,7 @@ BOOST_AUTO_TEST_CASE(methods_that_are_not_reversible_do_not_return) {
   for (const char* method : {"symplectic_euler", "implicit_euler"}) {
     BOOST_TEST(return_distance(method_named(method)) > 1e-3);
   }
+  BOOST_TEST(return_distance(method_named("rk4")) > 1e-5);
   BOOST_TEST(return_distance(faulty_verlet<1>()) > 1e-5);
 }
 

@@ -175,8 +175,9 @@ BOOST_AUTO_TEST_CASE(what_is_left_of_the_run_before_is_noticed) {
 
 BOOST_AUTO_TEST_CASE(one_step_methods_run_in_two_halves_as_in_one) {
   const Knobs knobs{.step_size = 1. / 64};
-  for (const char* method : {"explicit_euler", "symplectic_euler", "semi_implicit_euler",
-                             "implicit_euler", "verlet", "kahan_li8"}) {
+  for (const char* method :
+       {"explicit_euler", "symplectic_euler", "semi_implicit_euler", "implicit_euler", "verlet",
+        "position_verlet", "rk4", "blanes_moan4", "blanes_moan6", "kahan_li8"}) {
     for (const Problem& p : {hammock(3), linear_hammock(3)}) {
       BOOST_TEST_CONTEXT(method) {
         const auto system = make_mass_spring(p.network);

@@ -1,0 +1,47 @@
+#include "integrators/kick_drift.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace qddot {
+
+std::vector<double> mirrored(std::vector<double> half, std::size_t size) {
+  assert(half.size() == (size + 1) / 2);
+  for (std::size_t i = half.size(); i < size; ++i) half.push_back(half[size - 1 - i]);
+  return half;
+}
+
+KickDrift::KickDrift(const Method& method, const System& system, const Knobs& knobs,
+                     const Splitting& splitting)
+    : FixedStep(method, system, knobs),
+      splitting_(splitting),
+      kicks_first_(splitting.kicks.size() > splitting.drifts.size()),
+      f_(system.size()) {}
+
+void KickDrift::start(const State& state) {
+  if (kicks_first_) force(state.q, f_);
+}
+
+void KickDrift::kick(double size, State& state) const {
+  state.v += size * f_.cwiseQuotient(system().mass());
+}
+
+Outcome KickDrift::step(const State& now, double h, State& next) {
+  const auto& [order, kicks, drifts] = splitting_;
+  next.q = now.q;
+  next.v = now.v;
+  for (std::size_t i = 0; i < std::min(kicks.size(), drifts.size()); ++i) {
+    if (kicks_first_) kick(kicks[i] * h, next);
+    next.q += (drifts[i] * h) * next.v;
+    force(next.q, f_);
+    if (!kicks_first_) kick(kicks[i] * h, next);
+  }
+  if (kicks_first_) {
+    kick(kicks.back() * h, next);
+  } else {
+    next.q += (drifts.back() * h) * next.v;
+  }
+  return Outcome::reached_end;
+}
+
+}  // namespace qddot

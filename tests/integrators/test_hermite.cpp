@@ -1,0 +1,75 @@
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/hermite.hpp"
+#include "tests/measure.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(hermite)
+
+namespace {
+
+const std::vector<double> times = {0.3, 1.2, 0.55, 0.8, 1.5, 0.1};  // of any order and spacing
+
+// Two coordinates of which the first is t^degree, and the second three times that and 5.
+Instant monomial(double t, int degree) {
+  const double q = std::pow(t, degree), v = degree * std::pow(t, degree - 1),
+               a = degree * (degree - 1) * std::pow(t, degree - 2);
+  return {{t, Vec{{q, 5 + 3 * q}}, Vec{{v, 3 * v}}}, Vec{{a, 3 * a}}};
+}
+
+State interpolated(std::size_t instants, int degree, double t) {
+  std::vector<Instant> list;
+  for (std::size_t i = 0; i < instants; ++i) list.push_back(monomial(times[i], degree));
+  std::vector<const Instant*> pointers;
+  for (const Instant& instant : list) pointers.push_back(&instant);
+  State at{0, Vec(2), Vec(2)};
+  interpolate(pointers, t, at);
+  BOOST_TEST(at.t == t);
+  return at;
+}
+
+// Rounding of numbers of up to 1e3 by weights of up to 1e3.
+constexpr double rounding = 1e-10;
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(polynomials_of_degree_3m_minus_1_are_reproduced) {
+  for (std::size_t m = 2; m <= most_instants; ++m) {
+    for (int degree = 2; degree < 3 * static_cast<int>(m); ++degree) {
+      for (const double t : {0.42, 0.6, 0.9}) {
+        BOOST_TEST_CONTEXT(m << " instants, degree " << degree << ", t = " << t) {
+          const State at = interpolated(m, degree, t), exact = monomial(t, degree).state;
+          BOOST_TEST(distance(at.q, exact.q) < rounding);
+          BOOST_TEST(distance(at.v, exact.v) < rounding);
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_error_of_degree_3m_is_the_product_of_the_distances_cubed) {
+  for (std::size_t m = 2; m <= most_instants; ++m) {
+    for (const double t : {0.42, 0.6, 0.9}) {
+      double product = 1, slope = 0;
+      for (std::size_t i = 0; i < m; ++i) {
+        product *= std::pow(t - times[i], 3);
+        slope += 3 / (t - times[i]);
+      }
+      const int degree = 3 * static_cast<int>(m);
+      const State at = interpolated(m, degree, t), exact = monomial(t, degree).state;
+      BOOST_TEST(std::abs(exact.q[0] - at.q[0] - product) < rounding);
+      BOOST_TEST(std::abs(exact.v[0] - at.v[0] - product * slope) < rounding);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(at_an_instant_its_state_is_found) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    const State at = interpolated(4, 20, times[i]), exact = monomial(times[i], 20).state;
+    BOOST_TEST(distance(at.q, exact.q) < 1e-14);
+    BOOST_TEST(distance(at.v, exact.v) < rounding);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

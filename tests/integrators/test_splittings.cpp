@@ -1,0 +1,128 @@
+#include <numeric>
+
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/kick_drift.hpp"
+#include "tests/integrators/nystrom_trees.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(splittings)
+
+namespace {
+
+struct Named {
+  const char* name;
+  const Splitting& splitting;
+};
+const std::vector<Named> all = {{"position_verlet", position_verlet_splitting()},
+                                {"blanes_moan4", blanes_moan4_splitting()},
+                                {"blanes_moan6", blanes_moan6_splitting()},
+                                {"kahan_li8", kahan_li8_splitting()}};
+
+// The Nystrom method that a splitting is: a stage where each kick is, at the time c_i of the drifts
+// before, with a_ij = y_j (c_i - c_j), b_i = y_i (1 - c_i) and b'_i = y_i.
+NystromPair as_nystrom(const Splitting& splitting) {
+  const auto& [order, kicks, drifts] = splitting;
+  const std::size_t drifts_before = drifts.size() > kicks.size() ? 1 : 0;
+  NystromPair method{.order = order, .lower_order = 0, .b_prime = kicks};
+  for (std::size_t i = 0; i < kicks.size(); ++i) {
+    const auto end = drifts.begin() + static_cast<std::ptrdiff_t>(i + drifts_before);
+    const double c = std::accumulate(drifts.begin(), end, 0.0);
+    std::vector<double> row;
+    for (std::size_t j = 0; j < i; ++j) row.push_back(kicks[j] * (c - method.c[j]));
+    method.c.push_back(c);
+    method.a.push_back(row);
+    method.b.push_back(kicks[i] * (1 - c));
+  }
+  return method;
+}
+
+// By how much each order's conditions are missed, from order 1 on.
+std::vector<double> defects(const Splitting& splitting, int highest_order) {
+  const NystromPair method = as_nystrom(splitting);
+  const NystromTrees trees(method, highest_order);
+  std::vector<double> list;
+  for (int p = 1; p <= highest_order; ++p) {
+    list.push_back(order_defect(trees.all(), method.b, method.b_prime, p));
+  }
+  return list;
+}
+
+// Each of up to 18 products and sums of up to 8 levels rounds by 1.1e-16 of what is added up.
+constexpr double rounding = 2e-15;
+
+// Of the matrix of one step on q'' = -q: the larger modulus of its eigenvalues.
+double spectral_radius(const Method& method, double h) {
+  static const auto system =
+      make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);
+  Eigen::Matrix2d matrix;
+  for (const int column : {0, 1}) {
+    const State start{0, Vec::Constant(1, column == 0), Vec::Constant(1, column == 1)};
+    const State end = run(method, *system, start, h, {.step_size = h}).state;
+    matrix.col(column) << end.q, end.v;
+  }
+  return matrix.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(each_splitting_meets_all_conditions_of_its_order_and_not_those_of_the_next) {
+  for (const auto& [name, splitting] : all) {
+    BOOST_TEST(method_named(name).order == splitting.order);
+    const std::vector<double> list = defects(splitting, splitting.order + 1);
+    for (int p = 1; p <= splitting.order + 1; ++p) {
+      const double defect = list[static_cast<std::size_t>(p - 1)];
+      BOOST_TEST_CONTEXT(name << " at order " << p << ": " << defect) {
+        BOOST_TEST((defect < rounding) == (p <= splitting.order));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_coefficient_wrong_in_its_13th_digit_is_noticed) {
+  Splitting wrong = blanes_moan6_splitting();
+  wrong.kicks[2] += 1e-13;
+  wrong.kicks[9] += 1e-13;
+  wrong.kicks[5] -= 1e-13;
+  wrong.kicks[6] -= 1e-13;
+  const std::vector<double> list = defects(wrong, 6);
+  BOOST_TEST(list[0] < rounding);
+  BOOST_TEST(*std::ranges::max_element(list) > rounding);
+}
+
+BOOST_AUTO_TEST_CASE(each_splitting_is_the_same_read_backwards) {
+  for (const auto& [name, splitting] : all) {
+    BOOST_TEST_CONTEXT(name) {
+      for (const std::vector<double>& list : {splitting.kicks, splitting.drifts}) {
+        const std::vector<double> backwards(list.rbegin(), list.rend());
+        BOOST_TEST(list == backwards, boost::test_tools::per_element());
+      }
+    }
+  }
+  BOOST_TEST(mirrored({1, 2, 3}, 5) == (std::vector<double>{1, 2, 3, 2, 1}),
+             boost::test_tools::per_element());
+  BOOST_TEST(mirrored({1, 2, 3}, 6) == (std::vector<double>{1, 2, 3, 3, 2, 1}),
+             boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(explicit_steps_let_vibrations_grow_above_their_stability_limit_only) {
+  for (const Method& method : methods_of(Knob::step_size)) {
+    if (method.implicit || method.name == "explicit_euler") continue;  // which has none
+    if (method.family == Family::sundials) continue;
+    const double limit = method.stability_limit;
+    BOOST_TEST_CONTEXT(method.name) {
+      double below = 0, above = 0;
+      for (int i = 1; i <= 2000; ++i) {
+        below = std::max(below, spectral_radius(method, limit * i / 2000));
+        above = std::max(above, spectral_radius(method, limit * (1 + i / 2e5)));
+      }
+      // Rounding of the matrix by 1e-15 moves an eigenvalue by its root where two of them meet.
+      BOOST_TEST(below < 1 + 1e-7);
+      BOOST_TEST(above > 1 + 1e-4);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
