@@ -126,9 +126,10 @@ Outcome AdaptiveStep::take_step() {
   const Instant& now = last();
   Instant& next = last(instants_.size() - 1);
   const double t = now.state.t, power = 1.0 / (accuracy_.error_order + 1);
+  const double longest = longest_step(now);
   for (;;) {
     if (must_stop()) return Outcome::over_budget;
-    const double longest = longest_step(now), planned = step_size(t, longest);
+    const double planned = step_size(t, longest);
     next.state.t = planned == t_end() - t ? t_end() : t + planned;
     const double h = next.state.t - t;  // as rounding lets it be
 
@@ -138,7 +139,12 @@ Outcome AdaptiveStep::take_step() {
       error = norm(now.state, error_q_, error_v_);
       outcome = std::isfinite(error) ? judge(next.state) : Outcome::not_finite;
     }
-    if (error <= 1 && outcome != Outcome::not_finite) {
+    if (error <= 1 && outcome == Outcome::reached_end) {
+      accepted(next);
+      if (!std::isfinite(next.a.sum())) outcome = Outcome::not_finite;
+    }
+    if (outcome == Outcome::not_finite) error = INFINITY;
+    if (error <= 1) {
       if (outcome != Outcome::reached_end) return outcome;
       accept(h_ > longest);
       const double factor =
@@ -165,7 +171,6 @@ void AdaptiveStep::accept(bool is_limited) {
   count_ = std::min(count_ + 1, instants_.size());
   ++counts().steps;
   if (is_limited) ++counts().stability_limited_steps;
-  accepted(last());
 }
 
 bool AdaptiveStep::has_crept() {

@@ -31,11 +31,12 @@ class AdaptiveStep : public Integrator {
   // ends the run at `now`; results that are not finite likewise.
   virtual Outcome attempt(const Instant& now, double h, Instant& next, Vec& error_q,
                           Vec& error_v) = 0;
-  // Called after each accepted step; sets its end's acceleration unless the attempt has done so.
+  // Called after each attempt whose errors are small enough; sets its end's acceleration unless the
+  // attempt has done so. Where that is not finite, the step is rejected after all.
   virtual void accepted(Instant& next) { acceleration(next.state.q, next.a); }
   // Called after each rejected one.
   virtual void rejected() {}
-  // No step from there is to be longer [s].
+  // No step from there is to be longer [s]; asked once a step.
   virtual double longest_step(const Instant&) { return std::numeric_limits<double>::infinity(); }
 
   // To be called by those that override it.

@@ -9,6 +9,7 @@ const NystromPair& dprkn12_pair() {
   static const NystromPair pair = {
       .order = 12,
       .lower_order = 10,
+      .stable_hw = 8.42,
       .c = {0, 1. / 50, 1. / 25, 1. / 10, 2. / 15, 4. / 25, 1. / 20, 1. / 5, 1. / 4, 1. / 3, 1. / 2,
             5. / 9, 3. / 4, 6. / 7, 8437. / 8926, 1, 1},
       .a = {{},
@@ -111,12 +112,15 @@ std::unique_ptr<Integrator> make(const Method& method, const System& system, con
 
 Method dprkn12() {
   return {.name = "dprkn12",
-          .summary = "adaptive explicit Runge-Kutta-Nystrom of order 12(10); 17 forces a step",
+          .summary =
+              "adaptive explicit Runge-Kutta-Nystrom of order 12(10), 17 forces a step, "
+              "held to 1/w_max",
           .source =
               "Dormand, El-Mikkawy and Prince, IMA J. Numerical Analysis 7 (1987) 423-430, "
               "RKN12(10)17M",
           .order = 12,
           .knob = Knob::rtol,
+          .needs_stiffness = true,
           .interpolates = true,
           .make = make};
 }

@@ -12,6 +12,7 @@ const NystromPair& dprkn6_pair() {
   static const NystromPair pair = {
       .order = 6,
       .lower_order = 4,
+      .stable_hw = 2.71,
       .c = {0, (209 - r) / 900, (209 - r) / 450, (209 + r) / 450, 9. / 10, 1},
       .a = {{},
             {(26131 - 209 * r) / 810000},
@@ -45,12 +46,15 @@ std::unique_ptr<Integrator> make(const Method& method, const System& system, con
 
 Method dprkn6() {
   return {.name = "dprkn6",
-          .summary = "adaptive explicit Runge-Kutta-Nystrom of order 6(4); five forces a step",
+          .summary =
+              "adaptive explicit Runge-Kutta-Nystrom of order 6(4), five forces a step, "
+              "held to 1/w_max",
           .source =
               "Dormand and Prince, Computers & Mathematics with Applications 13 (1987) "
               "937-949, RKN6(4)6FD",
           .order = 6,
           .knob = Knob::rtol,
+          .needs_stiffness = true,
           .interpolates = true,
           .make = make};
 }

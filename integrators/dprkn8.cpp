@@ -9,6 +9,7 @@ const NystromPair& dprkn8_pair() {
   static const NystromPair pair = {
       .order = 8,
       .lower_order = 6,
+      .stable_hw = 4.21,
       .c = {0, 1. / 20, 1. / 10, 3. / 10, 1. / 2, 7. / 10, 9. / 10, 1, 1},
       .a = {{},
             {1. / 800},
@@ -44,12 +45,15 @@ std::unique_ptr<Integrator> make(const Method& method, const System& system, con
 
 Method dprkn8() {
   return {.name = "dprkn8",
-          .summary = "adaptive explicit Runge-Kutta-Nystrom of order 8(6); eight forces a step",
+          .summary =
+              "adaptive explicit Runge-Kutta-Nystrom of order 8(6), eight forces a step, "
+              "held to 1/w_max",
           .source =
               "Dormand, El-Mikkawy and Prince, IMA J. Numerical Analysis 7 (1987) 423-430, "
               "RKN8(6)9FM",
           .order = 8,
           .knob = Knob::rtol,
+          .needs_stiffness = true,
           .interpolates = true,
           .make = make};
 }

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 
+#include "src/analysis/frequency_bound.hpp"
+
 namespace qddot {
 namespace {
+
+// w_max changes with the positions, much less than these do in so many steps.
+constexpr int steps_with_one_bound = 50;
 
 Eigen::Map<const Vec> as_vec(const std::vector<double>& numbers) {
   return {numbers.data(), static_cast<Index>(numbers.size())};
@@ -25,7 +30,21 @@ Nystrom::Nystrom(const Method& method, const System& system, const Knobs& knobs,
       error_b_prime_(b_prime_ - as_vec(pair.lower_b_prime)),
       is_first_same_as_last_(pair.is_first_same_as_last()),
       k_(system.size(), b_.size()),
-      stage_(system.size()) {}
+      stage_(system.size()),
+      stiffness_(system.stiffness_pattern()) {}
+
+void Nystrom::start(const State& state) {
+  AdaptiveStep::start(state);
+  steps_with_bound_ = 0;
+}
+
+double Nystrom::longest_step(const Instant& now) {
+  if (steps_with_bound_ == 0) {
+    stiffness(now.state.q, stiffness_);
+    w_max_ = frequency_bound(system().mass(), stiffness_);
+  }
+  return w_max_ > 0 ? pair_.stable_hw / w_max_ : INFINITY;
+}
 
 Outcome Nystrom::attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) {
   const Vec &q = now.state.q, &v = now.state.v;
@@ -47,6 +66,7 @@ Outcome Nystrom::attempt(const Instant& now, double h, Instant& next, Vec& error
 }
 
 void Nystrom::accepted(Instant& next) {
+  steps_with_bound_ = (steps_with_bound_ + 1) % steps_with_one_bound;
   if (!is_first_same_as_last_) AdaptiveStep::accepted(next);
 }
 

@@ -13,6 +13,8 @@ namespace qddot {
 // for the estimate of the errors.
 struct NystromPair {
   int order, lower_order;
+  // The largest h w up to which no vibration q'' = -w^2 q grows by more than a hundredth a step.
+  double stable_hw;
   std::vector<double> c;
   std::vector<std::vector<double>> a;  // row i holds i entries
   std::vector<double> b, b_prime, lower_b, lower_b_prime;
@@ -22,13 +24,17 @@ struct NystromPair {
 };
 
 // Steps of a pair, whose higher order is propagated. Each attempt takes s - 1 forces, an accepted
-// one another at its end unless that is its last stage.
+// one another at its end unless that is its last stage. The error test does not see an instability
+// of modes that hardly move yet, so steps are held to h <= stable_hw/w_max, with Gershgorin's bound
+// of the largest frequency, taken anew every few steps.
 class Nystrom final : public AdaptiveStep {
  public:
   Nystrom(const Method& method, const System& system, const Knobs& knobs, const NystromPair& pair,
           std::size_t instants);
 
  private:
+  void start(const State& state) override;
+  double longest_step(const Instant& now) override;
   Outcome attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) override;
   void accepted(Instant& next) override;
 
@@ -37,6 +43,9 @@ class Nystrom final : public AdaptiveStep {
   bool is_first_same_as_last_;
   Eigen::MatrixXd k_;  // n x s, the stages' accelerations
   Vec stage_;
+  SymmetricMatrix stiffness_;
+  double w_max_ = 0;
+  std::int64_t steps_with_bound_ = 0;
 };
 
 // The pairs of Dormand, El-Mikkawy and Prince, each in the file of its method.

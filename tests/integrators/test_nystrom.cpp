@@ -25,7 +25,8 @@ constexpr double rounding = 2e-15;
 
 BOOST_AUTO_TEST_CASE(there_are_as_many_terms_of_each_order_as_there_should_be) {
   std::vector<int> count(13, 0);
-  for (const NystromTree& tree : NystromTrees(dprkn6_pair(), 12).all()) {
+  const NystromTrees trees(dprkn6_pair(), 12);
+  for (const NystromTree& tree : trees.all()) {
     ++count[static_cast<std::size_t>(tree.order)];
   }
   // Hairer, Norsett and Wanner, table II.14.2, and its recursion.

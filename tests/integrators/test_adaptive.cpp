@@ -1,0 +1,324 @@
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/nystrom.hpp"
+#include "src/analysis/linear_motion.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(adaptive)
+
+namespace {
+
+struct Named {
+  const char* name;
+  const NystromPair& pair;
+};
+const std::vector<Named> pairs = {
+    {"dprkn6", dprkn6_pair()}, {"dprkn8", dprkn8_pair()}, {"dprkn12", dprkn12_pair()}};
+
+std::vector<Method> interpolating() {
+  std::vector<Method> list = methods();
+  std::erase_if(list, [](const Method& method) { return !method.interpolates; });
+  return list;
+}
+
+// A motion and where it is at any time, to rounding.
+struct Case {
+  std::unique_ptr<System> system;
+  State initial;
+  std::function<State(double)> at;
+};
+
+Case linear() {
+  const Problem p = linear_hammock(2);
+  std::shared_ptr<System> system = make_mass_spring(p.network);
+  const auto motion = std::make_shared<LinearMotion>(*system);
+  return {make_mass_spring(p.network), p.initial,
+          [system, motion, start = p.initial](double t) { return motion->after(start, t); }};
+}
+
+Case nonlinear() {
+  const Problem p = hammock(3);
+  std::shared_ptr<System> system = make_mass_spring(p.network);
+  return {make_mass_spring(p.network), p.initial, [system, start = p.initial](double t) {
+            const double h = t / std::ceil(256 * t);
+            return run(method_named("kahan_li8"), *system, start, t, {.step_size = h}).state;
+          }};
+}
+
+// An observer's times and what it saw at them.
+struct Film {
+  std::vector<double> times;
+  std::vector<State> seen;
+  Observer observer() {
+    return {times, [this](const State& state) { seen.push_back(state); }};
+  }
+};
+
+Film film(int frames, double t_end) {
+  Film result;
+  for (int i = 1; i < frames; ++i) result.times.push_back(i * t_end / frames);
+  return result;
+}
+
+// A mass that runs into a wall of springs that are the stiffer the farther it comes: q'' = -50 q^3
+// at 10 m/s from far away, with a fraction of its fastest rates at first.
+Problem wall() {
+  Problem p{{.dimension = 1, .node_mass = Vec::Ones(1)}, {0, Vec{{-0.05}}, Vec{{10}}}};
+  p.network.anchors = {{0, {0, 0, 0}, {.stiffness = 1e-3, .quartic = 5000}}};
+  return p;
+}
+
+double largest(const std::vector<State>& a, const std::function<State(double)>& at) {
+  double worst = 0;
+  for (const State& state : a) worst = std::max(worst, distance(state, at(state.t)));
+  return worst;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(one_step_errs_by_its_order_and_one_in_q_and_v) {
+  for (const Case& c : {linear(), nonlinear()}) {
+    for (const auto& [name, pair] : pairs) {
+      // With w up to 25 rad/s from h w = 1.5, or of order 12 from 4; each is 0.8 times the last.
+      std::vector<double> q, v, logs;
+      double h = pair.order == 12 ? 0.2 : 0.08;
+      for (int i = 0; i < 6; ++i, h *= 0.8) {
+        // So coarse a tolerance that nothing but stability could shorten a step.
+        const Run r = run(method_named(name), *c.system, c.initial, h, {.rtol = 1e20});
+        BOOST_REQUIRE(r.summary.counts.steps == 1);
+        const State exact = c.at(h);
+        q.push_back(std::log(distance(r.state.q, exact.q)));
+        v.push_back(std::log(distance(r.state.v, exact.v)));
+        logs.push_back(std::log(h));
+      }
+      const auto as_vec = [](const std::vector<double>& x) -> Vec {
+        return Eigen::Map<const Vec>(x.data(), static_cast<Index>(x.size()));
+      };
+      const double in_q = slope(as_vec(logs), as_vec(q)), in_v = slope(as_vec(logs), as_vec(v));
+      BOOST_TEST_CONTEXT(name << ": " << in_q << " in q, " << in_v << " in v") {
+        BOOST_TEST(std::abs(in_q - (pair.order + 1)) < 0.5);
+        BOOST_TEST(std::abs(in_v - (pair.order + 1)) < 0.5);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(errors_go_with_steps_to_the_minus_order) {
+  for (const Case& c : {linear(), nonlinear()}) {
+    for (const auto& [name, rtol] : {std::pair("dprkn6", 1e-4), std::pair("dprkn8", 1e-6)}) {
+      const Method& method = method_named(name);
+      const double order = order_by_tolerance(method, *c.system, c.initial, c.at(1), rtol);
+      BOOST_TEST_CONTEXT(name << ": " << order) {
+        BOOST_TEST(std::abs(order - method.order) < 0.7);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(forces_are_those_of_the_stages_and_nothing_else) {
+  // A start, a first step by one Euler step; each attempt s - 1 stages anew, an end of a step its
+  // own unless it is the last stage.
+  const auto system = make_mass_spring(wall().network);
+  for (const auto& [name, pair] : pairs) {
+    for (const double rtol : {1e-2, 1e-6, 1e-10}) {
+      BOOST_TEST_CONTEXT(name << " at " << rtol) {
+        const Run r = run(method_named(name), *system, wall().initial, 3, {.rtol = rtol});
+        BOOST_TEST(r.summary.message == "");
+        const Counts& k = r.summary.counts;
+        const auto fresh = static_cast<std::int64_t>(pair.c.size()) - 1;
+        const std::int64_t ends = pair.is_first_same_as_last() ? 0 : k.steps;
+        Counts expected{.steps = k.steps, .rejected = k.rejected};
+        expected.force_evaluations = 2 + fresh * (k.steps + k.rejected) + ends;
+        expected.stiffness_evaluations = (k.steps + 49) / 50;
+        expected.stability_limited_steps = k.stability_limited_steps;
+        BOOST_TEST(k == expected);
+        BOOST_TEST(k.rejected > 0);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(steps_are_held_to_the_stability_limit_at_coarse_tolerances) {
+  const Case c = linear();
+  for (const auto& [name, pair] : pairs) {
+    const auto counts = [&](double rtol) {
+      return run(method_named(name), *c.system, c.initial, 3, {.rtol = rtol}).summary.counts;
+    };
+    const Counts coarse = counts(10), fine = counts(1e-12);
+    BOOST_TEST(coarse.stability_limited_steps >= coarse.steps - 2);
+    BOOST_TEST(fine.stability_limited_steps == 0);
+    BOOST_TEST(coarse.rejected == 0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_stability_limit_lets_vibrations_grow_by_a_hundredth_a_step) {
+  const auto growth = [](const NystromPair& pair, double hw) {
+    Eigen::Matrix2d matrix;
+    for (const int column : {0, 1}) {
+      const double q = column == 0, v = column == 1;
+      std::vector<double> k;
+      double q_end = q + hw * v, v_end = v;
+      for (std::size_t i = 0; i < pair.c.size(); ++i) {
+        double stage = q + pair.c[i] * hw * v;
+        for (std::size_t j = 0; j < i; ++j) stage += hw * hw * pair.a[i][j] * k[j];
+        k.push_back(-stage);
+        q_end += hw * hw * pair.b[i] * k[i];
+        v_end += hw * pair.b_prime[i] * k[i];
+      }
+      matrix.col(column) << q_end, v_end;
+    }
+    return matrix.eigenvalues().cwiseAbs().maxCoeff();
+  };
+  for (const auto& [name, pair] : pairs) {
+    BOOST_TEST_CONTEXT(name) {
+      double below = 0;
+      for (int i = 1; i <= 1000; ++i) {
+        below = std::max(below, growth(pair, pair.stable_hw * i / 1000));
+      }
+      BOOST_TEST(below < 1.01);
+      BOOST_TEST(growth(pair, pair.stable_hw + 0.01) > 1.01);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_observer_changes_neither_the_end_nor_the_counts) {
+  for (const Case& c : {linear(), nonlinear()}) {
+    for (const Method& method : interpolating()) {
+      for (const double rtol : {1e-2, 1e-5, 1e-9}) {
+        Film watched = film(313, 2);
+        watched.times.push_back(2);
+        const Knobs knobs{.rtol = rtol};
+        const Run a = run(method, *c.system, c.initial, 2, knobs, watched.observer());
+        const Run b = run(method, *c.system, c.initial, 2, knobs);
+        BOOST_TEST(b.summary.message == "");
+        BOOST_TEST(same(a.state, b.state));
+        BOOST_TEST(a.summary.counts == b.summary.counts);
+        BOOST_TEST(same(watched.seen.back(), b.state));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(between_steps_errors_are_of_the_size_of_those_at_their_ends) {
+  for (const Case& c : {linear(), nonlinear()}) {
+    for (const auto& [name, pair] : pairs) {
+      for (const double rtol : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+        const Knobs knobs{.rtol = rtol};
+        const Method& method = method_named(name);
+        Film watched = film(317, 2);
+        run(method, *c.system, c.initial, 2, knobs, watched.observer());
+        std::vector<State> ends;
+        for (int i = 1; i <= 20; ++i) {
+          ends.push_back(run(method, *c.system, c.initial, 0.1 * i, knobs).state);
+        }
+        const double between = largest(watched.seen, c.at), at_ends = largest(ends, c.at);
+        BOOST_TEST_CONTEXT(name << " at " << rtol << ": " << between << ", " << at_ends) {
+          // In the first and last few intervals interpolation is one-sided; where steps are as long
+          // as those of order 12, it leaves some of the tolerance there. Rounding of q by 1e-15 is
+          // enlarged 1/h times in v.
+          BOOST_TEST(between < std::max({3 * at_ends, rtol, 1e-11}));
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_from_some_place_on_ends_the_run_before_it) {
+  const Oscillator o;
+  const auto system = make_mass_spring(o.problem().network);
+  for (const Method& method : interpolating()) {
+    Relay relay(*system);
+    relay.after_force = [](const Vec& q, Vec& f) {
+      if (q[0] < 0) f[0] = NAN;
+    };
+    BOOST_TEST_CONTEXT(method.name) {
+      std::vector<double> shown;
+      const Observer observer{{0.05, 0.1, 0.104, 0.2},
+                              [&](const State& state) { shown.push_back(state.t); }};
+      const Run alone = run(method, relay, o.problem().initial, 1, {.rtol = 1e-6});
+      const Run watched = run(method, relay, o.problem().initial, 1, {.rtol = 1e-6}, observer);
+      BOOST_TEST(name(alone.summary.outcome) == "not_finite");
+      BOOST_TEST(is_finite(alone.state));
+      BOOST_TEST(alone.state.q[0] >= 0);
+      BOOST_TEST(alone.state.q[0] < 1e-9);  // as near as a step can be
+      BOOST_TEST(same(alone.state, watched.state));
+      BOOST_TEST(alone.summary.counts == watched.summary.counts);
+      for (const double t : {0.05, 0.1, 0.104, 0.2}) {
+        BOOST_TEST((std::ranges::find(shown, t) != shown.end()) == (t <= alone.state.t));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_start_without_a_force_is_refused) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : interpolating()) {
+    Relay relay(*system);
+    relay.after_force = [](const Vec&, Vec& f) { f[2] = INFINITY; };
+    const Run r = run(method, relay, p.initial, 1, {.rtol = 1e-6});
+    BOOST_TEST(name(r.summary.outcome) == "not_finite");
+    BOOST_TEST(same(r.state, p.initial));
+    BOOST_TEST(r.summary.counts.steps == 0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_motion_that_is_over_in_finite_time_ends_there) {
+  // q'' = 6 q^2 from q = 1, v = 2 is q = 1/(1 - t)^2, which is infinite at t = 1.
+  const auto system = make_mass_spring(Oscillator{.mass = 1}.problem().network);
+  for (const Method& method : interpolating()) {
+    Relay relay(*system);
+    relay.after_force = [](const Vec& q, Vec& f) { f[0] = 6 * q[0] * q[0]; };
+    relay.after_stiffness = [](const Vec& q, SymmetricMatrix& k) { k.coeffRef(0, 0) = 12 * q[0]; };
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, relay, {0, Vec{{1}}, Vec{{2}}}, 2, {.rtol = 1e-6});
+      BOOST_TEST(name(r.summary.outcome) != "reached_end");
+      BOOST_TEST(r.summary.message != "");
+      BOOST_TEST(is_finite(r.state));
+      // The tolerance of 1e-6, with which the end of the motion shifts.
+      BOOST_TEST(std::abs(r.state.t - 1) < 1e-4);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_can_be_stopped_between_two_steps) {
+  const Case c = nonlinear();
+  for (const Method& method : interpolating()) {
+    std::stop_source budget;
+    Relay relay(*c.system);
+    relay.after_force = [&, calls = 0](const Vec&, Vec&) mutable {
+      if (++calls == 200) budget.request_stop();
+    };
+    const Run r = run(method, relay, c.initial, 100, {.rtol = 1e-8}, {}, budget.get_token());
+    BOOST_TEST(name(r.summary.outcome) == "over_budget");
+    BOOST_TEST(r.state.t > 0);
+    BOOST_TEST(distance(r.state, c.at(r.state.t)) < 1e-6);
+    BOOST_TEST(r.summary.counts.force_evaluations < 220);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(tolerances_are_weighed_by_the_lengths_and_speeds_they_are_for) {
+  // The same motion 1024 times as small takes the same steps with scales as small, and so do
+  // tolerances given outright that are what the scales make of rtol.
+  const Problem p = linear_hammock(2);
+  Problem small = p;
+  small.initial.q /= 1024;
+  small.initial.v /= 1024;
+  for (auto& anchor : small.network.anchors) anchor.point /= 1024;
+  small.network.gravity /= 1024;
+  const auto system = make_mass_spring(p.network), small_system = make_mass_spring(small.network);
+  for (const Method& method : interpolating()) {
+    const auto counts = [&](const System& which, const State& start, const Knobs& knobs) {
+      return run(method, which, start, 1, knobs).summary.counts;
+    };
+    const Counts metres = counts(*system, p.initial, {.rtol = 1e-7, .length = 2, .speed = 2});
+    BOOST_TEST(counts(*small_system, small.initial,
+                      {.rtol = 1e-7, .length = 2. / 1024, .speed = 2. / 1024}) == metres);
+    BOOST_TEST(counts(*system, p.initial, {.rtol = 1e-7, .atol = 2e-7}) == metres);
+    BOOST_TEST(!(counts(*small_system, small.initial, {.rtol = 1e-7}) == metres));
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
