@@ -17,6 +17,7 @@
   METHOD(bdf2)                     \
   METHOD(trbdf2)                   \
   METHOD(discrete_gradient)        \
+  METHOD(rodas4)                   \
   METHOD(verlet)                   \
   METHOD(position_verlet)          \
   METHOD(rk4)                      \
