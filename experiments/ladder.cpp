@@ -75,7 +75,8 @@ bool is_good(const Point& point) {
 
 std::vector<Point> climb(const Method& method, const ReducedScene& scene, double until,
                          const Reference& reference, const Effort& effort,
-                         const std::function<void(const Point&)>& report) {
+                         const std::function<void(const Point&)>& report,
+                         const std::function<bool(const Point&)>& enough) {
   const Rungs rungs(method, scene, until);
   std::vector<Point> points;
   const auto take = [&](double value) -> const Point& {
@@ -99,13 +100,17 @@ std::vector<Point> climb(const Method& method, const ReducedScene& scene, double
     const Point& last = points.back();
     if (last.value == *value) continue;
     if (last.outcome == Outcome::reached_end &&
-        (last.errors.position <= reference.certified.position || stagnation.after(last))) {
+        (last.errors.position <= reference.certified.position || stagnation.after(last) ||
+         (enough && enough(last)))) {
       break;
     }
     // Where Newton struggles at the coarse end, finer may be faster: two such points are forgiven.
+    // Explicit steps only become more.
     unfinished = last.outcome == Outcome::over_budget ? unfinished + 1 : 0;
     const bool has_worked = std::ranges::any_of(points, is_good);
-    if (last.outcome == Outcome::singular_mass || unfinished > (has_worked ? 0 : 2)) break;
+    if (last.outcome == Outcome::singular_mass ||
+        unfinished > (has_worked || !method.implicit ? 0 : 2))
+      break;
     take(*value);
   }
   return points;

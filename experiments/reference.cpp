@@ -1,17 +1,11 @@
 #include "experiments/reference.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <random>
-#include <stdexcept>
 
-#include <boost/numeric/odeint.hpp>
-#include <fmt/format.h>
-
-#include "experiments/deadline.hpp"
-#include "integrators/registry.hpp"
+#include "experiments/reference_ways.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/analysis/linear_motion.hpp"
 
@@ -20,18 +14,6 @@ namespace {
 
 constexpr int most_refinements = 20;
 constexpr Index largest_modal_size = 2000;  // a dense eigenproblem of a few seconds
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// The end of a motion computed in one way.
-struct Solution {
-  State end;
-  Scales scales;
-  double knob;
-  std::string made_by;
-};
 
 double difference(const ReducedScene& scene, const State& a, const State& b, const Scales& scales) {
   const Errors errors = errors_between(scene, a, b, 0, scales);
@@ -60,24 +42,6 @@ Solution refine(const ReducedScene& scene, double seconds, const Solve& solve) {
   return *best;
 }
 
-std::optional<Solution> composition(const ReducedScene& scene, const State& initial, double until,
-                                    double h, double seconds) {
-  const Method& method = *find_method("kahan_li8");
-  const auto integrator = make_integrator(method, scene.system(), {.step_size = h});
-  Solution solution{initial, {}, h, fmt::format("kahan_li8 at h = {:.6g} s", h)};
-  Deadline deadline(seconds);
-  Observer each_step{{}, [&](const State& state) { extend(solution.scales, scene, state); }};
-  const auto steps = static_cast<std::int64_t>(std::round(until / h));
-  for (std::int64_t i = 1; i < steps; ++i) {
-    each_step.times.push_back(until * static_cast<double>(i) / static_cast<double>(steps));
-  }
-  each_step.times.push_back(until);
-  extend(solution.scales, scene, solution.end);
-  const Summary summary = integrator->advance(solution.end, until, each_step, deadline.token());
-  if (summary.outcome != Outcome::reached_end) return {};
-  return solution;
-}
-
 // Steps that resolve the fastest frequency at the start: h w = 2, 1, 1/2, ...
 Solution best_composition(const ReducedScene& scene, double until, double seconds) {
   const double bound = frequency_bound(scene.system(), scene.initial().q);
@@ -88,46 +52,6 @@ Solution best_composition(const ReducedScene& scene, double until, double second
   });
 }
 
-// Fehlberg 7(8) in the variables (q - q0) / displacement and v / speed, all of order one.
-std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double tolerance,
-                                 const Scales& scales, double seconds) {
-  namespace odeint = boost::numeric::odeint;
-  using Stacked = std::vector<double>;
-  const System& system = scene.system();
-  const State& initial = scene.initial();
-  const Index n = system.size();
-  const double length = scales.displacement > 0 ? scales.displacement : 1;
-  const double speed = scales.speed > 0 ? scales.speed : 1;
-  const Vec per_mass = system.mass().cwiseInverse();
-  Vec q(n), f(n);
-
-  const auto rate = [&](const Stacked& y, Stacked& dy, double) {
-    const Eigen::Map<const Vec> u(y.data(), n), w(y.data() + n, n);
-    q = initial.q + length * u;
-    system.force(q, f);
-    Eigen::Map<Vec>(dy.data(), n) = (speed / length) * w;
-    Eigen::Map<Vec>(dy.data() + n, n) = per_mass.cwiseProduct(f) / speed;
-  };
-  Stacked y(2 * n, 0.0);
-  Eigen::Map<Vec>(y.data() + n, n) = initial.v / speed;
-
-  auto stepper =
-      odeint::make_controlled<odeint::runge_kutta_fehlberg78<Stacked>>(tolerance, tolerance);
-  const Deadline deadline(seconds);
-  double t = 0, dt = until / 1000;
-  while (t < until) {
-    if (deadline.passed() || t + dt == t) return {};
-    if (t + dt > until) dt = until - t;
-    const bool is_last = t + dt >= until;
-    if (stepper.try_step(rate, y, t, dt) == odeint::success && is_last) break;
-  }
-  return Solution{{until, initial.q + length * Eigen::Map<const Vec>(y.data(), n),
-                   speed * Eigen::Map<const Vec>(y.data() + n, n)},
-                  scales,
-                  tolerance,
-                  fmt::format("Boost.odeint Fehlberg 7(8) at tolerance {:.0e}", tolerance)};
-}
-
 Solution best_fehlberg(const ReducedScene& scene, double until, const Scales& scales,
                        double seconds) {
   return refine(scene, seconds, [&](int level) -> std::optional<Solution> {
@@ -135,23 +59,6 @@ Solution best_fehlberg(const ReducedScene& scene, double until, const Scales& sc
     if (tolerance < 5e-16) return {};
     return fehlberg(scene, until, tolerance, scales, seconds);
   });
-}
-
-Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other) {
-  const double energy = scene.energy(scene.initial());
-  Errors certified = errors_between(scene, one.end, other.end, scene.energy(other.end), one.scales);
-  const Errors drift = errors_between(scene, one.end, one.end, energy, one.scales);
-  certified.energy = std::max(certified.energy, drift.energy);
-  // Two roundings of the same number may agree by chance.
-  for (double* part : {&certified.position, &certified.velocity, &certified.energy}) {
-    *part = std::max(*part, std::numeric_limits<double>::epsilon());
-  }
-  Reference reference{.end = one.end,
-                      .energy = energy,
-                      .scales = one.scales,
-                      .certified = certified,
-                      .made_by = fmt::format("{}; {}", one.made_by, other.made_by)};
-  return reference;
 }
 
 // Repeats the composition from a start that is one rounding away.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -45,6 +46,17 @@ class NoReference : public std::runtime_error {
 // if either never reaches the end.
 Reference make_reference(const ReducedScene& scene, double until, double seconds);
 
+// Makes a reference that is good to the position error `needed` and no better than that takes, in
+// some `seconds` at most: where springs are so stiff that methods of high order would resolve their
+// vibrations for hours. Ways of two kinds are refined by turns, the cheapest next,
+//   explicit and symplectic, with steps that resolve every vibration:  Verlet, Kahan-Li;
+//   by error control, explicit and implicit:  Fehlberg's 7(8) pair, IDA;
+// until one of either kind agree to it, or time is up: `certified` then is by how much the nearest
+// two differ. Two of one kind prove nothing: implicit methods may agree on having damped what
+// vibrates. Of the rounding nothing is measured. Throws NoReference if a kind never reaches the
+// end.
+Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds);
+
 // As JSON, numbers exact, with `certified_position`, `certified_velocity`, `certified_energy` and
 // their decimal digits; and back. from_json throws nlohmann::json::exception for anything else.
 nlohmann::json to_json(const Reference& reference);
@@ -54,8 +66,10 @@ Reference reference_from_json(const nlohmann::json& json);
 void require_reference_exists(const ReducedScene& scene, const std::string& source);
 
 // The reference of the scene at `until` that `folder`/reference.json holds, if it was made of the
-// same scene content by the same code; else a new one, which is written there with `origin`.
+// same scene content by the same code; else a new one, which is written there with `origin`. It is
+// as good as can be, or good to the position error `needed` where that is given.
 Reference reference_for(const Scene& drawn, const ReducedScene& scene, double until,
-                        const std::string& folder, const nlohmann::json& origin);
+                        const std::string& folder, const nlohmann::json& origin,
+                        std::optional<double> needed = {});
 
 }  // namespace qddot

@@ -84,12 +84,14 @@ void require_reference_exists(const ReducedScene& scene, const std::string& sour
 }
 
 Reference reference_for(const Scene& drawn, const ReducedScene& scene, double until,
-                        const std::string& folder, const nlohmann::json& origin) {
+                        const std::string& folder, const nlohmann::json& origin,
+                        std::optional<double> needed) {
   const std::string file = folder + "/reference.json";
-  const nlohmann::json key = {{"scene_hash", content_hash(drawn)},
-                              {"unknowns", scene.system().size()},
-                              {"until", until},
-                              {"source_hash", code_hash()}};
+  nlohmann::json key = {{"scene_hash", content_hash(drawn)},
+                        {"unknowns", scene.system().size()},
+                        {"until", until},
+                        {"source_hash", code_hash()}};
+  if (needed) key["needed"] = *needed;
   const nlohmann::json stored = read(file);
   if (stored.is_object() && stored.value("key", nlohmann::json()) == key) {
     try {
@@ -100,7 +102,8 @@ Reference reference_for(const Scene& drawn, const ReducedScene& scene, double un
     }
   }
   WholeFile whole(file);
-  const Reference reference = make_reference(scene, until, longest_making);
+  const Reference reference = needed ? agreed_reference(scene, until, *needed, longest_making)
+                                     : make_reference(scene, until, longest_making);
   nlohmann::json json = origin;
   json.update(to_json(reference));
   json["key"] = key;

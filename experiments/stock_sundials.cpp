@@ -214,10 +214,7 @@ int stock_sundials(const CLI::App& app, const Arguments& a,
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
   for (const double rtol : a.rtols) require_positive(rtol, "--rtol", "a relative tolerance");
-  if (a.effort.repeats < 1 || a.effort.repeats > 1000) {
-    throw InvalidInput(fmt::format(
-        "--repeats {} is not allowed; it is a whole number from 1 to 1000", a.effort.repeats));
-  }
+  require_repeats(a.effort.repeats);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
   const Scene start = started(drawn, a.scene);

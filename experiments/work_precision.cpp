@@ -9,8 +9,6 @@
 //     times, one thread.
 //  3. points.csv holds every point, the failed ones with the reason; front.csv, for each accuracy
 //     from 1e-1 to 1e-9, the fastest method that reached it.
-#include <unistd.h>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -18,7 +16,9 @@
 #include "experiments/front.hpp"
 #include "experiments/ladder.hpp"
 #include "experiments/order_options.hpp"
+#include "experiments/point_table.hpp"
 #include "experiments/program.hpp"
+#include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scene_choice.hpp"
 #include "src/scene/invalid_input.hpp"
@@ -49,51 +49,8 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
 }
 
-const std::vector<std::string> point_columns = {"scene",
-                                                "method",
-                                                "knob",
-                                                "value",
-                                                "outcome",
-                                                "t_reached",
-                                                "error_position",
-                                                "error_velocity",
-                                                "error_energy",
-                                                "time_s",
-                                                "time_min_s",
-                                                "setup_s",
-                                                "steps",
-                                                "rejected",
-                                                "force_evaluations",
-                                                "stiffness_evaluations",
-                                                "factorizations",
-                                                "solves",
-                                                "newton_iterations",
-                                                "indefinite_factorizations",
-                                                "order_mean",
-                                                "order_reductions",
-                                                "stability_limited_steps",
-                                                "timed_runs",
-                                                "family",
-                                                "order"};
 const std::vector<std::string> front_columns = {"scene", "accuracy",       "method", "knob",
                                                 "value", "error_position", "time_s"};
-
-void tabulate(Csv& csv, const std::string& scene, const std::vector<Point>& points) {
-  for (const Point& p : points) {
-    // What was not measured is an empty field.
-    const auto measured = [&](double x) {
-      return p.outcome == Outcome::reached_end ? x : std::numeric_limits<double>::quiet_NaN();
-    };
-    const Counts& c = p.counts;
-    csv.row(scene, p.method->name, knob_name(p.method->knob), p.value, name(p.outcome), p.t_reached,
-            measured(p.errors.position), measured(p.errors.velocity), measured(p.errors.energy),
-            measured(p.time), measured(p.time_min), measured(p.setup), c.steps, c.rejected,
-            c.force_evaluations, c.stiffness_evaluations, c.factorizations, c.solves,
-            c.newton_iterations, c.indefinite_factorizations, order_mean(c), c.order_reductions,
-            c.stability_limited_steps, p.timed_runs, family_name(p.method->family),
-            p.method->order);
-  }
-}
 
 void tabulate(Csv& csv, const std::string& scene, const std::vector<FrontRow>& front) {
   for (const FrontRow& row : front) {
@@ -106,27 +63,11 @@ void tabulate(Csv& csv, const std::string& scene, const std::vector<FrontRow>& f
   }
 }
 
-// One line on a terminal that is written over; nothing where the output is kept.
-void show_progress(const std::string& what) {
-  if (::isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K{}", what);
-}
-
-std::string describe(const Point& p) {
-  return p.outcome == Outcome::reached_end
-             ? fmt::format("{} {} {:.3g}: error {:.1e} in {:.3g} s", p.method->name,
-                           knob_name(p.method->knob), p.value, p.errors.position, p.time)
-             : fmt::format("{} {} {:.3g}: {}", p.method->name, knob_name(p.method->knob), p.value,
-                           name(p.outcome));
-}
-
 int work_precision(const CLI::App& app, const Arguments& a,
                    const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
-  if (a.effort.repeats < 1 || a.effort.repeats > 1000) {
-    throw InvalidInput(fmt::format(
-        "--repeats {} is not allowed; it is a whole number from 1 to 1000", a.effort.repeats));
-  }
+  require_repeats(a.effort.repeats);
   require_orders(app, a.effort.orders);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
@@ -152,7 +93,7 @@ int work_precision(const CLI::App& app, const Arguments& a,
   show_progress("");
 
   const auto front = fastest_at_each_accuracy(points, reference);
-  tabulate(points_csv, drawn.name, points);
+  for (const Point& point : points) point_row(points_csv, drawn.name, point);
   tabulate(front_csv, drawn.name, front);
   points_csv.commit(origin);
   front_csv.commit(origin);

@@ -1,0 +1,50 @@
+#include "experiments/point_table.hpp"
+
+#include <limits>
+
+namespace qddot {
+
+const std::vector<std::string>& point_columns() {
+  static const std::vector<std::string> columns = {"scene",
+                                                   "method",
+                                                   "knob",
+                                                   "value",
+                                                   "outcome",
+                                                   "t_reached",
+                                                   "error_position",
+                                                   "error_velocity",
+                                                   "error_energy",
+                                                   "time_s",
+                                                   "time_min_s",
+                                                   "setup_s",
+                                                   "steps",
+                                                   "rejected",
+                                                   "force_evaluations",
+                                                   "stiffness_evaluations",
+                                                   "factorizations",
+                                                   "solves",
+                                                   "newton_iterations",
+                                                   "indefinite_factorizations",
+                                                   "order_mean",
+                                                   "order_reductions",
+                                                   "stability_limited_steps",
+                                                   "timed_runs",
+                                                   "family",
+                                                   "order"};
+  return columns;
+}
+
+void point_row(Csv& csv, const std::string& scene, const Point& p) {
+  const auto measured = [&](double x) {
+    return p.outcome == Outcome::reached_end ? x : std::numeric_limits<double>::quiet_NaN();
+  };
+  const Counts& c = p.counts;
+  csv.row(scene, p.method->name, knob_name(p.method->knob), p.value, name(p.outcome), p.t_reached,
+          measured(p.errors.position), measured(p.errors.velocity), measured(p.errors.energy),
+          measured(p.time), measured(p.time_min), measured(p.setup), c.steps, c.rejected,
+          c.force_evaluations, c.stiffness_evaluations, c.factorizations, c.solves,
+          c.newton_iterations, c.indefinite_factorizations, order_mean(c), c.order_reductions,
+          c.stability_limited_steps, p.timed_runs, family_name(p.method->family), p.method->order);
+}
+
+}  // namespace qddot

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/csv.hpp"
+#include "experiments/measurement.hpp"
+
+namespace qddot {
+
+// The columns of points.csv, and one row of it; what was not measured is an empty field.
+const std::vector<std::string>& point_columns();
+void point_row(Csv& csv, const std::string& scene, const Point& point);
+
+}  // namespace qddot
