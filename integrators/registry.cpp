@@ -10,6 +10,10 @@
   METHOD(symplectic_euler)         \
   METHOD(semi_implicit_euler)      \
   METHOD(implicit_euler)           \
+  METHOD(local_global)             \
+  METHOD(local_global_chebyshev)   \
+  METHOD(local_global_anderson)    \
+  METHOD(local_global_lbfgs)       \
   METHOD(verlet)                   \
   METHOD(kahan_li8)                \
   METHOD(exact)                    \

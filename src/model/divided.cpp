@@ -63,8 +63,8 @@ void Divided::force(const Vec& q, Vec& f) const {
   });
 }
 
+// The parts' columns follow one another, and so do their entries.
 void Divided::stiffness(const Vec& q, SymmetricMatrix& k) const {
-  // The parts' columns follow one another, and so do their entries.
   Index next = 0;
   for_each(parts_, q, [&](const System& part, const Vec& own, Index) {
     SymmetricMatrix block = part.stiffness_pattern();
@@ -72,6 +72,22 @@ void Divided::stiffness(const Vec& q, SymmetricMatrix& k) const {
     k.coeffs().segment(next, block.nonZeros()) = block.coeffs();
     next += block.nonZeros();
   });
+}
+
+HasLaplacian Divided::has_laplacian() const {
+  HasLaplacian least = HasLaplacian::as_bound;
+  for (const auto& part : parts_) least = std::min(least, part->has_laplacian());
+  return least;
+}
+
+void Divided::laplacian(SymmetricMatrix& l) const {
+  Index next = 0;
+  for (const auto& part : parts_) {
+    SymmetricMatrix block = part->stiffness_pattern();
+    part->laplacian(block);
+    l.coeffs().segment(next, block.nonZeros()) = block.coeffs();
+    next += block.nonZeros();
+  }
 }
 
 bool Divided::stiffness_is_constant() const {

@@ -18,6 +18,8 @@ class Divided final : public System {
   void stiffness(const Vec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override;
+  HasLaplacian has_laplacian() const override;
+  void laplacian(SymmetricMatrix& l) const override;
   bool holds_at(const Vec& q) const override;
   std::span<const std::unique_ptr<System>> parts() const override { return parts_; }
 

@@ -24,6 +24,15 @@ void Held::force(const Vec& q, Vec& f) const {
 
 void Held::stiffness(const Vec& q, SymmetricMatrix& k) const {
   system_->stiffness(q, k);
+  clear_held(k);
+}
+
+void Held::laplacian(SymmetricMatrix& l) const {
+  system_->laplacian(l);
+  clear_held(l);
+}
+
+void Held::clear_held(SymmetricMatrix& k) const {
   for (const Index entry : entries_) k.valuePtr()[entry] = 0;
 }
 

@@ -139,6 +139,47 @@ class MassSpring final : public System {
   bool stiffness_is_constant() const override { return linear_; }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
 
+  HasLaplacian has_laplacian() const override { return has_laplacian_; }
+
+  // As stiffness(), with B = -k I.
+  void laplacian(SymmetricMatrix& l) const override {
+    l.coeffs().setZero();
+    const auto minus = [](const SpringLaw& law) -> Block {
+      return -law.stiffness * Block::Identity();
+    };
+    for (std::size_t e = 0; e < links_.size(); ++e) {
+      const auto& [i, j, law] = links_[e];
+      subtract_from_diagonal(l, i, minus(law));
+      subtract_from_diagonal(l, j, minus(law));
+      add_below_diagonal(l, std::min(i, j), link_places_[e], minus(law));
+    }
+    for (std::size_t e = 0; e < images_.size(); ++e) {
+      const auto& [i, j, mirror, law] = images_[e];
+      const Block both = minus(law) * mirror.asDiagonal();
+      subtract_from_diagonal(l, i, minus(law));
+      subtract_from_diagonal(l, j, minus(law));
+      if (i == j) {
+        subtract_from_diagonal(l, i, -2 * both);
+      } else {
+        add_below_diagonal(l, std::min(i, j), image_places_[e], both);
+      }
+    }
+    for (const Anchor& anchor : anchors_) subtract_from_diagonal(l, anchor.i, minus(anchor.law));
+    for (const EdgeLink& link : edge_links_) {
+      const Block both = minus(link.law) * link.mirror.asDiagonal();
+      edge_subtract_from_diagonal(l, link.i, minus(link.law));
+      edge_subtract_from_diagonal(l, link.j, minus(link.law));
+      if (link.i == link.j) {
+        edge_subtract_from_diagonal(l, link.i, -2 * both);
+      } else {
+        edge_add_below_diagonal(l, link, both);
+      }
+    }
+    for (const Anchor& anchor : edge_anchors_) {
+      edge_subtract_from_diagonal(l, anchor.i, minus(anchor.law));
+    }
+  }
+
   bool holds_at(const Vec& q) const override {
     // A spring drawn at its rest length may be shorter by what rounding makes of it.
     const auto is_in_tension = [&](const EdgeLink& link) {
@@ -173,7 +214,10 @@ class MassSpring final : public System {
     }
     linear_ = network.uses_constant_stiffness;
     const Vec anywhere = Vec::Zero(size());
-    for_all(anywhere, [&](const SpringLaw& law, const Point&) { linear_ &= law.is_linear(); });
+    for_all(anywhere, [&](const SpringLaw& law, const Point&) {
+      linear_ &= law.is_linear();
+      if (law.quartic > 0) has_laplacian_ = HasLaplacian::yes;
+    });
     if (network.offers_split) {
       split_ = {std::make_shared<MassSpring>(only(network, true)),
                 std::make_shared<MassSpring>(only(network, false))};
@@ -292,6 +336,7 @@ class MassSpring final : public System {
   Vec weight_;  // M g + load [N]
   double constant_energy_;
   bool linear_ = false;
+  HasLaplacian has_laplacian_ = HasLaplacian::as_bound;
   SymmetricMatrix pattern_;
   std::optional<Split> split_;
 };

@@ -21,6 +21,8 @@ class SplitRelay final : public System {
   void stiffness(const Vec& q, SymmetricMatrix& k) const override { whole.stiffness(q, k); }
   const SymmetricMatrix& stiffness_pattern() const override { return whole.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return whole.stiffness_is_constant(); }
+  HasLaplacian has_laplacian() const override { return whole.has_laplacian(); }
+  void laplacian(SymmetricMatrix& l) const override { whole.laplacian(l); }
   const Split* split() const override { return &split_; }
 
   const std::shared_ptr<Relay> stiff, soft;
