@@ -47,6 +47,7 @@ LocalGlobal::LocalGlobal(const Method& method, const System& system, const Knobs
 Outcome LocalGlobal::step(const State& now, double h, State& next) {
   if (h != factorized_h_) {
     ++counts().factorizations;
+    const Stopwatch watch(seconds(), &Seconds::factorization);
     if (!matrix_.factorize(h * h)) return Outcome::indefinite_matrix;
     factorized_h_ = h;
   }
@@ -70,6 +71,7 @@ void LocalGlobal::gradient(const Vec& v, Vec& r) {
 
 void LocalGlobal::direction(const Vec& r, Vec& p) {
   ++counts().solves;
+  const Stopwatch watch(seconds(), &Seconds::solve);
   matrix_.solve(r, p);
 }
 

@@ -22,8 +22,8 @@ std::vector<std::vector<Index>> joined_unknowns(const SymmetricMatrix& l) {
   for (Index column = 0; column < l.cols(); ++column) {
     for (SymmetricMatrix::InnerIterator at(l, column); at; ++at) {
       if (at.value() == 0) continue;
-      const auto [first, second] = std::minmax(find(at.row()), find(column));
-      root[second] = first;
+      const Index first = find(at.row()), second = find(column);
+      root[std::max(first, second)] = std::min(first, second);
     }
   }
   std::vector<std::vector<Index>> sets;

@@ -63,14 +63,26 @@ void Divided::force(const Vec& q, Vec& f) const {
   });
 }
 
-// The parts' columns follow one another, and so do their entries.
-void Divided::stiffness(const Vec& q, SymmetricMatrix& k) const {
+template <class Evaluate>
+void Divided::assemble(const Vec& q, SymmetricMatrix& k, const Evaluate& evaluate) const {
   Index next = 0;
   for_each(parts_, q, [&](const System& part, const Vec& own, Index) {
     SymmetricMatrix block = part.stiffness_pattern();
-    part.stiffness(own, block);
+    evaluate(part, own, block);
     k.coeffs().segment(next, block.nonZeros()) = block.coeffs();
     next += block.nonZeros();
+  });
+}
+
+void Divided::stiffness(const Vec& q, SymmetricMatrix& k) const {
+  assemble(q, k, [](const System& part, const Vec& own, SymmetricMatrix& block) {
+    part.stiffness(own, block);
+  });
+}
+
+void Divided::clamped_stiffness(const Vec& q, SymmetricMatrix& k) const {
+  assemble(q, k, [](const System& part, const Vec& own, SymmetricMatrix& block) {
+    part.clamped_stiffness(own, block);
   });
 }
 
@@ -81,13 +93,8 @@ HasLaplacian Divided::has_laplacian() const {
 }
 
 void Divided::laplacian(SymmetricMatrix& l) const {
-  Index next = 0;
-  for (const auto& part : parts_) {
-    SymmetricMatrix block = part->stiffness_pattern();
-    part->laplacian(block);
-    l.coeffs().segment(next, block.nonZeros()) = block.coeffs();
-    next += block.nonZeros();
-  }
+  assemble(Vec::Zero(size()), l,
+           [](const System& part, const Vec&, SymmetricMatrix& block) { part.laplacian(block); });
 }
 
 bool Divided::stiffness_is_constant() const {

@@ -27,6 +27,11 @@ void Held::stiffness(const Vec& q, SymmetricMatrix& k) const {
   clear_held(k);
 }
 
+void Held::clamped_stiffness(const Vec& q, SymmetricMatrix& k) const {
+  system_->clamped_stiffness(q, k);
+  clear_held(k);
+}
+
 void Held::laplacian(SymmetricMatrix& l) const {
   system_->laplacian(l);
   clear_held(l);

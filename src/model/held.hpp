@@ -21,6 +21,7 @@ class Held final : public System {
   void stiffness(const Vec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
+  void clamped_stiffness(const Vec& q, SymmetricMatrix& k) const override;
   HasLaplacian has_laplacian() const override { return system_->has_laplacian(); }
   void laplacian(SymmetricMatrix& l) const override;
   bool holds_at(const Vec& q) const override { return system_->holds_at(q); }

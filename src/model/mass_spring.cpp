@@ -91,93 +91,25 @@ class MassSpring final : public System {
     }
   }
 
-  // With S = diag(mirror) and d = S x_j - x_i: K_ii -= B, K_jj -= S B S, K_ij += B S; where i = j
-  // all three are one block.
   void stiffness(const Vec& q, SymmetricMatrix& k) const override {
-    k.coeffs().setZero();
-    for (std::size_t e = 0; e < links_.size(); ++e) {
-      const Link& link = links_[e];
-      const Block b = spring_stiffness(link.law, between(q, link));
-      subtract_from_diagonal(k, link.i, b);
-      subtract_from_diagonal(k, link.j, b);
-      add_below_diagonal(k, std::min(link.i, link.j), link_places_[e], b);
-    }
-    for (std::size_t e = 0; e < images_.size(); ++e) {
-      const auto& [i, j, mirror, law] = images_[e];
-      const Block b = spring_stiffness(law, between(q, images_[e]));
-      const Block bs = b * mirror.asDiagonal(), sb = mirror.asDiagonal() * b;
-      subtract_from_diagonal(k, i, b);
-      subtract_from_diagonal(k, j, sb * mirror.asDiagonal());
-      if (i == j) {
-        subtract_from_diagonal(k, i, -(bs + sb));
-      } else {
-        // The block's rows belong to the later node.
-        add_below_diagonal(k, std::min(i, j), image_places_[e], i > j ? bs : sb);
-      }
-    }
-    for (const Anchor& anchor : anchors_) {
-      subtract_from_diagonal(k, anchor.i, spring_stiffness(anchor.law, between(q, anchor)));
-    }
-    for (const EdgeLink& link : edge_links_) {
-      const Block b = spring_stiffness(link.law, edge_between(q, link));
-      const Block bs = b * link.mirror.asDiagonal(), sb = link.mirror.asDiagonal() * b;
-      edge_subtract_from_diagonal(k, link.i, b);
-      edge_subtract_from_diagonal(k, link.j, sb * link.mirror.asDiagonal());
-      if (link.i == link.j) {
-        edge_subtract_from_diagonal(k, link.i, -(bs + sb));
-      } else {
-        edge_add_below_diagonal(k, link, link.i > link.j ? bs : sb);
-      }
-    }
-    for (const Anchor& anchor : edge_anchors_) {
-      edge_subtract_from_diagonal(k, anchor.i,
-                                  spring_stiffness(anchor.law, edge_between(q, anchor)));
-    }
+    assemble(q, k, [](const SpringLaw& law, const Point& d) { return spring_stiffness(law, d); });
   }
 
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override { return linear_; }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
 
-  HasLaplacian has_laplacian() const override { return has_laplacian_; }
+  void clamped_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    assemble(q, k,
+             [](const SpringLaw& law, const Point& d) { return spring_clamped_stiffness(law, d); });
+  }
 
-  // As stiffness(), with B = -k I.
+  HasLaplacian has_laplacian() const override { return has_laplacian_; }
+  // The network at rest lengths zero is stiff alike at every q.
   void laplacian(SymmetricMatrix& l) const override {
-    l.coeffs().setZero();
-    const auto minus = [](const SpringLaw& law) -> Block {
+    assemble(Vec::Zero(size()), l, [](const SpringLaw& law, const Point&) -> Block {
       return -law.stiffness * Block::Identity();
-    };
-    for (std::size_t e = 0; e < links_.size(); ++e) {
-      const auto& [i, j, law] = links_[e];
-      subtract_from_diagonal(l, i, minus(law));
-      subtract_from_diagonal(l, j, minus(law));
-      add_below_diagonal(l, std::min(i, j), link_places_[e], minus(law));
-    }
-    for (std::size_t e = 0; e < images_.size(); ++e) {
-      const auto& [i, j, mirror, law] = images_[e];
-      const Block both = minus(law) * mirror.asDiagonal();
-      subtract_from_diagonal(l, i, minus(law));
-      subtract_from_diagonal(l, j, minus(law));
-      if (i == j) {
-        subtract_from_diagonal(l, i, -2 * both);
-      } else {
-        add_below_diagonal(l, std::min(i, j), image_places_[e], both);
-      }
-    }
-    for (const Anchor& anchor : anchors_) subtract_from_diagonal(l, anchor.i, minus(anchor.law));
-    for (const EdgeLink& link : edge_links_) {
-      const Block both = minus(link.law) * link.mirror.asDiagonal();
-      edge_subtract_from_diagonal(l, link.i, minus(link.law));
-      edge_subtract_from_diagonal(l, link.j, minus(link.law));
-      if (link.i == link.j) {
-        edge_subtract_from_diagonal(l, link.i, -2 * both);
-      } else {
-        edge_add_below_diagonal(l, link, both);
-      }
-    }
-    for (const Anchor& anchor : edge_anchors_) {
-      edge_subtract_from_diagonal(l, anchor.i, minus(anchor.law));
-    }
+    });
   }
 
   bool holds_at(const Vec& q) const override {
@@ -262,6 +194,50 @@ class MassSpring final : public System {
       anchors_.push_back({layout_.first(anchor.i), anchor.point, anchor.law});
     } else {
       edge_anchors_.push_back(anchor);
+    }
+  }
+
+  // With S = diag(mirror) and d = S x_j - x_i: K_ii -= B, K_jj -= S B S, K_ij += B S; where i = j
+  // all three are one block.
+  template <class BlockOf>
+  void assemble(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
+    k.coeffs().setZero();
+    for (std::size_t e = 0; e < links_.size(); ++e) {
+      const Link& link = links_[e];
+      const Block b = block(link.law, between(q, link));
+      subtract_from_diagonal(k, link.i, b);
+      subtract_from_diagonal(k, link.j, b);
+      add_below_diagonal(k, std::min(link.i, link.j), link_places_[e], b);
+    }
+    for (std::size_t e = 0; e < images_.size(); ++e) {
+      const auto& [i, j, mirror, law] = images_[e];
+      const Block b = block(law, between(q, images_[e]));
+      const Block bs = b * mirror.asDiagonal(), sb = mirror.asDiagonal() * b;
+      subtract_from_diagonal(k, i, b);
+      subtract_from_diagonal(k, j, sb * mirror.asDiagonal());
+      if (i == j) {
+        subtract_from_diagonal(k, i, -(bs + sb));
+      } else {
+        // The block's rows belong to the later node.
+        add_below_diagonal(k, std::min(i, j), image_places_[e], i > j ? bs : sb);
+      }
+    }
+    for (const Anchor& anchor : anchors_) {
+      subtract_from_diagonal(k, anchor.i, block(anchor.law, between(q, anchor)));
+    }
+    for (const EdgeLink& link : edge_links_) {
+      const Block b = block(link.law, edge_between(q, link));
+      const Block bs = b * link.mirror.asDiagonal(), sb = link.mirror.asDiagonal() * b;
+      edge_subtract_from_diagonal(k, link.i, b);
+      edge_subtract_from_diagonal(k, link.j, sb * link.mirror.asDiagonal());
+      if (link.i == link.j) {
+        edge_subtract_from_diagonal(k, link.i, -(bs + sb));
+      } else {
+        edge_add_below_diagonal(k, link, link.i > link.j ? bs : sb);
+      }
+    }
+    for (const Anchor& anchor : edge_anchors_) {
+      edge_subtract_from_diagonal(k, anchor.i, block(anchor.law, edge_between(q, anchor)));
     }
   }
 

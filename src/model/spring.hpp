@@ -84,4 +84,16 @@ Eigen::Matrix<Real, D, D> spring_stiffness(const SpringLaw& law,
   return Block::Identity() * across + (along - across) * (n * n.transpose());
 }
 
+// The block nearest to it that is positive semidefinite: without its part across the spring where
+// that is compressed.
+template <class Real, int D>
+Eigen::Matrix<Real, D, D> spring_clamped_stiffness(const SpringLaw& law,
+                                                   const Eigen::Matrix<Real, D, 1>& d) {
+  const Real l = spring_length(d);
+  if (l >= law.rest_length) return spring_stiffness(law, d);
+  if (std::abs(l) == 0) return Eigen::Matrix<Real, D, D>::Identity() * law.tangent(l);
+  const Eigen::Matrix<Real, D, 1> n = d / l;
+  return law.tangent(l) * (n * n.transpose());
+}
+
 }  // namespace qddot

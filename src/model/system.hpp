@@ -59,6 +59,9 @@ class System {
   // True only where K is the same at every q, so that the motion is linear.
   virtual bool stiffness_is_constant() const = 0;
 
+  // K without the part of each compressed spring that pushes across its direction: negative
+  // semidefinite at every q. As stiffness(), which it is where springs are not told apart.
+  virtual void clamped_stiffness(const Vec& q, SymmetricMatrix& k) const { stiffness(q, k); }
   // L [N/m]: what -K is, everywhere, when all springs have rest length zero and nothing quartic.
   // Into `l`, of the pattern of stiffness_pattern(); to be called where has_laplacian() says so.
   // f(q) = -L q + the rest, which grows with distances no faster than a constant for springs

@@ -114,6 +114,9 @@ class Relay final : public System {
   }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
+  void clamped_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    system_.clamped_stiffness(q, k);
+  }
   HasLaplacian has_laplacian() const override { return system_.has_laplacian(); }
   void laplacian(SymmetricMatrix& l) const override { system_.laplacian(l); }
 
