@@ -23,14 +23,24 @@ std::string method_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+std::string names_where(bool Method::*has) {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) {
+    if (method.*has) names.push_back(method.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 void print_methods(bool as_csv) {
   if (as_csv) {
     Csv csv({"name", "order", "family", "knob", "implicit", "symplectic", "needs_stiffness",
-             "accepts_massless", "needs_constant_stiffness", "needs_split", "summary", "source"});
+             "accepts_massless", "needs_constant_stiffness", "needs_split", "needs_laplacian",
+             "takes_iterations", "summary", "source"});
     for (const Method& m : methods()) {
       csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.implicit),
               yes(m.symplectic), yes(m.needs_stiffness), yes(m.accepts_massless),
-              yes(m.needs_constant_stiffness), yes(m.needs_split), m.summary, m.source);
+              yes(m.needs_constant_stiffness), yes(m.needs_split), yes(m.needs_laplacian),
+              yes(m.takes_iterations), m.summary, m.source);
     }
     fmt::print("{}", csv.text());
     return;

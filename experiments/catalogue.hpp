@@ -2,10 +2,15 @@
 
 #include <string>
 
+#include "integrators/method.hpp"
+
 namespace qddot {
 
 // The names of all methods, as "a, b, c".
 std::string method_names();
+
+// The names of those methods that have the given property.
+std::string names_where(bool Method::*has);
 
 // Prints the methods, or the scene generators with their parameters, as a table or as CSV.
 void print_methods(bool as_csv);

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "experiments/catalogue.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
 
@@ -17,14 +17,6 @@ void require_up_to(const CLI::App& app, const OrderChoice& orders, int highest) 
   }
   throw InvalidInput(fmt::format("--max-order {} is not allowed; it is a whole number from 1 to {}",
                                  orders.max_order, highest));
-}
-
-std::string names_where(bool Method::*has) {
-  std::vector<std::string> names;
-  for (const Method& method : methods()) {
-    if (method.*has) names.push_back(method.name);
-  }
-  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace

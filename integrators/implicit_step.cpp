@@ -103,17 +103,15 @@ void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compressio
 
 Outcome ImplicitStep::factorize(const Vec& q, const Vec& u, double s) {
   factorized_s_ = 0;
-  for (compression_ = std::min(1.0, 2 * compression_);; compression_ /= 2) {
-    if (compression_ < least_compression) compression_ = 0;
+  compression_ = std::clamp(2 * compression_, least_compression, 1.0);
+  for (;;) {
     stage_stiffness(q, u, compression_, k_);
     if (!k_.coeffs().allFinite()) return Outcome::not_finite;
     ++counts().factorizations;
     const Stopwatch watch(seconds(), &Seconds::factorization);
     if (matrix_.factorize_positive(1, s, k_)) break;
-    if (compression_ == 0) {
-      compression_ = least_compression;
-      return Outcome::indefinite_matrix;
-    }
+    if (compression_ == 0) return Outcome::indefinite_matrix;
+    compression_ = compression_ > least_compression ? compression_ / 2 : 0;
   }
   factorized_s_ = s;
   return Outcome::reached_end;

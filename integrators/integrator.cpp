@@ -40,6 +40,8 @@ std::string_view name(Outcome outcome) {
       return "went_slack";
     case Outcome::no_stiff_set:
       return "no_stiff_set";
+    case Outcome::no_laplacian:
+      return "no_laplacian";
   }
   return "unknown";
 }
@@ -76,6 +78,9 @@ std::string_view advice(Outcome outcome) {
     case Outcome::no_stiff_set:
       return "the scene names no stiff springs, whose forces this method takes apart: give it "
              "stiff_above, or take another method";
+    case Outcome::no_laplacian:
+      return "the system has no matrix that stands for its stiffness everywhere, as springs have: "
+             "take another method";
   }
   return "";
 }

@@ -29,6 +29,7 @@ enum class Outcome {
   stiffness_varies,   // a method for constant K, and a system whose K is not
   went_slack,         // the system no longer is what it stands for (System::holds_at)
   no_stiff_set,       // a method that takes stiff forces apart, and none are named (System::split)
+  no_laplacian,       // a method that takes L in the place of -K, and a system that has none
 };
 
 std::string_view name(Outcome outcome);    // as above
@@ -97,7 +98,8 @@ struct Knobs {
   double speed = 1;      // [m/s], likewise a velocity
   int max_order = 0;     // of methods of variable order; 0: their own
   bool stability_detection = false;  // CVODE's, which lowers the order where BDF is not stable
-  bool timed = false;                // whether to fill Summary::seconds
+  int iterations = 0;  // a step, of methods that take as many as they are told; 0: their own
+  bool timed = false;  // whether to fill Summary::seconds
   // Of hand-written implicit methods: what part of its first correction, which is of the size of
   // the step's own error, a nonlinear solve may leave; 0: the method's own choice.
   double solve_tolerance = 0;

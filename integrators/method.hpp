@@ -41,6 +41,8 @@ struct Method {
   // Takes the forces of System::split(), of which a system may have none when the method is made:
   // it may be asked for from start() on.
   bool needs_split = false;
+  bool needs_laplacian = false;   // takes System::laplacian()
+  bool takes_iterations = false;  // listens to Knobs::iterations
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
 };
 
@@ -56,6 +58,8 @@ inline std::optional<Outcome> misfit(const Method& method, const System& system)
   if (method.needs_constant_stiffness && !system.stiffness_is_constant())
     return Outcome::stiffness_varies;
   if (method.needs_split && !is_split(system)) return Outcome::no_stiff_set;
+  if (method.needs_laplacian && system.size() > 0 && system.has_laplacian() == HasLaplacian::no)
+    return Outcome::no_laplacian;
   return {};
 }
 inline bool applies_to(const Method& method, const System& system) {

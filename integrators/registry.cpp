@@ -18,6 +18,10 @@
   METHOD(trbdf2)                   \
   METHOD(discrete_gradient)        \
   METHOD(rodas4)                   \
+  METHOD(local_global)             \
+  METHOD(local_global_chebyshev)   \
+  METHOD(local_global_anderson)    \
+  METHOD(local_global_lbfgs)       \
   METHOD(verlet)                   \
   METHOD(position_verlet)          \
   METHOD(rk4)                      \

@@ -78,6 +78,14 @@ class CholmodFactors : public Factors {
     x = Eigen::Map<const Vec>(static_cast<const double*>(x_->x), b.size());
   }
 
+  void solve(const FourColumns& b, FourColumns& x) override {
+    Vec solution(b.rows());
+    for (Index c = 0; c < b.cols(); ++c) {
+      solve(b.col(c), solution);
+      x.col(c) = solution;
+    }
+  }
+
  private:
   void assemble(double a, double s, const SymmetricMatrix& k) {
     matrix_.coeffs() = -s * k.coeffs();

@@ -7,6 +7,9 @@ namespace qddot {
 // Signs of a factorised symmetric matrix. `indefinite` can still be solved with; `singular` cannot.
 enum class Definiteness { positive, indefinite, singular };
 
+// Four right-hand sides or solutions of length n, row by row, so that a row is one load.
+using FourColumns = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+
 // A way to factorise a D - s K, D diagonal and K of a pattern that is analysed once, and to solve
 // with it. Functions as those of EffectiveMass.
 class Factors {
@@ -16,6 +19,8 @@ class Factors {
   virtual bool factorize_positive(double a, double s, const SymmetricMatrix& k) = 0;
   virtual Index negative_pivots() const = 0;
   virtual void solve(const Vec& b, Vec& x) = 0;
+  // The same for four right-hand sides at once; b, x: n x 4, sized by the caller.
+  virtual void solve(const FourColumns& b, FourColumns& x) = 0;
 };
 
 }  // namespace qddot

@@ -26,8 +26,8 @@ class Multifrontal : public Factors {
         columns_(fronts_.pivot_columns_size),
         scaled_(panel * height * tile_strips),
         pivot_(pattern.rows()),
-        y_(pattern.rows()),
-        gathered_(fronts_.largest_height) {}
+        y_(quad * pattern.rows()),
+        gathered_(quad * fronts_.largest_height) {}
 
   Definiteness factorize(double a, double s, const SymmetricMatrix& k) override {
     if (!numeric(a, s, k, false)) return Definiteness::singular;
@@ -48,6 +48,14 @@ class Multifrontal : public Factors {
     for (const Front* f = fronts_.end(); f != fronts_.begin();) backward(*--f);
     x.resize(b.size());
     for (Index i = 0; i < b.size(); ++i) x[i] = y_.get()[place[i]];
+  }
+
+  void solve(const FourColumns& b, FourColumns& x) override {
+    const auto& place = fronts_.place();
+    for (Index i = 0; i < b.rows(); ++i) row(y_.get(), place[i]) = row(b.data(), i);
+    for (const Front& f : fronts_) forwards(f);
+    for (const Front* f = fronts_.end(); f != fronts_.begin();) backwards(*--f);
+    for (Index i = 0; i < b.rows(); ++i) row(x.data(), i) = row(y_.get(), place[i]);
   }
 
  private:
@@ -205,6 +213,45 @@ class Multifrontal : public Factors {
       solve_upper(factor(f, j, j * height), k, xj);
     }
     std::copy_n(x, f.pivots, y_.get() + f.first);
+  }
+
+  // Both for four right-hand sides; backwards() divides by the pivots, too.
+  void forwards(const Front& f) {
+    double* z = gathered_.get();
+    std::copy_n(y_.get() + quad * f.first, quad * f.pivots, z);
+    std::fill(z + quad * f.pivots, z + quad * f.pivot_height(), 0.0);
+    for (int j = 0; j < f.pivot_strips(); ++j) {
+      const int before = j * height, k = std::min(height, f.pivots - before);
+      subtract_products(factor(f, j, 0), z, before, z + quad * before);
+      solve_lowers(factor(f, j, before), k, z + quad * before);
+    }
+    std::copy_n(z, quad * f.pivots, y_.get() + quad * f.first);
+    const auto rows = fronts_.rows(f);
+    for (int i = 0; i < f.below_strips(); ++i) {
+      double sums[quad * height] = {};
+      subtract_products(factor(f, f.pivot_strips() + i, 0), z, f.pivots, sums);
+      const int count = std::min(height, f.below - i * height);
+      for (int r = 0; r < count; ++r) row(y_.get(), rows[i * height + r]) += row(sums, r);
+    }
+  }
+
+  void backwards(const Front& f) {
+    double* x = gathered_.get();
+    for (int p = 0; p < f.pivots; ++p) {
+      row(x, p) = row(y_.get(), f.first + p) / pivot_.get()[f.first + p];
+    }
+    std::fill(x + quad * f.pivots, x + quad * f.pivot_height(), 0.0);
+    int at = f.pivot_height();
+    for (const int i : fronts_.rows(f)) row(x, at++) = row(y_.get(), i);
+    std::fill(x + quad * at, x + quad * f.height(), 0.0);
+    for (int j = f.pivot_strips(); j-- > 0;) {
+      const int before = j * height, k = std::min(height, f.pivots - before);
+      double* xj = x + quad * before;
+      subtract_transposed_products(factor(f, j + 1, before), stride(f), xj + quad * height, k,
+                                   f.strips() - j - 1, xj);
+      solve_uppers(factor(f, j, before), k, xj);
+    }
+    std::copy_n(x, quad * f.pivots, y_.get() + quad * f.first);
   }
 
   Vec diagonal_;

@@ -239,4 +239,71 @@ inline void solve_upper(const double* l, int k, double* x) {
   for (int v = 0; v < vectors; ++v) store(x + v * lanes, z[v]);
 }
 
+// The same for four right-hand sides at once, whose rows are the lanes: no sums over lanes, and
+// one load of a row where it is gathered.
+constexpr int quad = 4;
+using Quad = double __attribute__((vector_size(quad * sizeof(double)), aligned(8), may_alias));
+
+inline Quad& row(double* x, int i) { return reinterpret_cast<Quad*>(x)[i]; }
+inline const Quad& row(const double* x, int i) { return reinterpret_cast<const Quad*>(x)[i]; }
+
+// Y = Y - A X of one strip of k columns.
+inline void subtract_products(const double* a, const double* x, int k, double* y) {
+  Quad sum[height];
+#pragma GCC unroll 8
+  for (int i = 0; i < height; ++i) sum[i] = row(y, i);
+  for (int j = 0; j < k; ++j, a += height) {
+    const Quad xj = row(x, j);
+#pragma GCC unroll 8
+    for (int i = 0; i < height; ++i) sum[i] -= a[i] * xj;
+  }
+#pragma GCC unroll 8
+  for (int i = 0; i < height; ++i) row(y, i) = sum[i];
+}
+
+// Y = Y - A' X of strips `stride` apart, of `columns` columns.
+template <int columns>
+inline void subtract_transposed_products(const double* a, Index stride, const double* x, int strips,
+                                         double* y) {
+  Quad sum[columns];
+#pragma GCC unroll 8
+  for (int j = 0; j < columns; ++j) sum[j] = row(y, j);
+  for (int i = 0; i < strips; ++i, a += stride, x += height * quad) {
+#pragma GCC unroll 8
+    for (int r = 0; r < height; ++r) {
+      const Quad xr = row(x, r);
+#pragma GCC unroll 8
+      for (int j = 0; j < columns; ++j) sum[j] -= a[j * height + r] * xr;
+    }
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < columns; ++j) row(y, j) = sum[j];
+}
+
+// The same of k <= 8 columns.
+inline void subtract_transposed_products(const double* a, Index stride, const double* x, int k,
+                                         int strips, double* y) {
+  for (; k >= 4; k -= 4, a += 4 * height, y += 4 * quad) {
+    subtract_transposed_products<4>(a, stride, x, strips, y);
+  }
+  for (; k >= 1; k -= 1, a += height, y += quad) {
+    subtract_transposed_products<1>(a, stride, x, strips, y);
+  }
+}
+
+// X = L^-1 X and X = L'^-1 X for the first k pivots of a block.
+inline void solve_lowers(const double* l, int k, double* x) {
+  for (int p = 0; p < k; ++p) {
+    const Quad pivot = row(x, p);
+    for (int i = p + 1; i < k; ++i) row(x, i) -= l[p * height + i] * pivot;
+  }
+}
+
+inline void solve_uppers(const double* l, int k, double* x) {
+  for (int p = k; p-- > 0;) {
+    const Quad pivot = row(x, p);
+    for (int i = 0; i < p; ++i) row(x, i) -= l[p * height + i] * pivot;
+  }
+}
+
 }  // namespace qddot::strips

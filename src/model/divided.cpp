@@ -71,15 +71,32 @@ void Divided::mean_force(const Vec& a, const Vec& b, Vec& f) const {
   });
 }
 
-void Divided::softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const {
-  // The parts' columns follow one another, and so do their entries.
+template <class Evaluate>
+void Divided::assemble(const Vec& q, SymmetricMatrix& k, const Evaluate& evaluate) const {
   Index next = 0;
   for_each(parts_, q, [&](const System& part, const Vec& own, Index) {
     SymmetricMatrix block = part.stiffness_pattern();
-    part.softened_stiffness(own, compression, block);
+    evaluate(part, own, block);
     k.coeffs().segment(next, block.nonZeros()) = block.coeffs();
     next += block.nonZeros();
   });
+}
+
+void Divided::softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const {
+  assemble(q, k, [compression](const System& part, const Vec& own, SymmetricMatrix& block) {
+    part.softened_stiffness(own, compression, block);
+  });
+}
+
+HasLaplacian Divided::has_laplacian() const {
+  HasLaplacian least = HasLaplacian::as_bound;
+  for (const auto& part : parts_) least = std::min(least, part->has_laplacian());
+  return least;
+}
+
+void Divided::laplacian(SymmetricMatrix& l) const {
+  assemble(Vec::Zero(size()), l,
+           [](const System& part, const Vec&, SymmetricMatrix& block) { part.laplacian(block); });
 }
 
 bool Divided::stiffness_is_constant() const {

@@ -20,10 +20,17 @@ class Divided final : public System {
   void mean_force(const Vec& a, const Vec& b, Vec& f) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override;
+  HasLaplacian has_laplacian() const override;
+  void laplacian(SymmetricMatrix& l) const override;
   bool holds_at(const Vec& q) const override;
   std::span<const std::unique_ptr<System>> parts() const override { return parts_; }
 
  private:
+  // The parts' columns follow one another in `k`, and so do their entries: evaluate(part, its
+  // segment of q, its block) for each.
+  template <class Evaluate>
+  void assemble(const Vec& q, SymmetricMatrix& k, const Evaluate& evaluate) const;
+
   std::vector<std::unique_ptr<System>> parts_;
   SymmetricMatrix pattern_;
 };

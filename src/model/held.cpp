@@ -29,6 +29,15 @@ void Held::mean_force(const Vec& a, const Vec& b, Vec& f) const {
 
 void Held::softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const {
   system_->softened_stiffness(q, compression, k);
+  clear_held(k);
+}
+
+void Held::laplacian(SymmetricMatrix& l) const {
+  system_->laplacian(l);
+  clear_held(l);
+}
+
+void Held::clear_held(SymmetricMatrix& k) const {
   for (const Index entry : entries_) k.valuePtr()[entry] = 0;
 }
 

@@ -23,10 +23,14 @@ class Held final : public System {
   void mean_force(const Vec& a, const Vec& b, Vec& f) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
+  HasLaplacian has_laplacian() const override { return system_->has_laplacian(); }
+  void laplacian(SymmetricMatrix& l) const override;
   bool holds_at(const Vec& q) const override { return system_->holds_at(q); }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
 
  private:
+  void clear_held(SymmetricMatrix& k) const;
+
   std::shared_ptr<const System> system_;
   std::vector<Index> unknowns_;  // the held ones
   std::vector<Index> entries_;   // of the pattern, those in a row or column of a held one

@@ -85,54 +85,23 @@ class MassSpring final : public System {
 
   void stiffness(const Vec& q, SymmetricMatrix& k) const override { softened_stiffness(q, 1, k); }
 
-  // With S = diag(mirror) and d = S x_j - x_i: K_ii -= B, K_jj -= S B S, K_ij += B S; where i = j
-  // all three are one block.
   void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
-    k.coeffs().setZero();
-    for (std::size_t e = 0; e < links_.size(); ++e) {
-      const Link& link = links_[e];
-      const Block b = spring_stiffness(link.law, between(q, link), compression);
-      subtract_from_diagonal(k, link.i, b);
-      subtract_from_diagonal(k, link.j, b);
-      add_below_diagonal(k, std::min(link.i, link.j), link_places_[e], b);
-    }
-    for (std::size_t e = 0; e < images_.size(); ++e) {
-      const auto& [i, j, mirror, law] = images_[e];
-      const Block b = spring_stiffness(law, between(q, images_[e]), compression);
-      const Block bs = b * mirror.asDiagonal(), sb = mirror.asDiagonal() * b;
-      subtract_from_diagonal(k, i, b);
-      subtract_from_diagonal(k, j, sb * mirror.asDiagonal());
-      if (i == j) {
-        subtract_from_diagonal(k, i, -(bs + sb));
-      } else {
-        // The block's rows belong to the later node.
-        add_below_diagonal(k, std::min(i, j), image_places_[e], i > j ? bs : sb);
-      }
-    }
-    for (const Anchor& anchor : anchors_) {
-      subtract_from_diagonal(k, anchor.i,
-                             spring_stiffness(anchor.law, between(q, anchor), compression));
-    }
-    for (const EdgeLink& link : edge_links_) {
-      const Block b = spring_stiffness(link.law, edge_between(q, link), compression);
-      const Block bs = b * link.mirror.asDiagonal(), sb = link.mirror.asDiagonal() * b;
-      edge_subtract_from_diagonal(k, link.i, b);
-      edge_subtract_from_diagonal(k, link.j, sb * link.mirror.asDiagonal());
-      if (link.i == link.j) {
-        edge_subtract_from_diagonal(k, link.i, -(bs + sb));
-      } else {
-        edge_add_below_diagonal(k, link, link.i > link.j ? bs : sb);
-      }
-    }
-    for (const Anchor& anchor : edge_anchors_) {
-      edge_subtract_from_diagonal(
-          k, anchor.i, spring_stiffness(anchor.law, edge_between(q, anchor), compression));
-    }
+    assemble(q, k, [compression](const SpringLaw& law, const Point& d) {
+      return spring_stiffness(law, d, compression);
+    });
   }
 
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override { return linear_; }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
+
+  HasLaplacian has_laplacian() const override { return has_laplacian_; }
+  // The network at rest lengths zero is stiff alike at every q.
+  void laplacian(SymmetricMatrix& l) const override {
+    assemble(Vec::Zero(size()), l, [](const SpringLaw& law, const Point&) -> Block {
+      return -law.stiffness * Block::Identity();
+    });
+  }
 
   bool holds_at(const Vec& q) const override {
     // A spring drawn at its rest length may be shorter by what rounding makes of it.
@@ -168,7 +137,10 @@ class MassSpring final : public System {
     }
     linear_ = network.uses_constant_stiffness;
     const Vec anywhere = Vec::Zero(size());
-    for_all(anywhere, [&](const SpringLaw& law, const Point&) { linear_ &= law.is_linear(); });
+    for_all(anywhere, [&](const SpringLaw& law, const Point&) {
+      linear_ &= law.is_linear();
+      if (law.quartic > 0) has_laplacian_ = HasLaplacian::yes;
+    });
     if (network.offers_split) {
       split_ = {std::make_shared<MassSpring>(only(network, true)),
                 std::make_shared<MassSpring>(only(network, false))};
@@ -238,6 +210,50 @@ class MassSpring final : public System {
       layout_.add(-link.mirror.cwiseProduct(force), link.j, f);
     }
     for (const Anchor& anchor : edge_anchors_) layout_.add(edge_on_i(anchor), anchor.i, f);
+  }
+
+  // With S = diag(mirror) and d = S x_j - x_i: K_ii -= B, K_jj -= S B S, K_ij += B S; where i = j
+  // all three are one block.
+  template <class BlockOf>
+  void assemble(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
+    k.coeffs().setZero();
+    for (std::size_t e = 0; e < links_.size(); ++e) {
+      const Link& link = links_[e];
+      const Block b = block(link.law, between(q, link));
+      subtract_from_diagonal(k, link.i, b);
+      subtract_from_diagonal(k, link.j, b);
+      add_below_diagonal(k, std::min(link.i, link.j), link_places_[e], b);
+    }
+    for (std::size_t e = 0; e < images_.size(); ++e) {
+      const auto& [i, j, mirror, law] = images_[e];
+      const Block b = block(law, between(q, images_[e]));
+      const Block bs = b * mirror.asDiagonal(), sb = mirror.asDiagonal() * b;
+      subtract_from_diagonal(k, i, b);
+      subtract_from_diagonal(k, j, sb * mirror.asDiagonal());
+      if (i == j) {
+        subtract_from_diagonal(k, i, -(bs + sb));
+      } else {
+        // The block's rows belong to the later node.
+        add_below_diagonal(k, std::min(i, j), image_places_[e], i > j ? bs : sb);
+      }
+    }
+    for (const Anchor& anchor : anchors_) {
+      subtract_from_diagonal(k, anchor.i, block(anchor.law, between(q, anchor)));
+    }
+    for (const EdgeLink& link : edge_links_) {
+      const Block b = block(link.law, edge_between(q, link));
+      const Block bs = b * link.mirror.asDiagonal(), sb = link.mirror.asDiagonal() * b;
+      edge_subtract_from_diagonal(k, link.i, b);
+      edge_subtract_from_diagonal(k, link.j, sb * link.mirror.asDiagonal());
+      if (link.i == link.j) {
+        edge_subtract_from_diagonal(k, link.i, -(bs + sb));
+      } else {
+        edge_add_below_diagonal(k, link, link.i > link.j ? bs : sb);
+      }
+    }
+    for (const Anchor& anchor : edge_anchors_) {
+      edge_subtract_from_diagonal(k, anchor.i, block(anchor.law, edge_between(q, anchor)));
+    }
   }
 
   // Calls action(law, d) for every spring.
@@ -311,6 +327,7 @@ class MassSpring final : public System {
   Vec weight_;  // M g + load [N]
   double constant_energy_;
   bool linear_ = false;
+  HasLaplacian has_laplacian_ = HasLaplacian::as_bound;
   SymmetricMatrix pattern_;
   std::optional<Split> split_;
 };

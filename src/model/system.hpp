@@ -24,6 +24,10 @@ struct State {
 
 struct Split;
 
+// Whether a system offers the matrix L of laplacian(), and whether that bounds its stiffness:
+// x'(-K(q))x <= x'Lx for all q and x.
+enum class HasLaplacian { no, yes, as_bound };
+
 // The mechanics of the lecture's Lagrangian L = T - V with T = 1/2 v'Mv: everything that the
 // equation of motion M q'' = f(q) is made of, and nothing of how it is stepped through time.
 // SI units. Signs: f = -dV/dq and K = df/dq = -d2V/dq2, so K is negative semidefinite at rest
@@ -62,6 +66,13 @@ class System {
   virtual void mean_force(const Vec& a, const Vec& b, Vec& f) const = 0;
   // True only where K is the same at every q, so that the motion is linear.
   virtual bool stiffness_is_constant() const = 0;
+
+  // L [N/m]: what -K is, everywhere, when all springs have rest length zero and nothing quartic.
+  // Into `l`, of the pattern of stiffness_pattern(); to be called where has_laplacian() says so.
+  // f(q) = -L q + the rest, which grows with distances no faster than a constant for springs
+  // without a quartic part; then L bounds -K. No entry couples different axes.
+  virtual HasLaplacian has_laplacian() const { return HasLaplacian::no; }
+  virtual void laplacian(SymmetricMatrix&) const {}
 
   // Whether this system is, at q, still what it stands for (see Holds in spring.hpp).
   // Integrators ask after each step and go no further where it is not.

@@ -122,6 +122,8 @@ class Relay final : public System {
   }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
+  HasLaplacian has_laplacian() const override { return system_.has_laplacian(); }
+  void laplacian(SymmetricMatrix& l) const override { system_.laplacian(l); }
 
   std::function<void(const Vec& q, Vec& f)> after_force;
   std::function<void(const Vec& q, SymmetricMatrix& k)> after_stiffness;

@@ -25,6 +25,8 @@ class SplitRelay final : public System {
   void mean_force(const Vec& a, const Vec& b, Vec& f) const override { whole.mean_force(a, b, f); }
   const SymmetricMatrix& stiffness_pattern() const override { return whole.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return whole.stiffness_is_constant(); }
+  HasLaplacian has_laplacian() const override { return whole.has_laplacian(); }
+  void laplacian(SymmetricMatrix& l) const override { whole.laplacian(l); }
   const Split* split() const override { return &split_; }
 
   const std::shared_ptr<Relay> stiff, soft;

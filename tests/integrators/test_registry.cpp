@@ -85,6 +85,10 @@ BOOST_AUTO_TEST_CASE(the_methods_asked_for_are_there_with_their_orders) {
                                                            {"symplectic_euler", 1},
                                                            {"semi_implicit_euler", 1},
                                                            {"implicit_euler", 1},
+                                                           {"local_global", 1},
+                                                           {"local_global_chebyshev", 1},
+                                                           {"local_global_anderson", 1},
+                                                           {"local_global_lbfgs", 1},
                                                            {"verlet", 2},
                                                            {"position_verlet", 2},
                                                            {"rk4", 4},
@@ -190,12 +194,12 @@ BOOST_AUTO_TEST_CASE(every_outcome_has_a_name_and_every_failure_its_advice) {
        {Outcome::reached_end, Outcome::diverged, Outcome::newton_failed, Outcome::indefinite_matrix,
         Outcome::step_too_small, Outcome::singular_mass, Outcome::not_finite,
         Outcome::solver_failed, Outcome::over_budget, Outcome::stiffness_varies,
-        Outcome::went_slack, Outcome::no_stiff_set}) {
+        Outcome::went_slack, Outcome::no_stiff_set, Outcome::no_laplacian}) {
     names.insert(name(outcome));
     BOOST_TEST(name(outcome) != "unknown");
     BOOST_TEST(advice(outcome).empty() == (outcome == Outcome::reached_end));
   }
-  BOOST_TEST(names.size() == 12);
+  BOOST_TEST(names.size() == 13);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,429 @@
+// What the iterations of local_global, of its accelerations and of Newton's method buy in one step
+// of implicit Euler: Figures 2 and 3 of Liu, Bargteil, O'Brien and Kavan (SIGGRAPH Asia 2013), and
+// what they leave out: the step's own error, below which further iterations buy nothing.
+//
+//   local_global --out results/local_global
+//   local_global --nodes 65 --stiffness 2400 --step-size 0.0333 --out results/coarse
+//   local_global --speed --out results/speed
+//
+// The scene is a square cloth of 1 m and 1 kg on two corners that has swung for --swing seconds;
+// one step of --step-size follows, from the same state for all solvers. A row is a step of that
+// many iterations: the step that a user of `simulate --iterations` gets, not an intermediate state
+// of a longer one.
+//
+//  convergence.csv  (g(x_i) - g*) / (g(x_0) - g*) of the energy g that the step minimises, x_0 the
+//                   inertial prediction; seconds are without analysis and, of solvers whose matrix
+//                   is constant, without its one factorisation, both of which the sidecar has
+//  positions.csv    the largest distance of a node from where it is in the converged step, and the
+//                   step's own error: the converged step's distance from the true motion
+//  stiffness.csv    the first for several stiffnesses, and for several resolutions with stiffness
+//  in resolution.csv   proportion run.csv          whole runs of 0.5 s: how far off they end, and
+//  what energy they have lost speed.csv        --speed alone: one iteration, set-up, and the
+//  factorisation with K that one of
+//                   Newton's iterations takes, for --nodes 33, 65 and 101
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/csv.hpp"
+#include "experiments/newton.hpp"
+#include "experiments/program.hpp"
+#include "experiments/provenance.hpp"
+#include "integrators/registry.hpp"
+#include "src/algebra/effective_mass.hpp"
+#include "src/algebra/laplacian_mass.hpp"
+#include "src/analysis/frequency_bound.hpp"
+#include "src/scene/generators.hpp"
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/reduce.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr int standard_nodes = 33;
+constexpr double standard_stiffness = 1200;
+constexpr double stiffnesses[] = {300, 600, 1200, 2400};  // N/m
+constexpr int resolutions[] = {11, 21, 41, 81};
+constexpr int speed_nodes[] = {33, 65, 101};
+constexpr double run_until = 0.5;           // s
+constexpr int most_newton_iterations = 40;  // more than it takes anywhere here
+constexpr int most_iterations_of_figure_3 = 100;
+
+struct Arguments {
+  std::string out;
+  int nodes = standard_nodes, iterations = 400, repeats = 5;
+  double stiffness = standard_stiffness, step_size = 0.01, swing = 0.3;
+  bool speed = false;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("--out", a.out, "the folder for the tables");
+  app.add_option("--nodes", a.nodes, "how many nodes along a side of the cloth, 3 to 400")
+      ->capture_default_str();
+  app.add_option("--stiffness", a.stiffness,
+                 "of springs between neighbours in N/m; diagonals have half of it, second "
+                 "neighbours a tenth")
+      ->capture_default_str();
+  app.add_option("--step-size", a.step_size, "h in s")->capture_default_str();
+  app.add_option("--swing", a.swing, "how long the cloth has swung before the step, in s")
+      ->capture_default_str();
+  app.add_option("--iterations", a.iterations, "how far to go, 1 to 100000")->capture_default_str();
+  app.add_option("--repeats", a.repeats, "timed runs of each, of which the median counts")
+      ->capture_default_str();
+  app.add_flag("--speed", a.speed, "measure one iteration and the set-up instead, to speed.csv");
+}
+
+void require_within(int value, int low, int high, const char* option) {
+  if (value >= low && value <= high) return;
+  throw InvalidInput(fmt::format("{} {} is not allowed; it is a whole number from {} to {}", option,
+                                 value, low, high));
+}
+
+double seconds_of(const auto& action) {
+  const auto start = std::chrono::steady_clock::now();
+  action();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double median_seconds(int repeats, const auto& action) {
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i) times.push_back(seconds_of(action));
+  return median(std::move(times));
+}
+
+Scene draw(int nodes, double stiffness) {
+  return generate(*find_generator("cloth"),
+                  {{"nodes", nodes},
+                   {"mass", 1},
+                   {"structural_stiffness", stiffness},
+                   {"shear_stiffness", stiffness / 2},
+                   {"bending_stiffness", stiffness / 10}},
+                  "--nodes");
+}
+
+// All of the cloth, as a scene without its symmetry would be.
+Reductions whole() { return Reductions().without(Reduction::mirror); }
+
+// The motion over `duration` by order 8, far below the stability limit.
+State truth(const System& system, State state, double duration) {
+  const double h = 0.5 / frequency_bound(system, state.q);
+  const Method& method = *find_method("kahan_li8");
+  const Summary summary =
+      make_integrator(method, system, {.step_size = h})->advance(state, state.t + duration);
+  if (summary.outcome != Outcome::reached_end) throw std::runtime_error(summary.message);
+  return state;
+}
+
+struct Cloth {
+  Cloth(int nodes, double stiffness, double swing)
+      : drawn(draw(nodes, stiffness)), scene(drawn, whole()) {
+    start = swing > 0 ? truth(system(), scene.initial(), swing) : scene.initial();
+  }
+  const System& system() const { return scene.system(); }
+  // The largest distance of a node [m].
+  double distance(const State& a, const State& b) const {
+    const auto x = scene.expand(a), y = scene.expand(b);
+    double largest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      largest = std::max(largest, (x[i].position - y[i].position).norm());
+    }
+    return largest;
+  }
+
+  Scene drawn;
+  ReducedScene scene;
+  State start;
+};
+
+std::vector<const Method*> solvers() {
+  std::vector<const Method*> all;
+  for (const Method& method : methods()) {
+    if (method.takes_iterations) all.push_back(&method);
+  }
+  all.push_back(&newton_exact());
+  all.push_back(&newton_clamped());
+  return all;
+}
+
+// All numbers of iterations at first, then each a tenth more.
+std::vector<int> iteration_counts(int most) {
+  std::vector<int> counts;
+  for (int i = 1; i <= most; i = std::max(i + 1, i * 11 / 10)) counts.push_back(i);
+  return counts;
+}
+
+// A step of so many iterations.
+struct Step {
+  int iterations = 0;
+  double seconds = 0;  // the matrix that does not change left out
+  State end;
+};
+
+// The steps of one solver, and what it takes before the first.
+struct Solved {
+  const Method* method = nullptr;
+  double analysis = 0, factorization = 0;  // s; the latter of a matrix that does not change
+  std::vector<Step> steps;                 // from none on
+};
+
+Solved solve(const Method& method, const Cloth& cloth, double h, int most, int repeats) {
+  Solved solved{.method = &method};
+  solved.steps.push_back(
+      {0, 0, {cloth.start.t + h, cloth.start.q + h * cloth.start.v, cloth.start.v}});
+  if (!method.needs_laplacian) most = std::min(most, most_newton_iterations);
+  for (const int iterations : iteration_counts(most)) {
+    const Knobs knobs{.step_size = h, .iterations = iterations, .timed = true};
+    std::unique_ptr<Integrator> integrator;
+    solved.analysis =
+        seconds_of([&] { integrator = make_integrator(method, cloth.system(), knobs); });
+    std::vector<double> times, factorizations;
+    Step step{.iterations = iterations};
+    for (int i = -1; i < repeats; ++i) {  // the first is not timed
+      step.end = cloth.start;
+      Summary summary;
+      const double all =
+          seconds_of([&] { summary = integrator->advance(step.end, cloth.start.t + h); });
+      if (summary.outcome != Outcome::reached_end) {
+        throw std::runtime_error(fmt::format("{}: {}", method.name, summary.message));
+      }
+      const double constant = method.needs_laplacian ? summary.seconds.factorization : 0;
+      if (i < 0 && repeats > 0) continue;
+      times.push_back(all - constant);
+      factorizations.push_back(constant);
+    }
+    step.seconds = median(std::move(times));
+    solved.factorization = median(std::move(factorizations));
+    solved.steps.push_back(std::move(step));
+  }
+  return solved;
+}
+
+// The energy that the step minimises [J].
+double objective(const Cloth& cloth, const State& end) {
+  return cloth.system().kinetic(end.v - cloth.start.v) + cloth.system().potential(end.q);
+}
+
+// All solvers on one step, and the lowest energy that any of them came to.
+struct Comparison {
+  Comparison(const Cloth& on, double h, int most, int repeats) : cloth(on) {
+    for (const Method* method : solvers()) all.push_back(solve(*method, on, h, most, repeats));
+    first = objective(on, all.front().steps.front().end);
+    least = std::numeric_limits<double>::infinity();
+    for (const Solved& solved : all) {
+      for (const Step& step : solved.steps) {
+        const double g = objective(on, step.end);
+        if (g >= least) continue;
+        least = g;
+        converged = step.end;
+      }
+    }
+  }
+  double relative_error(const Step& step) const {
+    return (objective(cloth, step.end) - least) / (first - least);
+  }
+
+  const Cloth& cloth;
+  std::vector<Solved> all;
+  double first, least;
+  State converged;
+};
+
+nlohmann::json origin_of(const std::vector<std::string>& command_line, const Cloth& cloth,
+                         const Arguments& a) {
+  nlohmann::json origin = provenance(command_line, cloth.drawn, cloth.drawn, cloth.scene);
+  origin["step_size"] = a.step_size;
+  origin["swing"] = a.swing;
+  origin["stiffness"] = a.stiffness;
+  return origin;
+}
+
+nlohmann::json setups(const Comparison& comparison) {
+  nlohmann::json setups;
+  for (const Solved& solved : comparison.all) {
+    setups[solved.method->name] = {{"analysis_s", solved.analysis},
+                                   {"factorization_s", solved.factorization}};
+  }
+  return setups;
+}
+
+void write_step(const Arguments& a, const std::vector<std::string>& command_line) {
+  CsvFile convergence(a.out + "/convergence.csv",
+                      {"solver", "iteration", "seconds", "relative_error"});
+  CsvFile positions(a.out + "/positions.csv",
+                    {"solver", "iteration", "seconds", "distance_to_converged", "step_error"});
+  const Cloth cloth(a.nodes, a.stiffness, a.swing);
+  const Comparison comparison(cloth, a.step_size, a.iterations, a.repeats);
+  const State exact = truth(cloth.system(), cloth.start, a.step_size);
+  const double own = cloth.distance(comparison.converged, exact);
+  fmt::print("one step of {:g} s: {:.3g} m from the true motion when converged\n", a.step_size,
+             own);
+  fmt::print("{:<24} {:>10} {:>9}  {}\n", "solver", "iterations", "ms",
+             "until no more than a tenth is added to that");
+  for (const Solved& solved : comparison.all) {
+    const Step* enough = nullptr;
+    for (const Step& step : solved.steps) {
+      const double distance = cloth.distance(step.end, comparison.converged);
+      convergence.row(solved.method->name, step.iterations, step.seconds,
+                      comparison.relative_error(step));
+      positions.row(solved.method->name, step.iterations, step.seconds, distance, own);
+      if (!enough && distance <= own / 10) enough = &step;
+    }
+    if (enough) {
+      fmt::print("{:<24} {:>10} {:>9.3f}\n", solved.method->name, enough->iterations,
+                 1e3 * enough->seconds);
+    } else {
+      fmt::print("{:<24} {:>10}\n", solved.method->name,
+                 fmt::format("> {}", solved.steps.back().iterations));
+    }
+  }
+  nlohmann::json origin = origin_of(command_line, cloth, a);
+  origin["setup"] = setups(comparison);
+  origin["step_error"] = own;
+  convergence.commit(origin);
+  positions.commit(origin);
+}
+
+void write_figure_3(const Arguments& a, const std::vector<std::string>& command_line) {
+  const Cloth standard(a.nodes, a.stiffness, 0);
+  nlohmann::json origin = origin_of(command_line, standard, a);
+  const auto add = [&](CsvFile& csv, auto value, int nodes, double stiffness) {
+    const Cloth cloth(nodes, stiffness, a.swing);
+    const Comparison comparison(cloth, a.step_size,
+                                std::min(a.iterations, most_iterations_of_figure_3), 1);
+    for (const Solved& solved : comparison.all) {
+      for (const Step& step : solved.steps) {
+        csv.row(value, solved.method->name, step.iterations, step.seconds,
+                comparison.relative_error(step));
+      }
+    }
+    origin["setup"][fmt::format("{:g}", static_cast<double>(value))] = setups(comparison);
+  };
+  CsvFile stiffness_csv(a.out + "/stiffness.csv",
+                        {"stiffness", "solver", "iteration", "seconds", "relative_error"});
+  for (const double stiffness : stiffnesses) add(stiffness_csv, stiffness, a.nodes, stiffness);
+  stiffness_csv.commit(origin);
+  CsvFile resolution_csv(a.out + "/resolution.csv",
+                         {"nodes", "solver", "iteration", "seconds", "relative_error"});
+  origin.erase("setup");
+  for (const int nodes : resolutions) {
+    add(resolution_csv, nodes, nodes, a.stiffness * (nodes - 1) / static_cast<double>(a.nodes - 1));
+  }
+  resolution_csv.commit(origin);
+}
+
+void write_run(const Arguments& a, const std::vector<std::string>& command_line) {
+  CsvFile csv(a.out + "/run.csv",
+              {"solver", "iterations", "seconds", "position_error", "energy_change"});
+  const Cloth cloth(a.nodes, a.stiffness, 0);
+  const State exact = truth(cloth.system(), cloth.start, run_until);
+  const double energy = total_energy(cloth.system(), cloth.start);
+  fmt::print("\nruns of {:g} s with steps of {:g} s\n{:<24} {:>10} {:>9} {:>9} {:>9}\n", run_until,
+             a.step_size, "solver", "iterations", "s", "m off", "J lost");
+  const auto add = [&](const Method& method, int iterations) {
+    State end = cloth.start;
+    Summary summary;
+    const auto integrator = make_integrator(method, cloth.system(),
+                                            {.step_size = a.step_size, .iterations = iterations});
+    const double seconds =
+        seconds_of([&] { summary = integrator->advance(end, cloth.start.t + run_until); });
+    if (summary.outcome != Outcome::reached_end) {
+      fmt::print("{:<24} {:>10} {}\n", method.name, iterations, name(summary.outcome));
+      return;
+    }
+    const double off = cloth.distance(end, exact);
+    const double change = total_energy(cloth.system(), end) - energy;
+    csv.row(method.name, iterations, seconds, off, change);
+    fmt::print("{:<24} {:>10} {:>9.4f} {:>9.4f} {:>9.4f}\n", method.name, iterations, seconds, off,
+               -change);
+  };
+  for (const Method& method : methods()) {
+    if (!method.takes_iterations) continue;
+    for (const int iterations : {1, 2, 3, 5, 10, 20, 50, 100, 1000}) add(method, iterations);
+  }
+  for (const int iterations : {1, 2, 3, 5, 10, 20}) add(newton_clamped(), iterations);
+  add(newton_exact(), most_newton_iterations);
+  csv.commit(origin_of(command_line, cloth, a));
+}
+
+void write_speed(const Arguments& a, const std::vector<std::string>& command_line) {
+  CsvFile csv(a.out + "/speed.csv",
+              {"nodes", "springs", "iteration_s", "setup_s", "factorization_s"});
+  fmt::print("{:>6} {:>8} {:>13} {:>10} {:>17}\n", "nodes", "springs", "iteration ms", "set-up ms",
+             "factorisation ms");
+  const Method& method = *find_method("local_global");
+  const double s = a.step_size * a.step_size;
+  for (const int nodes : speed_nodes) {
+    const Cloth cloth(nodes, a.stiffness * (nodes - 1) / (standard_nodes - 1.0), 0);
+    const System& system = cloth.system();
+    constexpr int iterations = 50;
+    const auto integrator = make_integrator(
+        method, system, {.step_size = a.step_size, .iterations = iterations, .timed = true});
+    std::vector<double> times;
+    for (int i = 0; i < a.repeats; ++i) {
+      State state = cloth.start;
+      Summary summary;
+      const double all = seconds_of([&] { summary = integrator->advance(state, a.step_size); });
+      times.push_back((all - summary.seconds.factorization) / iterations);
+    }
+    const double setup = median_seconds(a.repeats, [&] {
+      LaplacianMass matrix(system);
+      matrix.factorize(s);
+    });
+    EffectiveMass newton(system);
+    SymmetricMatrix k = system.stiffness_pattern();
+    const double factorization = median_seconds(a.repeats, [&] {
+      system.stiffness(cloth.start.q, k);
+      newton.factorize_positive(1, s, k);
+    });
+    const double iteration = median(std::move(times));
+    csv.row(nodes, cloth.drawn.springs.size(), iteration, setup, factorization);
+    fmt::print("{:>6} {:>8} {:>13.4f} {:>10.3f} {:>17.3f}\n", nodes, cloth.drawn.springs.size(),
+               1e3 * iteration, 1e3 * setup, 1e3 * factorization);
+  }
+  csv.commit(origin_of(command_line, Cloth(standard_nodes, a.stiffness, 0), a));
+}
+
+int local_global_program(const Arguments& a, const std::vector<std::string>& command_line) {
+  require_given(a.out, "--out", "the folder for the results");
+  require_within(a.nodes, 3, 400, "--nodes");
+  require_within(a.iterations, 1, 100000, "--iterations");
+  require_within(a.repeats, 1, 1000, "--repeats");
+  require_positive(a.stiffness, "--stiffness", "a stiffness in N/m");
+  require_positive(a.step_size, "--step-size", "h in s");
+  if (!(std::isfinite(a.swing) && a.swing >= 0)) {
+    throw InvalidInput(fmt::format(
+        "--swing {} is not allowed; it is a time in s, finite and at least 0", a.swing));
+  }
+  require_folder(a.out);
+  if (a.speed) {
+    write_speed(a, command_line);
+    return done;
+  }
+  write_step(a, command_line);
+  write_figure_3(a, command_line);
+  write_run(a, command_line);
+  return done;
+}
+
+}  // namespace
+}  // namespace qddot
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures what the iterations of a step of implicit Euler buy, by several solvers.",
+               "local_global");
+  qddot::Arguments arguments;
+  qddot::declare(app, arguments);
+  return qddot::run_program(app, argc, argv, [&] {
+    return qddot::local_global_program(arguments, {argv, argv + argc});
+  });
+}

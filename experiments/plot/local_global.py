@@ -1,0 +1,215 @@
+"""Draws what the iterations of one step of implicit Euler buy, over their number and their time.
+
+Call: local_global.py DIR, the folder with convergence.csv and positions.csv of the program
+local_global; writes DIR/local_global.png and DIR/local_global.svg. Above, the error of the energy
+that the step minimises; below, how far positions still are from the converged step, and the line
+that tells when that is no longer what matters: how far the converged step itself is from the true
+motion.
+"""
+
+import csv
+import json
+import sys
+from itertools import groupby
+from pathlib import Path
+
+from matplotlib import ticker
+from matplotlib.text import Text
+
+from chart import move_label
+from labels import Ink, place_labels
+from sheet import Sheet
+from style import COOL, FAINT, FRONT, GRID, INK, WARM, Family, Look, number, power_of_ten, seconds
+from style import use_style
+
+WIDTH, HEIGHT = 11.6, 8.6
+LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.85, 1.2, 5.0, 3.05
+ACROSS, DOWN = 0.45, 0.55
+FONT_SIZE = 9.5
+# Beyond what doubles hold of the energy nothing is drawn.
+LEAST_ERROR = 1e-10
+LEAST_DISTANCE = 1e-8
+
+CONSTANT = Family("one constant matrix", WARM, "-", True, 1.8)
+NEWTON = Family("a new matrix each iteration", COOL, (0, (4, 1.8)), False, 1.8)
+SOLVERS = {
+    "local_global": ("local/global", Look(WARM[0], "o", CONSTANT)),
+    "local_global_chebyshev": ("with Chebyshev", Look(WARM[2], "s", CONSTANT)),
+    "local_global_anderson": ("with Anderson", Look(WARM[3], "^", CONSTANT)),
+    "local_global_lbfgs": ("L-BFGS from it", Look(WARM[1], "D", CONSTANT)),
+    "newton_exact": ("Newton", Look(COOL[0], "v", NEWTON)),
+    "newton_clamped": ("Newton, K clamped", Look(COOL[1], "P", NEWTON)),
+}
+
+
+def read(path):
+    """The rows of a table by solver, without the starts: iterations, seconds and the rest."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if int(row["iteration"]) > 0]
+    return {name: list(own) for name, own in groupby(rows, key=lambda row: row["solver"])}
+
+
+def curves(table, across, up, least):
+    """The points of each solver, up to where it has come to `least`."""
+    lines = {}
+    for name, rows in table.items():
+        points = []
+        for row in rows:
+            points.append((float(row[across]), max(float(row[up]), least)))
+            if points[-1][1] <= least:
+                break
+        lines[name] = points
+    return lines
+
+
+def style_axes(axes, words):
+    """Logarithmic axes with a light grid."""
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    for axis, name in ((axes.xaxis, words), (axes.yaxis, power_of_ten)):
+        axis.set_major_locator(ticker.LogLocator(numticks=12))
+        axis.set_minor_locator(ticker.NullLocator())
+        axis.set_major_formatter(ticker.FuncFormatter(lambda v, _, name=name: name(v)))
+    axes.grid(True, color=GRID)
+    axes.tick_params(length=3, color=FAINT, labelsize=FONT_SIZE)
+
+
+def draw_lines(axes, lines):
+    """One line a solver, a mark at every few of its points."""
+    for name, points in lines.items():
+        look = SOLVERS[name][1]
+        style = look.marker_style(4.2) | {"markevery": max(1, len(points) // 12)}
+        line = {"color": look.color, "linestyle": look.family.line, "linewidth": 1.6}
+        axes.plot(*zip(*points), zorder=3, **line, **style)
+
+
+def label_lines(axes, lines, taken=()):
+    """Names every line near one of its points, off the others."""
+    box = axes.bbox
+    bounds = (box.x0 + 4, box.y0 + 4, box.x1 - 4, box.y1 - 4)
+    ink = Ink(bounds)
+    for low, high in taken:
+        for y in range(int(low), int(high), 4):
+            ink.add_line((box.x0, y), (box.x1, y), 3.0)
+    texts, anchors = [], []
+    for name, points in lines.items():
+        pixels = [tuple(axes.transData.transform(point)) for point in points]
+        for start, end in zip(pixels, pixels[1:]):
+            ink.add_line(start, end, 2.0)
+        anchors.append(pixels[1:] if len(pixels) > 1 else pixels)
+        words, look = SOLVERS[name]
+        texts.append(
+            axes.annotate(
+                words,
+                (0, 0),
+                (0, 0),
+                textcoords="offset points",
+                size=FONT_SIZE,
+                color=look.text_color,
+                ha="center",
+                va="center",
+                zorder=6,
+                bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.8},
+                arrowprops={"arrowstyle": "-", "color": look.color, "lw": 0.8, "shrinkA": 0},
+            )
+        )
+    sizes = [Text.get_window_extent(text).size for text in texts]
+    for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
+        move_label(text, axes.transData.inverted().transform(place.anchor), place)
+
+
+def draw_own_error(axes, own, words):
+    """The error of the converged step, below which a solver has nothing to gain."""
+    low = axes.get_ylim()[0]
+    axes.axhspan(low, own, facecolor=FRONT, alpha=0.22, zorder=0.5)
+    axes.axhline(own, color=INK, linewidth=1.4, zorder=2)
+    axes.annotate(
+        words,
+        (1, own),
+        (-6, 5),
+        xycoords=("axes fraction", "data"),
+        textcoords="offset points",
+        size=FONT_SIZE,
+        color=INK,
+        ha="right",
+        va="bottom",
+        zorder=5,
+        bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 1.0},
+    )
+    axes.set_ylim(bottom=low)
+
+
+def draw_row(sheet, top, table, up, words, own=None):
+    """Two panels of one quantity: over iterations and over time."""
+    least = LEAST_DISTANCE if own else LEAST_ERROR
+    for i, (across, name) in enumerate((("iteration", "iterations"), ("seconds", "time"))):
+        left = LEFT + i * (PANEL_WIDTH + ACROSS)
+        axes = sheet.axes(left, top, PANEL_WIDTH, PANEL_HEIGHT)
+        style_axes(axes, seconds if i else lambda v: f"{v:g}")
+        lines = curves(table, across, up, least)
+        draw_lines(axes, lines)
+        axes.set_ylim(bottom=least)
+        taken = []
+        if own:
+            sentence = (
+                f"the step's own error, {length(own)}: solved to the end,\n"
+                "implicit Euler is that far from the true motion"
+                if i
+                else "below this line further iterations buy nothing"
+            )
+            draw_own_error(axes, own, sentence)
+            y = axes.transData.transform((1, own))[1]
+            taken = [(y, y + (70 if i else 40))]
+            axes.set_xlabel(f"{name} of one step", fontsize=10)
+        if i:
+            axes.tick_params(labelleft=False)
+        else:
+            axes.set_ylabel(words, fontsize=10)
+        label_lines(axes, lines, taken)
+
+
+def length(value):
+    """A length with its unit."""
+    for unit, scale in (("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6)):
+        if value >= scale or unit == "µm":
+            return f"{value / scale:.2g} {unit}"
+    return ""
+
+
+def main(folder):
+    """Draws the picture."""
+    use_style()
+    folder = Path(folder)
+    origin = json.loads((folder / "positions.json").read_text(encoding="utf-8"))
+    sheet = Sheet(WIDTH, HEIGHT)
+    title = "What the iterations of one implicit step buy"
+    sheet.text(0.2, 0.3, title, size=15, weight="bold", va="center", color=INK)
+    scene = origin["scene"]
+    words = (
+        f"cloth of {scene['nodes']} nodes and {scene['springs']} springs of "
+        f"{number(origin['stiffness'])} N/m, swinging for {number(origin['swing'])} s; one step of "
+        f"h = {seconds(origin['step_size'])}, backward Euler, one core"
+    )
+    sheet.text(0.2, 0.6, words, size=10, color=FAINT, va="center")
+    setup = origin["setup"]
+    once = setup["local_global"]["analysis_s"] + setup["local_global"]["factorization_s"]
+    words = (
+        f"solid: one constant matrix, made once in {seconds(once)} (not in the times below); "
+        "dashed: a new matrix at each iteration, in the times"
+    )
+    sheet.text(0.2, 0.84, words, size=10, color=FAINT, va="center")
+    sheet.rule(1.02)
+    energy = read(folder / "convergence.csv")
+    draw_row(sheet, TOP, energy, "relative_error", "energy above its minimum, relative")
+    below = TOP + PANEL_HEIGHT + DOWN
+    positions = read(folder / "positions.csv")
+    words = "farthest node from the converged step in m"
+    draw_row(sheet, below, positions, "distance_to_converged", words, origin["step_error"])
+    for extension in ("png", "svg"):
+        sheet.save(str(folder / f"local_global.{extension}"))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("Usage: local_global.py DIR")
+    main(sys.argv[1])

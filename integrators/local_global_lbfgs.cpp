@@ -1,0 +1,87 @@
+// Implicit Euler by L-BFGS that begins with the metric of local_global: the inverse Hessian is
+// (M + h^2 L)^-1, corrected by what the last 5 differences s = v_{i+1} - v_i, y = r_{i+1} - r_i say
+// of the true one, in the two loops of Nocedal; then a line search on the energy. The first
+// iteration is that of local_global.
+#include <array>
+#include <limits>
+
+#include "integrators/local_global.hpp"
+#include "integrators/registry.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr int window = 5;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+class Lbfgs final : public LocalGlobal {
+ public:
+  Lbfgs(const Method& method, const System& system, const Knobs& knobs)
+      : LocalGlobal(method, system, knobs) {
+    for (Pair& pair : pairs_) pair.s = pair.y = Vec(system.size());
+  }
+
+ private:
+  struct Pair {
+    Vec s, y;
+    double sy = 0, alpha = 0;
+  };
+
+  void begin() override { pairs_used_ = pairs_seen_ = iteration_ = 0; }
+
+  void iterate(Vec& v) override {
+    gradient(v, r_);
+    if (iteration_++ == 0) {
+      energy_ = objective(v);
+    } else {
+      remember(v);
+    }
+    last_v_ = v;
+    last_r_ = r_;
+    for (int i = 0; i < pairs_used_; ++i) {
+      Pair& pair = newest(i);
+      pair.alpha = pair.s.dot(r_) / pair.sy;
+      r_ -= pair.alpha * pair.y;
+    }
+    direction(r_, p_);
+    for (int i = pairs_used_; i-- > 0;) {
+      const Pair& pair = newest(i);
+      p_ += (pair.alpha - pair.y.dot(p_) / pair.sy) * pair.s;
+    }
+    search(v, p_, last_r_.dot(p_), energy_);
+  }
+
+  // A pair without curvature would make the metric indefinite.
+  void remember(const Vec& v) {
+    Pair& pair = pairs_[pairs_seen_ % window];
+    pair.s = v - last_v_;
+    pair.y = r_ - last_r_;
+    pair.sy = pair.s.dot(pair.y);
+    if (!(pair.sy > epsilon * pair.s.norm() * pair.y.norm())) return;
+    ++pairs_seen_;
+    pairs_used_ = std::min(pairs_seen_, window);
+  }
+
+  Pair& newest(int i) { return pairs_[(pairs_seen_ - 1 - i) % window]; }
+
+  int iteration_ = 0, pairs_seen_ = 0, pairs_used_ = 0;
+  double energy_ = 0;
+  std::array<Pair, window> pairs_;
+  Vec r_{system().size()}, p_{system().size()}, last_v_{system().size()}, last_r_{system().size()};
+};
+
+}  // namespace
+
+Method local_global_lbfgs() {
+  return {.name = "local_global_lbfgs",
+          .summary = "backward Euler by L-BFGS, with local_global's matrix as its first metric",
+          .source =
+              "Liu, Bouaziz, Kavan, Quasi-Newton Methods for Real-Time Simulation of "
+              "Hyperelastic Materials, ACM TOG 36:3, 2017",
+          .implicit = true,
+          .needs_laplacian = true,
+          .takes_iterations = true,
+          .make = create<Lbfgs>};
+}
+
+}  // namespace qddot

@@ -1,0 +1,327 @@
+#include <atomic>
+#include <cstdlib>
+
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/fixed_step.hpp"
+#include "tests/integrators/scenes.hpp"
+
+using namespace qddot;
+
+#ifndef __SANITIZE_ADDRESS__
+namespace {
+std::atomic<long> allocations = 0;
+}
+
+// glibc's own, counted: Eigen's vectors come from there.
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* __libc_memalign(std::size_t alignment, std::size_t size);
+extern "C" void* malloc(std::size_t size) noexcept {
+  ++allocations;
+  return __libc_malloc(size);
+}
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+#endif
+
+BOOST_AUTO_TEST_SUITE(local_global)
+
+namespace {
+
+std::vector<Method> all() {
+  std::vector<Method> list = methods_of(Knob::step_size);
+  std::erase_if(list, [](const Method& method) { return !method.takes_iterations; });
+  return list;
+}
+
+// One step of h with so many iterations.
+State step(const Method& method, const System& system, const State& start, double h,
+           int iterations) {
+  const Run r = run(method, system, start, start.t + h, {.step_size = h, .iterations = iterations});
+  BOOST_REQUIRE(r.summary.message == "");
+  BOOST_REQUIRE(r.summary.counts.steps == 1);
+  return r.state;
+}
+
+// What the step minimises.
+double energy(const System& system, const State& start, const State& end) {
+  return system.kinetic(end.v - start.v) + system.potential(end.q);
+}
+
+Problem without_quartic(Problem p) {
+  for (auto& link : p.network.links) link.law.quartic = 0;
+  for (auto& anchor : p.network.anchors) anchor.law.quartic = 0;
+  return p;
+}
+
+// Networks with and without quartic springs, stretched and compressed.
+std::vector<Problem> networks() {
+  std::mt19937 random(17);
+  std::vector<Problem> list;
+  for (const int dimension : {1, 2, 3}) {
+    for (const double stretch : {1.3, 0.8}) {
+      const Problem p = random_network(random, dimension, 7, stretch);
+      list.push_back(p);
+      list.push_back(without_quartic(p));
+    }
+  }
+  return list;
+}
+
+// A cloth that has fallen for 0.1 s.
+struct Fallen {
+  ReducedScene scene{generate(*find_generator("cloth"), {{"nodes", 12}}, "test")};
+  State state =
+      run(method_named("verlet"), scene.system(), scene.initial(), 0.1, {.step_size = 1e-4}).state;
+};
+
+// A mass on a spring of 100 N/m and 1 m, pulled out to 1.5 m and 1 um beside the line of that.
+struct Transverse {
+  static constexpr double m = 0.5, k = 100, l0 = 1, l = 1.5, h = 0.05;
+  Transverse() {
+    Network network{.dimension = 2, .gravity = {k * (l - l0) / m, 0, 0}, .node_mass = Vec{{m}}};
+    network.anchors = {{0, {0, 0, 0}, {k, l0}}};
+    system = make_mass_spring(network);
+  }
+  std::unique_ptr<System> system;
+  State start{0, Vec{{l, 1e-6}}, Vec::Zero(2)};
+};
+
+// Evaluates into memory of its own at each step.
+class Spender final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    Vec f(system().size());
+    force(now.q, f);
+    next.v = now.v + h * f.cwiseQuotient(system().mass());
+    next.q = now.q + h * next.v;
+    return Outcome::reached_end;
+  }
+};
+
+// Says nothing of a Laplacian.
+class Secretive final : public System {
+ public:
+  explicit Secretive(const System& system) : System(system.mass()), system_(system) {}
+  double potential(const Vec& q) const override { return system_.potential(q); }
+  void force(const Vec& q, Vec& f) const override { system_.force(q, f); }
+  void stiffness(const Vec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
+  const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
+  bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
+
+ private:
+  const System& system_;
+};
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(there_are_four_of_them) { BOOST_TEST(all().size() == 4); }
+
+BOOST_AUTO_TEST_CASE(the_energy_falls_with_every_iteration) {
+  for (const Problem& p : networks()) {
+    const auto system = make_mass_spring(p.network);
+    for (const Method& method : all()) {
+      if (method.name == "local_global_chebyshev") continue;  // which may rise in between
+      for (const double h : {0.01, 0.1, 1.0}) {
+        BOOST_TEST_CONTEXT(method.name << ", h = " << h) {
+          double last = energy(*system, p.initial, {0, p.initial.q + h * p.initial.v, p.initial.v});
+          for (int iterations = 1; iterations <= 25; ++iterations) {
+            const double now =
+                energy(*system, p.initial, step(method, *system, p.initial, h, iterations));
+            // Energies of 1e3 J are rounded, and speeds of 100 m/s in them.
+            BOOST_TEST(now <= last + 1e-12 * std::max(1e3, std::abs(last)));
+            if (iterations == 1) BOOST_TEST(now < last);
+            last = now;
+          }
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(many_iterations_end_where_implicit_euler_does) {
+  // At this h every network's energy has one minimum near by, which all of them find.
+  constexpr double h = 0.02;
+  for (const Problem& p : networks()) {
+    const auto system = make_mass_spring(p.network);
+    const State exact =
+        run(method_named("implicit_euler"), *system, p.initial, h, {.step_size = h}).state;
+    for (const Method& method : all()) {
+      BOOST_TEST_CONTEXT(method.name) {
+        // Newton stops where its correction is 1e-6 of 10 m/s and leaves about the square of that;
+        // a line search stops where rounding hides what is left of the energy, some
+        // sqrt(1e-16 100 J / 1 kg).
+        BOOST_TEST(distance(step(method, *system, p.initial, h, 500).v, exact.v) < 1e-6);
+        BOOST_TEST(distance(step(method, *system, p.initial, h, 1).v, exact.v) > 1e-6);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(where_springs_have_no_rest_length_one_iteration_is_the_whole_step) {
+  for (const int dimension : {1, 2, 3}) {
+    const Problem p = linear_hammock(dimension);
+    const auto system = make_mass_spring(p.network);
+    const State exact =
+        run(method_named("implicit_euler"), *system, p.initial, 0.1, {.step_size = 0.1}).state;
+    for (const Method& method : all()) {
+      for (const int iterations : {1, 2, 30}) {
+        BOOST_TEST_CONTEXT(method.name << ", " << iterations) {
+          // Two ways of one solve, of condition 100.
+          BOOST_TEST(distance(step(method, *system, p.initial, 0.1, iterations), exact) < 1e-12);
+        }
+      }
+    }
+  }
+}
+
+// Across the spring H = m + h^2 tau/l and the metric is P = m + h^2 k, so that each iteration
+// leaves (P - H)/P = h^2 k (l0/l) / (m + h^2 k) of the error there.
+BOOST_AUTO_TEST_CASE(errors_shrink_by_what_theory_says) {
+  using T = Transverse;
+  const T t;
+  const double left = T::h * T::h * T::k * (T::l0 / T::l) / (T::m + T::h * T::h * T::k);
+  const double minimum = T::m * 1e-6 / (T::m + T::h * T::h * T::k * (T::l - T::l0) / T::l);
+  const Method& method = method_named("local_global");
+  double last = 1e-6 - minimum;
+  for (int iterations = 1; iterations <= 12; ++iterations) {
+    const double error = step(method, *t.system, t.start, T::h, iterations).q[1] - minimum;
+    // The spring is longer by 1e-12 of it for being oblique; positions round by 1e-16 of 1 m.
+    BOOST_TEST(std::abs(error / last - left) < 1e-6);
+    last = error;
+  }
+  // Noticed: the rate of the same spring at its rest length.
+  BOOST_TEST(left < 0.9 * T::h * T::h * T::k / (T::m + T::h * T::h * T::k));
+}
+
+BOOST_AUTO_TEST_CASE(accelerations_reach_the_same_minimum_in_fewer_iterations) {
+  const Fallen cloth;
+  const System& system = cloth.scene.system();
+  constexpr double h = 0.02;
+  const State exact =
+      run(method_named("implicit_euler"), system, cloth.state, cloth.state.t + h, {.step_size = h})
+          .state;
+  const auto error = [&](const Method& method, int iterations) {
+    return distance(step(method, system, cloth.state, h, iterations).q, exact.q);
+  };
+  const double after_40 = error(method_named("local_global"), 40);
+  BOOST_TEST(after_40 > 1e-7);
+  for (const char* name :
+       {"local_global_chebyshev", "local_global_anderson", "local_global_lbfgs"}) {
+    BOOST_TEST(error(method_named(name), 30) < after_40, name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(they_take_the_iterations_they_are_told_and_one_factorisation_a_step_size) {
+  constexpr std::int64_t steps = 7;
+  for (const Problem& p : {hammock(2), without_quartic(hammock(3)), linear_hammock(2)}) {
+    const auto system = make_mass_spring(p.network);
+    for (const Method& method : all()) {
+      for (const int iterations : {0, 1, 4, 10}) {
+        BOOST_TEST_CONTEXT(method.name << ", " << iterations) {
+          const std::int64_t each = iterations == 0 ? 10 : iterations;
+          const Knobs knobs{.step_size = 0.01, .iterations = iterations};
+          const Run r = run(method, *system, p.initial, steps * 0.01, knobs);
+          BOOST_TEST(r.summary.counts == (Counts{.steps = steps,
+                                                 .force_evaluations = each * steps,
+                                                 .factorizations = 1,
+                                                 .solves = each * steps}));
+          const Run rest = run(method, *system, p.initial, (steps + 0.4) * 0.01, knobs);
+          BOOST_TEST(rest.summary.counts.factorizations == 2);
+          BOOST_TEST(rest.summary.counts.solves == each * (steps + 1));
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(on_quartic_springs_far_beyond_their_length_the_step_is_shortened) {
+  Network network{.dimension = 1, .node_mass = Vec{{1}}};
+  network.anchors = {{0, {0, 0, 0}, {.stiffness = 1, .rest_length = 1, .quartic = 1000}}};
+  const auto system = make_mass_spring(network);
+  const State start{0, Vec{{3}}, Vec{{0}}};
+  constexpr double h = 1;
+  // A whole step would go to 3 - h^2 c 8 / (m + h^2 k) = -4000.
+  for (const Method& method : all()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const State end = step(method, *system, start, h, 1);
+      BOOST_TEST(energy(*system, start, end) < energy(*system, start, start));
+      BOOST_TEST(std::abs(end.q[0]) < 3);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_system_without_a_laplacian_is_refused_before_the_first_step) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  const Secretive secretive(*system);
+  for (const Method& method : all()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      BOOST_TEST((misfit(method, secretive) == Outcome::no_laplacian));
+      BOOST_TEST(applies_to(method, *system));
+      const Run r = run(method, secretive, p.initial, 1, {.step_size = 0.01});
+      BOOST_TEST(name(r.summary.outcome) == "no_laplacian");
+      BOOST_TEST(r.summary.message == advice(Outcome::no_laplacian));
+      BOOST_TEST(same(r.state, p.initial));
+      BOOST_TEST(r.summary.counts == (Counts{}));
+    }
+  }
+  BOOST_TEST(applies_to(method_named("implicit_euler"), secretive));
+}
+
+BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_ends_the_run_where_it_was) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : all()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      Relay relay(*system);
+      relay.after_force = [calls = 0](const Vec&, Vec& f) mutable {
+        if (++calls > 25) f[1] = NAN;
+      };
+      const Run r = run(method, relay, p.initial, 1, {.step_size = 0.01});
+      BOOST_TEST(name(r.summary.outcome) == "not_finite");
+      BOOST_TEST(r.summary.counts.steps == 2);
+      BOOST_TEST(is_finite(r.state));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(seconds_say_what_the_factorisation_and_the_solves_took) {
+  const Fallen cloth;
+  for (const Method& method : all()) {
+    const Knobs knobs{.step_size = 0.01, .timed = true};
+    const Summary summary =
+        run(method, cloth.scene.system(), cloth.state, cloth.state.t + 0.05, knobs).summary;
+    BOOST_TEST(summary.seconds.factorization > 0);
+    BOOST_TEST(summary.seconds.solve > 0);
+    BOOST_TEST(summary.seconds.force > 0);
+  }
+}
+
+#ifndef __SANITIZE_ADDRESS__
+BOOST_AUTO_TEST_CASE(a_step_allocates_nothing) {
+  const Fallen cloth;
+  const auto allocations_of = [&](const Method& method, int steps) {
+    const auto integrator = make_integrator(method, cloth.scene.system(), {.step_size = 0.01});
+    State state = cloth.state;
+    const long before = allocations;
+    const Summary summary = integrator->advance(state, cloth.state.t + steps * 0.01);
+    const long after = allocations;
+    BOOST_REQUIRE(summary.counts.steps == steps);
+    return after - before;
+  };
+  for (const Method& method : all()) {
+    BOOST_TEST(allocations_of(method, 1) == allocations_of(method, 9), method.name);
+  }
+  Method spender = method_named("symplectic_euler");
+  spender.make = create<Spender>;
+  BOOST_TEST(allocations_of(spender, 9) - allocations_of(spender, 1) >= 8);
+}
+#endif
+
+BOOST_AUTO_TEST_SUITE_END()
