@@ -34,18 +34,21 @@ double median(std::vector<double> values) {
 }  // namespace
 
 Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
-                const OrderChoice& orders) {
+                const MethodOptions& options) {
   Knobs knobs;
   (method.knob == Knob::step_size ? knobs.step_size : knobs.rtol) = value;
-  knobs.max_order = orders.max_order;
-  knobs.stability_detection = orders.stability_detection;
+  knobs.max_order = options.max_order;
+  knobs.stability_detection = options.stability_detection;
+  knobs.iterations = options.iterations;
+  knobs.solve_tolerance = options.solve_tolerance;
+  knobs.spectral_radius = options.spectral_radius;
   return with_tolerance_scales(knobs, scene);
 }
 
 Point measure(const Method& method, double value, const ReducedScene& scene, double until,
               const Reference& reference, const Effort& effort) {
   Point point{.method = &method, .value = value};
-  const Knobs knobs = knobs_for(method, value, scene, effort.orders);
+  const Knobs knobs = knobs_for(method, value, scene, effort.options);
   std::unique_ptr<Integrator> integrator;
   point.setup = seconds_of([&] { integrator = make_integrator(method, scene.system(), knobs); });
 

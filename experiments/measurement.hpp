@@ -18,22 +18,25 @@ struct Point {
   Counts counts{};
 };
 
-// What methods of variable order may do; the others do not care.
-struct OrderChoice {
-  int max_order = 0;                 // 0: their own
-  bool stability_detection = false;  // CVODE's
+// What some methods may be told besides their knob; the others do not care. As in Knobs.
+struct MethodOptions {
+  int max_order = 0;
+  bool stability_detection = false;
+  int iterations = 0;
+  double solve_tolerance = 0;
+  double spectral_radius = Knobs{}.spectral_radius;
 };
 
 // How long a point may take, how often it is timed, and how it is run.
 struct Effort {
   double seconds = 10;  // for one run; slower ones become over_budget
   int repeats = 5;      // timed runs; fewer, but one, where they would take half of that together
-  OrderChoice orders{};
+  MethodOptions options{};
 };
 
 // What the user turns, as the method's kind takes it, with the scene's tolerance scales.
 Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
-                const OrderChoice& orders = {});
+                const MethodOptions& options = {});
 
 // Runs the method once untimed, which a run of 0.1 s need not be, and then up to `repeats` times; a
 // repeat that fails makes the point a failure. Runs too short for the clock are timed in batches.

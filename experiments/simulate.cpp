@@ -16,8 +16,8 @@
 
 #include "experiments/catalogue.hpp"
 #include "experiments/csv.hpp"
+#include "experiments/method_options.hpp"
 #include "experiments/node_table.hpp"
-#include "experiments/order_options.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
@@ -39,8 +39,7 @@ struct Arguments {
   SceneChoice scene;
   std::string method, final_path, trajectory_path, energy_path, written_scene_path;
   double step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0, energy_every = 0;
-  int iterations = 0;
-  OrderChoice orders;
+  MethodOptions options;
   std::vector<double> every;
   bool list_methods = false, list_scenes = false, csv = false, explain = false;
 };
@@ -53,11 +52,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--atol", a.atol,
                  "absolute tolerance in m and m/s (default: --rtol times the scene's extent, and "
                  "times the speed that it starts towards)");
-  add_order_options(app, a.orders);
-  app.add_option("--iterations", a.iterations,
-                 "how many a step, of methods that take as many as they are told (default: their "
-                 "own)")
-      ->take_last();
+  add_method_options(app, a.options);
   app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
   app.add_option("--final", a.final_path, "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
   app.add_option("--trajectory", a.trajectory_path, "CSV of all nodes over time: t,node,x,...");
@@ -153,17 +148,6 @@ const Method& require_method(const std::string& name) {
       fmt::format("--method: {} is not a method; allowed are {}", name, method_names()));
 }
 
-void require_iterations(int iterations, const Method& method) {
-  if (!method.takes_iterations) {
-    throw InvalidInput(fmt::format("--iterations is not for {}; it is for {}", method.name,
-                                   names_where(&Method::takes_iterations)));
-  }
-  if (iterations < 1) {
-    throw InvalidInput(
-        fmt::format("--iterations {} is not allowed; it is a whole number above 0", iterations));
-  }
-}
-
 Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& method) {
   const bool fixed = method.knob == Knob::step_size;
   const char* wanted = fixed ? "--step-size" : "--rtol";
@@ -182,14 +166,15 @@ Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& metho
   if (fixed) require_positive(a.step_size, "--step-size", "h in s");
   if (!fixed) require_positive(a.rtol, "--rtol", "a relative tolerance");
   if (app.count("--atol") > 0) require_positive(a.atol, "--atol", "an absolute tolerance");
-  require_orders(app, a.orders, method);
-  if (app.count("--iterations") > 0) require_iterations(a.iterations, method);
+  require_options(app, a.options, method);
   return {.step_size = a.step_size,
           .rtol = a.rtol,
           .atol = a.atol,
-          .max_order = a.orders.max_order,
-          .stability_detection = a.orders.stability_detection,
-          .iterations = a.iterations};
+          .max_order = a.options.max_order,
+          .stability_detection = a.options.stability_detection,
+          .iterations = a.options.iterations,
+          .solve_tolerance = a.options.solve_tolerance,
+          .spectral_radius = a.options.spectral_radius};
 }
 
 // A place for the scene that is asked for, taken before anything else is done.

@@ -15,7 +15,7 @@
 #include "experiments/csv.hpp"
 #include "experiments/front.hpp"
 #include "experiments/ladder.hpp"
-#include "experiments/order_options.hpp"
+#include "experiments/method_options.hpp"
 #include "experiments/point_table.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
@@ -45,7 +45,7 @@ void declare(CLI::App& app, Arguments& a) {
                  "seconds that one run of a point may take; slower ones become over_budget")
       ->take_last()
       ->capture_default_str();
-  add_order_options(app, a.effort.orders);
+  add_method_options(app, a.effort.options);
   app.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
 }
 
@@ -68,7 +68,7 @@ int work_precision(const CLI::App& app, const Arguments& a,
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
   require_repeats(a.effort.repeats);
-  require_orders(app, a.effort.orders);
+  require_options(app, a.effort.options);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
   const Scene start = started(drawn, a.scene);

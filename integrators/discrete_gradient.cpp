@@ -62,6 +62,7 @@ Method discrete_gradient() {
           .order = 2,
           .implicit = true,
           .needs_stiffness = true,
+          .takes_solve_tolerance = true,
           .make = create<DiscreteGradient>};
 }
 

@@ -81,6 +81,8 @@ Method generalized_alpha() {
           .order = 2,
           .implicit = true,
           .needs_stiffness = true,
+          .takes_solve_tolerance = true,
+          .takes_spectral_radius = true,
           .make = create<ChungHulbert>};
 }
 
@@ -91,6 +93,8 @@ Method hht() {
           .order = 2,
           .implicit = true,
           .needs_stiffness = true,
+          .takes_solve_tolerance = true,
+          .takes_spectral_radius = true,
           .make = create<Hht>};
 }
 

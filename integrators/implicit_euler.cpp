@@ -38,6 +38,7 @@ Method implicit_euler() {
           .implicit = true,
           .needs_stiffness = true,
           .accepts_massless = true,
+          .takes_solve_tolerance = true,
           .make = create<ImplicitEuler>};
 }
 

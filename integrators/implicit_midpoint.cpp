@@ -48,6 +48,7 @@ Method implicit_midpoint() {
           .implicit = true,
           .symplectic = true,
           .needs_stiffness = true,
+          .takes_solve_tolerance = true,
           .make = create<ImplicitMidpoint>};
 }
 

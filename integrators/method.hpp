@@ -37,12 +37,14 @@ struct Method {
   bool needs_constant_stiffness = false;
   bool varies_order = false;         // up to `order`, or to Knobs::max_order
   bool detects_instability = false;  // listens to Knobs::stability_detection
-  bool interpolates = false;  // between its steps, for an Observer
+  bool interpolates = false;         // between its steps, for an Observer
   // Takes the forces of System::split(), of which a system may have none when the method is made:
   // it may be asked for from start() on.
   bool needs_split = false;
-  bool needs_laplacian = false;   // takes System::laplacian()
-  bool takes_iterations = false;  // listens to Knobs::iterations
+  bool needs_laplacian = false;        // takes System::laplacian()
+  bool takes_iterations = false;       // listens to Knobs::iterations,
+  bool takes_solve_tolerance = false;  // Knobs::solve_tolerance
+  bool takes_spectral_radius = false;  // and Knobs::spectral_radius
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
 };
 

@@ -45,6 +45,7 @@ Method trapezoidal() {
           .order = 2,
           .implicit = true,
           .needs_stiffness = true,
+          .takes_solve_tolerance = true,
           .make = create<Trapezoidal>};
 }
 

@@ -58,6 +58,7 @@ Method trbdf2() {
           .order = 2,
           .implicit = true,
           .needs_stiffness = true,
+          .takes_solve_tolerance = true,
           .make = create<TrBdf2>};
 }
 

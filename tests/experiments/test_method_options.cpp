@@ -76,7 +76,7 @@ const std::string held =
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(order_options)
+BOOST_AUTO_TEST_SUITE(method_options)
 
 BOOST_AUTO_TEST_CASE(orders_that_no_method_has_are_refused) {
   for (const char* value : {"0", "-1", "13", "100"}) {

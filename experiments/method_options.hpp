@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "experiments/measurement.hpp"
+
+namespace qddot {
+
+// Adds --max-order, --stability-detection, --iterations, --solve-tolerance and --spectral-radius.
+void add_method_options(CLI::App& app, MethodOptions& options);
+
+// Throws InvalidInput unless each option that is given is allowed for some method, or for this one.
+void require_options(const CLI::App& app, const MethodOptions& options);
+void require_options(const CLI::App& app, const MethodOptions& options, const Method& method);
+
+}  // namespace qddot
