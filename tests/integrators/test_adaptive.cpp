@@ -177,6 +177,23 @@ BOOST_AUTO_TEST_CASE(forces_are_those_of_the_stages_and_nothing_else) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(errors_are_of_the_size_of_the_tolerance_where_steps_are_rejected_too) {
+  const Problem p = wall();
+  const auto system = make_mass_spring(p.network);
+  const double t_end = 0.4;  // almost twice there and back
+  const State exact =
+      run(method_named("kahan_li8"), *system, p.initial, t_end, {.step_size = 1e-4}).state;
+  for (const Method& method : interpolating()) {
+    for (const double rtol : {1e-3, 1e-5, 1e-7, 1e-9}) {
+      const State end = run(method, *system, p.initial, t_end, {.rtol = rtol, .speed = 10}).state;
+      BOOST_TEST_CONTEXT(method.name << " at " << rtol) {
+        BOOST_TEST(distance(end.q, exact.q) < 2 * rtol);
+        BOOST_TEST(distance(end.v, exact.v) < 20 * rtol);  // at 10 m/s
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(steps_are_held_to_the_stability_limit_at_coarse_tolerances) {
   const Case c = linear();
   for (const auto& [name, pair] : pairs) {
