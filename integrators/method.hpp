@@ -37,7 +37,7 @@ struct Method {
   bool needs_constant_stiffness = false;
   bool varies_order = false;         // up to `order`, or to Knobs::max_order
   bool detects_instability = false;  // listens to Knobs::stability_detection
-  bool interpolates = false;  // between its steps, for an Observer
+  bool interpolates = false;         // between its steps, for an Observer
   // Takes the forces of System::split(), of which a system may have none when the method is made:
   // it may be asked for from start() on.
   bool needs_split = false;
