@@ -34,7 +34,7 @@ AdaptiveStep::AdaptiveStep(const Method& method, const System& system, const Kno
       per_mass_(system.mass().cwiseInverse()),
       error_q_(system.size()),
       error_v_(system.size()),
-      instants_(accuracy.instants + 1,
+      instants_(std::max<std::size_t>(accuracy.instants, 2) + 1,
                 {{0, Vec(system.size()), Vec(system.size())}, Vec(system.size())}) {}
 
 void AdaptiveStep::acceleration(const Vec& q, Vec& a) {
@@ -83,7 +83,7 @@ double AdaptiveStep::first_step() {
 Outcome AdaptiveStep::run_to(State& state, double t_stop) {
   if (must_stop()) return Outcome::over_budget;
   try {
-    while (ended_ == Outcome::reached_end && !can_interpolate(t_stop)) ended_ = take_step();
+    while (ended_ == Outcome::reached_end && !can_show(t_stop)) ended_ = take_step();
   } catch (...) {
     state = last().state;
     throw;
@@ -92,27 +92,37 @@ Outcome AdaptiveStep::run_to(State& state, double t_stop) {
     state = last().state;
     return ended_;
   }
-  interpolate_to(t_stop, state);
-  return Outcome::reached_end;
+  return show(t_stop, state);
 }
 
-// Whether t lies in the middle of the instants that are kept; at the end of the run no more come.
-bool AdaptiveStep::can_interpolate(double t) {
+// Whether what is there tells of the state at t. In the middle of the instants that are kept the
+// polynomial through them is closest; at the end of the run no more come.
+bool AdaptiveStep::can_show(double t) {
   if (last().state.t == t_end()) return true;
+  if (accuracy_.instants == 0) return last().state.t >= t;
   return count_ >= accuracy_.instants && last(accuracy_.instants / 2 - 1).state.t >= t;
 }
 
-void AdaptiveStep::interpolate_to(double t, State& state) {
-  std::array<const Instant*, most_instants> list;
-  const std::size_t used = std::min(count_, accuracy_.instants);
-  for (std::size_t i = 0; i < used; ++i) {
-    list[i] = &last(i);
-    if (list[i]->state.t == t) {
-      state = list[i]->state;
-      return;
-    }
+Outcome AdaptiveStep::show(double t, State& state) {
+  for (std::size_t i = 0; i < std::min(count_, instants_.size() - 1); ++i) {
+    if (last(i).state.t != t) continue;
+    state = last(i).state;
+    return Outcome::reached_end;
   }
-  interpolate(std::span(list).first(used), t, state);
+  if (accuracy_.instants > 0) {
+    std::array<const Instant*, most_instants> list;
+    const std::size_t used = std::min(count_, accuracy_.instants);
+    for (std::size_t i = 0; i < used; ++i) list[i] = &last(i);
+    interpolate(std::span(list).first(used), t, state);
+    return Outcome::reached_end;
+  }
+  const Instant& from = last(1);
+  Instant& at = last(instants_.size() - 1);
+  Outcome outcome = attempt(from, t - from.state.t, at, error_q_, error_v_);
+  if (outcome == Outcome::reached_end) outcome = judge(at.state);
+  at.state.t = t;
+  state = outcome == Outcome::reached_end ? at.state : from.state;
+  return outcome;
 }
 
 double AdaptiveStep::step_size(double t, double longest) const {

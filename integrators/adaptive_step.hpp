@@ -14,11 +14,12 @@ namespace qddot {
 // is at most 1 (the norm of SUNDIALS, with its weights: see Knobs). Step sizes are a PI
 // controller's (Gustafsson; Hairer and Wanner, Solving ODEs II, eq. IV.2.43c), the first one is
 // that of Hairer, Norsett and Wanner, Solving ODEs I, II.4. Steps land on the end of the run only;
-// what an observer sees is interpolated between them and the next ones.
+// what an observer sees between them is interpolated, or is the end of an attempt of its own.
 class AdaptiveStep : public Integrator {
  protected:
   // Errors are of order h^(error_order + 1); states between steps are interpolated through so many
-  // ends of steps (an even number, two to most_instants).
+  // ends of steps (an even number, two to most_instants). None: by an attempt of their own from the
+  // step before, at its cost, and as accurate as the steps are however long.
   struct Accuracy {
     int error_order;
     std::size_t instants;
@@ -50,8 +51,8 @@ class AdaptiveStep : public Integrator {
   Instant& last(std::size_t before = 0) {
     return instants_[(newest_ + instants_.size() - before) % instants_.size()];
   }
-  bool can_interpolate(double t);
-  void interpolate_to(double t, State& state);
+  bool can_show(double t);
+  Outcome show(double t, State& state);
   double first_step();
   // From t on, if possible: h_, at most `longest`, and on the end exactly.
   double step_size(double t, double longest) const;
@@ -65,7 +66,7 @@ class AdaptiveStep : public Integrator {
   double atol_q_, atol_v_;
   Vec per_mass_;  // 1/m
   Vec error_q_, error_v_;
-  std::vector<Instant> instants_;  // a ring; one more than are interpolated, for the next attempt
+  std::vector<Instant> instants_;  // a ring, with a place for the next attempt
   std::size_t newest_ = 0, count_ = 0;
   double h_ = 0, last_error_ = 1;
   bool was_rejected_ = false;

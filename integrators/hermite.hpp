@@ -12,7 +12,7 @@ struct Instant {
   Vec a;
 };
 
-constexpr std::size_t most_instants = 6;
+constexpr std::size_t most_instants = 4;
 
 // Sets `at` to time t [s] on the polynomial of degree 3m - 1 that has q, v and a of m instants (two
 // to most_instants, at times that differ): q = p(t), v = p'(t). The error of q is

@@ -12,12 +12,12 @@ namespace qddot {
 // (Hairer, Norsett and Wanner, Solving ODEs I, section II.14), and the same with the lower b and b'
 // for the estimate of the errors.
 struct NystromPair {
-  int order, lower_order;
+  int order = 0, lower_order = 0;
   // The largest h w up to which no vibration q'' = -w^2 q grows by more than a hundredth a step.
-  double stable_hw;
-  std::vector<double> c;
-  std::vector<std::vector<double>> a;  // row i holds i entries
-  std::vector<double> b, b_prime, lower_b, lower_b_prime;
+  double stable_hw = 0;
+  std::vector<double> c{};
+  std::vector<std::vector<double>> a{};  // row i holds i entries
+  std::vector<double> b{}, b_prime{}, lower_b{}, lower_b_prime{};
 
   // Whether the last stage is the first one of the next step: q_s = q_{n+1}.
   bool is_first_same_as_last() const;

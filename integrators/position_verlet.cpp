@@ -16,7 +16,9 @@ const Splitting& position_verlet_splitting() {
 Method position_verlet() {
   return {.name = "position_verlet",
           .summary = "Verlet with its one force a step in the middle, between two half drifts",
-          .source = "Hairer, Lubich, Wanner, Acta Numerica 12 (2003) 399-450, eq. 1.6 and 1.7",
+          .source =
+              "Tuckerman, Berne and Martyna, J. Chemical Physics 97 (1992) 1990-2001, "
+              "position Verlet",
           .order = 2,
           .symplectic = true,
           .make = create_splitting<position_verlet_splitting>};

@@ -21,8 +21,12 @@ BOOST_AUTO_TEST_SUITE(allocation)
 
 namespace {
 
+struct Cost {
+  std::int64_t allocations, bounds;  // of w_max
+};
+
 // Of a run of a made integrator.
-std::int64_t allocations_of(const Method& method, const Knobs& knobs, double t_end) {
+Cost cost_of(const Method& method, const Knobs& knobs, double t_end) {
   const Problem p = hammock(3);
   const auto system = make_mass_spring(p.network);
   const auto integrator = make_integrator(method, *system, knobs);
@@ -31,18 +35,20 @@ std::int64_t allocations_of(const Method& method, const Knobs& knobs, double t_e
   const Summary summary = integrator->advance(state, t_end);
   const std::int64_t after = allocations;
   BOOST_REQUIRE(summary.message == "");
-  BOOST_REQUIRE(summary.counts.steps > 20 * t_end);
-  return after - before;
+  BOOST_REQUIRE(static_cast<double>(summary.counts.steps) > 10 * t_end);
+  return {after - before, summary.counts.stiffness_evaluations};
 }
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(explicit_steps_allocate_nothing) {
+BOOST_AUTO_TEST_CASE(explicit_steps_allocate_nothing_but_for_a_bound_of_w_max_every_50_steps) {
   for (const Method& method : methods_of(Family::hand_written)) {
     if (method.implicit) continue;
     BOOST_TEST_CONTEXT(method.name) {
-      const Knobs knobs = knobs_of(method, 0.005, 1e-8);
-      BOOST_TEST(allocations_of(method, knobs, 4) == allocations_of(method, knobs, 0.5));
+      const Knobs knobs = knobs_of(method, 0.005, 1e-10);
+      const Cost many = cost_of(method, knobs, 8), few = cost_of(method, knobs, 1);
+      // A matrix of the sizes of K, which is three arrays, and a few vectors.
+      BOOST_TEST(many.allocations - few.allocations <= 10 * (many.bounds - few.bounds));
     }
   }
 }

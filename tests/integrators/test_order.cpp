@@ -80,8 +80,10 @@ Orders observed_orders(const Method& method, const Case& c) {
   return {observed_order(std::span(q).last(5)), observed_order(std::span(v).last(5))};
 }
 
+// Of high orders few halvings fit between where higher terms matter and rounding.
 bool is_of_order(int p, const Orders& observed) {
-  return std::abs(observed.q - p) <= 0.1 && std::abs(observed.v - p) <= 0.1;
+  const double slack = p > 4 ? 0.25 : 0.1;
+  return std::abs(observed.q - p) <= slack && std::abs(observed.v - p) <= slack;
 }
 
 void check_orders(const Case& c) {
