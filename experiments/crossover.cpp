@@ -61,7 +61,7 @@ struct Arguments {
   double until = 0;
   std::vector<double> ratios = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8};
   std::vector<std::string> methods;
-  Effort effort{.seconds = 2, .repeats = 3};
+  Effort effort{.seconds = 5, .repeats = 3};
   std::string out;
 };
 
@@ -126,7 +126,7 @@ std::vector<Rung> rungs(const Arguments& a, const StiffFamily& family, double un
   return all;
 }
 
-// At the largest ratio springs are stiff if they are anywhere.
+// At the largest ratio springs are named stiff if they are at any.
 std::vector<const Method*> competitors(const Arguments& a, const Rung& stiffest) {
   auto selected = select_methods(a.methods, *stiffest.scene, a.family);
   if (a.methods.empty()) {

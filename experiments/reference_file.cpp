@@ -14,6 +14,8 @@ namespace qddot {
 namespace {
 
 constexpr double longest_making = 60;  // [s]
+// It ends as soon as two agree, so that the limit is for those that nearly do.
+constexpr double longest_agreeing = 300;  // [s]
 
 std::vector<double> list(const Vec& x) { return {x.begin(), x.end()}; }
 
@@ -102,7 +104,7 @@ Reference reference_for(const Scene& drawn, const ReducedScene& scene, double un
     }
   }
   WholeFile whole(file);
-  const Reference reference = needed ? agreed_reference(scene, until, *needed, longest_making)
+  const Reference reference = needed ? agreed_reference(scene, until, *needed, longest_agreeing)
                                      : make_reference(scene, until, longest_making);
   nlohmann::json json = origin;
   json.update(to_json(reference));

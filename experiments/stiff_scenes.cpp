@@ -22,12 +22,14 @@ Scene drawn(const char* generator, const GeneratorValues& values, const std::str
 
 Scene frame(int nodes, double until, double ratio) {
   constexpr double cloth = 1000;  // [N/m]
-  return drawn("framed_cloth",
-               {{"nodes", nodes},
-                {"until", until},
-                {"structural_stiffness", cloth},
-                {"frame_stiffness", cloth * ratio}},
-               "frame");
+  Scene scene = drawn("framed_cloth",
+                      {{"nodes", nodes},
+                       {"until", until},
+                       {"structural_stiffness", cloth},
+                       {"frame_stiffness", cloth * ratio}},
+                      "frame");
+  if (ratio == 1) scene.stiff_above.reset();
+  return scene;
 }
 
 Scene whole(int nodes, double until, double ratio) {
@@ -55,7 +57,7 @@ Scene chain(int nodes, double until, double ratio) {
   for (std::size_t i = count / 3; i < count - count / 3; ++i) {
     scene.springs[i].law.stiffness = soft * ratio;
   }
-  scene.stiff_above = soft + 0.5 * (soft * ratio - soft);
+  if (ratio > 1) scene.stiff_above = soft + 0.5 * (soft * ratio - soft);
   return scene;
 }
 

@@ -76,7 +76,7 @@ int work_precision(const CLI::App& app, const Arguments& a,
   require_reference_exists(scene, a.scene.name);
   const auto selected = select_methods(a.methods, scene, a.scene.name);
   require_folder(a.out);
-  CsvFile points_csv(a.out + "/points.csv", point_columns);
+  CsvFile points_csv(a.out + "/points.csv", point_columns());
   CsvFile front_csv(a.out + "/front.csv", front_columns);
 
   nlohmann::json origin = provenance(command_line, drawn, start, scene);

@@ -248,7 +248,7 @@ class Map:
         if self.sheet.text_width(text) > room:
             text.set_y(self.y[row] + 0.65 * (self.y[row + 1] - self.y[row]))
             text.set_text(self.wrapped(text, method, room))
-            text.set_linespacing(0.95)
+            text.set_linespacing(1.1)
 
     def wrapped(self, text, method, room):
         """The name broken after underscores, each line as long as there is room for."""

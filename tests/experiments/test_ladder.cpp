@@ -175,6 +175,19 @@ BOOST_AUTO_TEST_CASE(where_nothing_moves_one_rung_is_enough) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(nothing_finer_is_taken_than_what_is_enough) {
+  const Course& course = oscillator();
+  const auto enough = [](const Point& point) { return point.errors.position <= 1e-3; };
+  const auto points = climb(
+      *find_method("verlet"), course.scene, course.until, course.reference, short_runs,
+      [](const Point&) {}, enough);
+  BOOST_TEST_REQUIRE(points.size() >= 2u);
+  BOOST_TEST((reached(points.back()) && enough(points.back())));
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    BOOST_TEST(!(reached(points[i]) && enough(points[i])));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(negative_control_a_motion_without_failure_has_no_failing_rung) {
   // Below h w = 2 throughout: half a period is too short for anything to overflow.
   const Course course("oscillator", 0.05);

@@ -198,6 +198,35 @@ BOOST_AUTO_TEST_CASE(one_rounding_of_the_start_does_little_to_a_regular_motion) 
   }
 }
 
+BOOST_AUTO_TEST_CASE(what_two_unlike_methods_agree_on_is_as_good_as_needed) {
+  for (const char* name : {"oscillator", "orbit", "pendulum"}) {
+    const ReducedScene scene(load_scene(name));
+    const Reference best = make_reference(scene, 0.5, seconds);
+    for (const double needed : {1e-5, 1e-8}) {
+      const Reference agreed = agreed_reference(scene, 0.5, needed, 10);
+      BOOST_TEST(agreed.certified.position <= needed, name);
+      BOOST_TEST(errors_between(scene, agreed.end, best.end, best.energy, best.scales).position <=
+                     slack * needed,
+                 name);
+      // Of a tenth of a turn more is seen than its ends.
+      BOOST_TEST(agreed.scales.displacement == best.scales.displacement,
+                 boost::test_tools::tolerance(1e-2));
+      BOOST_TEST(contains(agreed.made_by, {" at h = ", "; ", " at "}));
+      BOOST_TEST(agreed.energy == best.energy);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(where_time_is_up_the_nearest_two_say_how_far_they_differ) {
+  const ReducedScene scene(load_scene("pendulum"));
+  BOOST_CHECK_THROW(agreed_reference(scene, 0.5, 1e-8, 0), NoReference);
+  const Reference best = make_reference(scene, 0.5, seconds);
+  const Reference agreed = agreed_reference(scene, 0.5, 0, 0.2);
+  const double off = errors_between(scene, agreed.end, best.end, best.energy, best.scales).position;
+  BOOST_TEST(agreed.certified.position > 0);
+  BOOST_TEST(off <= slack * agreed.certified.position + tight);
+}
+
 BOOST_AUTO_TEST_CASE(a_massless_node_has_no_reference) {
   Scene scene{.name = "massless", .dimension = 1};
   scene.nodes = {{.pinned = true}, {.position = {1, 0, 0}}};
