@@ -165,6 +165,17 @@ BOOST_AUTO_TEST_CASE(many_iterations_end_where_implicit_euler_does) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(iterations_after_the_last_that_gains_anything_do_no_harm) {
+  const Fallen cloth;
+  const System& system = cloth.scene.system();
+  for (const char* name : {"local_global_anderson", "local_global_lbfgs"}) {
+    const State converged = step(method_named(name), system, cloth.state, 0.01, 300);
+    const State later = step(method_named(name), system, cloth.state, 0.01, 2000);
+    // As far as rounding hides the energy, which is one of 1e-3 J at 1e-3 kg a node.
+    BOOST_TEST(distance(converged.q, later.q) < 1e-7, name);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(where_springs_have_no_rest_length_one_iteration_is_the_whole_step) {
   for (const int dimension : {1, 2, 3}) {
     const Problem p = linear_hammock(dimension);
