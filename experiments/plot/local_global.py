@@ -153,8 +153,8 @@ def draw_row(sheet, top, table, up, words, limits, own=None):
         axes.set_xlim(*limits[i])
         taken = []
         if own:
-            words, place = OWN_ERROR[i]
-            taken.append(draw_own_error(axes, own, words.format(length(own)), place))
+            said, place = OWN_ERROR[i]
+            taken.append(draw_own_error(axes, own, said.format(length(own)), place))
             axes.set_xlabel(f"{name} of one step", fontsize=10)
         if i:
             axes.tick_params(labelleft=False)
