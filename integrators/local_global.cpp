@@ -14,6 +14,8 @@
 // until it lowers the energy.
 #include "integrators/local_global.hpp"
 
+#include <cmath>
+
 #include "integrators/registry.hpp"
 
 namespace qddot {
@@ -58,6 +60,7 @@ Outcome LocalGlobal::step(const State& now, double h, State& next) {
   for (int i = 0; i < iterations_; ++i) {
     if (must_stop()) return Outcome::over_budget;
     iterate(next.v);
+    if (!is_finite_) return Outcome::not_finite;
   }
   next.q = now.q + h * next.v;
   return Outcome::reached_end;
@@ -73,6 +76,7 @@ void LocalGlobal::direction(const Vec& r, Vec& p) {
   ++counts().solves;
   const Stopwatch watch(seconds(), &Seconds::solve);
   matrix_.solve(r, p);
+  is_finite_ = std::isfinite(p.sum());
 }
 
 double LocalGlobal::objective(const Vec& v) {

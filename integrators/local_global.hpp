@@ -43,6 +43,7 @@ class LocalGlobal : public FixedStep {
   LaplacianMass matrix_;
   const State* now_ = nullptr;  // where the step at hand begins
   double h_ = 0, factorized_h_ = 0;
+  bool is_finite_ = true;  // the last direction
   Vec q_{system().size()}, f_{system().size()}, trial_{system().size()};
 };
 

@@ -51,15 +51,19 @@ class Lbfgs final : public LocalGlobal {
     search(v, p_, last_r_.dot(p_), energy_);
   }
 
-  // A pair without curvature would make the metric indefinite.
+  // A pair without curvature would make the metric indefinite; it is left out, and so is the
+  // oldest, whose place it has taken.
   void remember(const Vec& v) {
     Pair& pair = pairs_[pairs_seen_ % window];
     pair.s = v - last_v_;
     pair.y = r_ - last_r_;
     pair.sy = pair.s.dot(pair.y);
-    if (!(pair.sy > epsilon * pair.s.norm() * pair.y.norm())) return;
-    ++pairs_seen_;
-    pairs_used_ = std::min(pairs_seen_, window);
+    if (pair.sy > epsilon * pair.s.norm() * pair.y.norm()) {
+      ++pairs_seen_;
+      pairs_used_ = std::min(pairs_used_ + 1, window);
+    } else {
+      pairs_used_ = std::min(pairs_used_, window - 1);
+    }
   }
 
   Pair& newest(int i) { return pairs_[(pairs_seen_ - 1 - i) % window]; }

@@ -19,7 +19,7 @@ from matplotlib.text import Text
 from chart import move_label
 from labels import Ink, place_labels
 from sheet import Sheet
-from style import COOL, FAINT, FRONT, GRID, INK, WARM, Family, Look, number, power_of_ten, seconds
+from style import COOL, FAINT, FRONT, GRID, INK, WARM, Family, Look, power_of_ten, seconds
 from style import use_style
 
 WIDTH, HEIGHT = 11.6, 8.6
@@ -30,13 +30,23 @@ FONT_SIZE = 9.5
 LEAST_ERROR = 1e-10
 LEAST_DISTANCE = 1e-8
 
+# What the line means, over iterations and over time, and where that is said.
+OWN_ERROR = (
+    ("yellow: nearer to the\nconverged step than\nthat is to the truth", (0.43, 0.2)),
+    (
+        "the line is the step's own error:\nsolved to the end, it is still {}\n"
+        "from the true motion. Below it,\nmore iterations buy nothing",
+        (0.02, 0.03),
+    ),
+)
+
 CONSTANT = Family("one constant matrix", WARM, "-", True, 1.8)
 NEWTON = Family("a new matrix each iteration", COOL, (0, (4, 1.8)), False, 1.8)
 SOLVERS = {
     "local_global": ("local/global", Look(WARM[0], "o", CONSTANT)),
-    "local_global_chebyshev": ("with Chebyshev", Look(WARM[2], "s", CONSTANT)),
-    "local_global_anderson": ("with Anderson", Look(WARM[3], "^", CONSTANT)),
-    "local_global_lbfgs": ("L-BFGS from it", Look(WARM[1], "D", CONSTANT)),
+    "local_global_chebyshev": ("Chebyshev", Look(WARM[2], "s", CONSTANT)),
+    "local_global_anderson": ("Anderson", Look(WARM[3], "^", CONSTANT)),
+    "local_global_lbfgs": ("L-BFGS", Look(WARM[1], "D", CONSTANT)),
     "newton_exact": ("Newton", Look(COOL[0], "v", NEWTON)),
     "newton_clamped": ("Newton, K clamped", Look(COOL[1], "P", NEWTON)),
 }
@@ -83,14 +93,14 @@ def draw_lines(axes, lines):
         axes.plot(*zip(*points), zorder=3, **line, **style)
 
 
-def label_lines(axes, lines, taken=()):
-    """Names every line near one of its points, off the others."""
+def label_lines(axes, lines, taken):
+    """Names every line near one of its points, off the others and off the pixels taken."""
     box = axes.bbox
     bounds = (box.x0 + 4, box.y0 + 4, box.x1 - 4, box.y1 - 4)
     ink = Ink(bounds)
-    for low, high in taken:
-        for y in range(int(low), int(high), 4):
-            ink.add_line((box.x0, y), (box.x1, y), 3.0)
+    for extent in taken:
+        for y in range(int(extent.y0), int(extent.y1), 4):
+            ink.add_line((extent.x0, y), (extent.x1, y), 3.0)
     texts, anchors = [], []
     for name, points in lines.items():
         pixels = [tuple(axes.transData.transform(point)) for point in points]
@@ -118,28 +128,19 @@ def label_lines(axes, lines, taken=()):
         move_label(text, axes.transData.inverted().transform(place.anchor), place)
 
 
-def draw_own_error(axes, own, words):
-    """The error of the converged step, below which a solver has nothing to gain."""
+def draw_own_error(axes, own, words, place):
+    """The error of the converged step, below which a solver has nothing to gain; returns the pixels
+    of the words."""
     low = axes.get_ylim()[0]
     axes.axhspan(low, own, facecolor=FRONT, alpha=0.22, zorder=0.5)
     axes.axhline(own, color=INK, linewidth=1.4, zorder=2)
-    axes.annotate(
-        words,
-        (1, own),
-        (-6, 5),
-        xycoords=("axes fraction", "data"),
-        textcoords="offset points",
-        size=FONT_SIZE,
-        color=INK,
-        ha="right",
-        va="bottom",
-        zorder=5,
-        bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 1.0},
-    )
+    foot = {"ha": "left", "va": "bottom", "transform": axes.transAxes, "zorder": 5}
+    text = axes.text(*place, words, size=FONT_SIZE, color=INK, linespacing=1.35, **foot)
     axes.set_ylim(bottom=low)
+    return text.get_window_extent()
 
 
-def draw_row(sheet, top, table, up, words, own=None):
+def draw_row(sheet, top, table, up, words, limits, own=None):
     """Two panels of one quantity: over iterations and over time."""
     least = LEAST_DISTANCE if own else LEAST_ERROR
     for i, (across, name) in enumerate((("iteration", "iterations"), ("seconds", "time"))):
@@ -149,17 +150,11 @@ def draw_row(sheet, top, table, up, words, own=None):
         lines = curves(table, across, up, least)
         draw_lines(axes, lines)
         axes.set_ylim(bottom=least)
+        axes.set_xlim(*limits[i])
         taken = []
         if own:
-            sentence = (
-                f"the step's own error, {length(own)}: solved to the end,\n"
-                "implicit Euler is that far from the true motion"
-                if i
-                else "below this line further iterations buy nothing"
-            )
-            draw_own_error(axes, own, sentence)
-            y = axes.transData.transform((1, own))[1]
-            taken = [(y, y + (70 if i else 40))]
+            said, place = OWN_ERROR[i]
+            taken.append(draw_own_error(axes, own, said.format(length(own)), place))
             axes.set_xlabel(f"{name} of one step", fontsize=10)
         if i:
             axes.tick_params(labelleft=False)
@@ -176,6 +171,12 @@ def length(value):
     return ""
 
 
+def reach(table, across):
+    """The range of a column, with some room."""
+    values = [float(row[across]) for rows in table.values() for row in rows]
+    return min(values) / 1.35, max(values) * 1.35
+
+
 def main(folder):
     """Draws the picture."""
     use_style()
@@ -187,7 +188,7 @@ def main(folder):
     scene = origin["scene"]
     words = (
         f"cloth of {scene['nodes']} nodes and {scene['springs']} springs of "
-        f"{number(origin['stiffness'])} N/m, swinging for {number(origin['swing'])} s; one step of "
+        f"up to {origin['stiffness']:g} N/m, after {origin['swing']:g} s of swinging; one step of "
         f"h = {seconds(origin['step_size'])}, backward Euler, one core"
     )
     sheet.text(0.2, 0.6, words, size=10, color=FAINT, va="center")
@@ -200,11 +201,14 @@ def main(folder):
     sheet.text(0.2, 0.84, words, size=10, color=FAINT, va="center")
     sheet.rule(1.02)
     energy = read(folder / "convergence.csv")
-    draw_row(sheet, TOP, energy, "relative_error", "energy above its minimum, relative")
+    limits = [reach(energy, across) for across in ("iteration", "seconds")]
+    draw_row(sheet, TOP, energy, "relative_error", "energy above its minimum, relative", limits)
     below = TOP + PANEL_HEIGHT + DOWN
     positions = read(folder / "positions.csv")
     words = "farthest node from the converged step in m"
-    draw_row(sheet, below, positions, "distance_to_converged", words, origin["step_error"])
+    draw_row(
+        sheet, below, positions, "distance_to_converged", words, limits, origin["step_error"]
+    )
     for extension in ("png", "svg"):
         sheet.save(str(folder / f"local_global.{extension}"))
 

@@ -20,10 +20,13 @@ std::vector<std::vector<Index>> joined_unknowns(const SymmetricMatrix& l) {
     return i;
   };
   for (Index column = 0; column < l.cols(); ++column) {
+    Index own = find(column);
     for (SymmetricMatrix::InnerIterator at(l, column); at; ++at) {
       if (at.value() == 0) continue;
-      const Index first = find(at.row()), second = find(column);
-      root[std::max(first, second)] = std::min(first, second);
+      const Index other = find(at.row());
+      if (other == own) continue;
+      const auto later = std::max(own, other);
+      own = root[later] = std::min(own, other);
     }
   }
   std::vector<std::vector<Index>> sets;
@@ -56,7 +59,10 @@ LaplacianMass::LaplacianMass(const System& system) {
   for (std::vector<Index>& unknowns : joined_unknowns(l)) {
     const Index n = std::ssize(unknowns);
     for (Index i = 0; i < n; ++i) place[unknowns[i]] = i;
-    Block block{system.mass()(unknowns), SymmetricMatrix(n, n), {}, {}};
+    Block block{.mass = system.mass()(unknowns), .l = SymmetricMatrix(n, n)};
+    Index entries = 0;
+    for (const Index i : unknowns) entries += l.col(i).nonZeros();
+    block.l.reserve(entries);
     for (Index i = 0; i < n; ++i) {
       block.l.startVec(i);
       for (SymmetricMatrix::InnerIterator at(l, unknowns[i]); at; ++at) {

@@ -28,12 +28,12 @@ class LaplacianMass {
  private:
   // A matrix that stands in M + s L as often as `unknowns` has lists of rows.
   struct Block {
-    Vec mass;
-    SymmetricMatrix l;
-    std::vector<std::vector<Index>> unknowns;
-    std::unique_ptr<Factors> factors;
-    Vec b, x;                    // of one of them
-    FourColumns four_b, four_x;  // of up to four
+    Vec mass{};
+    SymmetricMatrix l{};
+    std::vector<std::vector<Index>> unknowns{};
+    std::unique_ptr<Factors> factors{};
+    Vec b{}, x{};                    // of one of them
+    FourColumns four_b{}, four_x{};  // of up to four
   };
 
   std::vector<Block> blocks_;

@@ -157,9 +157,22 @@ BOOST_AUTO_TEST_CASE(many_iterations_end_where_implicit_euler_does) {
         // a line search stops where rounding hides what is left of the energy, some
         // sqrt(1e-16 100 J / 1 kg).
         BOOST_TEST(distance(step(method, *system, p.initial, h, 500).v, exact.v) < 1e-6);
+        // On a line only quartic springs leave anything to a second iteration.
+        if (p.network.dimension == 1 && system->has_laplacian() == HasLaplacian::as_bound) continue;
         BOOST_TEST(distance(step(method, *system, p.initial, h, 1).v, exact.v) > 1e-6);
       }
     }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(iterations_after_the_last_that_gains_anything_do_no_harm) {
+  const Fallen cloth;
+  const System& system = cloth.scene.system();
+  for (const char* name : {"local_global_anderson", "local_global_lbfgs"}) {
+    const State converged = step(method_named(name), system, cloth.state, 0.01, 300);
+    const State later = step(method_named(name), system, cloth.state, 0.01, 2000);
+    // As far as rounding hides the energy, which is one of 1e-3 J at 1e-3 kg a node.
+    BOOST_TEST(distance(converged.q, later.q) < 1e-7, name);
   }
 }
 
@@ -189,10 +202,11 @@ BOOST_AUTO_TEST_CASE(errors_shrink_by_what_theory_says) {
   const double minimum = T::m * 1e-6 / (T::m + T::h * T::h * T::k * (T::l - T::l0) / T::l);
   const Method& method = method_named("local_global");
   double last = 1e-6 - minimum;
-  for (int iterations = 1; iterations <= 12; ++iterations) {
+  for (int iterations = 1; iterations <= 5; ++iterations) {
     const double error = step(method, *t.system, t.start, T::h, iterations).q[1] - minimum;
-    // The spring is longer by 1e-12 of it for being oblique; positions round by 1e-16 of 1 m.
-    BOOST_TEST(std::abs(error / last - left) < 1e-6);
+    // The spring is longer by 1e-12 of it for being oblique; the last error is 5e-10 m, and what it
+    // is told by rounds by 1e-16 m.
+    BOOST_TEST(std::abs(error / last - left) < 2e-6);
     last = error;
   }
   // Noticed: the rate of the same spring at its rest length.
