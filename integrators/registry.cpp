@@ -12,6 +12,8 @@
   METHOD(implicit_euler)           \
   METHOD(verlet)                   \
   METHOD(kahan_li8)                \
+  METHOD(linear_midpoint)          \
+  METHOD(linear_midpoint4)         \
   METHOD(exact)                    \
   METHOD(arkode_dirk2)             \
   METHOD(arkode_dirk3)             \

@@ -64,11 +64,19 @@ void Divided::force(const Vec& q, Vec& f) const {
 }
 
 void Divided::stiffness(const Vec& q, SymmetricMatrix& k) const {
+  assemble(q, k, &System::stiffness);
+}
+
+void Divided::material_stiffness(const Vec& q, SymmetricMatrix& k) const {
+  assemble(q, k, &System::material_stiffness);
+}
+
+void Divided::assemble(const Vec& q, SymmetricMatrix& k, MatrixOf matrix_of) const {
   // The parts' columns follow one another, and so do their entries.
   Index next = 0;
   for_each(parts_, q, [&](const System& part, const Vec& own, Index) {
     SymmetricMatrix block = part.stiffness_pattern();
-    part.stiffness(own, block);
+    (part.*matrix_of)(own, block);
     k.coeffs().segment(next, block.nonZeros()) = block.coeffs();
     next += block.nonZeros();
   });

@@ -16,12 +16,16 @@ class Divided final : public System {
   double potential(const Vec& q) const override;
   void force(const Vec& q, Vec& f) const override;
   void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override;
   bool holds_at(const Vec& q) const override;
   std::span<const std::unique_ptr<System>> parts() const override { return parts_; }
 
  private:
+  using MatrixOf = void (System::*)(const Vec&, SymmetricMatrix&) const;
+  void assemble(const Vec& q, SymmetricMatrix& k, MatrixOf matrix_of) const;
+
   std::vector<std::unique_ptr<System>> parts_;
   SymmetricMatrix pattern_;
 };

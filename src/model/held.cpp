@@ -12,8 +12,11 @@ Held::Held(std::shared_ptr<const System> system, std::vector<bool> is_held)
     }
   }
   if (const Split* split = system_->split()) {
+    std::vector<bool> is_held_in_core;
+    for (const Index i : split->core_unknowns) is_held_in_core.push_back(is_held[i]);
     split_ = {std::make_shared<Held>(split->stiff, is_held),
-              std::make_shared<Held>(split->soft, is_held)};
+              std::make_shared<Held>(split->soft, is_held),
+              std::make_shared<Held>(split->core, is_held_in_core), split->core_unknowns};
   }
 }
 
@@ -24,6 +27,11 @@ void Held::force(const Vec& q, Vec& f) const {
 
 void Held::stiffness(const Vec& q, SymmetricMatrix& k) const {
   system_->stiffness(q, k);
+  for (const Index entry : entries_) k.valuePtr()[entry] = 0;
+}
+
+void Held::material_stiffness(const Vec& q, SymmetricMatrix& k) const {
+  system_->material_stiffness(q, k);
   for (const Index entry : entries_) k.valuePtr()[entry] = 0;
 }
 

@@ -19,6 +19,7 @@ class Held final : public System {
   double potential(const Vec& q) const override { return system_->potential(q); }
   void force(const Vec& q, Vec& f) const override;
   void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
   bool holds_at(const Vec& q) const override { return system_->holds_at(q); }

@@ -62,6 +62,11 @@ inline std::vector<Method> methods_of(Family family, Knob knob) {
   return list;
 }
 
+// Whether torques cancel in each of its steps, where every spring has a rest length.
+inline bool keeps_angular_momentum(const Method& method) {
+  return method.symplectic || method.name.starts_with("linear_midpoint");
+}
+
 // The larger of the errors in q and in v.
 inline double distance(const State& a, const State& b) {
   return std::max(distance(a.q, b.q), distance(a.v, b.v));
@@ -110,6 +115,10 @@ class Relay final : public System {
   }
   void stiffness(const Vec& q, SymmetricMatrix& k) const override {
     system_.stiffness(q, k);
+    if (after_stiffness) after_stiffness(q, k);
+  }
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    system_.material_stiffness(q, k);
     if (after_stiffness) after_stiffness(q, k);
   }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
