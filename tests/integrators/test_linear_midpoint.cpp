@@ -2,6 +2,7 @@
 // implicit. What they have in common with every fixed-step method is in the generic suites.
 #include <boost/test/unit_test.hpp>
 
+#include "src/algebra/effective_mass.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/analysis/linear_motion.hpp"
 #include "tests/integrators/scenes.hpp"
@@ -83,6 +84,15 @@ double observed_growth(const Form& form, double h, double w_f, double w_s, int s
     return std::hypot(std::hypot(w_f, w_s) * r.state.q[0], r.state.v[0]);
   };
   return std::pow(amplitude(steps) / amplitude(steps / 2), 2.0 / steps);
+}
+
+// That it grows by what the theory says, in steps of h on w_s = 1.
+void check_growth(const Form& form, double h, double w_f) {
+  const double expected = growth(form, h, w_f, 1);
+  BOOST_TEST(expected > 1.03);
+  // By half of the steps the growing mode is 1e26 times the other one.
+  const int steps = 2 * static_cast<int>(std::ceil(30 / std::log(expected)));
+  BOOST_TEST(std::abs(observed_growth(form, h, w_f, 1, steps) / expected - 1) < 1e-9);
 }
 
 struct Orders {
@@ -218,20 +228,13 @@ BOOST_AUTO_TEST_CASE(soft_springs_bound_the_step_and_stiff_ones_do_not) {
     // The amplitude swings where it is bounded: by (1 - h^2 w_s^2 / 4)^-1/2 = 7 here, in 1e4 steps.
     BOOST_TEST(observed_growth(plain, 1.98, w_f, 1, 20000) < 1.001);
   }
-  for (const double w_f : {0.0, 1.0, 5.0}) {
-    // The share of the other mode is gone after a hundred steps.
-    const double expected = growth(plain, 2.2, w_f, 1);
-    BOOST_TEST(expected > 1.03);
-    BOOST_TEST(std::abs(observed_growth(plain, 2.2, w_f, 1, 400) / expected - 1) < 1e-9);
-  }
+  for (const double w_f : {0.0, 1.0, 5.0}) check_growth(plain, 2.2, w_f);
 }
 
 BOOST_AUTO_TEST_CASE(five_steps_at_a_time_grow_in_narrow_bands) {
   const Form& five = forms().back();
   // At h w_s = 1.75 and w_f = 5 w_s they turn the vibration by a multiple of pi.
-  const double expected = growth(five, 1.75, 5, 1);
-  BOOST_TEST(expected > 1.03);
-  BOOST_TEST(std::abs(observed_growth(five, 1.75, 5, 1, 800) / expected - 1) < 1e-9);
+  check_growth(five, 1.75, 5);
   BOOST_TEST(observed_growth(five, 1.65, 5, 1, 20000) < 1.001);
   BOOST_TEST(growth(five, 1.65, 5, 1) == 1);
   // Bands grow narrower and slower with w_f, and none begins below h w_s = 0.9.
@@ -253,19 +256,22 @@ BOOST_AUTO_TEST_CASE(stiff_springs_become_rods) {
     BOOST_TEST(r.summary.message == "");
     return distance(r.state.q, rod.q);
   };
-  std::vector<double> errors;
-  for (int halving = 0; halving <= 4; ++halving) {
-    errors.push_back(error("linear_midpoint", 1e14, std::ldexp(h, -halving)));
+  // Both are of order 2 then.
+  for (const Form& form : forms()) {
+    std::vector<double> errors;
+    for (int halving = 0; halving <= 4; ++halving) {
+      errors.push_back(error(form.name, 1e14, std::ldexp(h, -halving)));
+    }
+    const double order = observed_order(errors);
+    BOOST_TEST(std::abs(order - 2) < 0.1, form.name << " has order " << order);
   }
-  const double order = observed_order(errors);
-  BOOST_TEST(std::abs(order - 2) < 0.2, "order " << order);
   // Rods are 3 m g / k longer at the lowest point, and vibrate by as much.
-  const double limit = errors.front();
+  const double limit = error("linear_midpoint", 1e14, h);
   for (const double k : {1e6, 1e8, 1e10, 1e12}) {
     const double e = error("linear_midpoint", k, h);
     BOOST_TEST(std::abs(e / limit - 1) < 0.2, "k = " << k << ": " << e << ", not " << limit);
   }
-  BOOST_TEST(error("linear_midpoint4", 1e14, h) < limit / 10);
+  BOOST_TEST(error("linear_midpoint4", 1e14, h) < limit / 2);
   // Negative control: what explicit methods make of it.
   const Problem p = pendulum(1e6);
   const Run r =
@@ -301,11 +307,12 @@ BOOST_AUTO_TEST_CASE(compression_does_not_make_its_matrix_indefinite) {
   const auto system = make_mass_spring(network);
   const State start{0, Vec{{0, 1e-6}}, Vec::Zero(2)};
   // Across the springs K is 2 k (0.6 - 0.5) / 0.5, forty thousand times the mass.
-  const Knobs knobs{.step_size = 0.01};
-  const Run linear_euler = run(method_named("semi_implicit_euler"), *system, start, 0.1, knobs);
-  BOOST_TEST(name(linear_euler.summary.outcome) == "indefinite_matrix");
+  const double h = 0.02;
+  BOOST_TEST(
+      !EffectiveMass(*system).factorize_positive(1, h * h / 4, stiffness_at(*system, start.q)));
   for (const Form& form : forms()) {
-    BOOST_TEST(run(method_named(form.name), *system, start, 0.1, knobs).summary.message == "");
+    BOOST_TEST(
+        run(method_named(form.name), *system, start, 0.1, {.step_size = h}).summary.message == "");
   }
 }
 
