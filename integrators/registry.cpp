@@ -31,6 +31,8 @@
   METHOD(dprkn6)                   \
   METHOD(dprkn8)                   \
   METHOD(dprkn12)                  \
+  METHOD(linear_midpoint)          \
+  METHOD(linear_midpoint4)         \
   METHOD(exact)                    \
   METHOD(arkode_dirk2)             \
   METHOD(arkode_dirk3)             \

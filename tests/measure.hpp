@@ -48,7 +48,7 @@ inline Eigen::MatrixXd dense(const SymmetricMatrix& lower) {
   return Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
 }
 
-// f(q) and K(q) by value.
+// f(q), K(q) and its material part by value.
 inline Vec force_at(const System& system, const Vec& q) {
   Vec f(system.size());
   system.force(q, f);
@@ -57,6 +57,11 @@ inline Vec force_at(const System& system, const Vec& q) {
 inline SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
+  return k;
+}
+inline SymmetricMatrix material_stiffness_at(const System& system, const Vec& q) {
+  SymmetricMatrix k = system.stiffness_pattern();
+  system.material_stiffness(q, k);
   return k;
 }
 

@@ -88,6 +88,12 @@ void Divided::softened_stiffness(const Vec& q, double compression, SymmetricMatr
   });
 }
 
+void Divided::material_stiffness(const Vec& q, SymmetricMatrix& k) const {
+  assemble(q, k, [](const System& part, const Vec& own, SymmetricMatrix& block) {
+    part.material_stiffness(own, block);
+  });
+}
+
 HasLaplacian Divided::has_laplacian() const {
   HasLaplacian least = HasLaplacian::as_bound;
   for (const auto& part : parts_) least = std::min(least, part->has_laplacian());

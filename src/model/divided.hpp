@@ -18,6 +18,7 @@ class Divided final : public System {
   void stiffness(const Vec& q, SymmetricMatrix& k) const override { softened_stiffness(q, 1, k); }
   void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override;
   void mean_force(const Vec& a, const Vec& b, Vec& f) const override;
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override;
   HasLaplacian has_laplacian() const override;

@@ -12,8 +12,11 @@ Held::Held(std::shared_ptr<const System> system, std::vector<bool> is_held)
     }
   }
   if (const Split* split = system_->split()) {
+    std::vector<bool> is_held_in_core;
+    for (const Index i : split->core_unknowns) is_held_in_core.push_back(is_held[i]);
     split_ = {std::make_shared<Held>(split->stiff, is_held),
-              std::make_shared<Held>(split->soft, is_held)};
+              std::make_shared<Held>(split->soft, is_held),
+              std::make_shared<Held>(split->core, is_held_in_core), split->core_unknowns};
   }
 }
 
@@ -29,6 +32,11 @@ void Held::mean_force(const Vec& a, const Vec& b, Vec& f) const {
 
 void Held::softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const {
   system_->softened_stiffness(q, compression, k);
+  clear_held(k);
+}
+
+void Held::material_stiffness(const Vec& q, SymmetricMatrix& k) const {
+  system_->material_stiffness(q, k);
   clear_held(k);
 }
 

@@ -27,6 +27,46 @@ Network only(Network network, bool stiff) {
   return network;
 }
 
+// The nodes that springs or loads of the network pull at, ascending.
+std::vector<int> pulled_nodes(const Network& network) {
+  std::vector<char> is_pulled(static_cast<std::size_t>(network.node_mass.size()));
+  for (const auto& link : network.links) is_pulled[link.i] = is_pulled[link.j] = 1;
+  for (const auto& link : network.image_links) is_pulled[link.i] = is_pulled[link.j] = 1;
+  for (const auto& anchor : network.anchors) is_pulled[anchor.i] = 1;
+  for (Index x = 0; x < network.load.size(); ++x) {
+    if (network.load[x] != 0) is_pulled[x / network.dimension] = 1;
+  }
+  std::vector<int> nodes;
+  for (int i = 0; i < std::ssize(is_pulled); ++i) {
+    if (is_pulled[i]) nodes.push_back(i);
+  }
+  return nodes;
+}
+
+// The network of these nodes alone, to which all of its springs and loads belong.
+Network among(const std::vector<int>& nodes, const Network& network) {
+  const int D = network.dimension;
+  Network core = network;
+  core.node_mass = network.node_mass(nodes);
+  std::vector<int> place(static_cast<std::size_t>(network.node_mass.size()), -1);
+  core.load.resize(network.load.size() > 0 ? D * std::ssize(nodes) : 0);
+  core.zero_coordinates.clear();
+  for (int i = 0; i < std::ssize(nodes); ++i) {
+    place[nodes[i]] = i;
+    if (core.load.size() > 0) core.load.segment(D * i, D) = network.load.segment(D * nodes[i], D);
+    if (!network.zero_coordinates.empty()) {
+      core.zero_coordinates.push_back(network.zero_coordinates[nodes[i]]);
+    }
+  }
+  const auto renumber = [&](auto& links) {
+    for (auto& link : links) link.i = place[link.i], link.j = place[link.j];
+  };
+  renumber(core.links);
+  renumber(core.image_links);
+  for (auto& anchor : core.anchors) anchor.i = place[anchor.i];
+  return core;
+}
+
 // Springs between nodes all of whose coordinates are unknowns are kept apart, by their first
 // unknowns alone; the few that touch a node on a mirror go through the layout.
 template <int D>
@@ -91,6 +131,12 @@ class MassSpring final : public System {
     });
   }
 
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    assemble(q, k, [](const SpringLaw& law, const Point& d) {
+      return spring_material_stiffness(law, d);
+    });
+  }
+
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override { return linear_; }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
@@ -142,8 +188,17 @@ class MassSpring final : public System {
       if (law.quartic > 0) has_laplacian_ = HasLaplacian::yes;
     });
     if (network.offers_split) {
-      split_ = {std::make_shared<MassSpring>(only(network, true)),
-                std::make_shared<MassSpring>(only(network, false))};
+      const Network stiff = only(network, true);
+      const std::vector<int> nodes = pulled_nodes(stiff);
+      split_ = {std::make_shared<MassSpring>(stiff),
+                std::make_shared<MassSpring>(only(network, false)),
+                std::make_shared<MassSpring>(among(nodes, stiff)),
+                {}};
+      for (const int i : nodes) {
+        for (int a = 0; a < layout.count(i); ++a) {
+          split_->core_unknowns.push_back(layout.first(i) + a);
+        }
+      }
     }
   }
 
@@ -264,6 +319,50 @@ class MassSpring final : public System {
     for (const Anchor& anchor : anchors_) action(anchor.law, between(q, anchor));
     for (const EdgeLink& link : edge_links_) action(link.law, edge_between(q, link));
     for (const Anchor& anchor : edge_anchors_) action(anchor.law, edge_between(q, anchor));
+  }
+
+  // With S = diag(mirror) and d = S x_j - x_i: K_ii -= B, K_jj -= S B S, K_ij += B S; where i = j
+  // all three are one block.
+  template <class BlockOf>
+  void assemble(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
+    k.coeffs().setZero();
+    for (std::size_t e = 0; e < links_.size(); ++e) {
+      const Link& link = links_[e];
+      const Block b = block(link.law, between(q, link));
+      subtract_from_diagonal(k, link.i, b);
+      subtract_from_diagonal(k, link.j, b);
+      add_below_diagonal(k, std::min(link.i, link.j), link_places_[e], b);
+    }
+    for (std::size_t e = 0; e < images_.size(); ++e) {
+      const auto& [i, j, mirror, law] = images_[e];
+      const Block b = block(law, between(q, images_[e]));
+      const Block bs = b * mirror.asDiagonal(), sb = mirror.asDiagonal() * b;
+      subtract_from_diagonal(k, i, b);
+      subtract_from_diagonal(k, j, sb * mirror.asDiagonal());
+      if (i == j) {
+        subtract_from_diagonal(k, i, -(bs + sb));
+      } else {
+        // The block's rows belong to the later node.
+        add_below_diagonal(k, std::min(i, j), image_places_[e], i > j ? bs : sb);
+      }
+    }
+    for (const Anchor& anchor : anchors_) {
+      subtract_from_diagonal(k, anchor.i, block(anchor.law, between(q, anchor)));
+    }
+    for (const EdgeLink& link : edge_links_) {
+      const Block b = block(link.law, edge_between(q, link));
+      const Block bs = b * link.mirror.asDiagonal(), sb = link.mirror.asDiagonal() * b;
+      edge_subtract_from_diagonal(k, link.i, b);
+      edge_subtract_from_diagonal(k, link.j, sb * link.mirror.asDiagonal());
+      if (link.i == link.j) {
+        edge_subtract_from_diagonal(k, link.i, -(bs + sb));
+      } else {
+        edge_add_below_diagonal(k, link, link.i > link.j ? bs : sb);
+      }
+    }
+    for (const Anchor& anchor : edge_anchors_) {
+      edge_subtract_from_diagonal(k, anchor.i, block(anchor.law, edge_between(q, anchor)));
+    }
   }
 
   static Point between(const Vec& q, const Link& link) {

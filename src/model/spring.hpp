@@ -102,4 +102,15 @@ Eigen::Matrix<Real, D, D> spring_stiffness(const SpringLaw& law, const Eigen::Ma
   return Block::Identity() * across + (along - across) * (n * n.transpose());
 }
 
+// Of this block the part that the material's stiffness makes and not the tension: tau' nn' [N/m],
+// or all of B where l0 = 0, so that a spring is never without tension. Positive semidefinite.
+template <class Real, int D>
+Eigen::Matrix<Real, D, D> spring_material_stiffness(const SpringLaw& law,
+                                                    const Eigen::Matrix<Real, D, 1>& d) {
+  const Real l = spring_length(d);
+  if (law.rest_length == 0 || std::abs(l) == 0) return spring_stiffness(law, d);
+  const Eigen::Matrix<Real, D, 1> n = d / l;
+  return law.tangent(l) * (n * n.transpose());
+}
+
 }  // namespace qddot

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -54,6 +55,10 @@ class System {
   virtual void force(const Vec& q, Vec& f) const = 0;
   // K = df/dq [N/m] into `k`, which must carry the pattern of stiffness_pattern().
   virtual void stiffness(const Vec& q, SymmetricMatrix& k) const = 0;
+  // Of K what the springs' material makes, without what their tension adds across them (the
+  // geometric stiffness): -sum tau' b b' with b the gradient of a spring's length. Negative
+  // semidefinite at every q, while compressed springs make K itself indefinite. As stiffness().
+  virtual void material_stiffness(const Vec& q, SymmetricMatrix& k) const = 0;
   // The n x n pattern that K has at every q, with values zero; made once, copied by each user.
   virtual const SymmetricMatrix& stiffness_pattern() const = 0;
   // K with the negative transverse part tau/l (I - nn') of every compressed spring scaled by
@@ -94,6 +99,10 @@ class System {
 // loads that stand for stiff springs. Either may be without springs.
 struct Split {
   std::shared_ptr<const System> stiff, soft;
+  // The stiff one once more, over the unknowns alone that its springs or loads act on: unknown a of
+  // `core` is unknown core_unknowns[a] of the whole, ascending. All others feel no stiff force.
+  std::shared_ptr<const System> core;
+  std::vector<Index> core_unknowns;
 };
 
 // Kinetic plus potential energy [J] of a state.

@@ -62,6 +62,11 @@ inline std::vector<Method> methods_of(Family family, Knob knob) {
   return list;
 }
 
+// Whether torques cancel in each of its steps, where every spring has a rest length.
+inline bool keeps_angular_momentum(const Method& method) {
+  return method.symplectic || method.name.starts_with("linear_midpoint");
+}
+
 // The larger of the errors in q and in v.
 inline double distance(const State& a, const State& b) {
   return std::max(distance(a.q, b.q), distance(a.v, b.v));
@@ -119,6 +124,10 @@ class Relay final : public System {
   void mean_force(const Vec& a, const Vec& b, Vec& f) const override {
     system_.mean_force(a, b, f);
     if (after_force) after_force(b, f);
+  }
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    system_.material_stiffness(q, k);
+    if (after_stiffness) after_stiffness(q, k);
   }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }

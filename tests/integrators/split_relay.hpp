@@ -6,7 +6,8 @@
 
 namespace qddot {
 
-// Speaks for another split system, and lets a test see or change what its halves say.
+// Speaks for another split system, and lets a test see or change what its halves say; what is asked
+// of the core is asked of the stiff half.
 class SplitRelay final : public System {
  public:
   explicit SplitRelay(const System& system)
@@ -14,7 +15,15 @@ class SplitRelay final : public System {
         stiff(std::make_shared<Relay>(*system.split()->stiff)),
         soft(std::make_shared<Relay>(*system.split()->soft)),
         whole(system),
-        split_{stiff, soft} {}
+        core_(std::make_shared<Relay>(*system.split()->core)),
+        split_{stiff, soft, core_, system.split()->core_unknowns} {
+    core_->after_force = [this](const Vec& q, Vec& f) {
+      if (stiff->after_force) stiff->after_force(q, f);
+    };
+    core_->after_stiffness = [this](const Vec& q, SymmetricMatrix& k) {
+      if (stiff->after_stiffness) stiff->after_stiffness(q, k);
+    };
+  }
 
   double potential(const Vec& q) const override { return whole.potential(q); }
   void force(const Vec& q, Vec& f) const override { whole.force(q, f); }
@@ -23,6 +32,9 @@ class SplitRelay final : public System {
     whole.softened_stiffness(q, compression, k);
   }
   void mean_force(const Vec& a, const Vec& b, Vec& f) const override { whole.mean_force(a, b, f); }
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    whole.material_stiffness(q, k);
+  }
   const SymmetricMatrix& stiffness_pattern() const override { return whole.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return whole.stiffness_is_constant(); }
   HasLaplacian has_laplacian() const override { return whole.has_laplacian(); }
@@ -33,6 +45,7 @@ class SplitRelay final : public System {
   Relay whole;
 
  private:
+  const std::shared_ptr<Relay> core_;
   Split split_;
 };
 

@@ -127,6 +127,33 @@ BOOST_AUTO_TEST_CASE(each_is_the_network_of_its_springs_alone_with_the_pattern_o
   BOOST_TEST(fewer > all / 2);
 }
 
+BOOST_AUTO_TEST_CASE(the_core_is_the_stiff_one_over_the_unknowns_that_it_acts_on) {
+  int smaller = 0;
+  for_split_networks([&](const Network& network, const Vec& q) {
+    const auto whole = make_mass_spring(network);
+    const auto& [stiff, soft, core, unknowns] = *whole->split();
+    BOOST_TEST_REQUIRE(core->size() == std::ssize(unknowns));
+    BOOST_TEST(std::ranges::is_sorted(unknowns));
+    BOOST_TEST((core->mass() == whole->mass()(unknowns)));
+    const Vec own = q(unknowns);
+    BOOST_TEST((force_at(*core, own) == force_at(*stiff, q)(unknowns)));
+    Vec elsewhere = force_at(*stiff, q);
+    elsewhere(unknowns).setZero();
+    BOOST_TEST((elsewhere.array() == 0).all());
+    // Nor do the others move anything.
+    Vec moved = Vec::Constant(q.size(), 5);
+    moved(unknowns) = own;
+    BOOST_TEST((force_at(*stiff, moved) == force_at(*stiff, q)));
+    for (const auto& matrix : {stiffness_at, material_stiffness_at}) {
+      const Eigen::MatrixXd k = dense(matrix(*stiff, q));
+      BOOST_TEST((dense(matrix(*core, own)) == k(unknowns, unknowns)));
+    }
+    BOOST_TEST(std::abs(core->potential(own) - stiff->potential(q)) < 60 * eps * 1e5);
+    smaller += core->size() < whole->size();
+  });
+  BOOST_TEST(smaller > 3);
+}
+
 BOOST_AUTO_TEST_CASE(a_split_is_there_where_it_is_asked_for_and_changes_nothing_else) {
   for_split_networks([](Network network, const Vec& q) {
     const auto with = make_mass_spring(network);
@@ -219,6 +246,8 @@ BOOST_AUTO_TEST_CASE(what_is_held_is_held_in_both) {
       if (is_held[i]) BOOST_TEST((stiff[Index(i)] == 0 && soft[Index(i)] == 0));
     }
     BOOST_TEST(same_pattern(*split->stiff, *alone(network, true)));
+    const Vec own = q(split->core_unknowns);
+    BOOST_TEST((force_at(*split->core, own) == stiff(split->core_unknowns)));
     network.offers_split = false;
     BOOST_TEST(!Held(make_mass_spring(network), is_held).split());
   });
