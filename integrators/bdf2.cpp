@@ -55,6 +55,7 @@ Method bdf2() {
       .implicit = true,
       .needs_stiffness = true,
       .accepts_massless = true,
+      .takes_solve_tolerance = true,
       .make = create<Bdf2>};
 }
 

@@ -321,50 +321,6 @@ class MassSpring final : public System {
     for (const Anchor& anchor : edge_anchors_) action(anchor.law, edge_between(q, anchor));
   }
 
-  // With S = diag(mirror) and d = S x_j - x_i: K_ii -= B, K_jj -= S B S, K_ij += B S; where i = j
-  // all three are one block.
-  template <class BlockOf>
-  void assemble(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
-    k.coeffs().setZero();
-    for (std::size_t e = 0; e < links_.size(); ++e) {
-      const Link& link = links_[e];
-      const Block b = block(link.law, between(q, link));
-      subtract_from_diagonal(k, link.i, b);
-      subtract_from_diagonal(k, link.j, b);
-      add_below_diagonal(k, std::min(link.i, link.j), link_places_[e], b);
-    }
-    for (std::size_t e = 0; e < images_.size(); ++e) {
-      const auto& [i, j, mirror, law] = images_[e];
-      const Block b = block(law, between(q, images_[e]));
-      const Block bs = b * mirror.asDiagonal(), sb = mirror.asDiagonal() * b;
-      subtract_from_diagonal(k, i, b);
-      subtract_from_diagonal(k, j, sb * mirror.asDiagonal());
-      if (i == j) {
-        subtract_from_diagonal(k, i, -(bs + sb));
-      } else {
-        // The block's rows belong to the later node.
-        add_below_diagonal(k, std::min(i, j), image_places_[e], i > j ? bs : sb);
-      }
-    }
-    for (const Anchor& anchor : anchors_) {
-      subtract_from_diagonal(k, anchor.i, block(anchor.law, between(q, anchor)));
-    }
-    for (const EdgeLink& link : edge_links_) {
-      const Block b = block(link.law, edge_between(q, link));
-      const Block bs = b * link.mirror.asDiagonal(), sb = link.mirror.asDiagonal() * b;
-      edge_subtract_from_diagonal(k, link.i, b);
-      edge_subtract_from_diagonal(k, link.j, sb * link.mirror.asDiagonal());
-      if (link.i == link.j) {
-        edge_subtract_from_diagonal(k, link.i, -(bs + sb));
-      } else {
-        edge_add_below_diagonal(k, link, link.i > link.j ? bs : sb);
-      }
-    }
-    for (const Anchor& anchor : edge_anchors_) {
-      edge_subtract_from_diagonal(k, anchor.i, block(anchor.law, edge_between(q, anchor)));
-    }
-  }
-
   static Point between(const Vec& q, const Link& link) {
     return q.segment<D>(link.j) - q.segment<D>(link.i);
   }
