@@ -269,7 +269,7 @@ class Map:
                 points.append((min(max(x, self.x[0]), self.x[-1]), self.middle(0, j)[1]))
         if points:
             halo = [patheffects.withStroke(linewidth=5.5, foreground="white")]
-            self.axes.plot(*zip(*points), zorder=5, path_effects=halo, **BORDER)
+            self.axes.plot(*zip(*points), zorder=5, clip_on=False, path_effects=halo, **BORDER)
 
     def draw_axes(self, what):
         """Ticks at the measured ratios and accuracies."""
