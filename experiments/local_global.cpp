@@ -178,8 +178,8 @@ struct Step {
 // The steps of one solver, and what it takes before the first.
 struct Solved {
   const Method* method = nullptr;
-  double analysis = 0, factorization = 0;  // s; the latter of a matrix that does not change
-  std::vector<Step> steps{};               // from none on
+  double analysis = INFINITY, factorization = INFINITY;  // s; the latter of a constant matrix
+  std::vector<Step> steps{};                             // from none on
 };
 
 Solved solve(const Method& method, const Cloth& cloth, double h, int most, int repeats) {
@@ -190,7 +190,7 @@ Solved solve(const Method& method, const Cloth& cloth, double h, int most, int r
   for (const int iterations : iteration_counts(most)) {
     const Knobs knobs{.step_size = h, .iterations = iterations, .timed = true};
     std::unique_ptr<Integrator> integrator;
-    solved.analysis =
+    const double analysis =
         seconds_of([&] { integrator = make_integrator(method, cloth.system(), knobs); });
     std::vector<double> times, factorizations;
     Step step{.iterations = iterations};
@@ -210,7 +210,8 @@ Solved solve(const Method& method, const Cloth& cloth, double h, int most, int r
     }
     // What others do on the machine only ever adds to it.
     step.seconds = std::ranges::min(times);
-    solved.factorization = std::ranges::min(factorizations);
+    solved.analysis = std::min(solved.analysis, analysis);
+    solved.factorization = std::min(solved.factorization, std::ranges::min(factorizations));
     solved.steps.push_back(std::move(step));
   }
   return solved;

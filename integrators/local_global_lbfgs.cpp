@@ -1,8 +1,11 @@
 // Implicit Euler by L-BFGS that begins with the metric of local_global: the inverse Hessian is
 // (M + h^2 L)^-1, corrected by what the last 5 differences s = v_{i+1} - v_i, y = r_{i+1} - r_i say
 // of the true one, in the two loops of Nocedal; then a line search on the energy. The first
-// iteration is that of local_global.
+// iteration is that of local_global and the first difference comes after it: then free bodies have
+// their right momentum, and no difference has any.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "integrators/local_global.hpp"
@@ -13,6 +16,8 @@ namespace {
 
 constexpr int window = 5;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+// A decrease of the energy that is a smaller part of it cannot be told from rounding.
+constexpr double hidden = 100 * epsilon;
 
 class Lbfgs final : public LocalGlobal {
  public:
@@ -27,14 +32,21 @@ class Lbfgs final : public LocalGlobal {
     double sy = 0, alpha = 0;
   };
 
-  void begin() override { pairs_used_ = pairs_seen_ = iteration_ = 0; }
+  void begin() override {
+    pairs_used_ = pairs_seen_ = iteration_ = 0;
+    is_at_rounding_ = false;
+  }
 
   void iterate(Vec& v) override {
     gradient(v, r_);
-    if (iteration_++ == 0) {
+    if (iteration_ == 0) energy_ = objective(v);
+    if (iteration_ > 1 && !is_at_rounding_) remember(v);
+    if (iteration_++ == 0 || is_at_rounding_) {
+      last_v_ = v;
+      direction(r_, p_);
+      plain_step(v, r_, p_);
       energy_ = objective(v);
-    } else {
-      remember(v);
+      return;
     }
     last_v_ = v;
     last_r_ = r_;
@@ -48,7 +60,9 @@ class Lbfgs final : public LocalGlobal {
       const Pair& pair = newest(i);
       p_ += (pair.alpha - pair.y.dot(p_) / pair.sy) * pair.s;
     }
-    search(v, p_, last_r_.dot(p_), energy_);
+    const double slope = last_r_.dot(p_);
+    is_at_rounding_ = !(slope > hidden * std::abs(energy_));
+    search(v, p_, slope, energy_);
   }
 
   // A pair without curvature would make the metric indefinite; it is left out, and so is the
@@ -68,6 +82,7 @@ class Lbfgs final : public LocalGlobal {
 
   Pair& newest(int i) { return pairs_[(pairs_seen_ - 1 - i) % window]; }
 
+  bool is_at_rounding_ = false;  // differences are noise from here on; plain steps do no harm
   int iteration_ = 0, pairs_seen_ = 0, pairs_used_ = 0;
   double energy_ = 0;
   std::array<Pair, window> pairs_;
