@@ -9,11 +9,16 @@
 namespace {
 std::atomic<std::int64_t> allocations = 0;
 }  // namespace
+#ifdef __SANITIZE_ADDRESS__
+extern "C" void __sanitizer_malloc_hook(const volatile void*, std::size_t) { ++allocations; }
+extern "C" void __sanitizer_free_hook(const volatile void*) {}
+#else
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* malloc(std::size_t size) {
   ++allocations;
   return __libc_malloc(size);
 }
+#endif
 
 using namespace qddot;
 
