@@ -111,6 +111,15 @@ class Secretive final : public System {
   double potential(const Vec& q) const override { return system_.potential(q); }
   void force(const Vec& q, Vec& f) const override { system_.force(q, f); }
   void stiffness(const Vec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    system_.material_stiffness(q, k);
+  }
+  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
+    system_.softened_stiffness(q, compression, k);
+  }
+  void mean_force(const Vec& a, const Vec& b, Vec& f) const override {
+    system_.mean_force(a, b, f);
+  }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
 

@@ -21,7 +21,9 @@ Eigen::MatrixXd step_derivative(const Method& method, const System& system, cons
                                 double h) {
   const Index n = system.size();
   const auto map = [&](const Vec& y) -> Vec {
-    const Run r = run(method, system, {0, y.head(n), y.tail(n)}, h, knobs_of(method, h, 0));
+    // Solved to rounding, as differences have to be.
+    const Run r = run(method, system, {0, y.head(n), y.tail(n)}, h,
+                      {.step_size = h, .solve_tolerance = 1e-13});
     Vec z(2 * n);
     z << r.state.q, r.state.v;
     return z;
