@@ -76,7 +76,8 @@ BOOST_AUTO_TEST_CASE(it_is_the_force_where_both_ends_are_one_and_the_same_in_bot
     const double scale = force_at(system, a).lpNorm<Eigen::Infinity>();
     BOOST_TEST(distance(mean_force_at(system, a, a), force_at(system, a)) < 50 * eps * scale);
     const Vec b = a + random_vector(random, a.size(), 0.3);
-    BOOST_TEST(distance(mean_force_at(system, a, b), mean_force_at(system, b, a)) == 0);
+    BOOST_TEST(distance(mean_force_at(system, a, b), mean_force_at(system, b, a)) <
+               50 * eps * mean_force_at(system, a, b).lpNorm<Eigen::Infinity>());
   });
 }
 
