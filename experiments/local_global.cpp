@@ -46,8 +46,6 @@ namespace {
 
 constexpr int standard_nodes = 33;
 constexpr double standard_stiffness = 1200;
-constexpr double stiffnesses[] = {300, 600, 1200, 2400};  // N/m
-constexpr int resolutions[] = {11, 21, 41, 81};
 constexpr int speed_nodes[] = {33, 65, 101};
 constexpr double run_until = 0.5;           // s
 constexpr int most_newton_iterations = 40;  // more than it takes anywhere here
@@ -57,6 +55,8 @@ struct Arguments {
   std::string out;
   int nodes = standard_nodes, iterations = 400, repeats = 5;
   double stiffness = standard_stiffness, step_size = 0.01, swing = 0.3;
+  std::vector<double> stiffnesses = {300, 600, 1200, 2400};
+  std::vector<int> resolutions = {11, 21, 41, 81};
   bool speed = false;
 };
 
@@ -75,6 +75,12 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option(
          "--repeats", a.repeats,
          "timed runs of each, of which the shortest counts; the median of them with --speed")
+      ->capture_default_str();
+  app.add_option("--stiffnesses", a.stiffnesses, "a,b,... in N/m, for stiffness.csv")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--resolutions", a.resolutions, "a,b,... nodes along a side, for resolution.csv")
+      ->delimiter(',')
       ->capture_default_str();
   app.add_flag("--speed", a.speed, "measure one iteration and the set-up instead, to speed.csv");
 }
@@ -319,12 +325,12 @@ void write_figure_3(const Arguments& a, const std::vector<std::string>& command_
   };
   CsvFile stiffness_csv(a.out + "/stiffness.csv",
                         {"stiffness", "solver", "iteration", "seconds", "relative_error"});
-  for (const double stiffness : stiffnesses) add(stiffness_csv, stiffness, a.nodes, stiffness);
+  for (const double stiffness : a.stiffnesses) add(stiffness_csv, stiffness, a.nodes, stiffness);
   stiffness_csv.commit(origin);
   CsvFile resolution_csv(a.out + "/resolution.csv",
                          {"nodes", "solver", "iteration", "seconds", "relative_error"});
   origin.erase("setup");
-  for (const int nodes : resolutions) {
+  for (const int nodes : a.resolutions) {
     add(resolution_csv, nodes, nodes, a.stiffness * (nodes - 1) / static_cast<double>(a.nodes - 1));
   }
   resolution_csv.commit(origin);
@@ -405,6 +411,10 @@ void write_speed(const Arguments& a, const std::vector<std::string>& command_lin
 int local_global_program(const Arguments& a, const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_within(a.nodes, 3, 400, "--nodes");
+  for (const int nodes : a.resolutions) require_within(nodes, 3, 400, "--resolutions");
+  for (const double stiffness : a.stiffnesses) {
+    require_positive(stiffness, "--stiffnesses", "a stiffness in N/m");
+  }
   require_within(a.iterations, 1, 100000, "--iterations");
   require_within(a.repeats, 1, 1000, "--repeats");
   require_positive(a.stiffness, "--stiffness", "a stiffness in N/m");

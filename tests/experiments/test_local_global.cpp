@@ -19,8 +19,9 @@ const std::set<std::string> solvers = {"local_global",          "local_global_ch
 // A cloth of 8 x 8 nodes.
 struct Small {
   Folder folder{};
-  Run result = run("local_global", {"--nodes", "8", "--iterations", "30", "--repeats", "1",
-                                    "--swing", "0.1", "--out", folder / "out"});
+  Run result = run("local_global",
+                   {"--nodes", "8", "--iterations", "30", "--repeats", "1", "--swing", "0.1",
+                    "--stiffnesses", "100,200", "--resolutions", "4,6", "--out", folder / "out"});
   std::string file(const std::string& name) const { return folder / ("out/" + name); }
 };
 
@@ -95,9 +96,10 @@ BOOST_AUTO_TEST_CASE(positions_come_to_those_of_the_converged_step_which_has_an_
 BOOST_AUTO_TEST_CASE(the_error_of_the_step_is_of_second_order) {
   const auto own = [](const std::string& h) {
     const Folder folder;
-    const Run result = run(
-        "local_global", {"--nodes", "5", "--iterations", "1", "--repeats", "1", "--swing", "0.05",
-                         "--stiffness", "100", "--step-size", h, "--out", folder / "out"});
+    const Run result =
+        run("local_global", {"--nodes", "5", "--iterations", "1", "--repeats", "1", "--swing",
+                             "0.05", "--stiffnesses", "100", "--resolutions", "4", "--stiffness",
+                             "100", "--step-size", h, "--out", folder / "out"});
     BOOST_TEST_REQUIRE(result.status == 0, result.err);
     return double(nlohmann::json::parse(read_all(folder / "out/positions.json"))["step_error"]);
   };
@@ -107,8 +109,8 @@ BOOST_AUTO_TEST_CASE(the_error_of_the_step_is_of_second_order) {
 
 BOOST_AUTO_TEST_CASE(other_stiffnesses_and_resolutions_have_tables_of_the_same_kind) {
   for (const auto& [file, column, values] :
-       {std::tuple("stiffness.csv", "stiffness", std::set{300., 600., 1200., 2400.}),
-        std::tuple("resolution.csv", "nodes", std::set{11., 21., 41., 81.})}) {
+       {std::tuple("stiffness.csv", "stiffness", std::set{100., 200.}),
+        std::tuple("resolution.csv", "nodes", std::set{4., 6.})}) {
     const Table table = read_csv(small().file(file));
     BOOST_TEST(table.header == std::string(column) + ",solver,iteration,seconds,relative_error");
     std::set<double> seen;
@@ -133,6 +135,8 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
   for (const char* value : {"2", "401", "-1"}) {
     check_refused({"--nodes", value, "--out", "OUT"}, {"--nodes", value, "from 3 to 400"});
   }
+  check_refused({"--resolutions", "4,2", "--out", "OUT"}, {"--resolutions 2", "from 3 to 400"});
+  check_refused({"--stiffnesses", "1,0", "--out", "OUT"}, {"--stiffnesses 0", "greater than 0"});
   check_refused({"--iterations", "0", "--out", "OUT"}, {"--iterations 0", "from 1 to"});
   check_refused({"--repeats", "0", "--out", "OUT"}, {"--repeats 0", "from 1 to 1000"});
   for (const char* option : {"--stiffness", "--step-size"}) {
