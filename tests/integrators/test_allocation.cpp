@@ -3,6 +3,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "integrators/fixed_step.hpp"
 #include "tests/integrators/runs.hpp"
 
 // Every allocation of this program, Eigen's and operator new's among them, is one of malloc.
@@ -14,9 +15,14 @@ extern "C" void __sanitizer_malloc_hook(const volatile void*, std::size_t) { ++a
 extern "C" void __sanitizer_free_hook(const volatile void*) {}
 #else
 extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* __libc_memalign(std::size_t alignment, std::size_t size);
 extern "C" void* malloc(std::size_t size) {
   ++allocations;
   return __libc_malloc(size);
+}
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  ++allocations;
+  return __libc_memalign(alignment, size);
 }
 #endif
 
@@ -44,6 +50,21 @@ Cost cost_of(const Method& method, const Knobs& knobs, double t_end) {
   return {after - before, summary.counts.stiffness_evaluations};
 }
 
+// Evaluates into memory of its own at each step.
+class Spender final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    Vec f(system().size());
+    force(now.q, f);
+    next.v = now.v + h * f.cwiseQuotient(system().mass());
+    next.q = now.q + h * next.v;
+    return Outcome::reached_end;
+  }
+};
+
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(steps_allocate_nothing_but_for_a_bound_of_w_max_in_adaptive_explicit_ones) {
@@ -57,6 +78,15 @@ BOOST_AUTO_TEST_CASE(steps_allocate_nothing_but_for_a_bound_of_w_max_in_adaptive
                  (needs_bounds ? 10 * (many.bounds - few.bounds) : 0));
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_vector_a_step_is_noticed) {
+  Method spender = method_named("symplectic_euler");
+  spender.make = create<Spender>;
+  const Knobs knobs{.step_size = 0.005};
+  const std::int64_t more =
+      cost_of(spender, knobs, 8).allocations - cost_of(spender, knobs, 1).allocations;
+  BOOST_TEST(more >= 1400);
 }
 
 BOOST_AUTO_TEST_CASE(an_allocation_is_noticed) {

@@ -1,30 +1,9 @@
-#include <atomic>
-#include <cstdlib>
-
 #include <boost/test/unit_test.hpp>
 
 #include "integrators/fixed_step.hpp"
 #include "tests/integrators/scenes.hpp"
 
 using namespace qddot;
-
-#ifndef __SANITIZE_ADDRESS__
-namespace {
-std::atomic<long> allocations = 0;
-}
-
-// glibc's own, counted: Eigen's vectors come from there.
-extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* __libc_memalign(std::size_t alignment, std::size_t size);
-extern "C" void* malloc(std::size_t size) noexcept {
-  ++allocations;
-  return __libc_malloc(size);
-}
-extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-#endif
 
 BOOST_AUTO_TEST_SUITE(local_global)
 
@@ -87,21 +66,6 @@ struct Transverse {
   }
   std::unique_ptr<System> system;
   State start{0, Vec{{l, 1e-6}}, Vec::Zero(2)};
-};
-
-// Evaluates into memory of its own at each step.
-class Spender final : public FixedStep {
- public:
-  using FixedStep::FixedStep;
-
- private:
-  Outcome step(const State& now, double h, State& next) override {
-    Vec f(system().size());
-    force(now.q, f);
-    next.v = now.v + h * f.cwiseQuotient(system().mass());
-    next.q = now.q + h * next.v;
-    return Outcome::reached_end;
-  }
 };
 
 // Says nothing of a Laplacian.
@@ -325,26 +289,5 @@ BOOST_AUTO_TEST_CASE(seconds_say_what_the_factorisation_and_the_solves_took) {
     BOOST_TEST(summary.seconds.force > 0);
   }
 }
-
-#ifndef __SANITIZE_ADDRESS__
-BOOST_AUTO_TEST_CASE(a_step_allocates_nothing) {
-  const Fallen cloth;
-  const auto allocations_of = [&](const Method& method, int steps) {
-    const auto integrator = make_integrator(method, cloth.scene.system(), {.step_size = 0.01});
-    State state = cloth.state;
-    const long before = allocations;
-    const Summary summary = integrator->advance(state, cloth.state.t + steps * 0.01);
-    const long after = allocations;
-    BOOST_REQUIRE(summary.counts.steps == steps);
-    return after - before;
-  };
-  for (const Method& method : all()) {
-    BOOST_TEST(allocations_of(method, 1) == allocations_of(method, 9), method.name);
-  }
-  Method spender = method_named("symplectic_euler");
-  spender.make = create<Spender>;
-  BOOST_TEST(allocations_of(spender, 9) - allocations_of(spender, 1) >= 8);
-}
-#endif
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -180,11 +180,12 @@ BOOST_AUTO_TEST_CASE(one_step_keeps_the_symplectic_form_exactly_where_the_regist
     BOOST_TEST_CONTEXT(method.name) {
       const double defect = symplectic_defect(method);
       // Differences of step s = 1e-4 err by s^2 |third derivative|, about 1e-8; a method that is
-      // not symplectic misses by some (h w)^(order + 1) with h w = 1 here.
+      // not symplectic misses by some (h w)^(order + 1) with h w = 1 here, of higher order by a
+      // thousandth of that.
       if (method.symplectic) {
         BOOST_TEST(defect < 1e-6);
       } else {
-        BOOST_TEST(defect > (method.order == 1 ? 1e-2 : method.order == 2 ? 1e-3 : 1e-4));
+        BOOST_TEST(defect > (method.order == 1 ? 1e-2 : method.order == 2 ? 1e-3 : 1e-5));
       }
     }
   }
