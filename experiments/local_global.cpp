@@ -16,11 +16,11 @@
 //                   is constant, without its one factorisation, both of which the sidecar has
 //  positions.csv    the largest distance of a node from where it is in the converged step, and the
 //                   step's own error: the converged step's distance from the true motion
-//  stiffness.csv    the first for several stiffnesses, and for several resolutions with stiffness
-//  in resolution.csv   proportion run.csv          whole runs of --until: how far off they end, and
-//  what energy they have lost speed.csv        --speed alone: one iteration, set-up, and the
-//  factorisation with K that one of
-//                   Newton's iterations takes, for --nodes 33, 65 and 101
+//  stiffness.csv    convergence.csv for several stiffnesses
+//  resolution.csv   and for several resolutions, with stiffness in proportion
+//  run.csv          whole runs of --until: how far off they end, what energy they have lost
+//  speed.csv        --speed alone: one iteration, set-up, and what one of Newton's iterations
+//                   takes to assemble and factorise, for 33, 65 and 101 nodes
 #include <algorithm>
 #include <chrono>
 #include <cmath>
