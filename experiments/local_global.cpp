@@ -16,11 +16,11 @@
 //                   is constant, without its one factorisation, both of which the sidecar has
 //  positions.csv    the largest distance of a node from where it is in the converged step, and the
 //                   step's own error: the converged step's distance from the true motion
-//  stiffness.csv    the first for several stiffnesses, and for several resolutions with stiffness
-//  in resolution.csv   proportion run.csv          whole runs of 0.5 s: how far off they end, and
-//  what energy they have lost speed.csv        --speed alone: one iteration, set-up, and the
-//  factorisation with K that one of
-//                   Newton's iterations takes, for --nodes 33, 65 and 101
+//  stiffness.csv    convergence.csv for several stiffnesses
+//  resolution.csv   and for several resolutions, with stiffness in proportion
+//  run.csv          whole runs of --until: how far off they end, what energy they have lost
+//  speed.csv        --speed alone: one iteration, set-up, and what one of Newton's iterations
+//                   takes to assemble and factorise, for 33, 65 and 101 nodes
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -47,14 +47,13 @@ namespace {
 constexpr int standard_nodes = 33;
 constexpr double standard_stiffness = 1200;
 constexpr int speed_nodes[] = {33, 65, 101};
-constexpr double run_until = 0.5;           // s
 constexpr int most_newton_iterations = 40;  // more than it takes anywhere here
 constexpr int most_iterations_of_figure_3 = 100;
 
 struct Arguments {
   std::string out;
   int nodes = standard_nodes, iterations = 400, repeats = 5;
-  double stiffness = standard_stiffness, step_size = 0.01, swing = 0.3;
+  double stiffness = standard_stiffness, step_size = 0.01, swing = 0.3, until = 0.5;
   std::vector<double> stiffnesses = {300, 600, 1200, 2400};
   std::vector<int> resolutions = {11, 21, 41, 81};
   bool speed = false;
@@ -70,6 +69,8 @@ void declare(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_option("--step-size", a.step_size, "h in s")->capture_default_str();
   app.add_option("--swing", a.swing, "how long the cloth has swung before the step, in s")
+      ->capture_default_str();
+  app.add_option("--until", a.until, "how long the runs of run.csv are, in s")
       ->capture_default_str();
   app.add_option("--iterations", a.iterations, "how far to go, 1 to 100000")->capture_default_str();
   app.add_option(
@@ -340,9 +341,9 @@ void write_run(const Arguments& a, const std::vector<std::string>& command_line)
   CsvFile csv(a.out + "/run.csv",
               {"solver", "iterations", "seconds", "position_error", "energy_change"});
   const Cloth cloth(a.nodes, a.stiffness, 0);
-  const State exact = truth(cloth.system(), cloth.start, run_until);
+  const State exact = truth(cloth.system(), cloth.start, a.until);
   const double energy = total_energy(cloth.system(), cloth.start);
-  fmt::print("\nruns of {:g} s with steps of {:g} s\n{:<24} {:>10} {:>9} {:>9} {:>9}\n", run_until,
+  fmt::print("\nruns of {:g} s with steps of {:g} s\n{:<24} {:>10} {:>9} {:>9} {:>9}\n", a.until,
              a.step_size, "solver", "iterations", "s", "m off", "J lost");
   const auto add = [&](const Method& method, int iterations) {
     State end = cloth.start;
@@ -350,7 +351,7 @@ void write_run(const Arguments& a, const std::vector<std::string>& command_line)
     const auto integrator = make_integrator(method, cloth.system(),
                                             {.step_size = a.step_size, .iterations = iterations});
     const double seconds =
-        seconds_of([&] { summary = integrator->advance(end, cloth.start.t + run_until); });
+        seconds_of([&] { summary = integrator->advance(end, cloth.start.t + a.until); });
     if (summary.outcome != Outcome::reached_end) {
       fmt::print("{:<24} {:>10} {}\n", method.name, iterations, name(summary.outcome));
       return;
@@ -419,6 +420,7 @@ int local_global_program(const Arguments& a, const std::vector<std::string>& com
   require_within(a.repeats, 1, 1000, "--repeats");
   require_positive(a.stiffness, "--stiffness", "a stiffness in N/m");
   require_positive(a.step_size, "--step-size", "h in s");
+  require_positive(a.until, "--until", "the length of the runs in s");
   if (!(std::isfinite(a.swing) && a.swing >= 0)) {
     throw InvalidInput(fmt::format(
         "--swing {} is not allowed; it is a time in s, finite and at least 0", a.swing));

@@ -97,9 +97,11 @@ BOOST_AUTO_TEST_CASE(the_error_of_the_step_is_of_second_order) {
   const auto own = [](const std::string& h) {
     const Folder folder;
     const Run result =
-        run("local_global", {"--nodes", "5", "--iterations", "1", "--repeats", "1", "--swing",
-                             "0.05", "--stiffnesses", "100", "--resolutions", "4", "--stiffness",
-                             "100", "--step-size", h, "--out", folder / "out"});
+        run("local_global",
+            {"--nodes",       "5",           "--iterations", "1",     "--repeats",     "1",
+             "--swing",       "0.05",        "--until",      "0.001", "--stiffnesses", "100",
+             "--resolutions", "4",           "--stiffness",  "100",   "--step-size",   h,
+             "--out",         folder / "out"});
     BOOST_TEST_REQUIRE(result.status == 0, result.err);
     return double(nlohmann::json::parse(read_all(folder / "out/positions.json"))["step_error"]);
   };
@@ -139,7 +141,7 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
   check_refused({"--stiffnesses", "1,0", "--out", "OUT"}, {"--stiffnesses 0", "greater than 0"});
   check_refused({"--iterations", "0", "--out", "OUT"}, {"--iterations 0", "from 1 to"});
   check_refused({"--repeats", "0", "--out", "OUT"}, {"--repeats 0", "from 1 to 1000"});
-  for (const char* option : {"--stiffness", "--step-size"}) {
+  for (const char* option : {"--stiffness", "--step-size", "--until"}) {
     for (const char* value : {"0", "-1", "nan", "inf"}) {
       check_refused({option, value, "--out", "OUT"}, {option, value, "greater than 0"});
     }
