@@ -47,8 +47,8 @@ void add_method_options(CLI::App& app, MethodOptions& options) {
                  "own)")
       ->take_last();
   app.add_option("--solve-tolerance", options.solve_tolerance,
-                 "what part of its first correction a nonlinear solve of a hand-written implicit "
-                 "method may leave (default: the method's own)")
+                 "what part of the error of its prediction a nonlinear solve of a hand-written "
+                 "implicit method may leave (default: the method's own)")
       ->take_last();
   app.add_option("--spectral-radius", options.spectral_radius,
                  "what a step of generalised-alpha methods leaves of a vibration of infinite "

@@ -26,7 +26,8 @@ class Bdf2 final : public ImplicitStep {
     // q_{n+1} - q_n = back (q_n - q_{n-1}) + c h v_{n+1}, and v likewise.
     known_ = back * (now.q - last_.q);
     free_ = known_ + c * h * (now.v + back * (now.v - last_.v));
-    u_ = w == 0 ? free_ : known_ + c * h * (now.v + w * (now.v - last_.v));
+    u_ = free_;
+    if (w > 0) u_ = known_ + c * h * (now.v + w * (now.v - last_.v));
     if (const Outcome outcome = solve_stage(now.q, free_, c * c * h * h, u_);
         outcome != Outcome::reached_end) {
       return outcome;

@@ -27,11 +27,12 @@ ImplicitStep::ImplicitStep(const Method& method, const System& system, const Kno
       r_(system.size()),
       p_(system.size()),
       trial_(system.size()),
+      start_(system.size()),
       k_(system.stiffness_pattern()),
       matrix_(system) {}
 
 void ImplicitStep::start(const State&) {
-  factorized_s_ = last_first_ = 0;
+  factorized_s_ = last_missed_ = 0;
   compression_ = last_rate_ = 1;
 }
 
@@ -40,8 +41,8 @@ Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& 
   bool are_new = false;                  // whether the factors were made in this stage,
   bool are_of_u = false;                 // and for the u at hand
   bool are_wanted = s != factorized_s_;  // whether to make them now
-  double first = 0;
   double last = 0;  // the correction before, if with these factors and of full length
+  start_ = u;
   residual(q, free, s, u);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     if (must_stop()) return Outcome::over_budget;
@@ -55,18 +56,18 @@ Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& 
     }
     if (const Outcome outcome = correction(); outcome != Outcome::reached_end) return outcome;
     const double size = p_.lpNorm<Eigen::Infinity>(), place = (q + u).lpNorm<Eigen::Infinity>();
-    if (iteration == 0) first = size;
     double rate = 1;
     if (last > 0) rate = size / last;
     // One correction tells nothing, but that the last stage was like this one.
-    if (iteration == 0 && !are_new && first <= 2 * last_first_) rate = last_rate_;
+    if (iteration == 0 && !are_new && size <= 2 * last_missed_) rate = last_rate_;
     const bool is_exact = is_linear && compression_ == 1;
-    const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * first;
+    const double missed = (u - start_ + p_).lpNorm<Eigen::Infinity>();
+    const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * missed;
     const bool is_rounding =
         size <= 4 * epsilon * place || (last > 0 && 2 * size > last && size <= rounding * place);
     if (is_exact || is_solved || is_rounding) {
       u += p_;
-      last_first_ = first;
+      last_missed_ = missed;
       // What was not seen this time is trusted less the next; with new factors nothing was seen
       // yet.
       last_rate_ = are_new ? 1 : (iteration == 0 ? 2 * rate : rate);

@@ -29,8 +29,8 @@ class ImplicitStep : public FixedStep {
                double solve_tolerance = enough);
 
  protected:
-  // Solves the stage from the prediction in `u`, up to the tolerance times the first correction,
-  // which is what the prediction was wrong by and so of the size of the step's own error.
+  // Solves the stage from the prediction in `u`, up to the tolerance times what the prediction was
+  // wrong by, which is of the size of the step's own error.
   // reached_end, newton_failed, indefinite_matrix, not_finite or over_budget.
   Outcome solve_stage(const Vec& q, const Vec& free, double s, Vec& u);
 
@@ -51,13 +51,13 @@ class ImplicitStep : public FixedStep {
   double objective(const Vec& q, const Vec& free, double s, const Vec& u);
 
   const double tolerance_;
-  Vec x_, f_, r_, p_, trial_;
+  Vec x_, f_, r_, p_, trial_, start_;
   SymmetricMatrix k_;
   EffectiveMass matrix_;
   double factorized_s_ = 0;  // of the factors at hand; 0: none
   double compression_ = 1;   // with which they were made
-  // The first correction of the last stage, and the rate at which its corrections shrank.
-  double last_first_ = 0, last_rate_ = 1;
+  // What the last stage's prediction was wrong by, and the rate at which its corrections shrank.
+  double last_missed_ = 0, last_rate_ = 1;
 };
 
 }  // namespace qddot

@@ -100,8 +100,8 @@ struct Knobs {
   bool stability_detection = false;  // CVODE's, which lowers the order where BDF is not stable
   int iterations = 0;  // a step, of methods that take as many as they are told; 0: their own
   bool timed = false;  // whether to fill Summary::seconds
-  // Of hand-written implicit methods: what part of its first correction, which is of the size of
-  // the step's own error, a nonlinear solve may leave; 0: the method's own choice.
+  // Of hand-written implicit methods: what part of the error of a stage's prediction, which is of
+  // the size of the step's own error, a nonlinear solve may leave; 0: the method's own choice.
   double solve_tolerance = 0;
   // Of generalised-alpha methods: what a step multiplies a vibration of infinite frequency by, from
   // 0 (gone at once) to 1 (undamped).

@@ -54,7 +54,7 @@ Outcome Rosenbrock::attempt(const Instant& now, double h, Instant& next, Vec& er
     s_ = g * (i == 0 ? now.a : next.a);
     r_.noalias() += table_.gamma * (u_q_.leftCols(i) * as_vec(table_.c[row]));
     s_.noalias() += table_.gamma * (u_v_.leftCols(i) * as_vec(table_.c[row]));
-    s_ = system().mass().cwiseProduct(r_ + g * s_).eval();
+    s_ = system().mass().cwiseProduct(r_ + g * s_);
     const Stopwatch watch(seconds(), &Seconds::solve);
     matrix_.solve(s_, x_);
     ++counts().solves;

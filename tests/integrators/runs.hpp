@@ -64,7 +64,8 @@ inline std::vector<Method> methods_of(Family family, Knob knob) {
 
 // Whether torques cancel in each of its steps, where every spring has a rest length.
 inline bool keeps_angular_momentum(const Method& method) {
-  return method.symplectic || method.name.starts_with("linear_midpoint");
+  return method.symplectic || method.name == "discrete_gradient" ||
+         method.name.starts_with("linear_midpoint");
 }
 
 // The larger of the errors in q and in v.

@@ -130,14 +130,15 @@ BOOST_AUTO_TEST_CASE(a_shortened_last_step_costs_a_second_factorisation) {
 
 BOOST_AUTO_TEST_CASE(implicit_euler_takes_what_its_iterations_take_where_k_changes) {
   // Without compression that outweighs the mass every factorisation succeeds at once and every
-  // full Newton step is accepted; the last iteration of a step needs no new force.
+  // full correction is accepted; the last iteration of a step needs no new force. One factorisation
+  // is enough for motion as smooth as this.
   const Counts c = count("implicit_euler", hammock(2));
   BOOST_TEST(c.newton_iterations > steps);
-  BOOST_TEST(c.newton_iterations <= 4 * steps);
+  BOOST_TEST(c.newton_iterations <= 5 * steps);
   BOOST_TEST(c == (Counts{.steps = steps,
                           .force_evaluations = c.newton_iterations,
-                          .stiffness_evaluations = c.newton_iterations,
-                          .factorizations = c.newton_iterations,
+                          .stiffness_evaluations = 1,
+                          .factorizations = 1,
                           .solves = c.newton_iterations,
                           .newton_iterations = c.newton_iterations}));
 }

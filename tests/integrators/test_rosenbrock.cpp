@@ -130,9 +130,9 @@ BOOST_AUTO_TEST_CASE(it_is_a_stable_and_damps_infinite_frequencies_at_once) {
 
 BOOST_AUTO_TEST_CASE(a_step_in_n_x_n_form_is_the_one_of_the_first_order_form) {
   for (const Case& c : {linear(), nonlinear()}) {
-    for (const double h : {0.001, 0.03, 0.3}) {
+    for (const double h : {0.001, 0.01, 0.03}) {
       // So coarse a tolerance that one step is taken.
-      const Run r = run(method_named("rodas4"), *c.system, c.initial, h, {.rtol = 1e20});
+      const Run r = run(method_named("rodas4"), *c.system, c.initial, h, {.rtol = 1e3});
       BOOST_REQUIRE(r.summary.counts.steps == 1);
       // Stages of 34 times what they make together, on q and v of 5, and matrices of condition 100.
       BOOST_TEST(distance(r.state, step(*c.system, c.initial, h)) < 1e-11);
@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(one_step_errs_by_order_5_in_q_and_v) {
     const auto system = make_mass_spring(p.network);
     std::vector<double> q, v;
     for (double h = 0.016; h > 0.0009; h /= 2) {
-      const Run r = run(method_named("rodas4"), *system, p.initial, h, {.rtol = 1e20});
+      const Run r = run(method_named("rodas4"), *system, p.initial, h, {.rtol = 1e3});
       const State exact =
           run(method_named("kahan_li8"), *system, p.initial, h, {.step_size = h / 8}).state;
       BOOST_REQUIRE(r.summary.counts.steps == 1);

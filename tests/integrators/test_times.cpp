@@ -7,6 +7,7 @@
 #include "tests/integrators/scenes.hpp"
 
 using namespace qddot;
+using namespace std::string_literals;
 
 BOOST_AUTO_TEST_SUITE(times)
 
@@ -174,7 +175,7 @@ BOOST_AUTO_TEST_CASE(what_is_left_of_the_run_before_is_noticed) {
 }
 
 BOOST_AUTO_TEST_CASE(one_step_methods_run_in_two_halves_as_in_one) {
-  const Knobs knobs{.step_size = 1. / 64};
+  const Knobs knobs{.step_size = 1. / 64, .solve_tolerance = 1e-13};
   for (const char* method :
        {"explicit_euler", "symplectic_euler", "semi_implicit_euler", "implicit_euler", "verlet",
         "position_verlet", "rk4", "blanes_moan4", "blanes_moan6", "kahan_li8"}) {
@@ -186,8 +187,10 @@ BOOST_AUTO_TEST_CASE(one_step_methods_run_in_two_halves_as_in_one) {
         integrator->advance(state, 0.5);
         integrator->advance(state, 1);
         const State whole = run(method_named(method), *system, p.initial, 1, knobs).state;
-        // A constant K is assembled anew where the second half starts, and rounds otherwise there.
-        BOOST_TEST(distance(state, whole) <= (system->stiffness_is_constant() ? 1e-13 : 0));
+        // A constant K is assembled anew where the second half starts, and rounds otherwise there;
+        // implicit Euler has other factors then, and leaves another 1e-13 of each step to them.
+        const bool is_solved = system->stiffness_is_constant() || method == "implicit_euler"s;
+        BOOST_TEST(distance(state, whole) <= (is_solved ? 1e-11 : 0));
       }
     }
   }
