@@ -14,7 +14,7 @@ constexpr double slowest_rate = 0.3;
 constexpr double least_compression = 1.0 / 64;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // Of the positions: where corrections no longer shrink below this, rounding makes them.
-constexpr double rounding = 1e-10;
+constexpr double rounding = 1e-12;
 
 }  // namespace
 
@@ -42,6 +42,7 @@ Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& 
   bool are_of_u = false;                 // and for the u at hand
   bool are_wanted = s != factorized_s_;  // whether to make them now
   double last = 0;  // the correction before, if with these factors and of full length
+  double least = std::numeric_limits<double>::infinity();  // of all corrections so far
   start_ = u;
   residual(q, free, s, u);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -64,7 +65,7 @@ Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& 
     const double missed = (u - start_ + p_).lpNorm<Eigen::Infinity>();
     const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * missed;
     const bool is_rounding =
-        size <= 4 * epsilon * place || (last > 0 && 2 * size > last && size <= rounding * place);
+        size <= 4 * epsilon * place || (2 * size > least && size <= rounding * place);
     if (is_exact || is_solved || is_rounding) {
       u += p_;
       last_missed_ = missed;
@@ -73,6 +74,7 @@ Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& 
       last_rate_ = are_new ? 1 : (iteration == 0 ? 2 * rate : rate);
       return Outcome::reached_end;
     }
+    least = std::min(least, size);
     are_wanted = last > 0 && rate > slowest_rate && !are_of_u;
     if (are_wanted) continue;
 

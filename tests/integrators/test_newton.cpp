@@ -51,7 +51,7 @@ class Minimisation {
   const Vec& start() const { return initial_.v; }
   Run step(double t_end) const {
     return run(method_named("implicit_euler"), *system_, initial_, t_end,
-               {.step_size = h_, .solve_tolerance = 1e-10});
+               {.step_size = h_, .solve_tolerance = 1e-12});
   }
   const System& system() const { return *system_; }
 
@@ -68,8 +68,8 @@ class Minimisation {
 
 // A minimum, below the start.
 bool is_solved(const Minimisation& problem, const Vec& v) {
-  // Corrections down to 1e-10 of the first: gradients down to 1e-9 of it, for matrices of condition
-  // ten and more.
+  // Corrections down to 1e-12 of what the prediction missed: gradients down to 1e-9 of the first,
+  // for matrices of condition ten and more.
   return problem.gradient(v).norm() < 1e-9 * problem.gradient(problem.start()).norm() &&
          problem.least_curvature(v) > 0 &&
          problem.objective(v) < problem.objective(problem.start());
