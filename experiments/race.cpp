@@ -32,6 +32,9 @@ void Race::take(const Point& point) {
 }
 
 bool Race::is_over(const Point& point) const {
+  // Errors beyond the motion itself, as of steps above a stability limit, tell nothing of finer
+  // ones.
+  if (!(point.errors.position < 1)) return false;
   for (std::size_t i = 0; i < count_; ++i) {
     if (reaches(point, accuracies[i])) continue;
     const double slower =

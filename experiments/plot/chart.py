@@ -13,6 +13,12 @@ from style import FAINT, FRONT, number, power_of_ten, seconds, widened
 FONT_SIZE = 9.5
 FRONT_INK = 0.5
 BELOW_TICKS = -28
+# Methods that are nowhere nearer to the front than this, where errors are small enough to matter,
+# stay in the background of a crowded chart.
+NEAR = 3.0
+MATTERS = 0.1
+CROWD = 24
+BACKGROUND = 0.3
 
 
 class Chart:
@@ -27,6 +33,7 @@ class Chart:
         self.looks = looks
         self.set_limits()
         self.style_axes()
+        self.crowded = len(self.sweeps) > CROWD
 
     def set_limits(self):
         """The ranges of error and time; the certified floor is in them where the errors come
@@ -148,6 +155,20 @@ class Chart:
                 corners.append((error, time))
         return corners + [(self.axes.get_xlim()[1], corners[-1][1])] if corners else []
 
+    def is_near(self, sweep):
+        """Whether some run of the sweep, of an error that matters, takes no more than NEAR times as
+        long as the fastest with that error or a smaller one."""
+        points = [self.position(run) for run in sweep if not run.failure]
+        return any(
+            error <= MATTERS
+            and time <= NEAR * min(other for e, other in map(self.position, self.good) if e <= error)
+            for error, time in points
+        )
+
+    def strength(self, sweep):
+        """How strongly a line is drawn."""
+        return BACKGROUND if self.crowded and not self.is_near(sweep) else 1.0
+
     def draw_front(self):
         """The front as a wide stroke under the lines."""
         corners = self.front_corners()
@@ -171,18 +192,20 @@ class Chart:
     def draw_sweep(self, sweep):
         """The line of one method, a hairline where runs between its points failed."""
         look = self.looks[sweep[0].method]
+        strength = self.strength(sweep)
+        style = {"color": look.color, "alpha": strength}
         pieces = list(self.pieces(sweep))
         for piece in pieces:
             self.axes.plot(
                 *zip(*piece),
-                color=look.color,
                 linestyle=look.family.line,
-                linewidth=look.family.width,
-                zorder=3,
+                linewidth=look.family.width * (0.6 + 0.4 * strength),
+                zorder=2.5 + 0.5 * strength,
+                **style,
                 **look.marker_style(),
             )
         for before, after in zip(pieces, pieces[1:]):
-            self.axes.plot(*zip(before[-1], after[0]), color=look.color, linewidth=0.6, zorder=2)
+            self.axes.plot(*zip(before[-1], after[0]), linewidth=0.6, zorder=2, **style)
 
     def pixels(self, position):
         """A point of the axes in pixels."""
@@ -234,12 +257,14 @@ class Chart:
     def draw_label(self, sweep, end):
         """The name of a line on one of its ends, not yet in its place."""
         look = self.looks[sweep[0].method]
+        strength = self.strength(sweep)
         return self.axes.annotate(
             self.label_of(sweep),
             end,
             (0, 0),
             textcoords="offset points",
-            size=FONT_SIZE,
+            size=FONT_SIZE if strength == 1 else 0.8 * FONT_SIZE,
+            alpha=1 if strength == 1 else 0.75,
             color=look.text_color,
             ha="center",
             va="center",
@@ -248,6 +273,7 @@ class Chart:
             arrowprops={
                 "arrowstyle": "-",
                 "color": look.color,
+                "alpha": strength,
                 "linewidth": 0.8,
                 "shrinkA": 0,
                 "shrinkB": 4,

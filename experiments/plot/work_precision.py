@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 import failures
 import measurements
 from band import draw_band
-from chart import Chart
+from chart import BACKGROUND, MATTERS, NEAR, Chart
 from sheet import Sheet
 from style import FAINT, assign_looks, number, use_style
 
@@ -59,9 +59,13 @@ def key_line(family):
     )
 
 
-def draw_key(sheet, looks):
-    """How the lines of each family look."""
+def draw_key(sheet, looks, crowded):
+    """How the lines of each family look, and those in the background."""
     lines = [key_line(family) for family in dict.fromkeys(look.family for look in looks.values())]
+    if crowded:
+        words = f"faint: never within {NEAR:g} × the fastest at errors below {MATTERS:g}"
+        faint = {"color": FAINT, "alpha": BACKGROUND, "linewidth": 1.2, "marker": "o"}
+        lines.append(Line2D([], [], label=words, **faint))
     sheet.figure.legend(
         handles=lines,
         loc="center left",
@@ -85,10 +89,10 @@ def draw(runs, front, reference, fallback_scene):
     sheet = Sheet(WIDTH, strip_top + failures.strip_height(failed))
     scene = reference.scene or (runs[0].scene if runs else "") or fallback_scene
     draw_header(sheet, scene, reference.until)
-    draw_key(sheet, looks)
     axes = sheet.axes(LEFT, axes_top, WIDTH - LEFT - RIGHT, axes_height(runs))
     chart = Chart(axes, runs, reference, looks)
     chart.draw()
+    draw_key(sheet, looks, chart.crowded)
     rectangle = (LEFT, HEADER, WIDTH - LEFT - RIGHT, BAND)
     if front:
         draw_band(sheet, rectangle, front, axes.get_xlim(), reference.certified, looks)

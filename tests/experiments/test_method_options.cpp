@@ -161,6 +161,43 @@ BOOST_AUTO_TEST_CASE(stability_detection_is_heard_by_bdf_alone) {
   BOOST_TEST(order(with, "cvode_adams", rung) == order(without, "cvode_adams", rung));
 }
 
+BOOST_AUTO_TEST_CASE(options_of_how_steps_are_solved_are_refused_where_they_mean_nothing) {
+  struct {
+    const char *option, *method, *good, *bad, *allowed, *other;
+  } const cases[] = {
+      {"--iterations", "local_global", "3", "0", "a whole number above 0", "implicit_euler"},
+      {"--solve-tolerance", "implicit_euler", "1e-8", "1", "between 0 and 1", "local_global"},
+      {"--solve-tolerance", "bdf2", "0.1", "0", "between 0 and 1", "verlet"},
+      {"--spectral-radius", "hht", "0", "1.5", "from 0 to 1", "trapezoidal"},
+      {"--spectral-radius", "generalized_alpha", "1", "-1", "from 0 to 1", "ida"}};
+  for (const auto& [option, method, good, bad, allowed, other] : cases) {
+    BOOST_TEST_CONTEXT(option << " " << method) {
+      BOOST_TEST(simulate(method, {option, good}).status == 0);
+      BOOST_TEST(complains(simulate(method, {option, bad}), 2, "simulate",
+                           {std::string(option) + " " + bad, allowed}));
+      BOOST_TEST(complains(simulate(other, {option, good}), 2, "simulate",
+                           {std::string(option) + " is not for " + other, method}));
+      const Folder folder;
+      BOOST_TEST(complains(measure(folder / "out", method, {option, bad}), 2, "work_precision",
+                           {std::string(option) + " " + bad, allowed}));
+      BOOST_TEST(folder.listing() == "");
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(iterations_follow_the_solve_tolerance_and_damping_the_spectral_radius) {
+  const auto last = [](const Table& table, const char* column) {
+    return table.value(table.rows.size() / 2, column);
+  };
+  const Table loose = points("trapezoidal", {"--solve-tolerance", "1e-2"});
+  const Table tight = points("trapezoidal", {"--solve-tolerance", "1e-12"});
+  BOOST_TEST(last(tight, "steps") == last(loose, "steps"));
+  BOOST_TEST(last(tight, "newton_iterations") > last(loose, "newton_iterations"));
+  const Table damped = points("generalized_alpha", {"--spectral-radius", "0"});
+  const Table undamped = points("generalized_alpha", {"--spectral-radius", "1"});
+  BOOST_TEST(last(damped, "error_energy") > 10 * last(undamped, "error_energy"));
+}
+
 BOOST_AUTO_TEST_CASE(the_columns_are_empty_or_0_where_they_mean_nothing) {
   const std::string list = "verlet,implicit_euler,arkode_dirk4,arkode_erk4,arkode_trbdf2,ida";
   const Table table = points(list, {}, held);
