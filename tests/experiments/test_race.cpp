@@ -41,10 +41,10 @@ BOOST_AUTO_TEST_CASE(kinds_are_read_from_the_registry) {
 BOOST_AUTO_TEST_CASE(steps_above_a_stability_limit_do_not_end_the_race_of_a_method) {
   Race race(certain_to(1e-9));
   race.take(point("ida", 1e-7, 1));
-  for (const double error : {2.0, 1e30, INFINITY}) {
+  for (const double error : {2.0, 1e30, 1e300}) {
     BOOST_TEST(!race.is_over(point("linear_midpoint", error, 1e-3)));
   }
-  BOOST_TEST(race.is_over(point("linear_midpoint", 0.9, 1)));
+  BOOST_TEST(race.is_over(point("linear_midpoint", 0.9, 30)));
 }
 
 BOOST_AUTO_TEST_CASE(the_fastest_point_that_is_accurate_enough_wins) {
