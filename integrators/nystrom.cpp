@@ -2,20 +2,9 @@
 
 #include <algorithm>
 
-#include "src/analysis/frequency_bound.hpp"
+#include "integrators/table_row.hpp"
 
 namespace qddot {
-namespace {
-
-// w_max changes with the positions, much less than these do in so many steps.
-constexpr int steps_with_one_bound = 50;
-
-Eigen::Map<const Vec> as_vec(const std::vector<double>& numbers) {
-  return {numbers.data(), static_cast<Index>(numbers.size())};
-}
-
-}  // namespace
-
 bool NystromPair::is_first_same_as_last() const {
   return c.back() == 1 && std::equal(a.back().begin(), a.back().end(), b.begin()) && b.back() == 0;
 }
@@ -31,19 +20,17 @@ Nystrom::Nystrom(const Method& method, const System& system, const Knobs& knobs,
       is_first_same_as_last_(pair.is_first_same_as_last()),
       k_(system.size(), b_.size()),
       stage_(system.size()),
-      stiffness_(system.stiffness_pattern()) {}
+      w_max_(system) {}
 
 void Nystrom::start(const State& state) {
   AdaptiveStep::start(state);
-  steps_with_bound_ = 0;
+  w_max_.start();
 }
 
 double Nystrom::longest_step(const Instant& now) {
-  if (steps_with_bound_ == 0) {
-    stiffness(now.state.q, stiffness_);
-    w_max_ = frequency_bound(system().mass(), stiffness_);
-  }
-  return w_max_ > 0 ? pair_.stable_hw / w_max_ : INFINITY;
+  const double w_max =
+      w_max_.at(counts().steps, [&](SymmetricMatrix& k) { stiffness(now.state.q, k); });
+  return w_max > 0 ? pair_.stable_hw / w_max : INFINITY;
 }
 
 Outcome Nystrom::attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) {
@@ -66,7 +53,6 @@ Outcome Nystrom::attempt(const Instant& now, double h, Instant& next, Vec& error
 }
 
 void Nystrom::accepted(Instant& next) {
-  steps_with_bound_ = (steps_with_bound_ + 1) % steps_with_one_bound;
   if (!is_first_same_as_last_) AdaptiveStep::accepted(next);
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "integrators/adaptive_step.hpp"
+#include "integrators/renewed_bound.hpp"
 
 namespace qddot {
 
@@ -43,9 +44,7 @@ class Nystrom final : public AdaptiveStep {
   bool is_first_same_as_last_;
   Eigen::MatrixXd k_;  // n x s, the stages' accelerations
   Vec stage_;
-  SymmetricMatrix stiffness_;
-  double w_max_ = 0;
-  std::int64_t steps_with_bound_ = 0;
+  RenewedBound w_max_;
 };
 
 // The pairs of Dormand, El-Mikkawy and Prince, each in the file of its method.

@@ -1,11 +1,9 @@
 #include "integrators/rosenbrock.hpp"
 
+#include "integrators/table_row.hpp"
+
 namespace qddot {
 namespace {
-
-Eigen::Map<const Vec> as_vec(const std::vector<double>& numbers) {
-  return {numbers.data(), static_cast<Index>(numbers.size())};
-}
 
 // Between two ends of steps: errs by h^6 where the step does by h^5.
 constexpr std::size_t instants = 2;

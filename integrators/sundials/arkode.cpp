@@ -2,16 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "src/analysis/frequency_bound.hpp"
-
 namespace qddot::sundials {
 namespace {
 
 constexpr int steps_with_one_matrix = 5;
 constexpr int extrapolate = 1;  // ARKODE's number for that predictor
 
-// w_max changes with the positions, much less than these do in so many steps.
-constexpr int steps_with_one_bound = 50;
 // ARKODE takes its own fraction of the bound, which must be below 1.
 constexpr double fraction = 0.99;
 
@@ -54,7 +50,7 @@ Arkode::Arkode(const Method& method, const System& system, const Knobs& knobs, c
 }
 
 void Arkode::limit_steps(const System& part, double y) {
-  limit_.emplace(Limit{part, y, Vec(part.size()), part.stiffness_pattern()});
+  limit_.emplace(Limit{part, y, Vec(part.size()), RenewedBound(part)});
   check(ARKStepSetStabilityFn(memory(), stable_step, this), "ARKStepSetStabilityFn");
   check(ARKStepSetCFLFraction(memory(), fraction), "ARKStepSetCFLFraction");
 }
@@ -63,19 +59,21 @@ int Arkode::stable_step(N_Vector y, double, double* h, void* user) {
   auto& self = *static_cast<Arkode*>(user);
   return self.guarded([&] {
     Limit& limit = *self.limit_;
-    if (limit.calls++ % steps_with_one_bound == 0) {
+    const double w_max = limit.w_max.at(limit.calls++, [&](SymmetricMatrix& k) {
       limit.q = Halves(y).q;
-      self.stiffness(limit.part, limit.q, limit.k);
-      limit.w_max = frequency_bound(limit.part.mass(), limit.k);
-    }
-    *h = limit.w_max > 0 ? limit.y / (fraction * limit.w_max) : INFINITY;
+      self.stiffness(limit.part, limit.q, k);
+    });
+    *h = w_max > 0 ? limit.y / (fraction * w_max) : INFINITY;
     return true;
   });
 }
 
 void Arkode::start(const State& state) {
   load(state);
-  if (limit_) limit_->calls = 0;
+  if (limit_) {
+    limit_->calls = 0;
+    limit_->w_max.start();
+  }
   check(ARKStepReInit(memory(), explicit_rate_, implicit_rate_, state.t, y()), "ARKStepReInit");
 }
 

@@ -4,6 +4,7 @@
 
 #include <arkode/arkode_arkstep.h>
 
+#include "integrators/renewed_bound.hpp"
 #include "integrators/sundials/newton_test.hpp"
 #include "integrators/sundials/stepper.hpp"
 
@@ -51,8 +52,7 @@ class Arkode : public Stepper {
     const System& part;
     double y;
     Vec q;
-    SymmetricMatrix k;
-    double w_max = 0;
+    RenewedBound w_max;
     std::int64_t calls = 0;
   };
   ARKRhsFn explicit_rate_, implicit_rate_;

@@ -6,66 +6,10 @@
 
 #include "src/model/block_pattern.hpp"
 #include "src/model/layout.hpp"
+#include "src/model/network_halves.hpp"
 
 namespace qddot {
 namespace {
-
-// The network with its stiff springs alone, or with all but these.
-Network only(Network network, bool stiff) {
-  const auto is_other = [&](const auto& spring) { return spring.stiff != stiff; };
-  std::erase_if(network.links, is_other);
-  std::erase_if(network.image_links, is_other);
-  std::erase_if(network.anchors, is_other);
-  if (stiff) {
-    network.gravity.setZero();
-    network.load = network.stiff_load;
-    network.constant_energy = 0;
-  } else if (network.stiff_load.size() > 0) {
-    network.load -= network.stiff_load;
-  }
-  network.offers_split = false;
-  return network;
-}
-
-// The nodes that springs or loads of the network pull at, ascending.
-std::vector<int> pulled_nodes(const Network& network) {
-  std::vector<char> is_pulled(static_cast<std::size_t>(network.node_mass.size()));
-  for (const auto& link : network.links) is_pulled[link.i] = is_pulled[link.j] = 1;
-  for (const auto& link : network.image_links) is_pulled[link.i] = is_pulled[link.j] = 1;
-  for (const auto& anchor : network.anchors) is_pulled[anchor.i] = 1;
-  for (Index x = 0; x < network.load.size(); ++x) {
-    if (network.load[x] != 0) is_pulled[x / network.dimension] = 1;
-  }
-  std::vector<int> nodes;
-  for (int i = 0; i < std::ssize(is_pulled); ++i) {
-    if (is_pulled[i]) nodes.push_back(i);
-  }
-  return nodes;
-}
-
-// The network of these nodes alone, to which all of its springs and loads belong.
-Network among(const std::vector<int>& nodes, const Network& network) {
-  const int D = network.dimension;
-  Network core = network;
-  core.node_mass = network.node_mass(nodes);
-  std::vector<int> place(static_cast<std::size_t>(network.node_mass.size()), -1);
-  core.load.resize(network.load.size() > 0 ? D * std::ssize(nodes) : 0);
-  core.zero_coordinates.clear();
-  for (int i = 0; i < std::ssize(nodes); ++i) {
-    place[nodes[i]] = i;
-    if (core.load.size() > 0) core.load.segment(D * i, D) = network.load.segment(D * nodes[i], D);
-    if (!network.zero_coordinates.empty()) {
-      core.zero_coordinates.push_back(network.zero_coordinates[nodes[i]]);
-    }
-  }
-  const auto renumber = [&](auto& links) {
-    for (auto& link : links) link.i = place[link.i], link.j = place[link.j];
-  };
-  renumber(core.links);
-  renumber(core.image_links);
-  for (auto& anchor : core.anchors) anchor.i = place[anchor.i];
-  return core;
-}
 
 // Springs between nodes all of whose coordinates are unknowns are kept apart, by their first
 // unknowns alone; the few that touch a node on a mirror go through the layout.
