@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "integrators/compression.hpp"
 #include "integrators/fixed_step.hpp"
 #include "src/algebra/effective_mass.hpp"
 
 namespace qddot {
 namespace {
 
-constexpr double least_compression = 1.0 / 64;
 constexpr int most_halvings = 30;
 
 template <bool is_clamped>
@@ -26,7 +26,7 @@ class Newton final : public FixedStep {
       return system().kinetic(next.v - now.v) + system().potential(next.q);
     };
     move_to(now.v);
-    compression_ = 1;
+    compression_.start();
     double g = energy();
     for (int i = 0; i < knobs().iterations; ++i) {
       force(next.q, f_);
@@ -49,23 +49,19 @@ class Newton final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // The whole compression is tried first, then half of it, a quarter ... and none, which is enough;
-  // the next search begins at twice what was.
   bool factorize(const Vec& q, double s) {
-    compression_ = is_clamped ? 0 : std::clamp(2 * compression_, least_compression, 1.0);
-    for (;;) {
-      softened_stiffness(q, compression_, k_);
+    const auto works = [&](double kept) {
+      softened_stiffness(q, kept, k_);
       ++counts().factorizations;
-      if (matrix_.factorize_positive(1, s, k_)) return true;
-      if (compression_ == 0) return false;
-      compression_ = compression_ > least_compression ? compression_ / 2 : 0;
-    }
+      return matrix_.factorize_positive(1, s, k_);
+    };
+    return is_clamped ? works(0) : compression_.find(works);
   }
 
   Vec f_{system().size()}, r_{system().size()}, p_{system().size()}, v_{system().size()};
   SymmetricMatrix k_{system().stiffness_pattern()};
   EffectiveMass matrix_{system()};
-  double compression_ = 1;
+  Compression compression_;
 };
 
 template <bool is_clamped>

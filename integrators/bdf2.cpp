@@ -28,7 +28,7 @@ class Bdf2 final : public ImplicitStep {
     free_ = known_ + c * h * (now.v + back * (now.v - last_.v));
     u_ = free_;
     if (w > 0) u_ = known_ + c * h * (now.v + w * (now.v - last_.v));
-    if (const Outcome outcome = solve_stage(now.q, free_, c * c * h * h, u_);
+    if (const Outcome outcome = solve_stage(now.q, c * c * h * h);
         outcome != Outcome::reached_end) {
       return outcome;
     }
@@ -42,7 +42,7 @@ class Bdf2 final : public ImplicitStep {
 
   State last_{0, Vec(system().size()), Vec(system().size())};
   double last_h_ = 0;
-  Vec known_{system().size()}, free_{system().size()}, u_{system().size()};
+  Vec known_{system().size()};
 };
 
 }  // namespace

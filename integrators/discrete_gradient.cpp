@@ -20,15 +20,14 @@ class DiscreteGradient final : public ImplicitStep {
  private:
   void start(const State& state) override {
     ImplicitStep::start(state);
-    force(state.q, a_);
-    a_ = a_.cwiseQuotient(system().mass()).eval();
+    acceleration(state.q, a_);
   }
 
   Outcome step(const State& now, double h, State& next) override {
     const double s = h * h / 2;
     free_ = h * now.v;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, free_, s, u_); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     a_ = (u_ - free_) / s;
@@ -50,7 +49,7 @@ class DiscreteGradient final : public ImplicitStep {
   bool is_minimisation() const override { return false; }
 
   Vec a_{system().size()};  // the mean of the last step, which predicts the next
-  Vec free_{system().size()}, u_{system().size()}, x_{system().size()};
+  Vec x_{system().size()};
 };
 
 }  // namespace

@@ -36,8 +36,7 @@ class GeneralizedAlpha : public ImplicitStep {
  private:
   void start(const State& state) override {
     ImplicitStep::start(state);
-    force(state.q, a_);
-    a_ = a_.cwiseQuotient(system().mass()).eval();
+    acceleration(state.q, a_);
   }
 
   Outcome step(const State& now, double h, State& next) override {
@@ -46,7 +45,7 @@ class GeneralizedAlpha : public ImplicitStep {
     const double s = (1 - alpha_.f) * beta / (1 - alpha_.m) * h * h;
     free_ = (1 - alpha_.f) * (h * now.v + h * h * (0.5 - beta) * a_) - s * alpha_.m * a_;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, free_, s, u_); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     new_a_ = ((u_ - free_) / s - alpha_.m * a_) / (1 - alpha_.m);
@@ -57,7 +56,7 @@ class GeneralizedAlpha : public ImplicitStep {
   }
 
   const Alphas alpha_;
-  Vec a_{system().size()}, new_a_{system().size()}, free_{system().size()}, u_{system().size()};
+  Vec a_{system().size()}, new_a_{system().size()};
 };
 
 class ChungHulbert final : public GeneralizedAlpha {

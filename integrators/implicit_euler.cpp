@@ -17,16 +17,13 @@ class ImplicitEuler final : public ImplicitStep {
   Outcome step(const State& now, double h, State& next) override {
     free_ = h * now.v;
     u_ = free_;
-    if (const Outcome outcome = solve_stage(now.q, free_, h * h, u_);
-        outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, h * h); outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
     next.v = u_ / h;
     return Outcome::reached_end;
   }
-
-  Vec free_{system().size()}, u_{system().size()};
 };
 
 }  // namespace

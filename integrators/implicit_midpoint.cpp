@@ -17,15 +17,14 @@ class ImplicitMidpoint final : public ImplicitStep {
  private:
   void start(const State& state) override {
     ImplicitStep::start(state);
-    force(state.q, a_);
-    a_ = a_.cwiseQuotient(system().mass()).eval();
+    acceleration(state.q, a_);
   }
 
   Outcome step(const State& now, double h, State& next) override {
     const double s = h * h / 4;
     free_ = h / 2 * now.v;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, free_, s, u_); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     a_ = (u_ - free_) / s;
@@ -35,7 +34,6 @@ class ImplicitMidpoint final : public ImplicitStep {
   }
 
   Vec a_{system().size()};  // of the last step's middle, which predicts the next
-  Vec free_{system().size()}, u_{system().size()};
 };
 
 }  // namespace

@@ -11,7 +11,6 @@ constexpr int most_halvings = 30;
 // Corrections that shrink more slowly than this are worth new factors, which cost as much as some
 // ten solves.
 constexpr double slowest_rate = 0.3;
-constexpr double least_compression = 1.0 / 64;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // Of the positions: where corrections no longer shrink below this, rounding makes them.
 constexpr double rounding = 1e-12;
@@ -21,34 +20,42 @@ constexpr double rounding = 1e-12;
 ImplicitStep::ImplicitStep(const Method& method, const System& system, const Knobs& knobs,
                            double solve_tolerance)
     : FixedStep(method, system, knobs),
+      free_(system.size()),
+      u_(system.size()),
       tolerance_(knobs.solve_tolerance > 0 ? knobs.solve_tolerance : solve_tolerance),
       x_(system.size()),
       f_(system.size()),
       r_(system.size()),
       p_(system.size()),
-      trial_(system.size()),
+      before_(system.size()),
       start_(system.size()),
       k_(system.stiffness_pattern()),
       matrix_(system) {}
 
 void ImplicitStep::start(const State&) {
   factorized_s_ = last_missed_ = 0;
-  compression_ = last_rate_ = 1;
+  last_rate_ = 1;
+  compression_.start();
 }
 
-Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& u) {
+void ImplicitStep::acceleration(const Vec& q, Vec& a) {
+  force(q, a);
+  a.array() /= system().mass().array();
+}
+
+Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
   const bool is_linear = system().stiffness_is_constant();
   bool are_new = false;                  // whether the factors were made in this stage,
   bool are_of_u = false;                 // and for the u at hand
   bool are_wanted = s != factorized_s_;  // whether to make them now
   double last = 0;  // the correction before, if with these factors and of full length
   double least = std::numeric_limits<double>::infinity();  // of all corrections so far
-  start_ = u;
-  residual(q, free, s, u);
+  start_ = u_;
+  residual(q, s);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     if (must_stop()) return Outcome::over_budget;
     if (are_wanted) {
-      if (const Outcome outcome = factorize(q, u, s); outcome != Outcome::reached_end) {
+      if (const Outcome outcome = factorize(q, s); outcome != Outcome::reached_end) {
         return outcome;
       }
       are_new = are_of_u = true;
@@ -56,18 +63,18 @@ Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& 
       last = 0;
     }
     if (const Outcome outcome = correction(); outcome != Outcome::reached_end) return outcome;
-    const double size = p_.lpNorm<Eigen::Infinity>(), place = (q + u).lpNorm<Eigen::Infinity>();
+    const double size = p_.lpNorm<Eigen::Infinity>(), place = (q + u_).lpNorm<Eigen::Infinity>();
     double rate = 1;
     if (last > 0) rate = size / last;
     // One correction tells nothing, but that the last stage was like this one.
     if (iteration == 0 && !are_new && size <= 2 * last_missed_) rate = last_rate_;
-    const bool is_exact = is_linear && compression_ == 1;
-    const double missed = (u - start_ + p_).lpNorm<Eigen::Infinity>();
+    const bool is_exact = is_linear && compression_.kept() == 1;
+    const double missed = (u_ - start_ + p_).lpNorm<Eigen::Infinity>();
     const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * missed;
     const bool is_rounding =
         size <= 4 * epsilon * place || (2 * size > least && size <= rounding * place);
     if (is_exact || is_solved || is_rounding) {
-      u += p_;
+      u_ += p_;
       last_missed_ = missed;
       // What was not seen this time is trusted less the next; with new factors nothing was seen
       // yet.
@@ -78,7 +85,7 @@ Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& 
     are_wanted = last > 0 && rate > slowest_rate && !are_of_u;
     if (are_wanted) continue;
 
-    const double length = is_minimisation() ? search(q, free, s, u) : move(q, free, s, u);
+    const double length = search(q, s);
     if (length == 0 && are_of_u) return Outcome::newton_failed;
     are_wanted = length < 1;
     are_of_u = false;
@@ -88,9 +95,9 @@ Outcome ImplicitStep::solve_stage(const Vec& q, const Vec& free, double s, Vec& 
 }
 
 // r = M (u - u*) - s f.
-void ImplicitStep::residual(const Vec& q, const Vec& free, double s, const Vec& u) {
-  stage_force(q, u, f_);
-  r_ = system().mass().cwiseProduct(u - free) - s * f_;
+void ImplicitStep::residual(const Vec& q, double s) {
+  stage_force(q, u_, f_);
+  r_ = system().mass().cwiseProduct(u_ - free_) - s * f_;
 }
 
 void ImplicitStep::stage_force(const Vec& q, const Vec& u, Vec& f) {
@@ -104,18 +111,19 @@ void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compressio
   softened_stiffness(x_, compression, k);
 }
 
-Outcome ImplicitStep::factorize(const Vec& q, const Vec& u, double s) {
+Outcome ImplicitStep::factorize(const Vec& q, double s) {
   factorized_s_ = 0;
-  compression_ = std::clamp(2 * compression_, least_compression, 1.0);
-  for (;;) {
-    stage_stiffness(q, u, compression_, k_);
-    if (!k_.coeffs().allFinite()) return Outcome::not_finite;
+  bool is_finite = true;
+  const bool is_positive = compression_.find([&](double kept) {
+    stage_stiffness(q, u_, kept, k_);
+    is_finite = k_.coeffs().allFinite();
+    if (!is_finite) return true;  // no factor of it helps
     ++counts().factorizations;
     const Stopwatch watch(seconds(), &Seconds::factorization);
-    if (matrix_.factorize_positive(1, s, k_)) break;
-    if (compression_ == 0) return Outcome::indefinite_matrix;
-    compression_ = compression_ > least_compression ? compression_ / 2 : 0;
-  }
+    return matrix_.factorize_positive(1, s, k_);
+  });
+  if (!is_finite) return Outcome::not_finite;
+  if (!is_positive) return Outcome::indefinite_matrix;
   factorized_s_ = s;
   return Outcome::reached_end;
 }
@@ -132,40 +140,36 @@ Outcome ImplicitStep::correction() {
 
 // Moves u along p by the first of 1, 1/2, 1/4, ... of it that halves the residual, or else
 // decreases g by Armijo's rule; the first test costs nothing, since the next iteration needs that
-// residual. Returns that part, or 0, with u as it was, if there is none.
-double ImplicitStep::search(const Vec& q, const Vec& free, double s, Vec& u) {
+// residual. Without a g to decrease, by all of it. Returns that part, or 0, with u as it was, if
+// there is none.
+double ImplicitStep::search(const Vec& q, double s) {
   const double norm = r_.norm(), slope = r_.dot(p_);
   double g = std::numeric_limits<double>::quiet_NaN();
+  before_ = u_;
   double length = 1;
   for (int halvings = 0; halvings < most_halvings; ++halvings, length /= 2) {
-    trial_ = u + length * p_;
-    residual(q, free, s, trial_);
-    bool descends = r_.norm() <= 0.5 * norm;
-    if (!descends) {
-      if (std::isnan(g)) g = objective(q, free, s, u);
-      // Near the minimum rounding decides which g is less.
-      descends =
-          objective(q, free, s, trial_) <= g + 1e-4 * length * slope + 8 * epsilon * std::abs(g);
+    u_ = before_ + length * p_;
+    residual(q, s);
+    if (!is_minimisation() || r_.norm() <= 0.5 * norm) return length;
+    const double g_there = objective(q, s);
+    if (std::isnan(g)) {
+      u_.swap(before_);
+      g = objective(q, s);
+      u_.swap(before_);
     }
-    if (descends) {
-      u.swap(trial_);
-      return length;
-    }
+    // Near the minimum rounding decides which g is less.
+    if (g_there <= g + 1e-4 * length * slope + 8 * epsilon * std::abs(g)) return length;
   }
-  residual(q, free, s, u);
+  u_ = before_;
+  residual(q, s);
   return 0;
 }
 
-// The same without a g to decrease.
-double ImplicitStep::move(const Vec& q, const Vec& free, double s, Vec& u) {
-  u += p_;
-  residual(q, free, s, u);
-  return 1;
-}
-
-double ImplicitStep::objective(const Vec& q, const Vec& free, double s, const Vec& u) {
-  x_ = q + u;
-  return system().kinetic(u - free) + s * system().potential(x_);
+double ImplicitStep::objective(const Vec& q, double s) {
+  x_ = q + u_;
+  const double potential = system().potential(x_);
+  x_ = u_ - free_;
+  return system().kinetic(x_) + s * potential;
 }
 
 }  // namespace qddot

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "integrators/compression.hpp"
 #include "integrators/fixed_step.hpp"
 #include "src/algebra/effective_mass.hpp"
 
@@ -14,10 +15,9 @@ namespace qddot {
 // section 4). The acceleration of the stage is (u - u*)/s: it costs no force.
 //
 // Newton's method with the last factors of M - s K as long as they converge, and K anew where they
-// do not. Where M - s K is not positive definite, the negative transverse part of compressed
-// springs is scaled by a factor that is halved with each factorisation that fails, down to none,
-// and doubled with each that succeeds, up to all of it. So directions descend, and a step along one
-// that does not decrease g is halved until it does.
+// do not. Where M - s K is not positive definite, only some of the compression is kept (see
+// compression.hpp). So directions descend, and a step along one that does not decrease g is halved
+// until it does.
 class ImplicitStep : public FixedStep {
  public:
   // What a solve leaves is of no use to be less than the step's own error; but a method that keeps
@@ -29,12 +29,16 @@ class ImplicitStep : public FixedStep {
                double solve_tolerance = enough);
 
  protected:
-  // Solves the stage from the prediction in `u`, up to the tolerance times what the prediction was
-  // wrong by, which is of the size of the step's own error.
+  // Solves the stage at q = q_n for u_, which holds its prediction, with u* in free_; up to the
+  // tolerance times what the prediction was wrong by, which is of the size of the step's own error.
   // reached_end, newton_failed, indefinite_matrix, not_finite or over_budget.
-  Outcome solve_stage(const Vec& q, const Vec& free, double s, Vec& u);
+  Outcome solve_stage(const Vec& q, double s);
 
   void start(const State&) override;
+  // a = M^-1 f(q) [m/s^2]; for methods that begin with it.
+  void acceleration(const Vec& q, Vec& a);
+
+  Vec free_, u_;  // u* and u
 
  private:
   // What a stage's f and K are; a method with another mean of the forces over the step says so.
@@ -43,19 +47,18 @@ class ImplicitStep : public FixedStep {
   // Whether f is the gradient of a potential, so that there is a g to decrease.
   virtual bool is_minimisation() const { return true; }
 
-  void residual(const Vec& q, const Vec& free, double s, const Vec& u);
-  Outcome factorize(const Vec& q, const Vec& u, double s);
+  void residual(const Vec& q, double s);
+  Outcome factorize(const Vec& q, double s);
   Outcome correction();
-  double search(const Vec& q, const Vec& free, double s, Vec& u);
-  double move(const Vec& q, const Vec& free, double s, Vec& u);
-  double objective(const Vec& q, const Vec& free, double s, const Vec& u);
+  double search(const Vec& q, double s);
+  double objective(const Vec& q, double s);
 
   const double tolerance_;
-  Vec x_, f_, r_, p_, trial_, start_;
+  Vec x_, f_, r_, p_, before_, start_;
   SymmetricMatrix k_;
   EffectiveMass matrix_;
   double factorized_s_ = 0;  // of the factors at hand; 0: none
-  double compression_ = 1;   // with which they were made
+  Compression compression_;  // with which they were made
   // What the last stage's prediction was wrong by, and the rate at which its corrections shrank.
   double last_missed_ = 0, last_rate_ = 1;
 };

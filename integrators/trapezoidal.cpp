@@ -16,15 +16,14 @@ class Trapezoidal final : public ImplicitStep {
  private:
   void start(const State& state) override {
     ImplicitStep::start(state);
-    force(state.q, a_);
-    a_ = a_.cwiseQuotient(system().mass()).eval();
+    acceleration(state.q, a_);
   }
 
   Outcome step(const State& now, double h, State& next) override {
     const double s = h * h / 4;
     free_ = h * now.v + s * a_;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, free_, s, u_); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
@@ -33,7 +32,7 @@ class Trapezoidal final : public ImplicitStep {
     return Outcome::reached_end;
   }
 
-  Vec a_{system().size()}, free_{system().size()}, u_{system().size()};
+  Vec a_{system().size()};
 };
 
 }  // namespace

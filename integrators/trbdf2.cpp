@@ -19,15 +19,14 @@ class TrBdf2 final : public ImplicitStep {
  private:
   void start(const State& state) override {
     ImplicitStep::start(state);
-    force(state.q, a_);
-    a_ = a_.cwiseQuotient(system().mass()).eval();
+    acceleration(state.q, a_);
   }
 
   Outcome step(const State& now, double h, State& next) override {
     const double c = g * h / 2, s = c * c;
     free_ = 2 * c * now.v + s * a_;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, free_, s, u_); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     ug_ = u_;
@@ -36,7 +35,7 @@ class TrBdf2 final : public ImplicitStep {
 
     free_ = b * ug_ + c * (now.v + b * (vg_ - now.v));
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, free_, s, u_); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
@@ -45,7 +44,7 @@ class TrBdf2 final : public ImplicitStep {
     return Outcome::reached_end;
   }
 
-  Vec a_{system().size()}, free_{system().size()}, u_{system().size()};
+  Vec a_{system().size()};
   Vec ug_{system().size()}, vg_{system().size()};
 };
 
