@@ -258,10 +258,7 @@ int crossover(const CLI::App& app, Arguments a, const std::vector<std::string>& 
   require_repeats(a.effort.repeats);
   require_ratios(a.ratios);
   const StiffFamily& family = stiff_family(a.family);
-  if (app.count("--nodes") > 0 && (a.nodes < least_nodes || a.nodes > most_nodes)) {
-    throw InvalidInput(fmt::format("--nodes {} is not allowed; it is a whole number from {} to {}",
-                                   a.nodes, least_nodes, most_nodes));
-  }
+  if (app.count("--nodes") > 0) require_within(a.nodes, least_nodes, most_nodes, "--nodes");
   if (app.count("--until") > 0) require_positive(a.until, "--until", "the horizon in s");
   const double until = app.count("--until") > 0 ? a.until : family.until;
   std::vector<Rung> all = rungs(a, family, until);

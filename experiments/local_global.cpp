@@ -22,24 +22,22 @@
 //  speed.csv        --speed alone: one iteration, set-up, and what one of Newton's iterations
 //                   takes to assemble and factorise, for 33, 65 and 101 nodes
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/csv.hpp"
+#include "experiments/iterated_steps.hpp"
 #include "experiments/newton.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/swinging_cloth.hpp"
+#include "experiments/timing.hpp"
 #include "integrators/registry.hpp"
 #include "src/algebra/effective_mass.hpp"
 #include "src/algebra/laplacian_mass.hpp"
-#include "src/analysis/frequency_bound.hpp"
-#include "src/scene/generators.hpp"
 #include "src/scene/invalid_input.hpp"
-#include "src/scene/reduce.hpp"
 
 namespace qddot {
 namespace {
@@ -47,7 +45,6 @@ namespace {
 constexpr int standard_nodes = 33;
 constexpr double standard_stiffness = 1200;
 constexpr int speed_nodes[] = {33, 65, 101};
-constexpr int most_newton_iterations = 40;  // more than it takes anywhere here
 constexpr int most_iterations_of_figure_3 = 100;
 
 struct Arguments {
@@ -86,175 +83,13 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--speed", a.speed, "measure one iteration and the set-up instead, to speed.csv");
 }
 
-void require_within(int value, int low, int high, const char* option) {
-  if (value >= low && value <= high) return;
-  throw InvalidInput(fmt::format("{} {} is not allowed; it is a whole number from {} to {}", option,
-                                 value, low, high));
-}
-
-double seconds_of(const auto& action) {
-  const auto start = std::chrono::steady_clock::now();
-  action();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-double median_seconds(int repeats, const auto& action) {
+double median_of(int repeats, const auto& action) {
   std::vector<double> times;
   for (int i = 0; i < repeats; ++i) times.push_back(seconds_of(action));
   return median(std::move(times));
 }
 
-Scene draw(int nodes, double stiffness) {
-  return generate(*find_generator("cloth"),
-                  {{"nodes", nodes},
-                   {"mass", 1},
-                   {"structural_stiffness", stiffness},
-                   {"shear_stiffness", stiffness / 2},
-                   {"bending_stiffness", stiffness / 10}},
-                  "--nodes");
-}
-
-// All of the cloth, as a scene without its symmetry would be.
-Reductions whole() { return Reductions().without(Reduction::mirror); }
-
-// The motion over `duration` by a quarter of the longest stable step of Verlet's.
-State moved(const char* method, const System& system, State state, double duration) {
-  const double h = 0.5 / frequency_bound(system, state.q);
-  const Summary summary = make_integrator(*find_method(method), system, {.step_size = h})
-                              ->advance(state, state.t + duration);
-  if (summary.outcome != Outcome::reached_end) throw std::runtime_error(summary.message);
-  return state;
-}
-
-// The same by order 8: what the errors of implicit Euler are seen against.
-State truth(const System& system, const State& state, double duration) {
-  return moved("kahan_li8", system, state, duration);
-}
-
-struct Cloth {
-  Cloth(int nodes, double stiffness, double swing)
-      : drawn(draw(nodes, stiffness)), scene(drawn, whole()) {
-    start = swing > 0 ? moved("verlet", system(), scene.initial(), swing) : scene.initial();
-  }
-  const System& system() const { return scene.system(); }
-  // The largest distance of a node [m].
-  double distance(const State& a, const State& b) const {
-    const auto x = scene.expand(a), y = scene.expand(b);
-    double largest = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      largest = std::max(largest, (x[i].position - y[i].position).norm());
-    }
-    return largest;
-  }
-
-  Scene drawn;
-  ReducedScene scene;
-  State start;
-};
-
-std::vector<const Method*> solvers() {
-  std::vector<const Method*> all;
-  for (const Method& method : methods()) {
-    if (method.takes_iterations) all.push_back(&method);
-  }
-  all.push_back(&newton_exact());
-  all.push_back(&newton_clamped());
-  return all;
-}
-
-// All numbers of iterations at first, then each two fifths more.
-std::vector<int> iteration_counts(int most) {
-  std::vector<int> counts;
-  for (int i = 1; i <= most; i = std::max(i + 1, i * 7 / 5)) counts.push_back(i);
-  return counts;
-}
-
-// A step of so many iterations.
-struct Step {
-  int iterations = 0;
-  double seconds = 0;  // the matrix that does not change left out
-  State end{};
-};
-
-// The steps of one solver, and what it takes before the first.
-struct Solved {
-  const Method* method = nullptr;
-  double analysis = INFINITY, factorization = INFINITY;  // s; the latter of a constant matrix
-  std::vector<Step> steps{};                             // from none on
-};
-
-Solved solve(const Method& method, const Cloth& cloth, double h, int most, int repeats) {
-  Solved solved{.method = &method};
-  solved.steps.push_back(
-      {0, 0, {cloth.start.t + h, cloth.start.q + h * cloth.start.v, cloth.start.v}});
-  if (!method.needs_laplacian) most = std::min(most, most_newton_iterations);
-  for (const int iterations : iteration_counts(most)) {
-    const Knobs knobs{.step_size = h, .iterations = iterations, .timed = true};
-    std::unique_ptr<Integrator> integrator;
-    const double analysis =
-        seconds_of([&] { integrator = make_integrator(method, cloth.system(), knobs); });
-    std::vector<double> times, factorizations;
-    Step step{.iterations = iterations};
-    // Of several the first is not timed.
-    for (int i = repeats > 1 ? -1 : 0; i < repeats; ++i) {
-      step.end = cloth.start;
-      Summary summary;
-      const double all =
-          seconds_of([&] { summary = integrator->advance(step.end, cloth.start.t + h); });
-      if (summary.outcome != Outcome::reached_end) {
-        throw std::runtime_error(fmt::format("{}: {}", method.name, summary.message));
-      }
-      const double constant = method.needs_laplacian ? summary.seconds.factorization : 0;
-      if (i < 0) continue;
-      times.push_back(all - constant);
-      factorizations.push_back(constant);
-    }
-    // What others do on the machine only ever adds to it.
-    step.seconds = std::ranges::min(times);
-    solved.analysis = std::min(solved.analysis, analysis);
-    solved.factorization = std::min(solved.factorization, std::ranges::min(factorizations));
-    solved.steps.push_back(std::move(step));
-  }
-  return solved;
-}
-
-// The energy that the step minimises [J].
-double objective(const Cloth& cloth, const State& end) {
-  return cloth.system().kinetic(end.v - cloth.start.v) + cloth.system().potential(end.q);
-}
-
-// All solvers on one step, and the lowest energy that any of them came to.
-struct Comparison {
-  Comparison(const Cloth& on, double h, int most, int repeats) : cloth(on) {
-    for (const Method* method : solvers()) all.push_back(solve(*method, on, h, most, repeats));
-    first = objective(on, all.front().steps.front().end);
-    least = std::numeric_limits<double>::infinity();
-    for (const Solved& solved : all) {
-      for (const Step& step : solved.steps) {
-        const double g = objective(on, step.end);
-        if (g >= least) continue;
-        least = g;
-        converged = step.end;
-      }
-    }
-  }
-  double relative_error(const Step& step) const {
-    return (objective(cloth, step.end) - least) / (first - least);
-  }
-
-  const Cloth& cloth;
-  std::vector<Solved> all;
-  double first, least;
-  State converged;
-};
-
-nlohmann::json origin_of(const std::vector<std::string>& command_line, const Cloth& cloth,
+nlohmann::json origin_of(const std::vector<std::string>& command_line, const SwingingCloth& cloth,
                          const Arguments& a) {
   nlohmann::json origin = provenance(command_line, cloth.drawn, cloth.drawn, cloth.scene);
   origin["step_size"] = a.step_size;
@@ -277,9 +112,9 @@ void write_step(const Arguments& a, const std::vector<std::string>& command_line
                       {"solver", "iteration", "seconds", "relative_error"});
   CsvFile positions(a.out + "/positions.csv",
                     {"solver", "iteration", "seconds", "distance_to_converged", "step_error"});
-  const Cloth cloth(a.nodes, a.stiffness, a.swing);
+  const SwingingCloth cloth(a.nodes, a.stiffness, a.swing);
   const Comparison comparison(cloth, a.step_size, a.iterations, a.repeats);
-  const State exact = truth(cloth.system(), cloth.start, a.step_size);
+  const State exact = cloth.truth(cloth.start, a.step_size);
   const double own = cloth.distance(comparison.converged, exact);
   fmt::print("one step of {:g} s: {:.3g} m from the true motion when converged\n", a.step_size,
              own);
@@ -310,10 +145,10 @@ void write_step(const Arguments& a, const std::vector<std::string>& command_line
 }
 
 void write_figure_3(const Arguments& a, const std::vector<std::string>& command_line) {
-  const Cloth standard(a.nodes, a.stiffness, 0);
+  const SwingingCloth standard(a.nodes, a.stiffness, 0);
   nlohmann::json origin = origin_of(command_line, standard, a);
   const auto add = [&](CsvFile& csv, auto value, int nodes, double stiffness) {
-    const Cloth cloth(nodes, stiffness, a.swing);
+    const SwingingCloth cloth(nodes, stiffness, a.swing);
     const Comparison comparison(cloth, a.step_size,
                                 std::min(a.iterations, most_iterations_of_figure_3), 1);
     for (const Solved& solved : comparison.all) {
@@ -340,8 +175,8 @@ void write_figure_3(const Arguments& a, const std::vector<std::string>& command_
 void write_run(const Arguments& a, const std::vector<std::string>& command_line) {
   CsvFile csv(a.out + "/run.csv",
               {"solver", "iterations", "seconds", "position_error", "energy_change"});
-  const Cloth cloth(a.nodes, a.stiffness, 0);
-  const State exact = truth(cloth.system(), cloth.start, a.until);
+  const SwingingCloth cloth(a.nodes, a.stiffness, 0);
+  const State exact = cloth.truth(cloth.start, a.until);
   const double energy = total_energy(cloth.system(), cloth.start);
   fmt::print("\nruns of {:g} s with steps of {:g} s\n{:<24} {:>10} {:>9} {:>9} {:>9}\n", a.until,
              a.step_size, "solver", "iterations", "s", "m off", "J lost");
@@ -379,7 +214,7 @@ void write_speed(const Arguments& a, const std::vector<std::string>& command_lin
   const Method& method = *find_method("local_global");
   const double s = a.step_size * a.step_size;
   for (const int nodes : speed_nodes) {
-    const Cloth cloth(nodes, a.stiffness * (nodes - 1) / (standard_nodes - 1.0), 0);
+    const SwingingCloth cloth(nodes, a.stiffness * (nodes - 1) / (standard_nodes - 1.0), 0);
     const System& system = cloth.system();
     constexpr int iterations = 10;
     const auto integrator = make_integrator(
@@ -391,13 +226,13 @@ void write_speed(const Arguments& a, const std::vector<std::string>& command_lin
       const double all = seconds_of([&] { summary = integrator->advance(state, a.step_size); });
       times.push_back((all - summary.seconds.factorization) / iterations);
     }
-    const double setup = median_seconds(a.repeats, [&] {
+    const double setup = median_of(a.repeats, [&] {
       LaplacianMass matrix(system);
       matrix.factorize(s);
     });
     EffectiveMass newton(system);
     SymmetricMatrix k = system.stiffness_pattern();
-    const double factorization = median_seconds(a.repeats, [&] {
+    const double factorization = median_of(a.repeats, [&] {
       system.stiffness(cloth.start.q, k);
       newton.factorize_positive(1, s, k);
     });
@@ -406,7 +241,7 @@ void write_speed(const Arguments& a, const std::vector<std::string>& command_lin
     fmt::print("{:>6} {:>8} {:>13.4f} {:>10.3f} {:>17.3f}\n", nodes, cloth.drawn.springs.size(),
                1e3 * iteration, 1e3 * setup, 1e3 * factorization);
   }
-  csv.commit(origin_of(command_line, Cloth(standard_nodes, a.stiffness, 0), a));
+  csv.commit(origin_of(command_line, SwingingCloth(standard_nodes, a.stiffness, 0), a));
 }
 
 int local_global_program(const Arguments& a, const std::vector<std::string>& command_line) {
@@ -417,7 +252,7 @@ int local_global_program(const Arguments& a, const std::vector<std::string>& com
     require_positive(stiffness, "--stiffnesses", "a stiffness in N/m");
   }
   require_within(a.iterations, 1, 100000, "--iterations");
-  require_within(a.repeats, 1, 1000, "--repeats");
+  require_repeats(a.repeats);
   require_positive(a.stiffness, "--stiffness", "a stiffness in N/m");
   require_positive(a.step_size, "--step-size", "h in s");
   require_positive(a.until, "--until", "the length of the runs in s");

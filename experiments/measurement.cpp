@@ -1,11 +1,11 @@
 #include "experiments/measurement.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <vector>
 
 #include "experiments/deadline.hpp"
+#include "experiments/timing.hpp"
 #include "experiments/tolerance_scales.hpp"
 #include "integrators/registry.hpp"
 
@@ -17,19 +17,6 @@ namespace {
 constexpr double shortest_sample = 1e-4;
 // A first run at least so long [s] is a sample like any other: what is cold about it is over soon.
 constexpr double own_warm_up = 0.1;
-
-template <class Work>
-double seconds_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
 
 }  // namespace
 

@@ -48,11 +48,13 @@ void require_positive(double value, const std::string& option, const std::string
                                  option, value, meaning));
 }
 
-void require_repeats(int repeats) {
-  if (repeats >= 1 && repeats <= 1000) return;
-  throw InvalidInput(
-      fmt::format("--repeats {} is not allowed; it is a whole number from 1 to 1000", repeats));
+void require_within(int value, int low, int high, const std::string& option) {
+  if (value >= low && value <= high) return;
+  throw InvalidInput(fmt::format("{} {} is not allowed; it is a whole number from {} to {}", option,
+                                 value, low, high));
 }
+
+void require_repeats(int repeats) { require_within(repeats, 1, 1000, "--repeats"); }
 
 void require_given(const std::string& text, const std::string& option, const std::string& meaning) {
   if (text.empty()) throw InvalidInput(fmt::format("{} is missing; it is {}", option, meaning));

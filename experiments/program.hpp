@@ -20,6 +20,9 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
 // Throws InvalidInput unless `value` is finite and greater than zero.
 void require_positive(double value, const std::string& option, const std::string& meaning);
 
+// Throws InvalidInput unless `value` is from `low` to `high`.
+void require_within(int value, int low, int high, const std::string& option);
+
 // Throws InvalidInput unless that many timed runs of a point (--repeats) are 1 to 1000.
 void require_repeats(int repeats);
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <string>
 
 #include "experiments/reference.hpp"
+#include "experiments/timing.hpp"
 #include "integrators/method.hpp"
 
 namespace qddot {
@@ -16,10 +16,6 @@ struct Solution {
   double knob = 0;
   std::string made_by{};
 };
-
-inline double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // The motion from `initial` by a method with these knobs. Its scales are those seen at the ends of
 // `samples` equal parts of the time. Nothing where it does not reach the end in so many seconds.

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "experiments/swinging_cloth.hpp"
+#include "integrators/method.hpp"
+
+namespace qddot {
+
+constexpr int most_newton_iterations = 40;  // more than it takes on any cloth here
+
+// A step of so many iterations.
+struct Step {
+  int iterations = 0;
+  double seconds = 0;  // the matrix that does not change left out
+  State end{};
+};
+
+// The steps of one solver, and what it takes before the first.
+struct Solved {
+  const Method* method = nullptr;
+  double analysis = INFINITY, factorization = INFINITY;  // s; the latter of a constant matrix
+  std::vector<Step> steps{};                             // from none on
+};
+
+// Steps of h [s] of the cloth by all methods that take a number of iterations, and by Newton's with
+// K as it is and clamped, for numbers of them up to `most`; and the lowest energy that any came to.
+// Throws std::runtime_error where a step fails.
+struct Comparison {
+  Comparison(const SwingingCloth& on, double h, int most, int repeats);
+  // Of the energy above its minimum, what is left of that of the prediction.
+  double relative_error(const Step& step) const;
+
+  const SwingingCloth& cloth;
+  std::vector<Solved> all{};
+  double first = 0, least = 0;  // [J]
+  State converged{};
+};
+
+}  // namespace qddot
