@@ -25,7 +25,7 @@ Method blanes_moan4() {
               "Blanes and Moan, J. Computational and Applied Mathematics 142 (2002) 313-330, "
               "table 3, SRKN_6^b",
           .order = 4,
-          .stability_limit = 3.163,  // where the trace of one step's matrix first exceeds 2
+          .stability_limit = 3.1634650665581848,  // where the trace of one step first exceeds 2
           .symplectic = true,
           .make = create_splitting<blanes_moan4_splitting>};
 }

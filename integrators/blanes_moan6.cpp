@@ -28,7 +28,7 @@ Method blanes_moan6() {
               "Blanes and Moan, J. Computational and Applied Mathematics 142 (2002) 313-330, "
               "table 3, SRKN_11^b",
           .order = 6,
-          .stability_limit = 3.141,  // where the trace of one step's matrix first exceeds 2
+          .stability_limit = 3.1414310877528075,  // where the trace of one step first exceeds 2
           .symplectic = true,
           .make = create_splitting<blanes_moan6_splitting>};
 }

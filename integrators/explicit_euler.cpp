@@ -29,6 +29,7 @@ Method explicit_euler() {
   return {.name = "explicit_euler",
           .summary = "forward Euler; gains energy at every step size",
           .source = "Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, I.7",
+          .stability_limit = 0,
           .make = create<ExplicitEuler>};
 }
 

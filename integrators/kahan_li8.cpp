@@ -31,7 +31,7 @@ Method kahan_li8() {
           .summary = "17 Verlet steps composed to order 8; for the accurate end of the chart",
           .source = "Kahan and Li, Mathematics of Computation 66 (1997) 1089-1099",
           .order = 8,
-          .stability_limit = 3.096,  // where the trace of one step's matrix first exceeds 2
+          .stability_limit = 3.0964386800007322,  // where the trace of one step first exceeds 2
           .symplectic = true,
           .make = create_splitting<kahan_li8_splitting>};
 }

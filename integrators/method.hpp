@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,7 +30,8 @@ struct Method {
   Family family = Family::hand_written;
   Knob knob = Knob::step_size;
   bool implicit = false;
-  // Of explicit methods: on q'' = -w^2 q the motion blows up where h w is above it.
+  // Of explicit methods: on q'' = -w^2 q the motion grows where h w is above it, by theory; 0 where
+  // it does so at every h. Implicit ones have none (linear_limit below).
   double stability_limit = 2;
   bool symplectic = false;
   bool needs_stiffness = false;
@@ -47,6 +49,13 @@ struct Method {
   bool takes_spectral_radius = false;  // and Knobs::spectral_radius
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
 };
+
+// The largest h w at which the method of fixed steps does not let q'' = -w^2 q grow; infinite for
+// implicit ones, which are A-stable, and for the exact motion.
+inline double linear_limit(const Method& method) {
+  const bool has_one = !method.implicit && method.order > 0;
+  return has_one ? method.stability_limit : std::numeric_limits<double>::infinity();
+}
 
 // Whether the system's forces are divided into stiff and soft ones, in each of its parts that has
 // unknowns.
