@@ -27,11 +27,12 @@ constexpr double growing = 1e-6;
 const double living = std::log(2) / (4 * M_PI * 10), killing = std::log(10) / (2 * M_PI);
 
 // Steps between one response and the next. In slow modes so many that what a method remembers of
-// its start is gone after them and that damping adds up, but no more than a quarter of a period.
+// its start is gone after them and that damping adds up, but no more than an eighth of a period:
+// three of them are less than a half.
 constexpr double least_stride = 8, most_stride = 16;
 int stride_in(double h_omega) {
-  const double quarter = M_PI / 2 / h_omega;
-  return quarter < least_stride ? 1 : static_cast<int>(std::min(quarter, most_stride));
+  const double eighth = M_PI / 4 / h_omega;
+  return eighth < least_stride ? 1 : static_cast<int>(std::min(eighth, most_stride));
 }
 
 // One run from the scene at rest; `see` takes the state after each stride. How it ended.

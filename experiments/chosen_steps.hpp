@@ -1,0 +1,22 @@
+#pragma once
+
+#include "integrators/method.hpp"
+
+namespace qddot {
+
+// What steps a method of adaptive steps takes where the motion that it sees is slow and a fast
+// vibration is at rest beside it: q1'' = -q1 from (1, 0) and q2'' = -w^2 q2 from (0, 0), over ten
+// periods of the slow one. An explicit method has to hold h w below its limit all the same, and
+// finds that out by steps that it rejects; then q2 is no longer at rest.
+struct ChosenSteps {
+  Outcome outcome{};
+  Counts counts{};
+  double mean_h_omega = 0;  // of accepted steps, with w the fast frequency
+  double rejected = 0;      // share of all steps
+  double fast_energy = 0;   // at the end, over the whole of the start
+  double energy_error = 0;  // of the slow vibration, likewise
+};
+
+ChosenSteps chosen_steps(const Method& method, double rtol, double omega);
+
+}  // namespace qddot

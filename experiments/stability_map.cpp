@@ -1,0 +1,459 @@
+// Where is each method stable, by theory and measured: on an oscillator, in the natural modes of a
+// scene, and in its whole nonlinear motion?
+//
+//   stability_map --scene pendulum --out results/pendulum
+//   stability_map --scene strut --vary compression --amplitudes 0.5,0.7,0.9 --out results/strut
+//
+//  1. limits.csv and linear.csv: every method of fixed steps on q'' = -w^2 q, where each step is a
+//     matrix (linear_step.hpp): its spectral radius, damping ratio and period error for h w from
+//     0.01 to 100, and the h w at which it starts to grow, predicted and found by bisection
+//     (linear_limit.hpp); h is that over w_max of the scene as it starts.
+//     adaptive.csv: the steps of methods that choose them (chosen_steps.hpp).
+//  2. modal.csv: the same in natural modes of the scene about its equilibrium at one h
+//     (modal_step.hpp): predicted by 1, and measured by exciting the mode.
+//  3. map.csv: the fate of whole runs over h w_max and amplitude (fate.hpp). Amplitude a starts at
+//     q_rest + a (q - q_rest), a v: 1 is the scene itself, small ones are linear. With --vary it is
+//     a parameter of the generator. For its time a method has --cell-limit; an interrupted map goes
+//     on where it was.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/chosen_steps.hpp"
+#include "experiments/csv.hpp"
+#include "experiments/fate_map.hpp"
+#include "experiments/linear_limit.hpp"
+#include "experiments/linear_step.hpp"
+#include "experiments/modal_step.hpp"
+#include "experiments/program.hpp"
+#include "experiments/progress.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/rest.hpp"
+#include "experiments/scene_choice.hpp"
+#include "src/analysis/natural_modes.hpp"
+#include "src/scene/generators.hpp"
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/settle.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr int linear_points = 60;  // a decade
+constexpr int modes_excited = 12, modes_predicted = 48;
+constexpr int most_columns = 1000, most_amplitudes = 1000;
+constexpr std::array tolerances = {1e-2, 1e-4, 1e-6};
+constexpr std::array fast_frequencies = {1., 10., 100., 1000.};
+
+struct Arguments {
+  SceneChoice scene;
+  std::string vary, out;
+  std::vector<std::string> methods;
+  std::vector<double> amplitudes = {0.01, 0.03, 0.1, 0.3, 1, 3};
+  double low = 0.1, high = 100, until = 0, step_size = 0, tolerated = 0.5, cell_limit = 1;
+  int columns = 25;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  add_scene_options(app, a.scene);
+  app.add_option("--methods", a.methods,
+                 "a,b,... (default: all; in the map all hand-written ones of fixed steps)")
+      ->delimiter(',');
+  app.add_option("--vary", a.vary,
+                 "a parameter of the scene's generator that the amplitudes are values of "
+                 "(default: the distance from rest, in that of the scene)");
+  app.add_option("--amplitudes", a.amplitudes, "a,b,... the rows of the map")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--low", a.low, "the least h w_max of the map")->capture_default_str();
+  app.add_option("--high", a.high, "the largest")->capture_default_str();
+  app.add_option("--columns", a.columns, "how many from one to the other")->capture_default_str();
+  app.add_option("--until", a.until,
+                 "the time of a run in s, 100 steps at least (default: the scene's own)");
+  app.add_option("--step-size", a.step_size,
+                 "h in s, of the modes (default: 1/w_max, w_max at rest)");
+  app.add_option("--tolerated", a.tolerated,
+                 "the part of the energy that a run may lose or gain and count as bounded")
+      ->capture_default_str();
+  app.add_option("--cell-limit", a.cell_limit,
+                 "seconds that a run of the map may take; slower ones become over_budget")
+      ->capture_default_str();
+  app.add_option("--out", a.out, "the folder for limits.csv, linear.csv, modal.csv, map.csv, ...");
+}
+
+void require(const Arguments& a) {
+  require_given(a.out, "--out", "the folder for the results");
+  require_within(a.columns, 1, most_columns, "--columns");
+  require_positive(a.low, "--low", "the least h w_max");
+  require_positive(a.high, "--high", "the largest h w_max");
+  if (a.high < a.low) {
+    throw InvalidInput(
+        fmt::format("--high {} is not allowed; it is --low or more, {}", a.high, a.low));
+  }
+  require_positive(a.tolerated, "--tolerated", "a part of the energy");
+  require_positive(a.cell_limit, "--cell-limit", "the seconds a run may take");
+  if (a.amplitudes.size() > most_amplitudes) {
+    throw InvalidInput(fmt::format("--amplitudes: {} of them are too many; allowed are {}",
+                                   a.amplitudes.size(), most_amplitudes));
+  }
+  for (const double amplitude : a.amplitudes) {
+    if (a.vary.empty()) require_positive(amplitude, "--amplitudes", "a distance from rest");
+  }
+}
+
+// The scene as a generator draws it with its parameter `vary` set.
+Scene drawn_with(const Arguments& a, double value) {
+  const Generator* generator = find_generator(a.scene.name);
+  if (!generator) {
+    throw InvalidInput(
+        fmt::format("--vary {}: scene {} is not a generator's, whose parameters can be varied",
+                    a.vary, a.scene.name));
+  }
+  return generate(*generator, {{a.vary, value}}, a.scene.name);
+}
+
+// The scene with each node moved from its place at rest to `amplitude` times its distance from it,
+// velocities likewise.
+Scene scaled(const Scene& start, const Scene& rest, double amplitude) {
+  Scene scene = start;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    Node& node = scene.nodes[i];
+    const Eigen::Vector3d& origin = rest.nodes[i].position;
+    node.position = origin + amplitude * (node.position - origin);
+    node.velocity *= amplitude;
+  }
+  return scene;
+}
+
+double energy_at_rest(const Scene& rest) {
+  const ReducedScene scene(rest, Reductions::only({Reduction::pins}));
+  return scene.potential(scene.initial());
+}
+
+AmplitudeRow row_of(double amplitude, const Scene& start, double rest_energy,
+                    const Reductions& reductions) {
+  AmplitudeRow row{.amplitude = amplitude,
+                   .scene = std::make_unique<ReducedScene>(start, reductions),
+                   .rest_energy = rest_energy,
+                   .omega_max = 0,
+                   .buckling_rate = 0,
+                   .modes = {}};
+  const System& system = row.scene->system();
+  const Vec& q = row.scene->initial().q;
+  row.modes = sampled_modes(system, q, modes_predicted);
+  row.omega_max = row.modes.empty() ? 0 : row.modes.back().omega;
+  row.buckling_rate = buckling_rate(system, q);
+  return row;
+}
+
+// The rows of the map; none, with a sentence, where the scene has no equilibrium.
+std::vector<AmplitudeRow> rows_of(const Arguments& a, const Scene& start,
+                                  const std::optional<Scene>& rest) {
+  const Reductions reductions = reductions_of(a.scene);
+  std::vector<AmplitudeRow> rows;
+  for (const double amplitude : a.amplitudes) {
+    if (!a.vary.empty()) {
+      const Scene scene = drawn_with(a, amplitude);
+      rows.push_back(
+          row_of(amplitude, scene, energy_at_rest(settled(scene, a.scene.name)), reductions));
+    } else if (rest) {
+      rows.push_back(
+          row_of(amplitude, scaled(start, *rest, amplitude), energy_at_rest(*rest), reductions));
+    }
+  }
+  std::erase_if(rows, [&](const AmplitudeRow& row) {
+    const double energy = row.scene->energy(row.scene->initial()) - row.rest_energy;
+    if (row.omega_max > 0 && energy > 0) return false;
+    fmt::print(stderr, "stability_map: nothing vibrates at amplitude {}: that row is left out\n",
+               row.amplitude);
+    return true;
+  });
+  return rows;
+}
+
+// At the start [rad/s]; zero where nothing vibrates.
+double omega_max_of(const ReducedScene& scene) {
+  const NaturalModes highest = highest_modes(scene.system(), scene.initial().q, 1);
+  return highest.squares.size() == 0 ? 0 : std::sqrt(std::max(0.0, highest.squares[0]));
+}
+
+bool has_linear_step(const Method& method) {
+  return method.knob == Knob::step_size && !method.needs_split;
+}
+
+std::vector<double> spaced(double low, double high, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    values.push_back(low * std::pow(high / low, static_cast<double>(i) / std::max(1, count - 1)));
+  }
+  return values;
+}
+
+struct Limit {
+  const Method* method;
+  double predicted, measured;  // of h w; infinite where there is none
+
+  // Of the measured from the predicted one, where there is one.
+  double difference() const { return (measured - predicted) / predicted; }
+};
+
+std::vector<Limit> limits_of(const std::vector<const Method*>& methods) {
+  std::vector<Limit> limits;
+  for (const Method* method : methods) {
+    if (!has_linear_step(*method)) continue;
+    show_progress("limit of " + method->name);
+    limits.push_back({method, linear_limit(*method), measured_limit(*method)});
+  }
+  return limits;
+}
+
+void tabulate(Csv& csv, const std::vector<Limit>& limits, double omega_max) {
+  for (const Limit& limit : limits) {
+    csv.row(limit.method->name, limit.predicted / omega_max, limit.measured / omega_max,
+            limit.predicted, limit.measured, limit.difference());
+  }
+}
+
+void tabulate_linear(Csv& csv, const std::vector<const Method*>& methods) {
+  const int points = static_cast<int>(std::log10(largest_h_omega / least_h_omega)) * linear_points;
+  for (const Method* method : methods) {
+    if (!has_linear_step(*method)) continue;
+    for (const double h_omega : spaced(least_h_omega, largest_h_omega, points + 1)) {
+      const LinearStep step = linear_step(*method, h_omega);
+      csv.row(method->name, h_omega, step.spectral_radius(), step.damping_ratio(),
+              step.period_error());
+    }
+  }
+}
+
+void tabulate_adaptive(Csv& csv, const std::vector<const Method*>& methods) {
+  for (const Method* method : methods) {
+    if (method->knob != Knob::rtol || method->needs_split || method->name.ends_with("_klu")) {
+      continue;
+    }
+    for (const double rtol : tolerances) {
+      for (const double omega : fast_frequencies) {
+        show_progress(fmt::format("steps of {} at rtol {:g}", method->name, rtol));
+        const ChosenSteps s = chosen_steps(*method, rtol, omega);
+        csv.row(method->name, rtol, omega, name(s.outcome), s.mean_h_omega, s.rejected,
+                s.fast_energy, s.energy_error, s.counts.steps, s.counts.rejected,
+                s.counts.stability_limited_steps);
+      }
+    }
+  }
+}
+
+// Excites modes of the scene at rest with each method, side by side.
+void tabulate_modes(Csv& csv, const std::vector<const Method*>& methods, const ReducedScene& rest,
+                    double step_size) {
+  const auto modes = sampled_modes(rest.system(), rest.initial().q, modes_excited);
+  if (modes.empty()) return;
+  const double h = step_size > 0 ? step_size : 1 / modes.back().omega;
+  struct Row {
+    const Method* method;
+    const Mode* mode;
+    LinearStep predicted{}, measured{};
+    std::string verdict{};
+  };
+  std::vector<Row> rows;
+  for (const Method* method : methods) {
+    if (!has_linear_step(*method) || !applies_to(*method, rest.system())) continue;
+    for (const Mode& mode : modes) rows.push_back({method, &mode});
+  }
+#pragma omp parallel for schedule(dynamic)
+  for (Row& row : rows) {
+    row.predicted = linear_step(*row.method, h * row.mode->omega);
+    try {
+      row.measured = modal_step(*row.method, rest, *row.mode, {.step_size = h});
+      row.verdict = modal_verdict(row.measured);
+    } catch (const std::exception& why) {
+      row.verdict = why.what();
+    }
+#pragma omp critical
+    show_progress(fmt::format("{} in mode {}", row.method->name, row.mode->rank));
+  }
+  for (const Row& row : rows) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const bool is_measured = !row.measured.roots.empty();
+    csv.row(row.method->name, h, row.mode->rank, row.mode->omega, h * row.mode->omega,
+            row.predicted.damping_ratio(), is_measured ? row.measured.damping_ratio() : none,
+            row.predicted.period_error(), is_measured ? row.measured.period_error() : none,
+            row.predicted.spectral_radius(), is_measured ? row.measured.spectral_radius() : none,
+            row.verdict);
+  }
+}
+
+// Of the methods, those that are followed through whole runs: SUNDIALS' fixed steps have twins
+// here.
+std::vector<const Method*> followed(const Arguments& a, const std::vector<const Method*>& methods) {
+  std::vector<const Method*> chosen;
+  for (const Method* method : methods) {
+    const bool is_fixed = method->knob == Knob::step_size && method->order > 0;
+    if (a.methods.empty() ? is_fixed && method->family == Family::hand_written
+                          : is_fixed || method->knob == Knob::rtol) {
+      chosen.push_back(method);
+    }
+  }
+  return chosen;
+}
+
+std::vector<Cell> cells_of(const Arguments& a, const std::vector<const Method*>& methods,
+                           const std::vector<AmplitudeRow>& rows) {
+  std::vector<Cell> cells;
+  for (const Method* method : methods) {
+    for (const AmplitudeRow& row : rows) {
+      if (!applies_to(*method, row.scene->system())) continue;
+      if (method->knob == Knob::rtol) {
+        for (const double rtol : tolerances) cells.push_back({method, &row, 0, rtol});
+      } else {
+        for (const double h_omega : spaced(a.low, a.high, a.columns)) {
+          cells.push_back({method, &row, h_omega, 0});
+        }
+      }
+    }
+  }
+  return cells;
+}
+
+void tabulate(Csv& csv, const std::vector<Cell>& cells, const std::vector<Fate>& all) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Cell& cell = cells[i];
+    const Fate& fate = all[i];
+    const double h = fate.mean_step, omega = cell.row->omega_max;
+    const bool is_fixed = cell.method->knob == Knob::step_size;
+    csv.row(cell.method->name, is_fixed ? cell.h_omega / omega : h,
+            is_fixed ? cell.h_omega : h * omega, cell.row->amplitude, fate.outcome,
+            fate.growth_rate, predicted_growth_rate(cell), fate.t_reached, fate.energy_end,
+            fate.energy_max, fate.counts.steps, fate.counts.rejected, knob_name(cell.method->knob),
+            is_fixed ? cell.h_omega / omega : cell.rtol, omega, cell.row->buckling_rate);
+  }
+}
+
+std::string or_none(double limit) {
+  if (limit == 0) return "grows at every h";
+  return std::isinf(limit) ? "none" : fmt::format("{:.10g}", limit);
+}
+
+void print(const std::vector<Limit>& limits) {
+  fmt::print("{:<26} {:>18} {:>18} {:>12}\n", "limit of h w on an oscillator", "predicted",
+             "measured", "difference");
+  for (const Limit& limit : limits) {
+    const double difference = limit.difference();
+    fmt::print("{:<29} {:>18} {:>18} {:>12}\n", limit.method->name, or_none(limit.predicted),
+               or_none(limit.measured),
+               std::isfinite(difference) ? fmt::format("{:.1e}", difference) : "");
+  }
+}
+
+// How many runs of each method came to which end.
+void print(const std::vector<Cell>& cells, const std::vector<Fate>& all) {
+  std::vector<const Method*> order;
+  std::map<const Method*, std::map<std::string, int>> counts;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!counts.contains(cells[i].method)) order.push_back(cells[i].method);
+    ++counts[cells[i].method][all[i].outcome];
+  }
+  for (const Method* method : order) {
+    fmt::print("{:<24}", method->name);
+    for (const auto& [outcome, count] : counts[method]) fmt::print(" {} {}", count, outcome);
+    fmt::print("\n");
+  }
+}
+
+// The scene as it rests, or nothing, with the reason, where it does not.
+std::optional<Scene> at_rest(const Scene& start, const std::string& source) {
+  try {
+    return settled(start, source);
+  } catch (const InvalidInput& why) {
+    fmt::print(stderr, "stability_map: {}; its modes are left out\n", why.what());
+    return {};
+  }
+}
+
+int stability_map(const CLI::App& app, const Arguments& a,
+                  const std::vector<std::string>& command_line) {
+  require_given(a.scene.name, "--scene", "a generator's name or a scene file");
+  require(a);
+  const Scene drawn = load(a.scene);
+  const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  if (app.count("--step-size") > 0) require_positive(a.step_size, "--step-size", "h in s");
+  const Scene start = started(drawn, a.scene);
+  const ReducedScene scene(start, reductions_of(a.scene));
+  const auto methods = select_methods(a.methods, scene, a.scene.name);
+  const std::optional<Scene> rest = at_rest(start, a.scene.name);
+  const auto rows = rows_of(a, start, rest);
+  require_folder(a.out);
+  CsvFile limits_csv(a.out + "/limits.csv",
+                     {"method", "h_limit_predicted", "h_limit_measured", "h_omega_limit_predicted",
+                      "h_omega_limit_measured", "relative_difference"});
+  CsvFile linear_csv(a.out + "/linear.csv",
+                     {"method", "h_omega", "spectral_radius", "damping_ratio", "period_error"});
+  CsvFile adaptive_csv(
+      a.out + "/adaptive.csv",
+      {"method", "rtol", "omega_fast", "outcome", "h_omega_mean", "rejected_share", "energy_fast",
+       "energy_error", "steps", "rejected", "stability_limited_steps"});
+  CsvFile modal_csv(a.out + "/modal.csv",
+                    {"method", "h", "mode", "omega", "h_omega", "damping_ratio_predicted",
+                     "damping_ratio_measured", "period_error_predicted", "period_error_measured",
+                     "spectral_radius_predicted", "spectral_radius_measured", "verdict"});
+  CsvFile map_csv(a.out + "/map.csv",
+                  {"method", "h", "h_omega", "amplitude", "outcome", "growth_rate",
+                   "predicted_growth_rate", "t_reached", "energy_end", "energy_max", "steps",
+                   "rejected", "knob", "value", "omega_max", "buckling_rate"});
+
+  const double omega_max = omega_max_of(scene);
+  const auto limits = limits_of(methods);
+  tabulate(limits_csv, limits, omega_max);
+  tabulate_linear(linear_csv, methods);
+  tabulate_adaptive(adaptive_csv, methods);
+  if (rest) {
+    tabulate_modes(modal_csv, methods, ReducedScene(*rest, Reductions::all_directions()),
+                   a.step_size);
+  }
+  const auto cells = cells_of(a, followed(a, methods), rows);
+  const std::string partial = a.out + "/map.partial";
+  const nlohmann::json key = {{"scene", content_hash(drawn)},
+                              {"code", code_hash()},
+                              {"vary", a.vary},
+                              {"until", until},
+                              {"tolerated", a.tolerated},
+                              {"cell_limit", a.cell_limit},
+                              {"no_reduce", a.scene.no_reduce}};
+  const auto all =
+      fates(cells, {until, a.tolerated, a.cell_limit}, partial, key.dump(), [&](std::size_t count) {
+        show_progress(fmt::format("map: {} of {} runs", count, cells.size()));
+      });
+  tabulate(map_csv, cells, all);
+  show_progress("");
+
+  nlohmann::json origin = provenance(command_line, drawn, start, scene);
+  origin["until"] = until;
+  origin["omega_max"] = omega_max;
+  origin["tolerated"] = a.tolerated;
+  origin["vary"] = a.vary;
+  for (CsvFile* file : {&limits_csv, &linear_csv, &adaptive_csv, &modal_csv, &map_csv}) {
+    file->commit(origin);
+  }
+  std::filesystem::remove(partial);
+  print(limits);
+  print(cells, all);
+  return done;
+}
+
+}  // namespace
+}  // namespace qddot
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures where each method is stable, and compares with theory.", "stability_map");
+  qddot::Arguments arguments;
+  qddot::declare(app, arguments);
+  return qddot::run_program(app, argc, argv, [&] {
+    return qddot::stability_map(app, arguments, {argv, argv + argc});
+  });
+}
