@@ -16,7 +16,7 @@ namespace {
 
 constexpr int watched_steps = 200, samples_more = 400;
 constexpr double suspicious = 10, growing = 3, enough = 1e6;
-constexpr int more_iterations = 20;
+constexpr int more_iterations = 5;
 constexpr double other_motion = 0.1;
 
 struct Sample {

@@ -22,7 +22,7 @@ constexpr int least_steps = 100;
 //   diverged     X grew beyond ten times what it was and went on growing, or beyond all bounds
 //   gained       X ended up above 1 + tolerated of what it was, on the mean of the last quarter
 //   leaked       X ended up below 1 - tolerated
-//   unconverged  of methods that take as many iterations as they are told: with twenty times as
+//   unconverged  of methods that take as many iterations as they are told: with five times as
 //                many the motion is another one, by a tenth of its size
 // or the name of the outcome with which the integrator itself failed.
 struct Fate {

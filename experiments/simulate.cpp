@@ -16,17 +16,17 @@
 
 #include "experiments/catalogue.hpp"
 #include "experiments/csv.hpp"
+#include "experiments/diagnosis.hpp"
 #include "experiments/method_options.hpp"
 #include "experiments/node_table.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/timing.hpp"
 #include "experiments/tolerance_scales.hpp"
 #include "experiments/whole_file.hpp"
 #include "integrators/registry.hpp"
-#include "src/analysis/frequency_bound.hpp"
-#include "src/analysis/largest_frequency.hpp"
 #include "src/scene/explain.hpp"
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/reduce.hpp"
@@ -34,6 +34,9 @@
 
 namespace qddot {
 namespace {
+
+// Seconds that may be spent on why a run failed: some twenty times what the run took.
+constexpr double shortest_patience = 1, longest_patience = 5;
 
 struct Arguments {
   SceneChoice scene;
@@ -254,23 +257,6 @@ class Output {
   std::unique_ptr<CsvFile> final_, trajectory_, energy_;
 };
 
-// Why an explicit method cannot be stable from the start, if it cannot; the cheap bound of w_max
-// settles most cases.
-std::string step_warning(const Method& method, const Knobs& knobs, const ReducedScene& scene) {
-  if (method.implicit || method.order == 0 || method.knob != Knob::step_size) return "";
-  if (method.needs_split) return "";  // its steps are for the soft springs alone
-  const System& system = scene.system();
-  const Vec& q = scene.initial().q;
-  const double limit = method.stability_limit, h = knobs.step_size;
-  if (h * frequency_bound(system, q) <= limit) return "";
-  const double w = largest_frequency(system, q);
-  if (h * w <= limit) return "";
-  return fmt::format(
-      "h = {:.4g} s is above {:g}/w_max = {:.4g} s, where {} blows up (w_max = {:.5g} "
-      "rad/s at the start)",
-      h, limit, limit / w, method.name, w);
-}
-
 std::string in_words(const Counts& c) {
   std::string words =
       fmt::format("{} steps, {} force and {} stiffness evaluations, {} factorisations", c.steps,
@@ -328,9 +314,11 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   written_scene.commit(drawn);
   State state = scene.initial();
   output.see(state);
-  const Summary summary =
-      make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene))
-          ->advance(state, until, output.observer());
+  const auto integrator =
+      make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene));
+  Summary summary;
+  const double seconds =
+      seconds_of([&] { summary = integrator->advance(state, until, output.observer()); });
 
   if (output.is_asked_for()) {
     nlohmann::json origin = provenance(command_line, drawn, start, scene);
@@ -340,13 +328,15 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   }
   fmt::print("{} on {}: {} at t = {:g} s after {}\n", method.name, drawn.name,
              name(summary.outcome), summary.t_reached, in_words(summary.counts));
-  const std::string warning = step_warning(method, knobs, scene);
   if (summary.outcome == Outcome::reached_end) {
+    const std::string warning = step_warning(method, knobs, scene);
     if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
     return done;
   }
+  const double patience = std::clamp(20 * seconds, shortest_patience, longest_patience);
+  const std::string more = diagnosis(method, knobs, scene, until, summary, patience);
   fmt::print(stderr, "simulate: {} of {} s reached: {}{}{}\n", summary.t_reached, until,
-             summary.message, warning.empty() ? "" : "; ", warning);
+             summary.message, more.empty() ? "" : "; ", more);
   return end_not_reached;
 }
 

@@ -55,9 +55,9 @@ struct Arguments {
   SceneChoice scene;
   std::string vary, out;
   std::vector<std::string> methods;
-  std::vector<double> amplitudes = {0.01, 0.03, 0.1, 0.3, 1, 3};
-  double low = 0.1, high = 100, until = 0, step_size = 0, tolerated = 0.5, cell_limit = 1;
-  int columns = 25;
+  std::vector<double> amplitudes = {0.03, 0.1, 0.3, 1, 3};
+  double low = 0.1, high = 100, until = 0, step_size = 0, tolerated = 0.5, cell_limit = 0.3;
+  int columns = 22;
 };
 
 void declare(CLI::App& app, Arguments& a) {

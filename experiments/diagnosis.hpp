@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "integrators/method.hpp"
+#include "src/scene/reduce.hpp"
+
+namespace qddot {
+
+// What is wrong from the start with steps of that size, in half a sentence: above the linear limit
+// of an explicit method, or any at all where it grows at every h. Empty where nothing is, or for
+// methods that choose their steps, or whose steps are for the soft springs alone.
+std::string step_warning(const Method& method, const Knobs& knobs, const ReducedScene& scene);
+
+// Why a run of fixed steps that failed with `summary` did so, and what would have held, in a few
+// sentences: at which step; the limit that it crossed (h w_max over the motion so long as its
+// energy was still about the same, or h times the rate at which compressed springs push to the
+// side); and by trying, the largest of h/2, h/4, ... and the methods at this h that hold, for some
+// `seconds` at most. Empty for other methods and outcomes.
+std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+                      double until, const Summary& summary, double seconds);
+
+}  // namespace qddot
