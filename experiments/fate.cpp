@@ -15,6 +15,7 @@ namespace qddot {
 namespace {
 
 constexpr int watched_steps = 200, samples_more = 400;
+constexpr std::ptrdiff_t few = 8;
 constexpr double suspicious = 10, growing = 3, enough = 1e6;
 constexpr int more_iterations = 5;
 constexpr double other_motion = 0.1;
@@ -90,8 +91,8 @@ double slope(Samples::const_iterator first, Samples::const_iterator last) {
     n += 1;
     t_mean += dt / n;
     variance += dt * (s->t - t_mean);
-    covariance += dt * (x - x_mean);
     x_mean += (x - x_mean) / n;
+    covariance += dt * (x - x_mean);
   }
   return variance > 0 ? covariance / variance : 0;
 }
@@ -99,9 +100,9 @@ double slope(Samples::const_iterator first, Samples::const_iterator last) {
 double growth_rate(const Samples& samples) {
   auto first = samples.end();
   while (first != samples.begin() && std::prev(first)->ratio > growing) --first;
-  // From one sample before on: a growth may be over between two.
-  if (samples.end() - first >= 2) return slope(std::prev(first), samples.end());
-  return slope(from(samples, 0.5), samples.end());
+  const auto grown = samples.end() - first;
+  if (grown < 2) return slope(from(samples, 0.5), samples.end());
+  return slope(grown < few ? std::prev(first) : first + grown / 2, samples.end());
 }
 
 std::string judged(const Run& r, const Fate& fate, double tolerated) {

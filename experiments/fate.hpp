@@ -36,8 +36,8 @@ struct Fate {
 };
 
 // Runs the method from scene.initial() and judges. X is looked at after each of the first 200 steps
-// and 400 times more; growth is fitted to where X exceeds three times what it was, or, where it
-// does not stay there, to the second half of the run.
+// and 400 times more. Growth is fitted to the later half of where X exceeds three times what it was
+// (all of it where that is short), or, where it does not stay there, of the run.
 Fate fate_of(const Method& method, const Knobs& knobs, const ReducedScene& scene,
              const Judgement& judgement);
 
