@@ -1,0 +1,89 @@
+#include <regex>
+
+#include <boost/test/unit_test.hpp>
+
+#include "tests/experiments/process.hpp"
+
+using namespace qddot;
+
+namespace {
+
+// w = sqrt(k/m) = 10 rad/s.
+Run simulate(std::vector<std::string> words) { return run("simulate", words); }
+
+// The number behind `words` in the text.
+double number_behind(const std::string& text, const std::string& words) {
+  std::smatch found;
+  BOOST_TEST_REQUIRE(std::regex_search(text, found, std::regex(words + R"(([0-9.e+-]*[0-9]))")),
+                     text);
+  return number(found[1]);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(diagnosis)
+
+BOOST_AUTO_TEST_CASE(a_step_above_the_limit_is_named_with_what_holds) {
+  const Run result = simulate({"--scene", "oscillator", "--method", "verlet", "--step-size", "0.25",
+                               "--until", "100"});
+  BOOST_TEST(complains(result, 3, "simulate", {"it failed in step", "h w_max is 2.5 at the start",
+                                               "verlet's limit of 2", "what holds, tried: h = "}),
+             result.err);
+  const double h = number_behind(result.err, "what holds, tried: h = ");
+  BOOST_TEST(h == 0.125);  // half of it; and it does hold, as another method does at this h:
+  BOOST_TEST(simulate({"--scene", "oscillator", "--method", "verlet", "--step-size",
+                       fmt::format("{}", h), "--until", "100"})
+                 .status == 0);
+  BOOST_TEST(contains(result.err, {"at this h ", "implicit_euler"}), result.err);
+}
+
+BOOST_AUTO_TEST_CASE(the_step_it_failed_in_is_the_one_after_the_last_that_was_taken) {
+  const Run result = simulate({"--scene", "oscillator", "--method", "verlet", "--step-size", "0.4",
+                               "--until", "100"});
+  // rho = 7 + sqrt(48) at h w = 4, and |v| = 10 sinh-like growth to 1e30: 30 ln 10 / ln rho = 26.
+  const double failed = number_behind(result.err, "it failed in step ");
+  BOOST_TEST(failed > 24);
+  BOOST_TEST(failed < 29);
+  BOOST_TEST(contains(result.out, {fmt::format("after {} steps", failed - 1)}), result.out);
+}
+
+BOOST_AUTO_TEST_CASE(explicit_euler_is_told_apart_since_no_step_holds) {
+  const Run result = simulate({"--scene", "oscillator", "--method", "explicit_euler",
+                               "--step-size", "0.1", "--until", "100"});
+  BOOST_TEST(complains(result, 3, "simulate", {"gains energy at every h", "h w^2/2", "5/s"}),
+             result.err);
+  BOOST_TEST(!contains(result.err, {"tried: h = "}), result.err);
+}
+
+BOOST_AUTO_TEST_CASE(a_failure_below_the_limit_is_nonlinear) {
+  const Run result = simulate({"--scene", "pendulum", "--method", "kahan_li8", "--step-size",
+                               "0.09", "--until", "500"});
+  // h w_max = 2.85 of 3.10 at the start; stretched springs raise w_max hardly.
+  if (result.status == 3) {
+    BOOST_TEST(contains(result.err, {"nonlinear instability"}), result.err);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(newton_that_fails_names_a_step_at_which_it_does_not) {
+  const Run result = simulate(
+      {"--scene", "pendulum", "--method", "discrete_gradient", "--step-size", "0.5"});
+  BOOST_TEST(complains(result, 3, "simulate", {"it failed in step 2", "what holds, tried: h = "}),
+             result.err);
+  const double h = number_behind(result.err, "what holds, tried: h = ");
+  BOOST_TEST(simulate({"--scene", "pendulum", "--method", "discrete_gradient", "--step-size",
+                       fmt::format("{}", h)})
+                 .status == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_run_that_reaches_its_end_above_the_limit_is_warned_of) {
+  const Run above = simulate({"--scene", "oscillator", "--method", "rk4", "--step-size", "0.3"});
+  BOOST_TEST(above.status == 0);
+  BOOST_TEST(contains(above.err, {"warning", "2.8284/w_max"}), above.err);
+  const Run below = simulate({"--scene", "oscillator", "--method", "rk4", "--step-size", "0.28"});
+  BOOST_TEST(below.err == "");
+  const Run euler = simulate({"--scene", "oscillator", "--method", "explicit_euler", "--step-size",
+                              "0.01"});
+  BOOST_TEST(contains(euler.err, {"warning", "grow at every h", "0.5/s"}), euler.err);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
