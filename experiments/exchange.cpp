@@ -190,7 +190,8 @@ std::string verdict_on(const Summary& summary) {
 std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& reference) {
   const double kept = c.last / c.first;
   if (kept < 1 - most_change)
-    return fmt::format("damps: {:.0f} % of the energy left", 100 * c.last);
+    return c.last < 0.005 ? "damps: nothing left"
+                          : fmt::format("damps: {:.0f} % of the energy left", 100 * c.last);
   if (kept > 1 + most_change) return fmt::format("gains energy: {:.3g} times as much", c.last);
   if (c.level > most_level || c.level < 1 / most_level)
     return fmt::format("holds {:.2g} times the energy", c.level);
@@ -279,17 +280,20 @@ Study study_of(const CLI::App& app, const Arguments& a) {
 int exchange(const CLI::App& app, const Arguments& a,
              const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
-  for (const double h_omega : a.h_omega)
+  for (const double h_omega : a.h_omega) {
     require_positive(h_omega, "--h-omega",
                      "a step times the highest frequency of the stiff springs");
+    if (std::ranges::count(a.h_omega, h_omega) > 1)
+      throw InvalidInput(fmt::format("--h-omega: {} is named twice; allowed is once", h_omega));
+  }
   if (app.count("--every") > 0) require_positive(a.every, "--every", "a time in s");
   const Study study = study_of(app, a);
   const auto selected = select_fixed_step(a, study.scene);
   require_folder(a.out);
   CsvFile courses(a.out + "/exchange.csv", {"method", "h", "h_omega", "t", "spring", "energy"});
   CsvFile table(a.out + "/summary.csv",
-                {"method", "h", "h_omega", "outcome", "t_reached", "sum_deviation", "energy_error",
-                 "exchange_error", "tempo", "misfit", "verdict"});
+                {"method", "h", "h_omega", "outcome", "t_reached", "steps", "force_evaluations",
+                 "sum_deviation", "energy_error", "exchange_error", "tempo", "misfit", "verdict"});
 
   const CertifiedCourse reference = reference_of(study);
   const EnergyCourse& exact = reference.result.course;
@@ -307,6 +311,7 @@ int exchange(const CLI::App& app, const Arguments& a,
     const std::string verdict = reached ? verdict_on(c, own) : verdict_on(result.summary);
     write_course(courses, method, h, h_omega, result.course);
     table.row(method, h, h_omega, name(result.summary.outcome), result.summary.t_reached,
+              result.summary.counts.steps, result.summary.counts.force_evaluations,
               result.sum_deviation, result.energy_error, c.distance, c.tempo, c.misfit, verdict);
     fmt::print("{:<18} {:>6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>7.3f}  {}\n", method, h_omega,
                result.sum_deviation, result.energy_error, c.distance, c.tempo, verdict);

@@ -17,7 +17,7 @@ from sheet import Sheet
 from style import COOL, FAINT, GRID, INK, WARM, number, use_style
 
 PANEL_WIDTH, PANEL_HEIGHT, ACROSS, DOWN = 2.45, 0.86, 0.12, 0.12
-LEFT, RIGHT, TOP, BOTTOM = 1.65, 0.25, 1.0, 0.55
+LEFT, RIGHT, TOP, BOTTOM = 1.72, 0.25, 1.0, 0.55
 REFERENCE_HEIGHT, HEADS = 1.45, 0.3
 HIGHEST = 1.45
 # Of more springs than that, those are drawn that come to have the most energy.
@@ -25,14 +25,18 @@ MOST_SPRINGS = 5
 SPRINGS = (COOL[0], WARM[0], COOL[1], WARM[4], COOL[2])
 SUM = INK
 GREY = "#BBBBBB"
-# What a verdict starts with, and the colours of its panel and of its words; else it is BROKEN.
-RIGHT_LOOK = ("#DCEBF5", "#004A77")
+# Colours of a panel and of its words; what the verdicts start with that get it, and what it means.
+AS_IT_SHOULD, OFF, BROKEN = ("#DCEBF5", "#004A77"), ("#FBF3CF", "#6B5200"), ("#F9DDD0", "#8E3A00")
 LOOKS = (
-    ("exchanges as it should", RIGHT_LOOK),
-    ("exchanges wrongly", ("#F9DDD0", "#8E3A00")),
-    ("exchanges", ("#FBF3CF", "#6B5200")),
+    ("exchanges as it should", AS_IT_SHOULD),
+    ("exchanges wrongly", BROKEN),
+    ("exchanges", OFF),
 )
-BROKEN = ("#F9DDD0", "#8E3A00")
+MEANINGS = (
+    (AS_IT_SHOULD, "the energy goes where it should, within 10 % of the time it should take"),
+    (OFF, "it goes where it should, and the sum is kept, but sooner or later than that"),
+    (BROKEN, "it goes nowhere or elsewhere, or is lost, or grows"),
+)
 
 
 def read(folder):
@@ -56,7 +60,7 @@ def drawn_springs(course):
 
 
 def look_of(verdict):
-    """The colours of a panel and of its words."""
+    """The colours of the panel with that verdict."""
     return next((look for start, look in LOOKS if verdict.startswith(start)), BROKEN)
 
 
@@ -74,6 +78,7 @@ class Panels:
         """An empty panel; labels along the time where asked for."""
         axes = self.sheet.axes(left, top, width, height)
         axes.set(xlim=(0, self.until), ylim=(0, HIGHEST), yticks=(0, 0.5, 1))
+        axes.set_xticks([self.until * i / 4 for i in range(4)])
         axes.grid(True, color=GRID, linewidth=0.5)
         axes.tick_params(length=2, color=FAINT, labelsize=8, labelbottom=labelled)
         return axes
@@ -94,25 +99,39 @@ class Panels:
             self.plot(axes, course, name, SPRINGS[self.springs.index(name)], 0.9, 2.5)
         self.plot(axes, course, "sum", SUM, 0.7, 2)
         place = {"transform": axes.transAxes, "ha": "left", "va": "top", "zorder": 5}
-        axes.text(0.02, 0.965, verdict, size=8.5, color=words, weight="bold", **place)
+        box = {"facecolor": face, "edgecolor": "none", "pad": 1}
+        axes.text(0.02, 0.965, verdict, size=8.5, color=words, weight="bold", bbox=box, **place)
 
     def draw_reference(self, axes):
-        """The reference, each line named beside it."""
-        self.draw(axes, self.reference, "the exact motion")
-        axes.set_facecolor("white")
-        for i, name in enumerate([*self.springs, "sum"]):
-            color = SUM if name == "sum" else SPRINGS[i]
+        """The reference, with what its lines are."""
+        names = [*self.springs, "sum"]
+        for name, color in zip(names, (*SPRINGS[: len(self.springs)], SUM)):
+            self.plot(axes, self.reference, name, color, 0.9, 2)
+        place = {"transform": axes.transAxes, "va": "top", "weight": "bold"}
+        axes.text(0.02, 0.965, "the exact motion", size=8.5, **place)
+        for i, (name, color) in enumerate(zip(names, (*SPRINGS[: len(self.springs)], SUM))):
             label = "sum" if name == "sum" else f"$I_{{{int(name) + 1}}}$"
-            axes.text(
-                1.03 + 0.11 * (i % 3),
-                0.75 - 0.25 * (i // 3),
-                label,
-                transform=axes.transAxes,
-                color=color,
-                size=11,
-                weight="bold",
-                va="center",
-            )
+            axes.text(1.02, 0.9 - 0.19 * i, label, size=10.5, color=color, **place)
+
+
+def draw_meanings(sheet, left, top):
+    """What the panels' colours mean."""
+    for i, ((face, words), meaning) in enumerate(MEANINGS):
+        axes = sheet.axes(left, top + 0.36 * i, 0.32, 0.2)
+        axes.set(facecolor=face, xticks=(), yticks=())
+        axes.spines[:].set_visible(False)
+        middle = top + 0.36 * i + 0.1
+        sheet.text(left + 0.42, middle, meaning, size=9.5, color=words, va="center")
+
+
+def forces(method, summary):
+    """How many forces a step of the method takes, at the shortest step that reached the end."""
+    rows = [row for run, row in summary.items() if run[0] == method and int(row["steps"]) > 0]
+    row = min(rows, key=lambda row: (row["outcome"] != "reached_end", float(row["h"])), default=None)
+    if row is None:
+        return ""
+    count = round(int(row["force_evaluations"]) / int(row["steps"]))
+    return f"{count} force{'' if count == 1 else 's'} a step"
 
 
 def main(folder):
@@ -142,6 +161,7 @@ def main(folder):
     sheet.rule(0.82)
     axes = panels.axes(LEFT, TOP, PANEL_WIDTH, REFERENCE_HEIGHT, True)
     panels.draw_reference(axes)
+    draw_meanings(sheet, LEFT + PANEL_WIDTH + 0.75, TOP + 0.2)
     for i, step in enumerate(steps):
         middle = LEFT + i * (PANEL_WIDTH + ACROSS) + PANEL_WIDTH / 2
         label = f"h ω = {float(step):g}"
@@ -149,7 +169,10 @@ def main(folder):
     for row, method in enumerate(methods):
         top = first + row * (PANEL_HEIGHT + DOWN)
         middle = top + PANEL_HEIGHT / 2
-        sheet.text(LEFT - 0.35, middle, method, size=10, ha="right", va="center", color=INK)
+        place = {"ha": "right", "va": "center"}
+        sheet.text(LEFT - 0.35, middle - 0.09, method, size=10, color=INK, **place)
+        work = forces(method, summary)
+        sheet.text(LEFT - 0.35, middle + 0.11, work, size=8.5, color=FAINT, **place)
         for i, step in enumerate(steps):
             left = LEFT + i * (PANEL_WIDTH + ACROSS)
             axes = panels.axes(left, top, PANEL_WIDTH, PANEL_HEIGHT, row + 1 == len(methods))
