@@ -195,7 +195,9 @@ std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& re
   if (kept > 1 + most_change) return fmt::format("gains energy: {:.3g} times as much", c.last);
   if (c.level > most_level || c.level < 1 / most_level)
     return fmt::format("holds {:.2g} times the energy", c.level);
-  if (reference.exchanged >= some_exchange && c.exchanged <= no_exchange) return "no exchange";
+  if (reference.exchanged < some_exchange)
+    return c.distance <= most_misfit ? "as it should: no exchange so far" : "exchanges wrongly";
+  if (c.exchanged <= no_exchange) return "no exchange";
   if (c.misfit > most_misfit) return "exchanges wrongly";
   if (c.tempo > tempo_tolerance || c.tempo < 1 / tempo_tolerance)
     return "exchanges " + off_by(c.tempo);

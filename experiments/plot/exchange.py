@@ -29,6 +29,7 @@ GREY = "#BBBBBB"
 AS_IT_SHOULD, OFF, BROKEN = ("#DCEBF5", "#004A77"), ("#FBF3CF", "#6B5200"), ("#F9DDD0", "#8E3A00")
 LOOKS = (
     ("exchanges as it should", AS_IT_SHOULD),
+    ("as it should", AS_IT_SHOULD),
     ("exchanges wrongly", BROKEN),
     ("exchanges", OFF),
 )

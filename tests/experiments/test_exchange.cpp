@@ -152,6 +152,8 @@ BOOST_AUTO_TEST_CASE(springs_of_several_parts_are_followed_and_the_fastest_part_
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   const auto origin = nlohmann::json::parse(read_all(folder / "out/summary.json"));
   BOOST_TEST(std::abs(double(origin["omega"]) - 20) < 1e-11);  // sqrt(400 / 1) against 10
+  const Table summary = read_csv(folder / "out/summary.csv");
+  BOOST_TEST(summary.text(1, "verdict") == "as it should: no exchange so far");
   const Table table = read_csv(folder / "out/exchange.csv");
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const double energy = table.value(row, "energy");
