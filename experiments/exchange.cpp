@@ -302,7 +302,7 @@ int exchange(const CLI::App& app, const Arguments& a,
   const ExchangeComparison own = compare(exact, exact, study.window);
   fmt::print("{} to t = {:g} s: w = {:.7g} rad/s; reference certified to {:.1e} of the energy\n\n",
              study.drawn.name, study.until, study.omega, reference.certified);
-  fmt::print("{:<18} {:>6} {:>10} {:>10} {:>10} {:>7}  {}\n", "method", "h w", "sum I off", "H off",
+  fmt::print("{:<24} {:>6} {:>10} {:>10} {:>10} {:>7}  {}\n", "method", "h w", "sum I off", "H off",
              "I_j off", "tempo", "verdict");
   const auto report = [&](const std::string& method, double h, double h_omega,
                           const Result& result) {
@@ -315,7 +315,7 @@ int exchange(const CLI::App& app, const Arguments& a,
     table.row(method, h, h_omega, name(result.summary.outcome), result.summary.t_reached,
               result.summary.counts.steps, result.summary.counts.force_evaluations,
               result.sum_deviation, result.energy_error, c.distance, c.tempo, c.misfit, verdict);
-    fmt::print("{:<18} {:>6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>7.3f}  {}\n", method, h_omega,
+    fmt::print("{:<24} {:>6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>7.3f}  {}\n", method, h_omega,
                result.sum_deviation, result.energy_error, c.distance, c.tempo, verdict);
   };
   report("reference", reference.h, reference_h_omega, reference.result);

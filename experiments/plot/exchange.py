@@ -17,7 +17,9 @@ from sheet import Sheet
 from style import COOL, FAINT, GRID, INK, WARM, number, use_style
 
 PANEL_WIDTH, PANEL_HEIGHT, ACROSS, DOWN = 2.45, 0.86, 0.12, 0.12
-LEFT, RIGHT, TOP, BOTTOM = 1.72, 0.25, 1.0, 0.55
+RIGHT, TOP, BOTTOM = 0.25, 1.0, 0.55
+# For the axis' labels and, each character, for the longest method's name; for title and meanings.
+LABELS, CHARACTER, LEAST_WIDTH = 0.45, 0.082, 11.3
 REFERENCE_HEIGHT, HEADS = 1.45, 0.3
 HIGHEST = 1.45
 # Of more springs than that, those are drawn that come to have the most energy.
@@ -128,9 +130,9 @@ def draw_meanings(sheet, left, top):
 def forces(method, summary):
     """How many forces a step of the method takes, at the shortest step that reached the end."""
     rows = [row for run, row in summary.items() if run[0] == method and int(row["steps"]) > 0]
-    row = min(rows, key=lambda row: (row["outcome"] != "reached_end", float(row["h"])), default=None)
-    if row is None:
+    if not rows:
         return ""
+    row = min(rows, key=lambda row: (row["outcome"] != "reached_end", float(row["h"])))
     count = round(int(row["force_evaluations"]) / int(row["steps"]))
     return f"{count} force{'' if count == 1 else 's'} a step"
 
@@ -146,7 +148,9 @@ def main(folder):
     methods = list(dict.fromkeys(method for method, _ in runs))
     steps = list(dict.fromkeys(step for _, step in runs))
     reference = next(course for run, course in courses.items() if run[0] == "reference")
-    width = LEFT + len(steps) * (PANEL_WIDTH + ACROSS) - ACROSS + RIGHT
+    start = LABELS + CHARACTER * max(len(method) for method in methods)
+    width = start + len(steps) * (PANEL_WIDTH + ACROSS) - ACROSS + RIGHT
+    width = max(width, LEAST_WIDTH)
     first = TOP + REFERENCE_HEIGHT + 0.35 + HEADS
     height = first + len(methods) * (PANEL_HEIGHT + DOWN) - DOWN + BOTTOM
     sheet = Sheet(width, height)
@@ -160,22 +164,22 @@ def main(folder):
     )
     sheet.text(0.2, 0.62, words, size=10, color=FAINT, va="center")
     sheet.rule(0.82)
-    axes = panels.axes(LEFT, TOP, PANEL_WIDTH, REFERENCE_HEIGHT, True)
+    axes = panels.axes(start, TOP, PANEL_WIDTH, REFERENCE_HEIGHT, True)
     panels.draw_reference(axes)
-    draw_meanings(sheet, LEFT + PANEL_WIDTH + 0.75, TOP + 0.2)
+    draw_meanings(sheet, start + PANEL_WIDTH + 0.75, TOP + 0.2)
     for i, step in enumerate(steps):
-        middle = LEFT + i * (PANEL_WIDTH + ACROSS) + PANEL_WIDTH / 2
+        middle = start + i * (PANEL_WIDTH + ACROSS) + PANEL_WIDTH / 2
         label = f"h ω = {float(step):g}"
         sheet.text(middle, first - 0.14, label, size=11, weight="bold", ha="center", va="center")
     for row, method in enumerate(methods):
         top = first + row * (PANEL_HEIGHT + DOWN)
         middle = top + PANEL_HEIGHT / 2
         place = {"ha": "right", "va": "center"}
-        sheet.text(LEFT - 0.35, middle - 0.09, method, size=10, color=INK, **place)
+        sheet.text(start - 0.35, middle - 0.09, method, size=10, color=INK, **place)
         work = forces(method, summary)
-        sheet.text(LEFT - 0.35, middle + 0.11, work, size=8.5, color=FAINT, **place)
+        sheet.text(start - 0.35, middle + 0.11, work, size=8.5, color=FAINT, **place)
         for i, step in enumerate(steps):
-            left = LEFT + i * (PANEL_WIDTH + ACROSS)
+            left = start + i * (PANEL_WIDTH + ACROSS)
             axes = panels.axes(left, top, PANEL_WIDTH, PANEL_HEIGHT, row + 1 == len(methods))
             axes.tick_params(labelleft=i == 0)
             if row + 1 == len(methods):
