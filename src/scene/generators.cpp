@@ -17,7 +17,9 @@
   GENERATOR(chain)                  \
   GENERATOR(cloth)                  \
   GENERATOR(framed_cloth)           \
-  GENERATOR(lattice)
+  GENERATOR(lattice)                \
+  GENERATOR(fpu)                    \
+  GENERATOR(strut)
 
 namespace qddot {
 

@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(every_generator_is_explained) {
     const Explanation e = explained(scene);
     BOOST_TEST(e.unknowns < e.drawn_unknowns, generator.name);
     BOOST_TEST(std::isfinite(e.omega_max), generator.name);
-    BOOST_TEST(e.unstable == 0, generator.name);
+    BOOST_TEST((e.unstable > 0) == (generator.name == "strut"), generator.name);
     for (const Finding& finding : e.findings) {
       BOOST_TEST(contains(in_words(e, scene), finding.what));
     }

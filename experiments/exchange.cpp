@@ -1,0 +1,351 @@
+// How stiff springs exchange their energy, by method and step size: the figures of Hairer, Lubich
+// and Wanner, Geometric Numerical Integration, I.5.2 and XIII.2.
+//
+//   exchange --scene fpu --out results/fpu
+//   exchange --scene fpu --methods verlet,trbdf2 --h-omega 0.1,0.5,1 --until 400 --out results/fpu
+//
+//  1. w is the highest frequency at the start that the stiff springs (Scene::stiff_above) make by
+//     themselves, without the soft ones: in scene fpu it is its parameter `frequency`, as h w is
+//     meant there. A method's step is h = (h w)/w, all of the way: the motion is seen at
+//     multiples of h only, those nearest to multiples of --every.
+//  2. The reference is Kahan and Li's composition of order 8 at h w = 0.1, certified by how far
+//     Dormand and Prince's Nystrom pair 12(10) at rtol = 1e-12 is from it.
+//  3. exchange.csv has the oscillatory energy of each stiff spring over time (stiff_energies.hpp),
+//     springs counted from 0 among the stiff ones, and their sum.
+//  4. summary.csv has, for each method and h w:
+//       sum_deviation   the largest |sum I(t) - sum I(0)| / sum I(0)
+//       energy_error    the largest |H(t) - H(0)| / |H(0)|
+//     over the times seen; and, of running means over 40 periods of w (a quarter of the time if
+//     that is less; see energy_exchange.hpp),
+//       exchange_error  the largest |I_j(t) - I_j,ref(t)| / sum I(0)
+//       tempo           the a for which I_j(t) is nearest to I_j,ref(a t): how fast they exchange
+//       misfit          the root mean square of what is left then
+//       verdict         in words; "as it should" is a tempo within 10 % and a misfit below 0.1
+//     What drives the exchange is the soft springs' slow motion, which may be chaotic: in scene fpu
+//     1 % more frequency moves I_j(t) by up to 0.06, so that a few per cent of tempo mean nothing.
+//     A run that fails has its outcome, and leaves the rest empty.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/csv.hpp"
+#include "experiments/deadline.hpp"
+#include "experiments/energy_exchange.hpp"
+#include "experiments/measurement.hpp"
+#include "experiments/program.hpp"
+#include "experiments/progress.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/samples.hpp"
+#include "experiments/scene_choice.hpp"
+#include "integrators/registry.hpp"
+#include "src/analysis/natural_modes.hpp"
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/stiff_energies.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr double reference_h_omega = 0.1, reference_rtol = 1e-12;
+constexpr double longest_run = 60;  // [s] of wall time
+constexpr double periods_of_mean = 40;
+// Of the tempo, the misfit and the sum from start to end: beyond these something is wrong.
+constexpr double tempo_tolerance = 1.1, most_misfit = 0.1, most_change = 0.1, most_level = 2;
+// Parts of the sum that are an exchange and that are none.
+constexpr double some_exchange = 0.1, no_exchange = 0.02;
+
+struct Arguments {
+  SceneChoice scene;
+  std::string out;
+  double until = 0, every = 0;
+  std::vector<std::string> methods = {"symplectic_euler", "verlet",
+                                      "position_verlet",  "rk4",
+                                      "blanes_moan4",     "blanes_moan6",
+                                      "kahan_li8",        "implicit_midpoint",
+                                      "trapezoidal",      "discrete_gradient",
+                                      "linear_midpoint",  "linear_midpoint4",
+                                      "implicit_euler"};
+  std::vector<double> h_omega = {0.1, 1, 2.25, 5};
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  add_scene_options(app, a.scene);
+  app.add_option("--methods", a.methods, "a,b,... of fixed step")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--h-omega", a.h_omega,
+                 "a,b,...: the steps times the highest frequency of the stiff springs")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  app.add_option("--every", a.every,
+                 "how far apart the times of exchange.csv are in s, about (default: a thousandth "
+                 "of the time)");
+  app.add_option("--out", a.out, "the folder for exchange.csv and summary.csv");
+}
+
+// The highest frequency [rad/s] of the stiff springs alone; 0 where there are none.
+double stiff_frequency(const System& system, const Vec& q) {
+  double highest = 0;
+  Index first = 0;
+  for (const auto& part : system.parts()) {
+    highest = std::max(highest, stiff_frequency(*part, q.segment(first, part->size())));
+    first += part->size();
+  }
+  const Split* split = system.split();
+  if (!split || split->core_unknowns.empty()) return highest;
+  const Vec q_core = q(split->core_unknowns);
+  return std::max(highest, std::sqrt(highest_modes(*split->core, q_core, 1).squares[0]));
+}
+
+// The scene, what its runs have in common, and what its stiff springs start with.
+struct Study {
+  Scene drawn, start;
+  ReducedScene scene;
+  double until = 0, every = 0, omega = 0, window = 0;
+  double energy = 0, sum = 0;  // H and sum I at t = 0 [J]
+};
+
+// A run of one method.
+struct Result {
+  EnergyCourse course{};
+  Summary summary{};
+  double sum_deviation = 0, energy_error = 0;
+};
+
+// Seen at the start and then at `times`, which a run of constant steps is to reach in whole ones.
+Result run_of(const Study& study, const Method& method, double knob,
+              const std::vector<double>& times) {
+  Result result;
+  const auto see = [&](const State& state) {
+    const Vec energies = stiff_energies(study.start, study.scene.expand(state));
+    const auto raise = [](double& largest, double value) {
+      if (!(value <= largest)) largest = value;
+    };
+    raise(result.sum_deviation, std::abs(energies.sum() / study.sum - 1));
+    raise(result.energy_error, std::abs(study.scene.energy(state) / study.energy - 1));
+    result.course.times.push_back(state.t);
+    result.course.energies.push_back(energies);
+  };
+  State state = study.scene.initial();
+  see(state);
+  const Deadline deadline(longest_run);
+  result.summary =
+      make_integrator(method, study.scene.system(), knobs_for(method, knob, study.scene))
+          ->advance(state, study.until, {times, see}, deadline.token());
+  return result;
+}
+
+// The multiples of h after 0 that are nearest to those of `every`.
+std::vector<double> multiples_near(double every, double h, double until) {
+  auto times = samples(h * std::max(1.0, std::round(every / h)), until);
+  times.erase(times.begin());
+  return times;
+}
+
+// The motion that others are compared with.
+struct CertifiedCourse {
+  double h = 0;
+  Result result{};
+  double certified = 0;  // the largest |I_j - I_j'| of the two ways, over sum I(0)
+};
+
+CertifiedCourse reference_of(const Study& study) {
+  CertifiedCourse reference{.h = reference_h_omega / study.omega};
+  const auto times = multiples_near(study.every, reference.h, study.until);
+  const auto reached = [&](const char* name, double knob) {
+    Result result = run_of(study, *find_method(name), knob, times);
+    if (result.summary.outcome == Outcome::reached_end) return result;
+    throw NoReference(fmt::format("{} reaches {} of {} s only, so that there is no reference: {}",
+                                  name, result.summary.t_reached, study.until,
+                                  result.summary.message));
+  };
+  reference.result = reached("kahan_li8", reference.h);
+  const Result other = reached("dprkn12", reference_rtol);
+  for (std::size_t i = 0; i <= times.size(); ++i) {
+    const Vec apart = reference.result.course.energies[i] - other.course.energies[i];
+    reference.certified =
+        std::max(reference.certified, apart.lpNorm<Eigen::Infinity>() / study.sum);
+  }
+  return reference;
+}
+
+// By how much a tempo is not 1: "14 % too slowly", "2.3 times too fast".
+std::string off_by(double tempo) {
+  const char* where = tempo > 1 ? "too fast" : "too slowly";
+  const double factor = std::max(tempo, 1 / tempo);
+  return factor < 2 ? fmt::format("{:.0f} % {}", 100 * std::abs(tempo - 1), where)
+                    : fmt::format("{:.1f} times {}", factor, where);
+}
+
+std::string verdict_on(const Summary& summary) {
+  const bool blows_up =
+      summary.outcome == Outcome::diverged || summary.outcome == Outcome::not_finite;
+  return fmt::format("{} at t = {:.3g} s", blows_up ? "blows up" : name(summary.outcome),
+                     summary.t_reached);
+}
+
+std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& reference) {
+  const double kept = c.last / c.first;
+  if (kept < 1 - most_change)
+    return c.last < 0.005 ? "damps: nothing left"
+                          : fmt::format("damps: {:.0f} % of the energy left", 100 * c.last);
+  if (kept > 1 + most_change) return fmt::format("gains energy: {:.3g} times as much", c.last);
+  if (c.level > most_level || c.level < 1 / most_level)
+    return fmt::format("holds {:.2g} times the energy", c.level);
+  if (reference.exchanged < some_exchange)
+    return c.distance <= most_misfit ? "as it should: no exchange so far" : "exchanges wrongly";
+  if (c.exchanged <= no_exchange) return "no exchange";
+  if (c.misfit > most_misfit) return "exchanges wrongly";
+  if (c.tempo > tempo_tolerance || c.tempo < 1 / tempo_tolerance)
+    return "exchanges " + off_by(c.tempo);
+  return "exchanges as it should";
+}
+
+void write_course(CsvFile& csv, const std::string& method, double h, double h_omega,
+                  const EnergyCourse& course) {
+  for (std::size_t i = 0; i < course.times.size(); ++i) {
+    const Vec& energies = course.energies[i];
+    for (Index j = 0; j < energies.size(); ++j)
+      csv.row(method, h, h_omega, course.times[i], j, energies[j]);
+    csv.row(method, h, h_omega, course.times[i], "sum", energies.sum());
+  }
+  csv.flush_if_large();
+}
+
+// Methods of fixed step among those named; of the others it is said that they are left out.
+std::vector<const Method*> select_fixed_step(const Arguments& a, const ReducedScene& scene) {
+  std::vector<const Method*> selected;
+  for (const Method* method : select_methods(a.methods, scene, a.scene.name)) {
+    if (method->knob == Knob::step_size) {
+      selected.push_back(method);
+    } else {
+      fmt::print("{} is left out: it chooses its steps by itself, so that it has no h w\n",
+                 method->name);
+    }
+  }
+  if (selected.empty()) {
+    throw InvalidInput(
+        fmt::format("--methods: none of {} has a fixed step; allowed are methods "
+                    "whose knob is step_size in simulate --list-methods --csv",
+                    fmt::join(a.methods, ", ")));
+  }
+  return selected;
+}
+
+// Checks what was asked for and looks at the start.
+Study study_of(const CLI::App& app, const Arguments& a) {
+  const Scene drawn = load(a.scene);
+  const Scene start = started(drawn, a.scene);
+  Study study{.drawn = drawn, .start = start, .scene = ReducedScene(start, reductions_of(a.scene))};
+  require_reference_exists(study.scene, a.scene.name);
+  study.until = horizon(a.until, app.count("--until") > 0, drawn);
+  const State& initial = study.scene.initial();
+  study.omega = stiff_frequency(study.scene.system(), initial.q);
+  study.energy = study.scene.energy(initial);
+  study.sum = stiff_energies(start, start.nodes).sum();
+  if (!(study.omega > 0)) {
+    throw InvalidInput(fmt::format(
+        "{}: stiff_above: {}; allowed are finite numbers above 0 in N/m that some spring between "
+        "free nodes has more stiffness than, since it is such springs whose energy is followed",
+        a.scene.name,
+        drawn.stiff_above ? fmt::format("{} leaves no stiff spring that moves", *drawn.stiff_above)
+                          : "it is missing"));
+  }
+  if (!(study.sum > 0)) {
+    throw InvalidInput(
+        fmt::format("{}: the stiff springs start without energy, {} J, so that there is none to be "
+                    "exchanged; allowed are scenes that start with a stiff spring drawn or moving "
+                    "out of its rest length",
+                    a.scene.name, study.sum));
+  }
+  const double longest = std::ranges::max(a.h_omega) / study.omega;
+  if (!(10 * longest <= study.until)) {
+    throw InvalidInput(
+        fmt::format("--until {} is not allowed with --h-omega {}; it is at least ten steps of it, "
+                    "{:.3g} s",
+                    study.until, std::ranges::max(a.h_omega), 10 * longest));
+  }
+  study.every = app.count("--every") > 0 ? a.every : study.until / 1000;
+  if (!(study.every <= study.until / 10)) {
+    throw InvalidInput(
+        fmt::format("--every {} is not allowed; it is at most a tenth of the time, "
+                    "{} s",
+                    study.every, study.until));
+  }
+  study.window = std::min(periods_of_mean * 2 * M_PI / study.omega, study.until / 4);
+  return study;
+}
+
+int exchange(const CLI::App& app, const Arguments& a,
+             const std::vector<std::string>& command_line) {
+  require_given(a.out, "--out", "the folder for the results");
+  for (const double h_omega : a.h_omega) {
+    require_positive(h_omega, "--h-omega",
+                     "a step times the highest frequency of the stiff springs");
+    if (std::ranges::count(a.h_omega, h_omega) > 1)
+      throw InvalidInput(fmt::format("--h-omega: {} is named twice; allowed is once", h_omega));
+  }
+  if (app.count("--every") > 0) require_positive(a.every, "--every", "a time in s");
+  const Study study = study_of(app, a);
+  const auto selected = select_fixed_step(a, study.scene);
+  require_folder(a.out);
+  CsvFile courses(a.out + "/exchange.csv", {"method", "h", "h_omega", "t", "spring", "energy"});
+  CsvFile table(a.out + "/summary.csv",
+                {"method", "h", "h_omega", "outcome", "t_reached", "steps", "force_evaluations",
+                 "sum_deviation", "energy_error", "exchange_error", "tempo", "misfit", "verdict"});
+
+  const CertifiedCourse reference = reference_of(study);
+  const EnergyCourse& exact = reference.result.course;
+  const ExchangeComparison own = compare(exact, exact, study.window);
+  fmt::print("{} to t = {:g} s: w = {:.7g} rad/s; reference certified to {:.1e} of the energy\n\n",
+             study.drawn.name, study.until, study.omega, reference.certified);
+  fmt::print("{:<24} {:>6} {:>10} {:>10} {:>10} {:>7}  {}\n", "method", "h w", "sum I off", "H off",
+             "I_j off", "tempo", "verdict");
+  const auto report = [&](const std::string& method, double h, double h_omega,
+                          const Result& result) {
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    const bool reached = result.summary.outcome == Outcome::reached_end;
+    ExchangeComparison c{.distance = nothing, .tempo = nothing, .misfit = nothing};
+    if (reached) c = compare(result.course, exact, study.window);
+    const std::string verdict = reached ? verdict_on(c, own) : verdict_on(result.summary);
+    write_course(courses, method, h, h_omega, result.course);
+    table.row(method, h, h_omega, name(result.summary.outcome), result.summary.t_reached,
+              result.summary.counts.steps, result.summary.counts.force_evaluations,
+              result.sum_deviation, result.energy_error, c.distance, c.tempo, c.misfit, verdict);
+    fmt::print("{:<24} {:>6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>7.3f}  {}\n", method, h_omega,
+               result.sum_deviation, result.energy_error, c.distance, c.tempo, verdict);
+  };
+  report("reference", reference.h, reference_h_omega, reference.result);
+  for (const Method* method : selected) {
+    for (const double h_omega : a.h_omega) {
+      const double h = h_omega / study.omega;
+      show_progress(fmt::format("{} at h w = {:g}", method->name, h_omega));
+      report(method->name, h, h_omega,
+             run_of(study, *method, h, multiples_near(study.every, h, study.until)));
+    }
+  }
+  nlohmann::json origin = provenance(command_line, study.drawn, study.start, study.scene);
+  origin["omega"] = study.omega;
+  origin["until"] = study.until;
+  origin["window"] = study.window;
+  origin["certified"] = reference.certified;
+  courses.commit(origin);
+  table.commit(origin);
+  return done;
+}
+
+}  // namespace
+}  // namespace qddot
+
+int main(int argc, char** argv) {
+  CLI::App app("Follows the energy that stiff springs exchange, by method and step size.",
+               "exchange");
+  qddot::Arguments arguments;
+  qddot::declare(app, arguments);
+  return qddot::run_program(app, argc, argv, [&] {
+    return qddot::exchange(app, arguments, {argv, argv + argc});
+  });
+}

@@ -1,0 +1,154 @@
+#include <cmath>
+
+#include <boost/test/unit_test.hpp>
+
+#include "src/analysis/natural_modes.hpp"
+#include "src/scene/reduce.hpp"
+#include "src/scene/stiff_energies.hpp"
+#include "tests/measure.hpp"
+#include "tests/scene/drawn.hpp"
+
+using namespace qddot;
+
+namespace {
+
+// Displacements q_i = x_i - 10 i of up to 1 m from positions of up to 70 m are right to some
+// 70 eps = 2e-14, and energies of 1 J, of stiff springs too, whose elongations of 1/w cost
+// k 1/w 2e-14 = w/2 2e-14 J, to less than this for w up to 100.
+constexpr double tolerance = 1e-12;
+
+// q_1, q_2, ..., of the free nodes.
+Vec displacements(const Vec& positions) {
+  const auto n = positions.size();
+  return positions - 10 * Vec::LinSpaced(n, 1, static_cast<double>(n));
+}
+
+// H's potential part as Hairer, Lubich and Wanner write it; q_0 = q_2m+1 = 0.
+double potential_of(const Vec& q, double w) {
+  const Index m = q.size() / 2;
+  double v = 0;
+  for (Index i = 0; i < m; ++i) v += w * w / 4 * std::pow(q[2 * i + 1] - q[2 * i], 2);
+  for (Index i = 0; i <= m; ++i) {
+    const double left = i == 0 ? 0 : q[2 * i - 1], right = i == m ? 0 : q[2 * i];
+    v += std::pow(right - left, 4);
+  }
+  return v;
+}
+
+// -dV/dq, by hand.
+Vec force_of(const Vec& q, double w) {
+  const Index m = q.size() / 2;
+  Vec f(q.size());
+  for (Index i = 0; i < m; ++i) {
+    const double left = i == 0 ? 0 : q[2 * i - 1], right = i + 1 == m ? 0 : q[2 * i + 2];
+    const double stiff = w * w / 2 * (q[2 * i + 1] - q[2 * i]);
+    f[2 * i] = stiff - 4 * std::pow(q[2 * i] - left, 3);
+    f[2 * i + 1] = -stiff + 4 * std::pow(right - q[2 * i + 1], 3);
+  }
+  return f;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(fpu)
+
+BOOST_AUTO_TEST_CASE(standard_is_that_of_hairer_lubich_and_wanner) {
+  const Scene scene = draw("fpu");
+  BOOST_TEST(scene.dimension == 1);
+  BOOST_TEST(scene.gravity.norm() == 0);
+  BOOST_TEST(*scene.until == 200);
+  BOOST_TEST_REQUIRE(scene.nodes.size() == 8u);
+  BOOST_TEST_REQUIRE(scene.springs.size() == 7u);
+  for (std::size_t i = 0; i < 8; ++i) {
+    BOOST_TEST(scene.nodes[i].mass == 1);
+    BOOST_TEST(scene.nodes[i].pinned == (i == 0 || i == 7));
+  }
+  for (std::size_t e = 0; e < 7; ++e) {
+    const Spring& spring = scene.springs[e];
+    const bool stiff = e % 2 == 1;
+    BOOST_TEST((spring.nodes == std::array<std::size_t, 2>{e, e + 1}));
+    BOOST_TEST(spring.law.stiffness == (stiff ? 1250 : 0));
+    BOOST_TEST(spring.law.quartic == (stiff ? 0 : 4));
+    BOOST_TEST(is_stiff(spring.law, scene.stiff_above) == stiff);
+  }
+  BOOST_TEST((stiff_springs(scene) == std::vector<std::size_t>{1, 3, 5}));
+}
+
+BOOST_AUTO_TEST_CASE(it_starts_with_all_vibration_in_the_first_stiff_spring) {
+  for (const double m : {1., 2., 3., 7.}) {
+    for (const double w : {1., 7., 50., 100.}) {
+      const Scene scene = draw("fpu", {{"stiff_springs", m}, {"frequency", w}});
+      const ReducedScene reduced(scene);
+      const Vec energies = stiff_energies(scene, scene.nodes);
+      Vec expected = Vec::Zero(static_cast<Index>(m));
+      expected[0] = 1;
+      BOOST_TEST(distance(energies, expected) < tolerance);
+      // Kinetic 1; 1/2 in the stiff spring; ((1 - 1/w)^4 + (1 + 1/w)^4)/4 in the soft ones beside
+      // it, of which the right one joins two walls' neighbours or, if m = 1, a wall.
+      BOOST_TEST(std::abs(reduced.kinetic(reduced.initial()) - 1) < tolerance);
+      const double h = 2 + 3 / (w * w) + 1 / (2 * std::pow(w, 4));
+      BOOST_TEST(std::abs(reduced.energy(reduced.initial()) - h) < tolerance);
+      // In scaled coordinates.
+      const auto q = [&](std::size_t i) { return scene.nodes[i].position.x() - 10. * double(i); };
+      const auto p = [&](std::size_t i) { return scene.nodes[i].velocity.x(); };
+      const double root = std::sqrt(2);
+      BOOST_TEST(std::abs((q(2) + q(1)) / root - 1) < tolerance);
+      BOOST_TEST(std::abs((q(2) - q(1)) / root - 1 / w) < tolerance);
+      BOOST_TEST(std::abs((p(2) + p(1)) / root - 1) < tolerance);
+      BOOST_TEST(std::abs((p(2) - p(1)) / root - 1) < tolerance);
+      for (std::size_t i = 3; i < scene.nodes.size(); ++i) BOOST_TEST((q(i) == 0 && p(i) == 0));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(energy_and_force_are_those_of_the_book_wherever_no_spring_turns_over) {
+  const double w = 50;
+  const ReducedScene reduced(draw("fpu"));
+  std::mt19937 random(1);
+  for (int i = 0; i < 100; ++i) {
+    Vec q(6);
+    for (double& x : q) x = std::uniform_real_distribution(-2., 2.)(random);
+    const Vec positions = q + 10 * Vec::LinSpaced(6, 1, 6);
+    const double v = potential_of(displacements(positions), w);
+    // Forces of up to 5000 N, whose elongations are right to 2e-14 m times 1250 N/m.
+    BOOST_TEST(std::abs(reduced.system().potential(positions) - v) < 1e-13 * (v + 1));
+    BOOST_TEST(distance(force_at(reduced.system(), positions),
+                        force_of(displacements(positions), w)) < 1e-10);
+  }
+  BOOST_TEST(distance(force_of(displacements(reduced.initial().q), 51),
+                      force_of(displacements(reduced.initial().q), w)) > 1e-2);
+}
+
+BOOST_AUTO_TEST_CASE(a_pair_on_a_stiff_spring_alone_vibrates_at_w) {
+  for (const double w : {3., 50.}) {
+    const ReducedScene reduced(draw("fpu", {{"frequency", w}}));
+    BOOST_TEST_REQUIRE(reduced.system().split());
+    const System& stiff = *reduced.system().split()->stiff;
+    const NaturalModes modes = highest_modes(stiff, reduced.initial().q, 6);
+    // Three pairs that vibrate and three that move as one.
+    const Vec expected{{0, 0, 0, w * w, w * w, w * w}};
+    BOOST_TEST(distance(modes.squares, expected) < 1e-13 * w * w);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(reductions_leave_nothing_out_but_the_walls) {
+  for (const double m : {1., 3.}) {
+    const Scene scene = draw("fpu", {{"stiff_springs", m}});
+    const ReducedScene reduced(scene);
+    BOOST_TEST(reduced.system().size() == 2 * static_cast<Index>(m));
+    BOOST_TEST(!reduced.system().stiffness_is_constant());
+    BOOST_TEST_REQUIRE(reduced.findings().size() == 1u);
+    BOOST_TEST((reduced.findings()[0].reduction == Reduction::pins));
+    BOOST_TEST(reduced.massless_nodes().empty());
+  }
+}
+
+// By energy, at the largest energy there is, that of w = 1.
+BOOST_AUTO_TEST_CASE(no_spring_ever_turns_over) {
+  const Scene scene = draw("fpu", {{"frequency", 1}});
+  const ReducedScene reduced(scene);
+  const double energy = reduced.energy(reduced.initial());
+  for (const Spring& spring : scene.springs) BOOST_TEST(spring.law.energy(0.) > 4 * energy);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
