@@ -85,8 +85,10 @@ Before before_failure(const Method& method, const Knobs& knobs, const ReducedSce
                 .buckling = pushed(scene.initial().q)};
   EnergyWatch watch(scene);
   const auto see = [&](const State& state) {
-    if (!watch.see(state)) return;
-    before.t = state.t;
+    // The first state of a wrong energy counts: its step began where all was right.
+    const bool counts = watch.is_same();
+    if (watch.see(state)) before.t = state.t;
+    if (!counts) return;
     before.buckling = std::max(before.buckling, pushed(state.q));
     const double omega = largest_frequency(scene.system(), state.q);
     if (omega > before.omega) {
