@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
 #include "experiments/deadline.hpp"
 #include "experiments/error.hpp"
+#include "experiments/rest.hpp"
 #include "experiments/tolerance_scales.hpp"
 #include "integrators/registry.hpp"
 
@@ -16,6 +18,7 @@ namespace {
 
 constexpr int watched_steps = 200, samples_more = 400;
 constexpr std::ptrdiff_t few = 8;
+constexpr double nearly_singular = 0.9;
 constexpr double suspicious = 10, growing = 3, enough = 1e6;
 constexpr int more_iterations = 5;
 constexpr double other_motion = 0.1;
@@ -40,6 +43,9 @@ struct Run {
   std::vector<Sample> samples;
   State end;
   bool was_stopped = false;  // since X grew out of sight
+  // Where X jumped beyond what is suspicious: h times the rate [1/s] at which the state before was
+  // pushed to the side. Looked for in linearly implicit methods.
+  std::optional<double> pushed{};
 };
 
 Run run(const Method& method, const Knobs& knobs, const ReducedScene& scene, double until,
@@ -49,8 +55,13 @@ Run run(const Method& method, const Knobs& knobs, const ReducedScene& scene, dou
   const Deadline deadline(judgement.seconds);
   std::stop_source stop;
   const std::stop_callback pass_on(deadline.token(), [&] { stop.request_stop(); });
+  Vec before = result.end.q;
   const auto see = [&](const State& state) {
     const double ratio = (scene.energy(state) - judgement.rest_energy) / start;
+    if (method.linearly_implicit && !result.pushed && !(ratio < suspicious)) {
+      result.pushed = knobs.step_size * buckling_rate(scene.system(), before);
+    }
+    before = state.q;
     if (std::isfinite(ratio)) result.samples.push_back({state.t, ratio});
     if (!(ratio < enough)) {
       result.was_stopped = true;
@@ -106,6 +117,7 @@ double growth_rate(const Samples& samples) {
 }
 
 std::string judged(const Run& r, const Fate& fate, double tolerated) {
+  if (r.pushed > nearly_singular) return std::string(name(Outcome::indefinite_matrix));
   if (r.was_stopped) return "diverged";
   const Outcome outcome = r.summary.outcome;
   if (outcome != Outcome::reached_end) return std::string(name(outcome));

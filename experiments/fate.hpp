@@ -20,6 +20,9 @@ constexpr int least_steps = 100;
 // What became of a run. `outcome` is
 //   bounded      X keeps its size (that of Verlet's may oscillate by much, near its limit)
 //   diverged     X grew beyond ten times what it was and went on growing, or beyond all bounds
+//   indefinite_matrix   of linearly implicit methods: X jumped beyond ten times what it was from
+//                where compressed springs made M - h^2 K singular or nearly so (h times the rate at
+//                which they push to the side above 0.9)
 //   gained       X ended up above 1 + tolerated of what it was, on the mean of the last quarter
 //   leaked       X ended up below 1 - tolerated
 //   unconverged  of methods that take as many iterations as they are told: with five times as

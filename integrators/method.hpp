@@ -33,6 +33,9 @@ struct Method {
   // Of explicit methods: on q'' = -w^2 q the motion grows where h w is above it, by theory; 0 where
   // it does so at every h. Implicit ones have none (linear_limit below).
   double stability_limit = 2;
+  // Solves with M - h^2 K(q_n) once a step, whatever its signs: where compressed springs make it
+  // singular a step may go anywhere.
+  bool linearly_implicit = false;
   bool symplectic = false;
   bool needs_stiffness = false;
   bool accepts_massless = false;

@@ -51,6 +51,7 @@ Method semi_implicit_euler() {
           .summary = "linearly implicit Euler; one linear solve a step, damps",
           .source = "Baraff and Witkin, Large Steps in Cloth Simulation, SIGGRAPH 1998, eq. 6",
           .implicit = true,
+          .linearly_implicit = true,
           .needs_stiffness = true,
           .accepts_massless = true,
           .make = create<SemiImplicitEuler>};

@@ -102,6 +102,29 @@ BOOST_AUTO_TEST_CASE(
   BOOST_TEST(kept.energy_max < 1 + 1e-6);
 }
 
+BOOST_AUTO_TEST_CASE(linearly_implicit_steps_fail_where_a_strut_makes_their_matrix_singular) {
+  // One free node between two pins: lambda = (2 k/m)(l0/l - 1), less by the bend's part in 1e5.
+  const double k = 1000, m = 0.1, compression = 0.8;
+  const double rate = std::sqrt(2 * k / m * (1 / compression - 1));
+  const Case strut(
+      "strut",
+      {{"nodes", 3}, {"stiffness", k}, {"mass", m}, {"compression", compression}, {"bend", 1e-3}});
+  const auto at = [&](double h_squared_lambda) {
+    return strut("semi_implicit_euler", std::sqrt(h_squared_lambda) / rate, 1);
+  };
+  BOOST_TEST(at(0.5).outcome != "indefinite_matrix");
+  BOOST_TEST(at(0.5).energy_max < 10);
+  BOOST_TEST(at(1.0).outcome == "indefinite_matrix");
+  BOOST_TEST(at(1.0).energy_max > 1e4);
+  // Beyond h rate = 2 its map damps what pushes to the side, 1/(1 - h rate) a step: it stands still
+  // on top, which is bounded and wrong.
+  BOOST_TEST(at(5).outcome == "bounded");
+  BOOST_TEST(std::abs(at(5).energy_end - 1) < 1e-3);
+  // Implicit Euler solves the same equation to the end, at a minimum.
+  const Fate solved = strut("implicit_euler", 1 / rate, 1);
+  BOOST_TEST(solved.energy_max < 1 + 1e-6);
+}
+
 BOOST_AUTO_TEST_CASE(few_iterations_converge_to_another_motion) {
   const Case chain("chain", {{"nodes", 40}, {"stiffness", 1e5}});
   BOOST_TEST(chain("local_global", 0.02, 0.5, 1).outcome == "unconverged");

@@ -95,4 +95,29 @@ BOOST_AUTO_TEST_CASE(matrices_are_positive_where_springs_are_in_tension) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(semi_implicit_euler_survives_half_of_the_singular_step_and_is_refused_at_it) {
+  // One mass of 0.1 kg between two pins on springs compressed to 0.8 of their length, straight:
+  // lambda = (2 k/m) (l0/l - 1) = 5000/s^2 across, so that h^2 lambda = 1 at h = 1/sqrt(5000) s.
+  Network network{.dimension = 2, .node_mass = Vec::Constant(1, 0.1)};
+  const SpringLaw law{.stiffness = 1000, .rest_length = 0.625};
+  network.anchors = {{0, {0, 0, 0}, law}, {0, {1, 0, 0}, law}};
+  const auto system = make_mass_spring(network);
+  const State start{0, Vec{{0.5, 0}}, Vec{{0, 1e-3}}};
+  const auto step = [&](double h_squared_lambda) {
+    const double h = std::sqrt(h_squared_lambda / 5000);
+    return run(method_named("semi_implicit_euler"), *system, start, h, {.step_size = h});
+  };
+  // v' = v / (1 - h^2 lambda) across: twice as fast, the exact motion e^(1/sqrt 2) = 2.03 times.
+  const Run half = step(0.5);
+  BOOST_TEST(half.summary.message == "");
+  BOOST_TEST(half.state.v[1] == 2e-3, boost::test_tools::tolerance(1e-12));
+  const Run singular = step(1);
+  BOOST_TEST(name(singular.summary.outcome) == "indefinite_matrix");
+  BOOST_TEST(same(singular.state, start));
+  // Beyond it solves, and turns the motion round: -v / 3.
+  const Run beyond = step(4);
+  BOOST_TEST(beyond.summary.message == "");
+  BOOST_TEST(beyond.state.v[1] == -1e-3 / 3, boost::test_tools::tolerance(1e-12));
+}
+
 BOOST_AUTO_TEST_SUITE_END()
