@@ -11,8 +11,8 @@ from matplotlib.patches import Patch, Rectangle
 from sheet import Sheet
 from style import COOL, FAINT, INK, WARM, number, power_of_ten
 
-COLUMNS = 5
-PANEL, ACROSS, DOWN = 2.1, 0.2, 0.17
+COLUMNS = 6
+PANEL, ACROSS, DOWN = 1.8, 0.18, 0.17
 LEFT, RIGHT, TOP, BOTTOM = 0.75, 0.2, 1.42, 0.12
 ROW, LEAST_HEIGHT, MOST_HEIGHT = 0.165, 0.5, 1.15
 HEADING, LINE, TICKS = 0.34, 0.165, 0.36
@@ -98,26 +98,16 @@ class Panel:
 
     @property
     def note(self):
-        """The limit by theory and where runs fail, in words."""
+        """The limit by theory, where there is one, and where runs fail, in words."""
         failing = self.fails_from
-        if not self.is_swept:
-            return "never fails" if failing is None else f"fails from rtol {number(10**failing)}"
-        if math.isnan(self.limit):
-            limit = "limit unknown"
-        elif 0 < self.limit < math.inf:
-            limit = f"limit {number(self.limit)}"
-        else:
-            limit = "no limit" if self.limit else "grows at every h"
         if failing is None:
-            return f"{limit}, never fails"
-        words = "fails" if self.limit == 0 else f"{limit}, fails"
-        if failing == min(run.column for run in self.runs):
-            return f"{words} throughout" if self.holds_nowhere() else f"{words} from the start"
-        return f"{words} from {number(10**failing)}"
-
-    def holds_nowhere(self):
-        """Whether all runs fail."""
-        return all(run.outcome not in HOLDS for run in self.runs)
+            fate = "never fails"
+        else:
+            sign = "≤ " if failing == min(run.column for run in self.runs) else ""
+            fate = f"fails from {sign}{number(10**failing)}"
+        if not self.is_swept or not self.limit < math.inf:
+            return fate
+        return f"limit {number(self.limit) if self.limit else 0}, {fate}"
 
 
 def panels_of(runs, limits):

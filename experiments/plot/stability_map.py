@@ -10,11 +10,22 @@ import math
 import sys
 from pathlib import Path
 
+from damping_panels import DampingSheet
 from fate_panels import FateSheet, Run
 from measurements import BadInput, parse, read_rows
 from style import use_style
 
 RUN_NUMBERS = ("value", "h", "h_omega", "amplitude", "growth_rate", "omega_max", "buckling_rate")
+
+MODE_NUMBERS = ("h", "omega", "h_omega", "damping_ratio_predicted", "damping_ratio_measured")
+STEP_NUMBERS = (
+    "rtol",
+    "omega_fast",
+    "h_omega_mean",
+    "rejected_share",
+    "steps",
+    "stability_limited_steps",
+)
 
 
 def read_limits(path):
@@ -36,6 +47,26 @@ def read_runs(path):
         if place > 0 and math.isfinite(numbers["amplitude"]):
             runs.append(Run(row["method"], row["knob"], outcome=row["outcome"], **numbers))
     return runs
+
+
+def read_linear(path):
+    """For each method its points (h w, damping ratio), the latter NaN where a step overflows."""
+    linear = {}
+    for line, row in read_rows(path, ("method", "h_omega", "damping_ratio")):
+        h_omega = parse(path, line, row, "h_omega", True)
+        point = (h_omega, parse(path, line, row, "damping_ratio", False))
+        linear.setdefault(row["method"], []).append(point)
+    return linear
+
+
+def read_table(path, texts, numbers, needed):
+    """The rows of a file as dictionaries, those where `needed` is a positive number."""
+    rows = []
+    for line, row in read_rows(path, (*texts, *numbers)):
+        row.update({name: parse(path, line, row, name, False) for name in numbers})
+        if row[needed] > 0:
+            rows.append(row)
+    return rows
 
 
 def read_origin(folder):
@@ -62,6 +93,14 @@ def draw(folder):
         fates = FateSheet(runs, {m: predicted for m, (predicted, _) in limits.items()}, origin)
         fates.draw()
         save(fates.sheet, folder, "stability_map")
+    linear = read_linear(str(folder / "linear.csv"))
+    if linear:
+        modes = read_table(str(folder / "modal.csv"), ("method", "verdict"), MODE_NUMBERS, "omega")
+        texts = ("method", "outcome")
+        chosen = read_table(str(folder / "adaptive.csv"), texts, STEP_NUMBERS, "rtol")
+        damping = DampingSheet(linear, limits, modes, chosen, origin)
+        damping.draw()
+        save(damping.sheet, folder, "stability_modes")
 
 
 def main(arguments):
