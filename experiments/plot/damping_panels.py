@@ -12,6 +12,7 @@ from chart import move_label
 from labels import Ink, place_labels
 from sheet import Sheet
 from style import COOL, FAINT, GRID, INK, MARKERS, WARM, Family, Look, number, power_of_ten
+from style import short_names
 
 WIDTH = 12.85
 LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.75, 1.3, 6.2, 3.65
@@ -36,7 +37,7 @@ ZONES = (
 )
 TICKS = (-1, -0.1, -0.01, 0, 0.01, 0.1, 1)
 # Labels stand where their curve is neither undamped nor dies or grows as fast as all others.
-LEAST_AWAY, MOST_AWAY, MOST_ANCHORS = 2e-3, 0.9, 14
+LEAST_AWAY, MOST_AWAY, MOST_ANCHORS, APART = 2e-3, 0.9, 14, 20
 RTOL = 1e-4
 FREQUENCY_COLORS = ("#9CC8E6", "#5B9BD0", "#2A6CA8", "#12375E")
 
@@ -115,6 +116,20 @@ def style_axes(axes):
     axes.set_ylabel("damping ratio", fontsize=10)
 
 
+def anchors_of(axes, pixels):
+    """Where on its curve a label may stand: where that is apart from others, or, where it nowhere
+    is, as far up or down as it goes."""
+    dense = pixels[:1]
+    for (x, y), (u, v) in zip(pixels, pixels[1:]):
+        parts = range(1, 2 + int(math.hypot(u - x, v - y) / APART))
+        dense += [(x + (u - x) * i / len(parts), y + (v - y) * i / len(parts)) for i in parts]
+    levels = [(1, y) for y in (-MOST_AWAY, -LEAST_AWAY, 0, LEAST_AWAY, MOST_AWAY)]
+    lowest, low, zero, high, highest = axes.transData.transform(levels)[:, 1]
+    away = [p for p in dense if lowest < p[1] < low or high < p[1] < highest]
+    away = away or [max(dense, key=lambda p: abs(p[1] - zero))]
+    return away[:: max(1, -(-len(away) // MOST_ANCHORS))]
+
+
 def label_curves(axes, named):
     """Names each list of points near one of them, off the others; named: (words, look, points)."""
     box = axes.bbox
@@ -128,9 +143,7 @@ def label_curves(axes, named):
         pixels = [tuple(axes.transData.transform(point)) for point in points]
         for start, end in zip(pixels, pixels[1:]):
             ink.add_line(start, end, 2.0)
-        away = [p for p, (_, y) in zip(pixels, points) if LEAST_AWAY < abs(y) < MOST_AWAY]
-        away = away or pixels
-        anchors.append(away[:: max(1, -(-len(away) // MOST_ANCHORS))])
+        anchors.append(anchors_of(axes, pixels))
         texts.append(
             axes.annotate(
                 words,
@@ -225,10 +238,12 @@ class DampingSheet:
         top = TOP + 0.08
         for curve in self.curves:
             line = Line2D(
-                [TABLE / WIDTH, (TABLE + 0.28) / WIDTH],
-                [1 - top / self.sheet.height] * 2,
+                [(TABLE + part) / WIDTH for part in (0, 0.14, 0.28)],
+                [1 - top / self.sheet.height] * 3,
                 color=curve.look.color,
                 linewidth=1.8,
+                markevery=[1],
+                **curve.look.marker_style(4.8),
             )
             self.sheet.figure.add_artist(line)
             style = {"size": SIZE, "va": "center"}
@@ -237,24 +252,12 @@ class DampingSheet:
             words = words or ("unknown" if math.isnan(predicted) else f"{predicted:.6f}")
             self.sheet.text(LIMIT_AT, top, words, ha="right", **style)
             self.sheet.text(DIFFERENCE_AT, top, difference(curve), ha="right", **style)
-            for words in self.wrapped(names(curve.methods), LIMIT_AT - 0.6 - TABLE - 0.35):
+            room = LIMIT_AT - 0.6 - TABLE - 0.35
+            for words in self.sheet.wrapped(short_names(curve.methods), room, size=SIZE):
                 color = curve.look.text_color
                 self.sheet.text(TABLE + 0.36, top, words, color=color, **style)
                 top += LINE
             top += 0.35 * LINE
-
-    def wrapped(self, words, room):
-        """The names in as many lines as they need."""
-        text = self.sheet.text(0, 0, "", size=SIZE)
-        lines = [""]
-        for i, word in enumerate(words):
-            word += "," if i + 1 < len(words) else ""
-            text.set_text(f"{lines[-1]} {word}".strip())
-            if lines[-1] and self.sheet.text_width(text) > room:
-                lines.append("")
-            lines[-1] = f"{lines[-1]} {word}".strip()
-        text.remove()
-        return lines
 
     def draw_modes(self, top):
         """Damping over the frequencies of the scene: lines predicted, marks measured."""
@@ -264,6 +267,8 @@ class DampingSheet:
         frequencies = [row["omega"] / (2 * math.pi) for row in self.modes]
         axes.set_xlim(min(frequencies) / 1.4, max(frequencies) * 1.4)
         style_axes(axes)
+        if max(frequencies) < 30 * min(frequencies):
+            axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5), numticks=9))
         axes.set_xlabel("natural frequency in Hz", fontsize=10, labelpad=2)
         named, apart, unmeasured = [], 0.0, {}
         for curve in self.curves:
@@ -287,7 +292,7 @@ class DampingSheet:
         self.heading(LEFT, top, words, note)
         label_curves(axes, named)
         if unmeasured:
-            words = f"no step there: {', '.join(unmeasured)}"
+            words = f"not measured: {', '.join(unmeasured)}"
             axes.text(0.01, 0.02, words, transform=axes.transAxes, size=SIZE, color=FAINT)
 
     def predicted(self, curve, rows, h):
@@ -361,12 +366,3 @@ def difference(curve):
         return "differs"
     largest = max((abs(m - p) / p for p, m in finite), default=0)
     return f"{number(largest)} off"
-
-
-def names(methods):
-    """The names; those that begin as an earlier one does, without that beginning."""
-    short = []
-    for i, method in enumerate(methods):
-        begin = next((m for m in methods[:i] if method.startswith(f"{m}_")), None)
-        short.append(f"…{method.removeprefix(begin)}" if begin else method)
-    return short

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from sheet import Sheet
-from style import COOL, FAINT, INK, WARM, number, power_of_ten
+from style import COOL, FAINT, INK, WARM, number, power_of_ten, short_names
 
 COLUMNS = 6
 PANEL, ACROSS, DOWN = 1.8, 0.18, 0.17
@@ -179,15 +179,15 @@ class Cells:
 
     def draw(self):
         """The cells, the lines of theory over them and what contradicts it."""
-        for hatch, is_drawn in ((None, lambda o: o != "over_budget"), ("////", None)):
-            runs = [r for r in self.panel.runs if (r.outcome == "over_budget") == (is_drawn is None)]
-            self.draw_cells(runs, hatch)
+        unfinished = [run for run in self.panel.runs if run.outcome == "over_budget"]
+        self.draw_cells([run for run in self.panel.runs if run not in unfinished])
+        self.draw_cells(unfinished, "////")
         self.draw_limit()
         if self.panel.is_swept and not self.panel.limit < math.inf:
             self.draw_buckling()
         self.draw_unforeseen()
 
-    def draw_cells(self, runs, hatch):
+    def draw_cells(self, runs, hatch=None):
         """The cells of some runs."""
         boxes, colors = [], []
         for run in runs:
@@ -242,31 +242,6 @@ class Cells:
             self.axes.add_collection(lines)
 
 
-def wrapped(sheet, names, room):
-    """The names in as many lines as they need."""
-    text = sheet.text(0, 0, "", size=NAME_SIZE, weight="bold")
-    lines = [""]
-    for i, name in enumerate(names):
-        word = name + ("," if i + 1 < len(names) else "")
-        text.set_text(f"{lines[-1]} {word}".strip())
-        if lines[-1] and sheet.text_width(text) > room:
-            lines.append("")
-        lines[-1] = f"{lines[-1]} {word}".strip()
-    text.remove()
-    return lines
-
-
-def shared_names(methods):
-    """The names, those that begin as the one before them does without that beginning."""
-    names = []
-    for i, method in enumerate(methods):
-        begin = next(
-            (m for m in methods[:i] if method.startswith(f"{m}_") and method.count("_") > 1), None
-        )
-        names.append(f"…{method.removeprefix(begin)}" if begin else method)
-    return names
-
-
 class FateSheet:
     """The picture of all panels."""
 
@@ -280,9 +255,14 @@ class FateSheet:
         self.rows = []
         measure = Sheet(width, 1)
         for title, panels in self.sections:
-            chunks = [panels[i : i + COLUMNS] for i in range(0, len(panels), COLUMNS)]
+            rows = -(-len(panels) // COLUMNS)
+            across = -(-len(panels) // rows)
+            chunks = [panels[i : i + across] for i in range(0, len(panels), across)]
             for k, chunk in enumerate(chunks):
-                names = [wrapped(measure, shared_names(p.methods), PANEL) for p in chunk]
+                names = [
+                    measure.wrapped(short_names(p.methods), PANEL, size=NAME_SIZE, weight="bold")
+                    for p in chunk
+                ]
                 following = len(chunks[k + 1]) if k + 1 < len(chunks) else 0
                 self.rows.append((title if k == 0 else None, chunk, names, following))
         height = TOP + BOTTOM + sum(self.height_of(row) for row in self.rows)
@@ -335,10 +315,8 @@ class FateSheet:
         axes.tick_params(length=2, color=FAINT, labelsize=TICK_SIZE, pad=2)
         low, high = axes.get_xlim()
         if panel.is_swept:
-            decades = [d for d in range(math.ceil(low), math.floor(high) + 1)]
-            if len(decades) < 2:
-                decades = [math.log10(v) for v in (low_high(low, high))]
-            axes.set_xticks(decades, [short(10**d) for d in decades])
+            places = ticks_between(low, high)
+            axes.set_xticks(places, [f"{10**place:.3g}" for place in places])
         else:
             columns = sorted({run.column for run in panel.runs})
             axes.set_xticks(columns, [power_of_ten(10**c) for c in columns])
@@ -418,13 +396,11 @@ class FateSheet:
         )
 
 
-def low_high(low, high):
-    """Few round step sizes between two powers of ten."""
-    spread = high - low
-    steps = [10 ** (low + spread * part) for part in (0.1, 0.5, 0.9)] if spread > 0 else [10**low]
-    return [float(f"{value:.1g}" if spread > 0.4 else f"{value:.3g}") for value in steps]
-
-
-def short(value):
-    """A step size at a tick."""
-    return f"{value:g}"
+def ticks_between(low, high):
+    """The decades between two logarithms, or, where these are near to each other, what is round
+    between them."""
+    decades = list(range(math.ceil(low), math.floor(high) + 1))
+    if len(decades) > 1:
+        return decades
+    steps = [float(f"{10 ** (low + part * (high - low)):.2g}") for part in (0.1, 0.5, 0.9)]
+    return sorted({math.log10(step) for step in steps if low <= math.log10(step) <= high})
