@@ -130,14 +130,16 @@ def anchors_of(axes, pixels):
     return away[:: max(1, -(-len(away) // MOST_ANCHORS))]
 
 
-def label_curves(axes, named):
-    """Names each list of points near one of them, off the others; named: (words, look, points)."""
+def label_curves(axes, named, marks=()):
+    """Names each list of points near one of them, off the others and off the marks; named:
+    (words, look, points)."""
     box = axes.bbox
     bounds = (box.x0 + 4, box.y0 + 4, box.x1 - 4, box.y1 - 4)
     ink = Ink(bounds)
-    for y in (*TICKS[:3], *TICKS[4:]):
-        level = axes.transData.transform((axes.get_xlim()[0], y))[1]
-        ink.add_line((bounds[0], level), (bounds[2], level), 0.01)
+    zero = axes.transData.transform((axes.get_xlim()[0], 0))[1]
+    ink.add_line((bounds[0], zero), (bounds[2], zero), 3.0)
+    for mark in marks:
+        ink.add_marker(axes.transData.transform(mark))
     texts, anchors = [], []
     for words, look, points in named:
         pixels = [tuple(axes.transData.transform(point)) for point in points]
@@ -270,7 +272,7 @@ class DampingSheet:
         if max(frequencies) < 30 * min(frequencies):
             axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5), numticks=9))
         axes.set_xlabel("natural frequency in Hz", fontsize=10, labelpad=2)
-        named, apart, unmeasured = [], 0.0, {}
+        named, all_marks, apart, unmeasured = [], [], 0.0, {}
         for curve in self.curves:
             rows = [row for row in self.modes if row["method"] in curve.methods]
             if not rows:
@@ -283,6 +285,7 @@ class DampingSheet:
                     unmeasured[row["method"]] = row["verdict"]
             apart = max([apart, *(distance(row) for row in seen)])
             marks = [(row["omega"] / (2 * math.pi), row["damping_ratio_measured"]) for row in seen]
+            all_marks += marks
             if marks:
                 axes.plot(*zip(*marks), linestyle="", zorder=4, **curve.look.marker_style(4.8))
             if max(abs(y) for _, y in points + marks) > UNDAMPED:
@@ -290,7 +293,7 @@ class DampingSheet:
         note = f"lines predicted, marks measured by exciting the mode: apart by at most {number(apart)}"
         words = f"The scene's own modes at h = {number(h)} s (h ω up to {number(fastest)})"
         self.heading(LEFT, top, words, note)
-        label_curves(axes, named)
+        label_curves(axes, named, all_marks)
         if unmeasured:
             words = f"not measured: {', '.join(unmeasured)}"
             axes.text(0.01, 0.02, words, transform=axes.transAxes, size=SIZE, color=FAINT)

@@ -3,8 +3,9 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
-from matplotlib.colors import to_hex, to_rgb
+from matplotlib.colors import ListedColormap, to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
@@ -12,12 +13,14 @@ from sheet import Sheet
 from style import COOL, FAINT, INK, WARM, number, power_of_ten, short_names
 
 COLUMNS = 6
-PANEL, ACROSS, DOWN = 1.8, 0.18, 0.17
+PANEL, ACROSS, DOWN = 1.8, 0.25, 0.17
 LEFT, RIGHT, TOP, BOTTOM = 0.75, 0.2, 1.42, 0.12
 ROW, LEAST_HEIGHT, MOST_HEIGHT = 0.165, 0.5, 1.15
 HEADING, LINE, TICKS = 0.34, 0.165, 0.36
 NAME_SIZE, NOTE_SIZE, TICK_SIZE = 9, 8.5, 8
 MOST_TICKS = 7
+# A panel of more cells than this is an image in the vector file too.
+MOST_SHAPES = 10000
 
 # What an outcome is called and its colour; others are called as they are named.
 OUTCOMES = {
@@ -101,7 +104,8 @@ class Panel:
         """The limit by theory, where there is one, and where runs fail, in words."""
         failing = self.fails_from
         if failing is None:
-            fate = "never fails"
+            unfinished = all(run.outcome == "over_budget" for run in self.runs)
+            fate = "not finished" if unfinished else "never fails"
         else:
             sign = "≤ " if failing == min(run.column for run in self.runs) else ""
             fate = f"fails from {sign}{number(10**failing)}"
@@ -150,7 +154,7 @@ def color_of(outcome):
 
 def mixed(color, share):
     """The colour on white."""
-    return to_hex([1 - share * (1 - part) for part in to_rgb(color)])
+    return [1 - share * (1 - part) for part in to_rgb(color)]
 
 
 def edges(values):
@@ -179,26 +183,42 @@ class Cells:
 
     def draw(self):
         """The cells, the lines of theory over them and what contradicts it."""
-        unfinished = [run for run in self.panel.runs if run.outcome == "over_budget"]
-        self.draw_cells([run for run in self.panel.runs if run not in unfinished])
-        self.draw_cells(unfinished, "////")
+        self.draw_cells()
+        self.draw_unfinished()
         self.draw_limit()
         if self.panel.is_swept and not self.panel.limit < math.inf:
             self.draw_buckling()
         self.draw_unforeseen()
 
-    def draw_cells(self, runs, hatch=None):
-        """The cells of some runs."""
-        boxes, colors = [], []
-        for run in runs:
+    def draw_cells(self):
+        """The cells in their colours, white where there is no run or none that finished."""
+        image = np.ones((len(self.amplitudes), len(self.columns), 3))
+        for run in self.panel.runs:
             i, j = self.place(run)
-            boxes.append(Rectangle((self.x[i], j), self.x[i + 1] - self.x[i], 1))
-            colors.append(mixed(color_of(run.outcome), run.depth))
+            image[j, i] = mixed(color_of(run.outcome), run.depth)
+        colors, index = np.unique(image.reshape(-1, 3), axis=0, return_inverse=True)
+        self.axes.pcolormesh(
+            self.x,
+            range(len(self.amplitudes) + 1),
+            index.reshape(image.shape[:2]),
+            cmap=ListedColormap(colors),
+            vmin=-0.5,
+            vmax=len(colors) - 0.5,
+            edgecolors="face",
+            linewidth=0.3,
+            rasterized=index.size > MOST_SHAPES,
+        )
+
+    def draw_unfinished(self):
+        """Hatches the cells of runs that were stopped for the time they took."""
+        boxes = []
+        for run in self.panel.runs:
+            if run.outcome == "over_budget":
+                i, j = self.place(run)
+                boxes.append(Rectangle((self.x[i], j), self.x[i + 1] - self.x[i], 1))
         if boxes:
-            rim = "#B8B8B8" if hatch else colors
-            cells = PatchCollection(boxes, facecolor=colors, edgecolor=rim, hatch=hatch)
-            cells.set_linewidth(0 if hatch else 0.4)
-            self.axes.add_collection(cells)
+            style = {"facecolor": "none", "edgecolor": "#B8B8B8", "hatch": "////", "linewidth": 0}
+            self.axes.add_collection(PatchCollection(boxes, **style))
 
     def draw_limit(self):
         """The limit of linear theory."""
@@ -402,5 +422,6 @@ def ticks_between(low, high):
     decades = list(range(math.ceil(low), math.floor(high) + 1))
     if len(decades) > 1:
         return decades
-    steps = [float(f"{10 ** (low + part * (high - low)):.2g}") for part in (0.1, 0.5, 0.9)]
-    return sorted({math.log10(step) for step in steps if low <= math.log10(step) <= high})
+    steps = [step * 10**d for d in range(math.floor(low), math.ceil(high)) for step in (1, 2, 5)]
+    inside = [math.log10(step) for step in steps if low <= math.log10(step) <= high]
+    return inside if len(inside) > 1 else [low + part * (high - low) for part in (0.15, 0.85)]
