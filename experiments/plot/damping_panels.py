@@ -191,8 +191,8 @@ class DampingSheet:
         title = f"{scene}: what methods do to vibrations, by linear theory and measured"
         self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
         words = (
-            "killed: loses nine tenths of its amplitude in a period; lives: keeps half of it for ten "
-            "periods and more; blows up: grows"
+            "killed: loses nine tenths of its amplitude in a period; lives: keeps half of it for "
+            "ten periods and more; blows up: grows"
         )
         self.sheet.text(0.15, 0.53, words, size=9.5, color=FAINT, va="center")
         self.sheet.rule(0.72)
@@ -290,7 +290,8 @@ class DampingSheet:
                 axes.plot(*zip(*marks), linestyle="", zorder=4, **curve.look.marker_style(4.8))
             if max(abs(y) for _, y in points + marks) > UNDAMPED:
                 named.append((curve.name, curve.look, sorted(points)))
-        note = f"lines predicted, marks measured by exciting the mode: apart by at most {number(apart)}"
+        note = "lines predicted, marks measured by exciting the mode: "
+        note += f"apart by at most {number(apart)}"
         words = f"The scene's own modes at h = {number(h)} s (h ω up to {number(fastest)})"
         self.heading(LEFT, top, words, note)
         label_curves(axes, named, all_marks)
@@ -340,7 +341,8 @@ class DampingSheet:
         axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda v, _: power_of_ten(v)))
         axes.grid(True, axis="x")
         axes.spines["left"].set_visible(False)
-        axes.set_xlabel("mean h ω of a fast vibration at rest, beside a slow one", fontsize=10, labelpad=2)
+        words = "mean h ω of a fast vibration at rest, beside a slow one"
+        axes.set_xlabel(words, fontsize=10, labelpad=2)
 
 
 def draw_dot(axes, row, height, color):

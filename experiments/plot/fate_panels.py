@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from sheet import Sheet
-from style import COOL, FAINT, INK, WARM, number, power_of_ten, short_names
+from style import COOL, FAINT, INK, number, power_of_ten, short_names
 
 COLUMNS = 6
 PANEL, ACROSS, DOWN = 1.8, 0.25, 0.17
@@ -230,17 +230,13 @@ class Cells:
     def draw_buckling(self):
         """Where M - h^2 K first is singular at the start, row by row."""
         at = {
-            run.amplitude: math.log10(run.omega_max / run.buckling_rate)
+            self.amplitudes.index(run.amplitude): math.log10(run.omega_max / run.buckling_rate)
             for run in self.panel.runs
             if run.buckling_rate > 0 and run.omega_max > 0
         }
-        inside = {a: x for a, x in at.items() if self.x[0] < x < self.x[-1]}
-        rows = {amplitude: self.amplitudes.index(amplitude) for amplitude in inside}
-        lines = [[(x, rows[a]), (x, rows[a] + 1)] for a, x in inside.items()]
-        for a, x in inside.items():
-            for b, other in inside.items():
-                if rows[b] == rows[a] + 1:
-                    lines.append([(x, rows[b]), (other, rows[b])])
+        at = {j: x for j, x in at.items() if self.x[0] < x < self.x[-1]}
+        lines = [[(x, j), (x, j + 1)] for j, x in at.items()]
+        lines += [[(x, j + 1), (at[j + 1], j + 1)] for j, x in at.items() if j + 1 in at]
         if lines:
             self.axes.add_collection(LineCollection(lines, zorder=3, **BUCKLING))
 
@@ -293,9 +289,8 @@ class FateSheet:
         title, chunk, names, following = row
         lines = max(map(len, names)) + 1
         # Where a column ends, its ticks stand in the room of the titles below.
-        return (HEADING if title else 0) + LINE * lines + self.tall + (
-            DOWN if following == len(chunk) else TICKS
-        )
+        foot = DOWN if following == len(chunk) else TICKS
+        return (HEADING if title else 0) + LINE * lines + self.tall + foot
 
     def draw(self):
         """Everything."""
@@ -343,7 +338,8 @@ class FateSheet:
         if not is_last:
             axes.set_xticklabels([])
         elif is_first:
-            axes.set_xlabel("h ω_max" if panel.is_swept else "rtol", fontsize=TICK_SIZE, labelpad=1)
+            words = "h ω_max" if panel.is_swept else "rtol"
+            axes.set_xlabel(words, fontsize=TICK_SIZE, labelpad=1)
         every = -(-len(self.amplitudes) // MOST_TICKS)
         rows = range(0, len(self.amplitudes), every)
         words = [number(self.amplitudes[j]) for j in rows] if is_first else [""] * len(rows)
@@ -359,11 +355,12 @@ class FateSheet:
         until, tolerated = self.origin.get("until"), self.origin.get("tolerated")
         title = f"{scene}: what becomes of a run, by method, step size and amplitude"
         self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
+        length = f"each cell one run of {number(until)} s or 100 steps" if until else ""
         across = f"to the right h ω_max{self.fastest()}"
-        up = f"upwards {self.origin['vary'].replace('_', ' ')}" if self.origin.get("vary") else (
-            "upwards the amplitude: 1 is the scene, 0.01 nearly linear"
-        )
-        words = [f"each cell one run of {number(until)} s or 100 steps" if until else "", across, up]
+        up = "upwards the amplitude: 1 is the scene, 0.01 nearly linear"
+        if self.origin.get("vary"):
+            up = f"upwards {self.origin['vary'].replace('_', ' ')}"
+        words = [length, across, up]
         if tolerated:
             words.append(f"bounded: energy within {100 * tolerated:.3g} %")
         words = "; ".join(word for word in words if word)

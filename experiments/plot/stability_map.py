@@ -1,8 +1,8 @@
 """Draws where methods are stable, by theory and measured, as the program stability_map found it.
 
-Call: stability_map.py DIR, the folder with limits.csv, linear.csv, modal.csv, adaptive.csv, map.csv;
-writes DIR/stability_map.png and .svg, the fate of whole runs, and DIR/stability_modes.png and .svg,
-the damping of an oscillator and of the scene's natural modes.
+Call: stability_map.py DIR, the folder with limits.csv, linear.csv, modal.csv, adaptive.csv and
+map.csv; writes DIR/stability_map.png and .svg, the fate of whole runs, and DIR/stability_modes.png
+and .svg, the damping of an oscillator and of the scene's natural modes.
 """
 
 import json
