@@ -37,6 +37,19 @@ class Sheet:
         """The width of a drawn text in inches."""
         return text.get_window_extent(self.figure.canvas.get_renderer()).width / DPI
 
+    def wrapped(self, words, room, **style):
+        """The words with commas between them, in as many lines of that width as they need."""
+        text = self.text(0, 0, "", **style)
+        lines = [""]
+        for i, word in enumerate(words):
+            word += "," if i + 1 < len(words) else ""
+            text.set_text(f"{lines[-1]} {word}".strip())
+            if lines[-1] and self.text_width(text) > room:
+                lines.append("")
+            lines[-1] = f"{lines[-1]} {word}".strip()
+        text.remove()
+        return lines
+
     def rule(self, top):
         """A thin line over the whole width."""
         height = 1 - top / self.height

@@ -114,6 +114,16 @@ def assign_looks(family_of_method):
     return looks
 
 
+def short_names(methods):
+    """The names; those that begin with the same two words as the one before, without these."""
+    short = []
+    for before, method in zip([None, *methods], methods):
+        words, others = method.split("_"), before.split("_") if before else []
+        begins_alike = len(words) > 2 and words[:2] == others[:2]
+        short.append("…_" + "_".join(words[2:]) if begins_alike else method)
+    return short
+
+
 def use_style():
     """Sets matplotlib up for a picture written to a file."""
     matplotlib.use("Agg")

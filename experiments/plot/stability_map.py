@@ -1,0 +1,121 @@
+"""Draws where methods are stable, by theory and measured, as the program stability_map found it.
+
+Call: stability_map.py DIR, the folder with limits.csv, linear.csv, modal.csv, adaptive.csv and
+map.csv; writes DIR/stability_map.png and .svg, the fate of whole runs, and DIR/stability_modes.png
+and .svg, the damping of an oscillator and of the scene's natural modes.
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+from damping_panels import DampingSheet
+from fate_panels import FateSheet, Run
+from measurements import BadInput, parse, read_rows
+from style import use_style
+
+RUN_NUMBERS = ("value", "h", "h_omega", "amplitude", "growth_rate", "omega_max", "buckling_rate")
+
+MODE_NUMBERS = ("h", "omega", "h_omega", "damping_ratio_predicted", "damping_ratio_measured")
+STEP_NUMBERS = (
+    "rtol",
+    "omega_fast",
+    "h_omega_mean",
+    "rejected_share",
+    "steps",
+    "stability_limited_steps",
+)
+
+
+def read_limits(path):
+    """For each method the limit of h w, predicted and measured; infinite where there is none."""
+    limits = {}
+    columns = ("h_omega_limit_predicted", "h_omega_limit_measured")
+    for line, row in read_rows(path, ("method", *columns)):
+        values = [parse(path, line, row, column, False) for column in columns]
+        limits[row["method"]] = tuple(math.inf if math.isnan(v) else v for v in values)
+    return limits
+
+
+def read_runs(path):
+    """The runs of the map that have a place in it."""
+    runs = []
+    for line, row in read_rows(path, ("method", "knob", "outcome", *RUN_NUMBERS)):
+        numbers = {name: parse(path, line, row, name, False) for name in RUN_NUMBERS}
+        place = numbers["h_omega" if row["knob"] == "step_size" else "value"]
+        if place > 0 and math.isfinite(numbers["amplitude"]):
+            runs.append(Run(row["method"], row["knob"], outcome=row["outcome"], **numbers))
+    return runs
+
+
+def read_linear(path):
+    """For each method its points (h w, damping ratio), the latter NaN where a step overflows."""
+    linear = {}
+    for line, row in read_rows(path, ("method", "h_omega", "damping_ratio")):
+        h_omega = parse(path, line, row, "h_omega", True)
+        point = (h_omega, parse(path, line, row, "damping_ratio", False))
+        linear.setdefault(row["method"], []).append(point)
+    return linear
+
+
+def read_table(path, texts, numbers, needed):
+    """The rows of a file as dictionaries, those where `needed` is a positive number."""
+    rows = []
+    for line, row in read_rows(path, (*texts, *numbers)):
+        row.update({name: parse(path, line, row, name, False) for name in numbers})
+        if row[needed] > 0:
+            rows.append(row)
+    return rows
+
+
+def read_origin(folder):
+    """The sidecar of the map."""
+    path = folder / "map.json"
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path} cannot be read: {error}.") from error
+
+
+def save(sheet, folder, name):
+    """Writes a picture in both formats."""
+    for extension in ("png", "svg"):
+        sheet.save(str(folder / f"{name}.{extension}"))
+
+
+def draw(folder):
+    """Draws both pictures."""
+    origin = read_origin(folder)
+    limits = read_limits(str(folder / "limits.csv"))
+    runs = read_runs(str(folder / "map.csv"))
+    if runs:
+        fates = FateSheet(runs, {m: predicted for m, (predicted, _) in limits.items()}, origin)
+        fates.draw()
+        save(fates.sheet, folder, "stability_map")
+    linear = read_linear(str(folder / "linear.csv"))
+    if linear:
+        modes = read_table(str(folder / "modal.csv"), ("method", "verdict"), MODE_NUMBERS, "omega")
+        texts = ("method", "outcome")
+        chosen = read_table(str(folder / "adaptive.csv"), texts, STEP_NUMBERS, "rtol")
+        damping = DampingSheet(linear, limits, modes, chosen, origin)
+        damping.draw()
+        save(damping.sheet, folder, "stability_modes")
+
+
+def main(arguments):
+    """Draws the pictures of the directory named on the command line; returns the exit status."""
+    if len(arguments) != 1:
+        print("Usage: stability_map.py DIR", file=sys.stderr)
+        return 2
+    use_style()
+    try:
+        draw(Path(arguments[0]))
+    except BadInput as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
