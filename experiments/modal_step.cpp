@@ -30,7 +30,8 @@ const double living = std::log(2) / (4 * M_PI * 10), killing = std::log(10) / (2
 // its start is gone after them and that damping adds up, but no more than an eighth of a period:
 // three of them are less than a half.
 constexpr double least_stride = 8, most_stride = 16;
-int stride_in(double h_omega) {
+int stride_in(double h_omega, bool others_grow) {
+  if (others_grow) return 1;  // for they drown this one
   const double eighth = M_PI / 4 / h_omega;
   return eighth < least_stride ? 1 : static_cast<int>(std::min(eighth, most_stride));
 }
@@ -52,7 +53,8 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
   knobs = with_tolerance_scales(knobs, rest);
   knobs.solve_tolerance = solved;
   const double h_omega = knobs.step_size * mode.omega;
-  const int stride = stride_in(h_omega);
+  const bool others_grow = linear_step(method, h_omega / mode.part).spectral_radius() > 1 + growing;
+  const int stride = stride_in(h_omega, others_grow);
   const Vec& q = rest.initial().q;
   const Vec weights = rest.system().mass().cwiseProduct(mode.shape);
   const double size = displacement_in(mode) * knobs.length / mode.shape.lpNorm<Eigen::Infinity>();

@@ -308,7 +308,7 @@ class DampingSheet:
         return sorted({*between, *at})
 
     def draw_chosen(self, top):
-        """How long the steps are that methods choose beside a fast vibration at rest."""
+        """How long the steps are that methods choose beside a fast vibration that is hardly excited."""
         rtols = sorted({row["rtol"] for row in self.chosen})
         rtol = min(rtols, key=lambda value: abs(math.log(value / RTOL)))
         rows = [row for row in self.chosen if math.isclose(row["rtol"], rtol)]
@@ -341,7 +341,7 @@ class DampingSheet:
         axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda v, _: power_of_ten(v)))
         axes.grid(True, axis="x")
         axes.spines["left"].set_visible(False)
-        words = "mean h ω of a fast vibration at rest, beside a slow one"
+        words = "mean h ω of a fast vibration, hardly excited, beside a slow one"
         axes.set_xlabel(words, fontsize=10, labelpad=2)
 
 

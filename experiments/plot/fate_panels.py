@@ -164,6 +164,9 @@ def edges(values):
     last = values[-1] + (values[-1] - middle[-1] if middle else 0.5)
     return [first, *middle, last]
 
+# How many colours of the key fit into a line.
+KEYS = 7
+
 
 class Cells:
     """The cells of one panel in its axes."""
@@ -393,7 +396,7 @@ class FateSheet:
         if any(run.buckling_rate > 0 for run in self.runs):
             words = "h × buckling rate = 1, at the start"
             lines.append(Line2D([], [], label=words, **BUCKLING))
-        for top, handles in ((0.82, keys), (1.09, lines)):
+        for top, handles in ((0.82, keys[:KEYS]), (1.09, keys[KEYS:] + lines)):
             if handles:
                 self.draw_key_line(top, handles)
 
