@@ -5,6 +5,7 @@
 #include <optional>
 #include <random>
 
+#include "experiments/modal_shares.hpp"
 #include "experiments/reference_ways.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/analysis/linear_motion.hpp"
@@ -61,6 +62,15 @@ Solution best_fehlberg(const ReducedScene& scene, double until, const Scales& sc
   });
 }
 
+// Of the two motions, between which chance decides.
+void measure_shares(Reference& reference, const ReducedScene& scene, const Solution& one,
+                    const Solution& other) {
+  const auto modes = ModalShares::at_equilibrium(scene);
+  if (!modes) return;
+  reference.modal_shares = modes->mean(one.path);
+  reference.modal_shares_floor = total_variation(reference.modal_shares, modes->mean(other.path));
+}
+
 // Repeats the composition from a start that is one rounding away.
 void measure_rounding(Reference& reference, const ReducedScene& scene, const Solution& composed,
                       double until, double seconds) {
@@ -80,6 +90,18 @@ void measure_rounding(Reference& reference, const ReducedScene& scene, const Sol
   reference.perturbation_growth = difference.lpNorm<Eigen::Infinity>() / rounding;
   reference.rounding_effect =
       errors_between(scene, moved->end, composed.end, 0, composed.scales).position;
+
+  std::vector<double> times, differences;
+  const auto compare = [&](const State& one, const State& other) {
+    times.push_back(one.t);
+    differences.push_back(errors_between(scene, one, other, 0, composed.scales).position);
+  };
+  compare(scene.initial(), start);
+  for (std::size_t i = 0; i < moved->path.size(); ++i) compare(composed.path[i], moved->path[i]);
+  const Divergence parting = divergence(times, differences);
+  reference.horizon = parting.horizon;
+  reference.lyapunov = parting.lyapunov;
+  if (reference.is_beyond_horizon()) measure_shares(reference, scene, composed, *moved);
 }
 
 }  // namespace
