@@ -1,18 +1,21 @@
 #include "experiments/modal_shares.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "src/analysis/natural_modes.hpp"
 #include "src/scene/settle.hpp"
 
 namespace qddot {
 
-std::optional<ModalShares> ModalShares::at_equilibrium(const ReducedScene& scene) {
+std::optional<ModalShares> ModalShares::at_equilibrium(const ReducedScene& scene) try {
   // In the directions of the motion alone: it has no kinetic energy in others.
   const Equilibrium rest = equilibrium_of(scene);
   if (rest.outcome != Equilibrium::Outcome::reached) return {};
   const Index count = std::min(most_modes, finite_modes(scene.system()));
   return ModalShares(scene.system().mass(), lowest_modes(scene.system(), rest.q, count).shapes);
+} catch (const std::runtime_error&) {  // an eigenvalue that was not found
+  return {};
 }
 
 ModalShares::ModalShares(const Vec& mass, Eigen::MatrixXd shapes)

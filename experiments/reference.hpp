@@ -28,8 +28,9 @@ struct Reference {
   // From which time on [s] that motion and the reference are `apart`, found or, after the end,
   // extrapolated; and how fast they part [1/s]. Infinite and zero for regular motions.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
-  // Beyond the horizon, what of the kinetic energy is in each mode (see ModalShares), and how far
-  // apart the two motions are in that; empty where it was not measured.
+  // Beyond the horizon, what part of the kinetic energy is in each mode (see ModalShares), and by
+  // how much that of another motion with nearly the same start differs by chance; empty where it
+  // was not measured.
   Vec modal_shares{};
   double modal_shares_floor = 0;
   std::string made_by;  // the two ways, with their knobs
