@@ -103,7 +103,7 @@ def draw_panel(sheet, top, view, looks):
     """The axes of one view and, where it has a front, the band above; whether some lines stand
     back."""
     width = WIDTH - LEFT - RIGHT
-    axes = sheet.axes(LEFT, top + BAND + BAND_GAP, width, axes_height(view.runs))
+    axes = sheet.axes(LEFT, top + band_height(view), width, axes_height(view.runs))
     chart = Chart(axes, view, looks)
     chart.draw()
     if view.front:
@@ -111,9 +111,14 @@ def draw_panel(sheet, top, view, looks):
     return chart.crowded
 
 
+def band_height(view):
+    """The height in inches of the band over a view's axes with its gap."""
+    return BAND + BAND_GAP if view.front else 0.0
+
+
 def panel_height(view):
     """The height in inches of a view's axes with their band and numbers."""
-    return BAND + BAND_GAP + axes_height(view.runs) + AXIS_TEXT
+    return band_height(view) + axes_height(view.runs) + AXIS_TEXT
 
 
 def draw(views, reference, fallback_scene):
