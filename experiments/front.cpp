@@ -63,9 +63,8 @@ void print_front(const std::string& scene, double until, const std::vector<Front
   if (reference.is_beyond_horizon()) {
     fmt::print(
         "The motion is chaotic (Lyapunov exponent {:.3g}/s): two runs that start one rounding "
-        "apart\ndiffer from t = {:.3g} s on by more than {:g} of the motion. Position errors at "
-        "the "
-        "end mean\nnothing; below, accuracy is that of the energy.\n\n",
+        "apart\ndiffer from t = {:.3g} s on by more than {:g} of the motion.\nPosition errors at "
+        "the end mean nothing; below, accuracy is that of the energy.\n\n",
         reference.lyapunov, reference.horizon, apart);
   } else if (reference.is_chaotic()) {
     fmt::print(

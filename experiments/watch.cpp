@@ -12,13 +12,12 @@ namespace {
 std::vector<double> looks(const Method& method, const Knobs& knobs, double until,
                           std::int64_t steps) {
   const bool fixed = method.knob == Knob::step_size && method.order > 0;
-  const std::int64_t count =
-      std::clamp<std::int64_t>(fixed ? steps : steps / 4, 1, Watch::most_looks);
+  // Each part of a system has steps of its own, which were all counted.
+  const double whole = fixed ? std::round(until / knobs.step_size) : static_cast<double>(steps / 4);
+  const double count = std::clamp(whole, 1.0, Watch::most_looks);
   std::vector<double> times;
-  for (std::int64_t i = 1; i < count; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(count);
-    times.push_back(fixed ? std::round(share * static_cast<double>(steps)) * knobs.step_size
-                          : share * until);
+  for (double i = 1; i < count; ++i) {
+    times.push_back(fixed ? std::round(i / count * whole) * knobs.step_size : i / count * until);
   }
   times.push_back(until);
   return times;

@@ -24,7 +24,7 @@ struct OnTheWay {
 // Looks at runs on their way, at about a hundred times up to `until`. Borrows all it is given.
 class Watch {
  public:
-  static constexpr std::int64_t most_looks = 100;
+  static constexpr double most_looks = 100;
 
   Watch(const Scene& start, const ReducedScene& scene, double until, const Reference& reference);
 
