@@ -36,7 +36,7 @@ struct Row {
     for (std::size_t i = 0; i + 1 < scene.nodes.size(); ++i) {
       scene.springs.push_back({{i, i + 1}, {.stiffness = stiffness}});
     }
-    return ReducedScene(scene, Reductions::only({Reduction::pins}));
+    return ReducedScene(scene, Reductions::only({Reduction::pins, Reduction::constant_stiffness}));
   }
 };
 

@@ -156,7 +156,8 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_the_tables_and_words_say_so) {
       run("work_precision", {"--scene", scene, "--methods", "blanes_moan6", "--point-limit", "1",
                              "--repeats", "1", "--out", folder / "out"});
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
-  BOOST_TEST(contains(result.out, {"chaotic", "Lyapunov", "Position errors at the end mean nothing"}));
+  BOOST_TEST(
+      contains(result.out, {"chaotic", "Lyapunov", "Position errors at the end mean nothing"}));
   const auto reference = nlohmann::json::parse(read_all(folder / "out/reference.json"));
   BOOST_TEST(reference.at("beyond_horizon") == true);
   BOOST_TEST((reference.at("horizon") > 6 && reference.at("horizon") < 12));
