@@ -148,7 +148,8 @@ class Chart:
     def front_corners(self):
         """The staircase of the shortest time that reaches each error or a smaller one."""
         corners = []
-        for error, time in sorted(map(self.position, self.good)):
+        counting = [run for run in self.good if run.counts]
+        for error, time in sorted(map(self.position, counting)):
             if not corners or time < corners[-1][1]:
                 corners += [(error, corners[-1][1])] if corners else []
                 corners.append((error, time))

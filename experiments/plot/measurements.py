@@ -25,6 +25,8 @@ class Run:
     outcome: str
     error: float
     time: float
+    # Whether it may be on the front.
+    counts: bool = True
 
     @property
     def is_measured(self):
@@ -147,7 +149,9 @@ def fastest_at_each_accuracy(runs):
     """The points of the front at 1e-1, ... 1e-9."""
     points = []
     for accuracy in (10.0**-digit for digit in range(1, 10)):
-        good = [run for run in runs if not run.failure and run.error <= accuracy]
+        good = [
+            run for run in runs if run.counts and not run.failure and run.error <= accuracy
+        ]
         if good:
             best = min(good, key=lambda run: run.time)
             points.append(FrontPoint(accuracy, best.method, best.error, best.time))

@@ -1,10 +1,14 @@
 """The errors that a work-precision chart may stand over, and what a reader must know of each."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import measurements
 from style import number
+
+# Runs whose energy is this many times farther from the reference's modes than chance puts it are
+# another motion and not on the front.
+MOST_OF_CHANCE = 10
 
 
 @dataclass(frozen=True)
@@ -61,7 +65,8 @@ class View:
 def view(directory, quantity, reference):
     """The view of what a directory holds, or None where no run has such an error."""
     path = os.path.join(directory, "points.csv")
-    if quantity is not POSITION and quantity.column not in measurements.read_header(path):
+    header = measurements.read_header(path)
+    if quantity is not POSITION and quantity.column not in header:
         return None
     runs = measurements.read_runs(path, quantity.column)
     if quantity is POSITION:
@@ -73,4 +78,10 @@ def view(directory, quantity, reference):
     if quantity is MODES and reference.modal_floor:
         words = f"chance makes {number(reference.modal_floor)}"
         return View(quantity, runs, [], reference.modal_floor, words)
+    if quantity is ENERGY and reference.modal_floor and MODES.column in header:
+        modes = measurements.read_runs(path, MODES.column)
+        limit = MOST_OF_CHANCE * reference.modal_floor
+        runs = [
+            replace(run, counts=not other.error > limit) for run, other in zip(runs, modes)
+        ]
     return View(quantity, runs, measurements.fastest_at_each_accuracy(runs))

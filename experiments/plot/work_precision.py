@@ -59,7 +59,10 @@ def horizon_in_words(reference):
     )
     if reference.lyapunov:
         words += f" (× 10 in {seconds(math.log(10) / reference.lyapunov)})"
-    return f"{words}.\nPosition errors at T = {number(reference.until)} s mean nothing."
+    words += f".\nPosition errors at T = {number(reference.until)} s mean nothing."
+    if reference.modal_floor:
+        words += " Fastest: of the runs whose energy is in the right modes."
+    return words
 
 
 def key_line(family):
