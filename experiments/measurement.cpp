@@ -17,8 +17,8 @@ namespace {
 constexpr double shortest_sample = 1e-4;
 // A first run at least so long [s] is a sample like any other: what is cold about it is over soon.
 constexpr double own_warm_up = 0.1;
-// To be looked at takes time: such a run may take this many times longer.
-constexpr double seconds_of_look = 3;
+// A run that is looked at ends sooner or later [s]; it is as long as the one before, and not timed.
+constexpr double longest_look = 60;
 
 }  // namespace
 
@@ -76,8 +76,8 @@ Point measure(const Method& method, double value, const ReducedScene& scene, dou
   point.time_min = std::ranges::min(times);
   point.timed_runs = static_cast<int>(times.size());
   if (effort.watch) {
-    point.on_the_way =
-        effort.watch->see(method, knobs, point.counts.steps, seconds_of_look * effort.seconds);
+    point.on_the_way = effort.watch->see(method, knobs, point.counts.steps,
+                                         std::max(longest_look, 2 * effort.seconds));
     // The end of the run that was timed counts as well.
     point.on_the_way.energy = std::max(point.on_the_way.energy, point.errors.energy);
   }
