@@ -63,7 +63,8 @@ class View:
 
 
 def view(directory, quantity, reference):
-    """The view of what a directory holds, or None where no run has such an error."""
+    """The view of what a directory holds, or None where no run has such an error: not
+    measured, or zero as the turning of what only swings in a plane."""
     path = os.path.join(directory, "points.csv")
     header = measurements.read_header(path)
     if quantity is not POSITION and quantity.column not in header:
@@ -73,8 +74,10 @@ def view(directory, quantity, reference):
         front = measurements.read_front(os.path.join(directory, "front.csv"), runs)
         words = reference.certified and f"reference certified to {number(reference.certified)}"
         return View(quantity, runs, front, reference.certified, words, reference.chaotic_below)
-    if not any(run.is_measured for run in runs):
+    if not any(run.error > 0 for run in runs):
         return None
+    if quantity is MOMENTUM:
+        return View(quantity, runs, [])
     if quantity is MODES and reference.modal_floor:
         words = f"chance makes {number(reference.modal_floor)}"
         return View(quantity, runs, [], reference.modal_floor, words)
