@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "experiments/judgement.hpp"
+
 namespace qddot {
 namespace {
 
@@ -41,8 +43,8 @@ std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
     FrontRow row{.accuracy = std::pow(10.0, -digit)};
     for (const Point& point : points) {
       const bool reached = point.outcome == Outcome::reached_end &&
-                           point.errors.position <= row.accuracy &&
-                           reference.certified.position <= row.accuracy;
+                           judged_error(point, reference) <= row.accuracy &&
+                           certified(reference) <= row.accuracy;
       if (!reached) continue;
       keep_faster(row.fastest, point);
       keep_faster(point.method->family == Family::sundials ? row.fastest_sundials
@@ -58,7 +60,13 @@ void print_front(const std::string& scene, double until, const std::vector<Front
                  const Reference& reference) {
   fmt::print("{} to t = {:g} s; reference certified to {:.1e} ({})\n\n", scene, until,
              reference.certified.position, reference.made_by);
-  if (reference.is_chaotic()) {
+  if (reference.is_beyond_horizon()) {
+    fmt::print(
+        "The motion is chaotic (Lyapunov exponent {:.3g}/s): two runs that start one rounding "
+        "apart\ndiffer from t = {:.3g} s on by more than {:g} of the motion.\nPosition errors at "
+        "the end mean nothing; below, accuracy is that of the energy.\n\n",
+        reference.lyapunov, reference.horizon, apart);
+  } else if (reference.is_chaotic()) {
     fmt::print(
         "The motion is chaotic: one rounding of the start grows {:.0e} times and moves the end "
         "by {:.0e};\nerrors below that depend on how a method rounds.\n\n",
@@ -69,11 +77,11 @@ void print_front(const std::string& scene, double until, const std::vector<Front
   for (const FrontRow& row : front) {
     if (const Point* p = row.fastest) {
       fmt::print("{:<9.0e} {:<20} {:<16} {:>8.1e}  {:>9}   {}\n", row.accuracy, p->method->name,
-                 knob_in_words(*p), p->errors.position, in_words(p->time), rival(row));
+                 knob_in_words(*p), judged_error(*p, reference), in_words(p->time), rival(row));
     } else {
       fmt::print("{:<9.0e} {}\n", row.accuracy,
-                 reference.certified.position > row.accuracy ? "beyond what the reference certifies"
-                                                             : "no method reached it");
+                 certified(reference) > row.accuracy ? "beyond what the reference certifies"
+                                                     : "no method reached it");
     }
   }
 }

@@ -7,8 +7,9 @@
 
 namespace qddot {
 
-// The answer at one accuracy: the fastest point whose position error is at most that, and the
-// fastest of each family; nullptr where there is none, or where the reference is not that certain.
+// The answer at one accuracy: the fastest point whose error (see judgement.hpp) is at most that,
+// and the fastest of each family; nullptr where there is none, or where the reference is not that
+// certain.
 struct FrontRow {
   double accuracy = 0;
   const Point* fastest = nullptr;

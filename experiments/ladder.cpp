@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "experiments/judgement.hpp"
 #include "experiments/resolved_frequency.hpp"
 
 namespace qddot {
@@ -44,17 +45,20 @@ class Rungs {
 // Whether the error has come to where a finer knob changes nothing.
 class Stagnation {
  public:
+  explicit Stagnation(const Reference& reference) : reference_(reference) {}
+
   bool after(const Point& point) {
     if (point.outcome != Outcome::reached_end) return false;
     // Steps that are held to a stability limit do not answer to the tolerance yet.
     if (2 * point.counts.stability_limited_steps > point.counts.steps) return false;
-    const double error = point.errors.position;
+    const double error = judged_error(point, reference_);
     idle_ = error > 0.8 * best_ ? idle_ + 1 : 0;
     best_ = std::min(best_, error);
     return idle_ >= 3 && best_ < 1e-4;
   }
 
  private:
+  const Reference& reference_;
   double best_ = std::numeric_limits<double>::infinity();
   int idle_ = 0;
 };
@@ -67,8 +71,8 @@ bool is_hopeless(const Method& method, const Point& last, double value, const Ef
          last.time * last.value / value > 1.5 * saved_at_most * effort.seconds;
 }
 
-bool is_good(const Point& point) {
-  return point.outcome == Outcome::reached_end && point.errors.position < 1;
+bool is_good(const Point& point, const Reference& reference) {
+  return point.outcome == Outcome::reached_end && judged_error(point, reference) < 1;
 }
 
 }  // namespace
@@ -89,25 +93,26 @@ std::vector<Point> climb(const Method& method, const ReducedScene& scene, double
 
   for (int rung = 0; const auto value = rungs.value(rung); --rung) {
     if (!points.empty() && points.back().value == *value) continue;
-    if (!is_good(take(*value))) break;
+    if (!is_good(take(*value), reference)) break;
   }
   std::ranges::reverse(points);
 
-  Stagnation stagnation;
+  Stagnation stagnation(reference);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) stagnation.after(points[i]);
   int unfinished = 0;
   for (int rung = 1; const auto value = rungs.value(rung); ++rung) {
     const Point& last = points.back();
     if (last.value == *value) continue;
     if (last.outcome == Outcome::reached_end &&
-        (last.errors.position <= reference.certified.position || stagnation.after(last) ||
+        (judged_error(last, reference) <= certified(reference) || stagnation.after(last) ||
          (enough && enough(last)))) {
       break;
     }
     // Where Newton struggles at the coarse end, finer may be faster: two such points are forgiven.
     // Explicit steps only become more.
     unfinished = last.outcome == Outcome::over_budget ? unfinished + 1 : 0;
-    const bool has_worked = std::ranges::any_of(points, is_good);
+    const bool has_worked =
+        std::ranges::any_of(points, [&](const Point& p) { return is_good(p, reference); });
     if (last.outcome == Outcome::singular_mass ||
         unfinished > (has_worked || !method.implicit ? 0 : 2))
       break;

@@ -17,6 +17,8 @@ namespace {
 constexpr double shortest_sample = 1e-4;
 // A first run at least so long [s] is a sample like any other: what is cold about it is over soon.
 constexpr double own_warm_up = 0.1;
+// A run that is looked at ends sooner or later [s]; it is as long as the one before, and not timed.
+constexpr double longest_look = 60;
 
 }  // namespace
 
@@ -73,6 +75,12 @@ Point measure(const Method& method, double value, const ReducedScene& scene, dou
   point.time = median(times);
   point.time_min = std::ranges::min(times);
   point.timed_runs = static_cast<int>(times.size());
+  if (effort.watch) {
+    point.on_the_way = effort.watch->see(method, knobs, point.counts.steps,
+                                         std::max(longest_look, 2 * effort.seconds));
+    // The end of the run that was timed counts as well.
+    point.on_the_way.energy = std::max(point.on_the_way.energy, point.errors.energy);
+  }
   return point;
 }
 

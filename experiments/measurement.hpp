@@ -1,6 +1,7 @@
 #pragma once
 
 #include "experiments/reference.hpp"
+#include "experiments/watch.hpp"
 #include "integrators/method.hpp"
 
 namespace qddot {
@@ -12,6 +13,7 @@ struct Point {
   Outcome outcome{};     // errors and times below mean something only where it is reached_end
   double t_reached = 0;  // [s]
   Errors errors{};
+  OnTheWay on_the_way{};
   double time = 0, time_min = 0;  // median and least wall time of a run [s], set-up left out
   double setup = 0;               // wall time of allocation and symbolic analysis [s]
   int timed_runs = 0;
@@ -32,6 +34,7 @@ struct Effort {
   double seconds = 10;  // for one run; slower ones become over_budget
   int repeats = 5;      // timed runs; fewer, but one, where they would take half of that together
   MethodOptions options{};
+  const Watch* watch = nullptr;  // if any, sees one more run, untimed
 };
 
 // What the user turns, as the method's kind takes it, with the scene's tolerance scales.

@@ -30,7 +30,10 @@ const std::vector<std::string>& point_columns() {
                                                    "stability_limited_steps",
                                                    "timed_runs",
                                                    "family",
-                                                   "order"};
+                                                   "order",
+                                                   "error_energy_max",
+                                                   "error_momentum_max",
+                                                   "error_modal_shares"};
   return columns;
 }
 
@@ -44,7 +47,9 @@ void point_row(Csv& csv, const std::string& scene, const Point& p) {
           measured(p.time), measured(p.time_min), measured(p.setup), c.steps, c.rejected,
           c.force_evaluations, c.stiffness_evaluations, c.factorizations, c.solves,
           c.newton_iterations, c.indefinite_factorizations, order_mean(c), c.order_reductions,
-          c.stability_limited_steps, p.timed_runs, family_name(p.method->family), p.method->order);
+          c.stability_limited_steps, p.timed_runs, family_name(p.method->family), p.method->order,
+          measured(p.on_the_way.energy), measured(p.on_the_way.momentum),
+          measured(p.on_the_way.modal_shares));
 }
 
 }  // namespace qddot

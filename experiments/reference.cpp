@@ -5,6 +5,7 @@
 #include <optional>
 #include <random>
 
+#include "experiments/modal_shares.hpp"
 #include "experiments/reference_ways.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/analysis/linear_motion.hpp"
@@ -13,6 +14,7 @@ namespace qddot {
 namespace {
 
 constexpr int most_refinements = 20;
+constexpr int most_lost_levels = 3;
 constexpr Index largest_modal_size = 2000;  // a dense eigenproblem of a few seconds
 
 double difference(const ReducedScene& scene, const State& a, const State& b, const Scales& scales) {
@@ -20,8 +22,9 @@ double difference(const ReducedScene& scene, const State& a, const State& b, con
   return std::max(errors.position, errors.velocity);
 }
 
-// Refines a way of solving until the change stops shrinking: then rounding is all that is left.
-// `solve(level)` returns nothing where it did not reach the end.
+// Refines a way of solving until the change stops shrinking: then rounding is all that is left. Of
+// a chaotic motion, changes may be as large as the motion for some levels before they begin to
+// shrink. `solve(level)` returns nothing where it did not reach the end.
 template <class Solve>
 Solution refine(const ReducedScene& scene, double seconds, const Solve& solve) {
   const auto start = std::chrono::steady_clock::now();
@@ -32,7 +35,7 @@ Solution refine(const ReducedScene& scene, double seconds, const Solve& solve) {
     const std::optional<Solution> next = solve(level);
     if (next && best) {
       const double new_change = difference(scene, next->end, best->end, next->scales);
-      if (new_change > change / 2) break;
+      if (new_change > change / 2 && (new_change < apart || level >= most_lost_levels)) break;
       change = new_change;
     }
     if (next) best = next;
@@ -61,25 +64,62 @@ Solution best_fehlberg(const ReducedScene& scene, double until, const Scales& sc
   });
 }
 
+// The largest coordinate of a node at the start [m].
+double extent(const ReducedScene& scene) {
+  double largest = 0;
+  for (const Node& node : scene.expand(scene.initial())) {
+    largest = std::max(largest, node.position.lpNorm<Eigen::Infinity>());
+  }
+  return largest;
+}
+
+// The start with each unknown moved by up to `distance` [m], at random.
+State displaced_start(const ReducedScene& scene, double distance) {
+  State start = scene.initial();
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> part(-1, 1);
+  for (double& x : start.q) x += distance * part(random);
+  return start;
+}
+
 // Repeats the composition from a start that is one rounding away.
 void measure_rounding(Reference& reference, const ReducedScene& scene, const Solution& composed,
                       double until, double seconds) {
-  State start = scene.initial();
-  if (start.q.size() == 0) return;
-  double extent = 0;
-  for (const Node& node : scene.expand(start)) {
-    extent = std::max(extent, node.position.lpNorm<Eigen::Infinity>());
-  }
-  const double rounding = std::numeric_limits<double>::epsilon() * extent;
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> part(-1, 1);
-  for (double& x : start.q) x += rounding * part(random);
+  const double rounding = std::numeric_limits<double>::epsilon() * extent(scene);
+  if (scene.system().size() == 0 || rounding == 0) return;
+  const State start = displaced_start(scene, rounding);
   const auto moved = composition(scene, start, until, composed.knob, seconds);
-  if (!moved || rounding == 0) return;
+  if (!moved) return;
   const Vec difference = moved->end.q - composed.end.q;
   reference.perturbation_growth = difference.lpNorm<Eigen::Infinity>() / rounding;
   reference.rounding_effect =
       errors_between(scene, moved->end, composed.end, 0, composed.scales).position;
+
+  std::vector<double> times, differences;
+  const auto compare = [&](const State& one, const State& other) {
+    times.push_back(one.t);
+    differences.push_back(errors_between(scene, one, other, 0, composed.scales).position);
+  };
+  compare(scene.initial(), start);
+  for (std::size_t i = 0; i < moved->path.size(); ++i) compare(composed.path[i], moved->path[i]);
+  const Divergence parting = divergence(times, differences);
+  reference.horizon = parting.horizon;
+  reference.lyapunov = parting.lyapunov;
+}
+
+// Repeats it from a start that is known to half as many digits. As differences grow exponentially,
+// that is apart in half the time: during all of the later half of a run beyond the horizon, in
+// which the two have nothing in common but what every such motion has.
+void measure_shares(Reference& reference, const ReducedScene& scene, const Solution& composed,
+                    double until, double seconds) {
+  const auto modes = ModalShares::at_equilibrium(scene);
+  if (!modes) return;
+  const double distance = std::sqrt(std::numeric_limits<double>::epsilon()) * extent(scene);
+  const auto other =
+      composition(scene, displaced_start(scene, distance), until, composed.knob, seconds);
+  if (!other) return;
+  reference.modal_shares = modes->mean(composed.path);
+  reference.modal_shares_floor = total_variation(reference.modal_shares, modes->mean(other->path));
 }
 
 }  // namespace
@@ -97,6 +137,7 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
         joined(scene, composed, best_fehlberg(scene, until, composed.scales, 0.4 * seconds));
   }
   measure_rounding(reference, scene, composed, until, seconds);
+  if (reference.is_beyond_horizon()) measure_shares(reference, scene, composed, until, seconds);
   reference.seconds = seconds_since(start);
   return reference;
 }

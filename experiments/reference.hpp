@@ -1,11 +1,13 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "experiments/divergence.hpp"
 #include "experiments/error.hpp"
 
 namespace qddot {
@@ -23,12 +25,22 @@ struct Reference {
   // that is far above `certified` the motion is chaotic: it is known, but to no one who rounds
   // differently.
   double rounding_effect = 0, perturbation_growth = 0;
+  // From which time on [s] that motion and the reference are `apart`, found or, after the end,
+  // extrapolated; and how fast they part [1/s]. Infinite and zero for regular motions.
+  double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
+  // Beyond the horizon, what part of the kinetic energy is in each mode (see ModalShares), and by
+  // how much that of another motion with nearly the same start differs by chance; empty where it
+  // was not measured.
+  Vec modal_shares{};
+  double modal_shares_floor = 0;
   std::string made_by;  // the two ways, with their knobs
   double seconds = 0;   // what it took
 
-  // Regular motions grow with time, not exponentially: by some thousands over their runs.
+  // Whether the end is so late that nobody knows the positions: their errors mean nothing.
+  bool is_beyond_horizon() const { return end.t >= horizon; }
   bool is_chaotic() const {
-    return perturbation_growth > 1e6 && rounding_effect > 10 * certified.position;
+    return perturbation_growth > exponential_growth &&
+           (rounding_effect > 10 * certified.position || is_beyond_horizon());
   }
 };
 

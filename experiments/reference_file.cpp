@@ -1,6 +1,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -52,7 +53,12 @@ nlohmann::json to_json(const Reference& r) {
             {"energy", digits(r.certified.energy)}}},
           {"rounding_effect", r.rounding_effect},
           {"perturbation_growth", r.perturbation_growth},
+          {"horizon", r.horizon},  // null where there is none
+          {"lyapunov", r.lyapunov},
+          {"modal_shares", list(r.modal_shares)},
+          {"modal_shares_floor", r.modal_shares_floor},
           {"chaotic", r.is_chaotic()},
+          {"beyond_horizon", r.is_beyond_horizon()},
           {"scales",
            {{"displacement", r.scales.displacement},
             {"speed", r.scales.speed},
@@ -72,6 +78,11 @@ Reference reference_from_json(const nlohmann::json& json) {
                         json.at("certified_energy")},
           .rounding_effect = json.at("rounding_effect"),
           .perturbation_growth = json.at("perturbation_growth"),
+          .horizon = json.at("horizon").is_null() ? std::numeric_limits<double>::infinity()
+                                                  : json.at("horizon").get<double>(),
+          .lyapunov = json.at("lyapunov"),
+          .modal_shares = vector(json.at("modal_shares")),
+          .modal_shares_floor = json.at("modal_shares_floor"),
           .made_by = json.at("made_by"),
           .seconds = json.at("seconds")};
 }

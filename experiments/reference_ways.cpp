@@ -11,6 +11,11 @@
 #include "integrators/registry.hpp"
 
 namespace qddot {
+namespace {
+
+constexpr std::int64_t longest_path = 100;
+
+}  // namespace
 
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
                                  const Knobs& knobs, const State& initial, double until,
@@ -18,7 +23,12 @@ std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method
   const auto integrator = make_integrator(method, scene.system(), knobs);
   Solution solution{.end = initial};
   const Deadline deadline(seconds);
-  Observer each{{}, [&](const State& state) { extend(solution.scales, scene, state); }};
+  const std::int64_t stride = (samples + longest_path - 1) / longest_path;
+  std::int64_t seen = 0;
+  Observer each{{}, [&](const State& state) {
+                  extend(solution.scales, scene, state);
+                  if (++seen % stride == 0 || seen == samples) solution.path.push_back(state);
+                }};
   for (std::int64_t i = 1; i < samples; ++i) {
     each.times.push_back(until * static_cast<double>(i) / static_cast<double>(samples));
   }

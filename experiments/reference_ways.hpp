@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/reference.hpp"
 #include "experiments/timing.hpp"
@@ -15,10 +16,12 @@ struct Solution {
   Scales scales{};
   double knob = 0;
   std::string made_by{};
+  std::vector<State> path{};  // on the way, at some of the samples, the end included
 };
 
 // The motion from `initial` by a method with these knobs. Its scales are those seen at the ends of
-// `samples` equal parts of the time. Nothing where it does not reach the end in so many seconds.
+// `samples` equal parts of the time; about a hundred of these are its path. Nothing where it does
+// not reach the end in so many seconds.
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
                                  const Knobs& knobs, const State& initial, double until,
                                  std::int64_t samples, double seconds);

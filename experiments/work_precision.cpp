@@ -5,15 +5,18 @@
 //
 //  1. A reference is made by two unlike methods of high order, or exactly where the motion is
 //     linear; what they agree to is the certified floor (reference.json, kept for the next time).
+//     A third run that starts one rounding away shows from which time on the motion is chaotic.
 //  2. Each method runs from coarse to fine: once untimed unless that takes long, then timed several
-//     times, one thread.
+//     times, one thread; and once more, watched on its way: its largest energy error, its momenta.
 //  3. points.csv holds every point, the failed ones with the reason; front.csv, for each accuracy
-//     from 1e-1 to 1e-9, the fastest method that reached it.
+//     from 1e-1 to 1e-9, the fastest method that reached it: of the positions at the end or, where
+//     that is beyond the chaotic motion's horizon and nobody knows them, of the energy on the way.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/csv.hpp"
 #include "experiments/front.hpp"
+#include "experiments/judgement.hpp"
 #include "experiments/ladder.hpp"
 #include "experiments/method_options.hpp"
 #include "experiments/point_table.hpp"
@@ -50,15 +53,16 @@ void declare(CLI::App& app, Arguments& a) {
 }
 
 const std::vector<std::string> front_columns = {"scene", "accuracy",       "method", "knob",
-                                                "value", "error_position", "time_s"};
+                                                "value", "error_position", "time_s", "judged_by"};
 
-void tabulate(Csv& csv, const std::string& scene, const std::vector<FrontRow>& front) {
+void tabulate(Csv& csv, const std::string& scene, const std::vector<FrontRow>& front,
+              const char* judge) {
   for (const FrontRow& row : front) {
     if (const Point* p = row.fastest) {
       csv.row(scene, row.accuracy, p->method->name, knob_name(p->method->knob), p->value,
-              p->errors.position, p->time);
+              p->errors.position, p->time, judge);
     } else {
-      csv.row(scene, row.accuracy, "", "", "", "", "");
+      csv.row(scene, row.accuracy, "", "", "", "", "", judge);
     }
   }
 }
@@ -84,9 +88,12 @@ int work_precision(const CLI::App& app, const Arguments& a,
   show_progress("making the reference ...");
   const Reference reference = reference_for(drawn, scene, until, a.out, origin);
 
+  const Watch watch(start, scene, until, reference);
+  Effort effort = a.effort;
+  effort.watch = &watch;
   std::vector<Point> points;
   for (const Method* method : selected) {
-    const auto more = climb(*method, scene, until, reference, a.effort,
+    const auto more = climb(*method, scene, until, reference, effort,
                             [](const Point& point) { show_progress(describe(point)); });
     points.insert(points.end(), more.begin(), more.end());
   }
@@ -94,7 +101,7 @@ int work_precision(const CLI::App& app, const Arguments& a,
 
   const auto front = fastest_at_each_accuracy(points, reference);
   for (const Point& point : points) point_row(points_csv, drawn.name, point);
-  tabulate(front_csv, drawn.name, front);
+  tabulate(front_csv, drawn.name, front, judged_by(reference));
   points_csv.commit(origin);
   front_csv.commit(origin);
   print_front(drawn.name, until, front, reference);

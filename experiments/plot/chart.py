@@ -8,7 +8,7 @@ from matplotlib.text import Text
 import measurements
 from labels import LEADER_FROM, Ink, place_labels
 from sheet import DPI
-from style import FAINT, FRONT, number, power_of_ten, seconds, widened
+from style import FAINT, FRONT, power_of_ten, seconds, widened
 
 FONT_SIZE = 9.5
 FRONT_INK = 0.5
@@ -24,27 +24,26 @@ BACKGROUND = 0.3
 class Chart:
     """The runs of one experiment in axes of error and time."""
 
-    def __init__(self, axes, runs, reference, looks):
+    def __init__(self, axes, view, looks):
         self.axes = axes
-        self.certified = reference.certified
-        self.chaotic_below = reference.chaotic_below
-        self.sweeps = measurements.sweeps(runs)
-        self.good = [run for run in runs if not run.failure]
+        self.view = view
+        self.sweeps = measurements.sweeps(view.runs)
+        self.good = [run for run in view.runs if not run.failure]
         self.looks = looks
         self.set_limits()
         self.style_axes()
         self.crowded = len(self.sweeps) > CROWD
 
     def set_limits(self):
-        """The ranges of error and time; the certified floor is in them where the errors come
+        """The ranges of error and time; the floor is in them where the errors come
         near."""
-        # An error below the certified floor is not known to be that small.
+        # An error below the floor is not known to be that small.
         measured = [run.error for run in self.good if run.error > 0]
-        self.smallest = self.certified or min(measured, default=1e-16)
+        self.smallest = self.view.floor or min(measured, default=1e-16)
         errors = [self.position(run)[0] for run in self.good] or [1e-9, 1.0]
         times = [run.time for run in self.good] or [1e-3, 1.0]
-        self.floor_visible = bool(self.certified) and min(errors) < 1e3 * self.certified
-        left = self.certified / 5 if self.floor_visible else min(errors) / 3
+        self.floor_visible = bool(self.view.floor) and min(errors) < 1e3 * self.view.floor
+        left = self.view.floor / 5 if self.floor_visible else min(errors) / 3
         right = max(errors) * 3
         self.axes.set_xscale("log")
         self.axes.set_yscale("log")
@@ -62,7 +61,7 @@ class Chart:
         self.axes.tick_params(length=3, color=FAINT, labelsize=FONT_SIZE)
         self.axes.tick_params(which="minor", length=0)
         self.axes.set_ylabel("time of one run, median", fontsize=10)
-        self.note("relative position error", 0.5, (0, BELOW_TICKS), ha="center", va="center")
+        self.note(self.view.quantity.axis, 0.5, (0, BELOW_TICKS), ha="center", va="center")
         self.note("◀ more accurate", 0, (0, BELOW_TICKS), va="center", weight="bold")
         self.note("◀ faster", 0, (-51, 0), rotation=90, ha="center", va="bottom", weight="bold")
 
@@ -79,7 +78,7 @@ class Chart:
         )
 
     def position(self, run):
-        """Where a run is drawn: one below the certified floor stands on it."""
+        """Where a run is drawn: one below the floor stands on it."""
         return max(run.error, self.smallest), run.time
 
     def draw(self):
@@ -99,10 +98,10 @@ class Chart:
     def draw_floor(self):
         """The region of errors below what the reference solution can tell, or a note that it lies
         beyond the axes."""
-        if not self.certified:
+        if not self.view.floor:
             return
-        words = f"reference certified to {number(self.certified)}"
-        if any(run.error < self.certified for run in self.good):
+        words = self.view.floor_words
+        if any(run.error < self.view.floor for run in self.good):
             words += ", smaller errors stand on the line"
         style = {"size": 9.5, "color": FAINT, "ha": "right"}
         if not self.floor_visible:
@@ -110,12 +109,12 @@ class Chart:
             return
         left = self.axes.get_xlim()[0]
         self.axes.axvspan(
-            left, self.certified, facecolor="none", edgecolor="#BBBBBB", hatch="////", linewidth=0
+            left, self.view.floor, facecolor="none", edgecolor="#BBBBBB", hatch="////", linewidth=0
         )
-        self.axes.axvline(self.certified, color=FAINT, linewidth=1.0)
+        self.axes.axvline(self.view.floor, color=FAINT, linewidth=1.0)
         self.axes.annotate(
             words,
-            (self.certified, 0),
+            (self.view.floor, 0),
             (-8, 6),
             xycoords=("data", "axes fraction"),
             textcoords="offset points",
@@ -128,12 +127,12 @@ class Chart:
     def draw_chaos(self):
         """The line below which errors depend on how a method rounds, where the motion is
         chaotic."""
-        if not self.chaotic_below:
+        if not self.view.chaotic_below:
             return
-        self.axes.axvline(self.chaotic_below, color=FAINT, linewidth=1.0, linestyle=":")
+        self.axes.axvline(self.view.chaotic_below, color=FAINT, linewidth=1.0, linestyle=":")
         self.axes.annotate(
             "chaotic: rounding decides",
-            (self.chaotic_below, 0),
+            (self.view.chaotic_below, 0),
             (-8, 6),
             xycoords=("data", "axes fraction"),
             textcoords="offset points",
@@ -149,7 +148,8 @@ class Chart:
     def front_corners(self):
         """The staircase of the shortest time that reaches each error or a smaller one."""
         corners = []
-        for error, time in sorted(map(self.position, self.good)):
+        counting = [run for run in self.good if run.counts]
+        for error, time in sorted(map(self.position, counting)):
             if not corners or time < corners[-1][1]:
                 corners += [(error, corners[-1][1])] if corners else []
                 corners.append((error, time))

@@ -25,13 +25,20 @@ class Run:
     outcome: str
     error: float
     time: float
+    # Whether it may be on the front.
+    counts: bool = True
+
+    @property
+    def is_measured(self):
+        """Whether it has an error."""
+        return not math.isnan(self.error)
 
     @property
     def failure(self):
         """Why the run is no point of the picture, in words; empty for a good run."""
         if self.outcome != "reached_end":
             return self.outcome.replace("_", " ").replace("newton", "Newton")
-        if math.isnan(self.error):
+        if not self.is_measured:
             return "error not measured"
         if self.error > WORST_ERROR:
             return f"error above {WORST_ERROR:g}"
@@ -58,6 +65,22 @@ class Reference:
     # The error below which runs differ by their roundings alone; None where that is no more than
     # the reference's own.
     chaotic_below: float | None
+    # Where the end is beyond the horizon of a chaotic motion: from which time on two runs that start
+    # one rounding apart are apart, and how fast they part in 1/s.
+    horizon: float | None = None
+    lyapunov: float | None = None
+    # What chance makes of the distance of two distributions of energy.
+    modal_floor: float | None = None
+
+
+def read_header(path):
+    """The names of a CSV file's columns."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            return next(csv.reader(file), [])
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise BadInput(f"{path} cannot be read: {reason}.") from error
 
 
 def read_rows(path, columns):
@@ -86,18 +109,18 @@ def parse(path, line, row, column, required):
     return value
 
 
-def read_runs(path):
-    """All runs in the order of the file."""
+def read_runs(path, column="error_position"):
+    """All runs in the order of the file, with the error of one column."""
     texts = ("scene", "method", "family", "knob", "outcome")
     runs = []
-    for line, row in read_rows(path, (*texts, "value", "error_position", "time_s")):
+    for line, row in read_rows(path, (*texts, "value", column, "time_s")):
         if not all(row[name] for name in ("method", "knob", "outcome")):
             raise BadInput(f"{path}, line {line}: method, knob and outcome must not be empty.")
         runs.append(
             Run(
                 **{name: row[name] for name in texts},
                 value=parse(path, line, row, "value", True),
-                error=parse(path, line, row, "error_position", False),
+                error=parse(path, line, row, column, False),
                 time=parse(path, line, row, "time_s", False),
             )
         )
@@ -122,17 +145,34 @@ def read_front(path, runs):
     return sorted(points, key=lambda point: -point.accuracy)
 
 
+def fastest_at_each_accuracy(runs):
+    """The points of the front at 1e-1, ... 1e-9."""
+    points = []
+    for accuracy in (10.0**-digit for digit in range(1, 10)):
+        good = [
+            run for run in runs if run.counts and not run.failure and run.error <= accuracy
+        ]
+        if good:
+            best = min(good, key=lambda run: run.time)
+            points.append(FrontPoint(accuracy, best.method, best.error, best.time))
+    return points
+
+
 def read_reference(path):
     """What the file says of the reference solution; a file that is not there says nothing."""
     try:
         with open(path, encoding="utf-8") as file:
             content = json.load(file)
         until, certified = content.get("until"), content.get("certified_position")
+        beyond = bool(content.get("beyond_horizon"))
         return Reference(
             content.get("scene"),
             None if until is None else float(until),
             float(certified) if certified is not None and float(certified) > 0 else None,
             float(content["rounding_effect"]) if content.get("chaotic") else None,
+            float(content["horizon"]) if beyond else None,
+            float(content["lyapunov"]) if beyond else None,
+            float(content["modal_shares_floor"]) if beyond else None,
         )
     except FileNotFoundError:
         return Reference(None, None, None, None)

@@ -1,9 +1,11 @@
 """Draws the work-precision chart of one experiment: time of a run against error reached.
 
 Call: work_precision.py DIR. Reads points.csv, front.csv and, if there, reference.json in DIR and
-writes chart.png and chart.svg there.
+writes there, as .png and .svg, chart: over the position error or, where the end is beyond the
+horizon of a chaotic motion, over what then means something; and chart_energy, over the energy error.
 """
 
+import math
 import os
 import sys
 
@@ -11,15 +13,20 @@ from matplotlib.lines import Line2D
 
 import failures
 import measurements
+import quantities
 from band import draw_band
 from chart import BACKGROUND, MATTERS, NEAR, Chart
 from sheet import Sheet
-from style import FAINT, assign_looks, number, use_style
+from style import FAINT, assign_looks, number, seconds, use_style
 
 WIDTH = 10.0
 MARGIN = 0.15
 LEFT, RIGHT = 0.95, 0.2
 HEADER = 1.07
+KEY = 0.24
+HORIZON = 0.42
+HEADING = 0.42
+WARNING = "#A33B00"
 BAND = 0.25
 BAND_GAP = 0.06
 AXIS_TEXT = 0.68
@@ -34,13 +41,28 @@ def axes_height(runs):
     return 4.35 + 0.08 * max(0, methods - ROOMY_METHODS)
 
 
-def draw_header(sheet, scene, until):
-    """Title and subtitle."""
-    end = "" if until is None else f" at T = {number(until)} s"
-    title = f"{scene}: time of a run against its error{end}"
-    subtitle = "position error at t = T: max over nodes, divided by the largest displacement"
+def draw_header(sheet, scene, quantity, reference):
+    """Title and subtitle; and the horizon where the end is beyond that."""
+    end = "T" if reference.until is None else f"T = {number(reference.until)} s"
+    title = f"{scene}: time of a run against {quantity.title} {end}"
     sheet.text(MARGIN, 0.25, title, size=14, weight="bold", va="center")
-    sheet.text(MARGIN, 0.54, subtitle, size=10, color=FAINT, va="center")
+    sheet.text(MARGIN, 0.54, quantity.subtitle, size=10, color=FAINT, va="center")
+    if reference.horizon:
+        sheet.text(MARGIN, 0.83, horizon_in_words(reference), size=10, color=WARNING, va="center")
+
+
+def horizon_in_words(reference):
+    """What is chaotic, and from when on."""
+    words = (
+        f"chaotic: from t = {number(reference.horizon)} s on, two runs that start one rounding apart"
+        f" differ by more than 1e-2"
+    )
+    if reference.lyapunov:
+        words += f" (× 10 in {seconds(math.log(10) / reference.lyapunov)})"
+    words += f".\nPosition errors at T = {number(reference.until)} s mean nothing."
+    if reference.modal_floor:
+        words += " Fastest: of the runs whose energy is in the right modes."
+    return words
 
 
 def key_line(family):
@@ -59,7 +81,7 @@ def key_line(family):
     )
 
 
-def draw_key(sheet, looks, crowded):
+def draw_key(sheet, top, looks, crowded):
     """How the lines of each family look, and those in the background."""
     lines = [key_line(family) for family in dict.fromkeys(look.family for look in looks.values())]
     if crowded:
@@ -69,7 +91,7 @@ def draw_key(sheet, looks, crowded):
     sheet.figure.legend(
         handles=lines,
         loc="center left",
-        bbox_to_anchor=(MARGIN / sheet.width, 1 - 0.83 / sheet.height),
+        bbox_to_anchor=(MARGIN / sheet.width, 1 - top / sheet.height),
         ncol=max(1, len(lines)),
         frameon=False,
         fontsize=10,
@@ -80,44 +102,80 @@ def draw_key(sheet, looks, crowded):
     )
 
 
-def draw(runs, front, reference, fallback_scene):
-    """The whole picture as a sheet."""
-    looks = assign_looks({run.method: run.family for run in runs})
-    failed = failures.failing(measurements.sweeps(runs))
-    axes_top = HEADER + BAND + BAND_GAP
-    strip_top = axes_top + axes_height(runs) + AXIS_TEXT
-    sheet = Sheet(WIDTH, strip_top + failures.strip_height(failed))
-    scene = reference.scene or (runs[0].scene if runs else "") or fallback_scene
-    draw_header(sheet, scene, reference.until)
-    axes = sheet.axes(LEFT, axes_top, WIDTH - LEFT - RIGHT, axes_height(runs))
-    chart = Chart(axes, runs, reference, looks)
+def draw_panel(sheet, top, view, looks):
+    """The axes of one view and, where it has a front, the band above; whether some lines stand
+    back."""
+    width = WIDTH - LEFT - RIGHT
+    axes = sheet.axes(LEFT, top + band_height(view), width, axes_height(view.runs))
+    chart = Chart(axes, view, looks)
     chart.draw()
-    draw_key(sheet, looks, chart.crowded)
-    rectangle = (LEFT, HEADER, WIDTH - LEFT - RIGHT, BAND)
-    if front:
-        draw_band(sheet, rectangle, front, axes.get_xlim(), reference.certified, looks)
+    if view.front:
+        draw_band(sheet, (LEFT, top, width, BAND), view.front, axes.get_xlim(), view.floor, looks)
+    return chart.crowded
+
+
+def band_height(view):
+    """The height in inches of the band over a view's axes with its gap."""
+    return BAND + BAND_GAP if view.front else 0.0
+
+
+def panel_height(view):
+    """The height in inches of a view's axes with their band and numbers."""
+    return band_height(view) + axes_height(view.runs) + AXIS_TEXT
+
+
+def draw(views, reference, fallback_scene):
+    """The whole picture of one view and more below it as a sheet."""
+    main, *more = views
+    looks = assign_looks({run.method: run.family for run in main.runs})
+    failed = failures.failing(measurements.sweeps(main.runs))
+    header = HEADER + (HORIZON if reference.horizon else 0)
+    strip_top = header + sum(map(panel_height, views)) + HEADING * len(more)
+    sheet = Sheet(WIDTH, strip_top + failures.strip_height(failed))
+    scene = reference.scene or (main.runs[0].scene if main.runs else "") or fallback_scene
+    draw_header(sheet, scene, main.quantity, reference)
+    draw_key(sheet, header - KEY, looks, draw_panel(sheet, header, main, looks))
+    top = header + panel_height(main)
+    for view in more:
+        sheet.rule(top)
+        sheet.text(MARGIN, top + HEADING / 2, view.quantity.subtitle, size=10, va="center")
+        draw_panel(sheet, top + HEADING, view, looks)
+        top += HEADING + panel_height(view)
     if failed:
         failures.draw_strip(sheet, strip_top, failed, looks)
     return sheet
 
 
+def pictures(directory, reference):
+    """The views of each picture by its name: beyond the horizon, others stand in the place of the
+    positions."""
+    energy = quantities.view(directory, quantities.ENERGY, reference)
+    if reference.horizon and energy:
+        others = (quantities.MOMENTUM, quantities.MODES)
+        more = [quantities.view(directory, other, reference) for other in others]
+        yield "chart", [energy, *filter(None, more)]
+    else:
+        yield "chart", [quantities.view(directory, quantities.POSITION, reference)]
+    if energy:
+        yield "chart_energy", [energy]
+
+
 def main(arguments):
-    """Draws the chart of the directory named on the command line; returns the exit status."""
+    """Draws the charts of the directory named on the command line; returns the exit status."""
     if len(arguments) != 1:
         print("Usage: work_precision.py DIR", file=sys.stderr)
         return 2
     directory = arguments[0]
+    use_style()
     try:
-        runs = measurements.read_runs(os.path.join(directory, "points.csv"))
-        front = measurements.read_front(os.path.join(directory, "front.csv"), runs)
         reference = measurements.read_reference(os.path.join(directory, "reference.json"))
+        for name, views in pictures(directory, reference):
+            sheet = draw(views, reference, os.path.basename(os.path.abspath(directory)))
+            for extension in ("png", "svg"):
+                sheet.save(os.path.join(directory, f"{name}.{extension}"))
     except measurements.BadInput as error:
         print(error, file=sys.stderr)
         return 2
-    use_style()
-    sheet = draw(runs, front, reference, os.path.basename(os.path.abspath(directory)))
-    for name in ("chart.png", "chart.svg"):
-        sheet.save(os.path.join(directory, name))
     return 0
 
 

@@ -51,6 +51,37 @@ BOOST_AUTO_TEST_CASE(the_fastest_point_that_is_accurate_enough_is_taken) {
   for (std::size_t i = 0; i < 9; ++i) BOOST_TEST(rows[i].fastest == expected[i], "row " << i);
 }
 
+BOOST_AUTO_TEST_CASE(beyond_the_horizon_the_energy_on_the_way_counts) {
+  Reference reference;
+  reference.certified.position = 0.1;
+  reference.end.t = 2;
+  std::vector<Point> points = {point("verlet", 0.3, 1), point("rk4", 1e-9, 2)};
+  points[0].on_the_way.energy = 5e-4;
+  points[1].on_the_way.energy = 5e-2;
+  const auto fastest = [&](double horizon) {
+    reference.horizon = horizon;
+    return fastest_at_each_accuracy(points, reference)[2].fastest;
+  };
+  BOOST_TEST(fastest(1.3) == &points[0]);
+  BOOST_TEST(fastest(2.1) == nullptr);  // not certain to 1e-3
+  reference.certified.position = 1e-4;
+  BOOST_TEST(fastest(2.1) == &points[1]);
+}
+
+BOOST_AUTO_TEST_CASE(beyond_the_horizon_energy_in_other_modes_does_not_count) {
+  // What does not move keeps its energy.
+  Reference reference;
+  reference.end.t = 2;
+  reference.horizon = 1.3;
+  reference.modal_shares_floor = 0.01;
+  std::vector<Point> points = {point("implicit_euler", 0.9, 1), point("verlet", 0.3, 2)};
+  points[0].on_the_way = {.energy = 0, .modal_shares = 0.11};
+  points[1].on_the_way = {.energy = 5e-4, .modal_shares = 0.02};
+  BOOST_TEST(fastest_at_each_accuracy(points, reference)[2].fastest == &points[1]);
+  points[0].on_the_way.modal_shares = 0.09;
+  BOOST_TEST(fastest_at_each_accuracy(points, reference)[2].fastest == &points[0]);
+}
+
 BOOST_AUTO_TEST_CASE(each_family_has_its_own_fastest) {
   const std::vector<Point> points = {point("verlet", 1e-3, 2), point("ida", 1e-3, 1),
                                      point("arkode_dirk4", 1e-5, 7), point("verlet", 1e-5, 5)};

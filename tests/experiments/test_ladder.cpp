@@ -137,6 +137,21 @@ BOOST_AUTO_TEST_CASE(it_does_not_go_below_what_the_reference_certifies) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(beyond_the_horizon_it_goes_down_by_the_energy_error) {
+  Course course("orbit", 0.3);
+  course.reference.certified.position = 0.1;  // as if nobody knew the end
+  const Effort effort{.seconds = 60, .repeats = 1};
+  const auto blind = course.climb("kahan_li8", effort);
+  BOOST_TEST(blind.back().errors.position > 1e-9);
+  course.reference.horizon = 0.2;
+  const Watch watch(load_scene("orbit"), course.scene, course.until, course.reference);
+  Effort watched = effort;
+  watched.watch = &watch;
+  const auto points = course.climb("kahan_li8", watched);
+  BOOST_TEST(points.back().on_the_way.energy < 1e-13);
+  BOOST_TEST(points.size() > blind.size() + 3);
+}
+
 BOOST_AUTO_TEST_CASE(steps_held_to_a_stability_limit_do_not_end_it) {
   // A slow vibration of two masses that hold together by a spring 1e6 times stiffer: steps that let
   // this one not grow are far finer than a coarse tolerance asks for.

@@ -198,6 +198,47 @@ BOOST_AUTO_TEST_CASE(one_rounding_of_the_start_does_little_to_a_regular_motion) 
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_regular_motion_has_no_horizon) {
+  for (const char* name : {"oscillator", "pair", "orbit", "pendulum"}) {
+    const Reference made = make_reference(ReducedScene(load_scene(name)), 2, seconds);
+    BOOST_TEST(std::isinf(made.horizon), name);
+    BOOST_TEST(made.lyapunov == 0, name);
+    BOOST_TEST(!made.is_beyond_horizon(), name);
+    BOOST_TEST(made.modal_shares.size() == 0, name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_chaotic_motion_has_one_before_and_after_it_is_reached) {
+  // Four masses in a row on soft springs, let go from the horizontal: one rounding is all of the
+  // motion after some nine seconds.
+  const Scene chain =
+      generate(*find_generator("chain"), {{"nodes", 4}, {"stiffness", 1000}}, "here");
+  const ReducedScene scene(chain);
+  const Reference early = make_reference(scene, 6, seconds),
+                  late = make_reference(scene, 12, seconds);
+  BOOST_TEST(!early.is_beyond_horizon());
+  BOOST_TEST((early.certified.position < 1e-4 && early.horizon > 6));
+  BOOST_TEST((late.is_beyond_horizon() && late.is_chaotic()));
+  BOOST_TEST(late.certified.position > apart);
+  // Growth is uneven, so that it is foreseen but roughly.
+  BOOST_TEST(early.horizon == late.horizon, boost::test_tools::tolerance(0.25));
+  BOOST_TEST(early.lyapunov == late.lyapunov, boost::test_tools::tolerance(0.5));
+  BOOST_TEST(early.modal_shares.size() == 0);
+  BOOST_TEST(late.modal_shares.sum() == 1, boost::test_tools::tolerance(1e-12));
+  // Another run than those it was found by: half a horizon's error of the start is apart sooner.
+  State near = scene.initial(), far = near;
+  far.q[0] += 1e-8;
+  const auto end = [&](State state, double until) {
+    const auto run =
+        make_integrator(*find_method("kahan_li8"), scene.system(), {.step_size = 1e-3});
+    BOOST_TEST((run->advance(state, until).outcome == Outcome::reached_end));
+    return state;
+  };
+  const double soon = 0.8 * late.horizon;
+  BOOST_TEST(errors_between(scene, end(far, soon), end(near, soon), 0, late.scales).position >
+             apart);
+}
+
 BOOST_AUTO_TEST_CASE(what_two_unlike_methods_agree_on_is_as_good_as_needed) {
   for (const char* name : {"oscillator", "orbit", "pendulum"}) {
     const ReducedScene scene(load_scene(name));

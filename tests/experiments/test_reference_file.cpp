@@ -39,6 +39,7 @@ BOOST_AUTO_TEST_CASE(json_brings_back_every_bit) {
   BOOST_TEST(read.rounding_effect == made.rounding_effect);
   BOOST_TEST(read.perturbation_growth == made.perturbation_growth);
   BOOST_TEST(made.perturbation_growth > 0);
+  BOOST_TEST((std::isinf(made.horizon) && std::isinf(read.horizon)));
   BOOST_TEST(read.made_by == made.made_by);
   BOOST_TEST(read.seconds == made.seconds);
   for (const char* part : {"position", "velocity", "energy"}) {
@@ -47,6 +48,24 @@ BOOST_AUTO_TEST_CASE(json_brings_back_every_bit) {
     BOOST_TEST(std::abs(digits + std::log10(certified)) <= 0.1 + 1e-9);
     BOOST_TEST(digits <= -std::log10(certified));
   }
+}
+
+BOOST_AUTO_TEST_CASE(json_brings_back_a_horizon) {
+  Reference made;
+  made.end = {2, Vec::Ones(2), Vec::Ones(2)};
+  made.certified = {0.1, 0.1, 1e-9};
+  made.perturbation_growth = 1e14;
+  made.horizon = 1.3;
+  made.lyapunov = 27.1;
+  made.modal_shares = Vec{{0.1, 0.3, 0.6}};
+  made.modal_shares_floor = 1e-3;
+  const nlohmann::json written = nlohmann::json::parse(to_json(made).dump());
+  BOOST_TEST((written.at("beyond_horizon") == true && written.at("chaotic") == true));
+  const Reference read = reference_from_json(written);
+  BOOST_TEST(read.horizon == made.horizon);
+  BOOST_TEST(read.lyapunov == made.lyapunov);
+  BOOST_TEST((read.modal_shares == made.modal_shares));
+  BOOST_TEST(read.modal_shares_floor == made.modal_shares_floor);
 }
 
 BOOST_AUTO_TEST_CASE(json_that_is_no_reference_is_refused) {

@@ -132,6 +132,46 @@ BOOST_AUTO_TEST_CASE(what_was_measured_is_there_and_the_rest_is_empty) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_largest_energy_error_on_the_way_is_no_less_than_that_at_the_end) {
+  for (const auto& m : all_measured()) {
+    bool is_more = false;
+    for (std::size_t row = 0; row < m->points.rows.size(); ++row) {
+      if (!m->reached(row)) continue;
+      const double at_end = m->points.value(row, "error_energy");
+      BOOST_TEST(m->points.value(row, "error_energy_max") >= at_end);
+      is_more |= m->points.value(row, "error_energy_max") > 2 * at_end;
+      // The orbit turns about its pin; the oscillator has nothing that turns.
+      BOOST_TEST((m->points.text(row, "error_momentum_max") == "") == (m->scene == "oscillator"));
+      BOOST_TEST(m->points.text(row, "error_modal_shares") == "");
+    }
+    BOOST_TEST(is_more, m->scene);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(beyond_the_horizon_the_tables_and_words_say_so) {
+  const Folder folder;
+  const std::string scene = folder.write(
+      "chain.toml", "until = 12\n[generator]\nkind = \"chain\"\nnodes = 4\nstiffness = 1000\n");
+  const Run result =
+      run("work_precision", {"--scene", scene, "--methods", "blanes_moan6", "--point-limit", "1",
+                             "--repeats", "1", "--out", folder / "out"});
+  BOOST_TEST_REQUIRE(result.status == 0, result.err);
+  BOOST_TEST(
+      contains(result.out, {"chaotic", "Lyapunov", "Position errors at the end mean nothing"}));
+  const auto reference = nlohmann::json::parse(read_all(folder / "out/reference.json"));
+  BOOST_TEST(reference.at("beyond_horizon") == true);
+  BOOST_TEST((reference.at("horizon") > 6 && reference.at("horizon") < 12));
+  BOOST_TEST(reference.at("lyapunov") > 1);
+  const Table points = read_csv(folder / "out/points.csv"),
+              front = read_csv(folder / "out/front.csv");
+  const std::size_t last = points.rows.size() - 1;
+  BOOST_TEST(points.value(last, "error_energy_max") < 1e-6);
+  BOOST_TEST(points.value(last, "error_position") > 1e-2);
+  BOOST_TEST(points.value(last, "error_modal_shares") < 1);
+  BOOST_TEST(front.text(3, "judged_by") == "energy");
+  BOOST_TEST(front.text(3, "method") == "blanes_moan6");
+}
+
 BOOST_AUTO_TEST_CASE(every_number_in_the_tables_is_finite) {
   for (const auto& m : all_measured()) {
     for (const Table* table : {&m->points, &m->front}) {
