@@ -30,6 +30,7 @@ Method blanes_moan6() {
           .order = 6,
           .stability_limit = 3.141,  // where the trace of one step's matrix first exceeds 2
           .symplectic = true,
+          .takes_compensation = true,
           .make = create_splitting<blanes_moan6_splitting>};
 }
 
