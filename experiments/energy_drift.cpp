@@ -24,7 +24,7 @@
 
 #include "experiments/csv.hpp"
 #include "experiments/drift_run.hpp"
-#include "experiments/measurement.hpp"
+#include "experiments/method_options.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
@@ -45,6 +45,7 @@ struct Arguments {
   std::vector<std::string> methods;
   std::vector<double> rtols = {1e-4, 1e-6, 1e-8};
   bool compensated = false;
+  MethodOptions options;
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -66,6 +67,7 @@ void declare(CLI::App& app, Arguments& a) {
                  "by then gets the verdict")
       ->take_last()
       ->capture_default_str();
+  add_method_options(app, a.options);
   app.add_option("--out", a.out,
                  "the folder for drift.csv (energies over time; relative_error is (E(t) - E(0)) "
                  "over the largest kinetic energy), summary.csv (a verdict for each run) and "
@@ -134,7 +136,7 @@ std::vector<DriftRun> run_all(const std::vector<Job>& jobs, const Arguments& a,
 #pragma omp parallel for schedule(dynamic) num_threads(omp_get_num_procs())
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     try {
-      Knobs knobs = knobs_for(*jobs[i].method, jobs[i].value, scene);
+      Knobs knobs = knobs_for(*jobs[i].method, jobs[i].value, scene, a.options);
       knobs.compensated = a.compensated && jobs[i].method->takes_compensation;
       runs[i] = run_drift(*jobs[i].method, knobs, scene, momenta, scales,
                           {horizon.step_size, horizon.until, jobs[i].seconds});
@@ -168,6 +170,10 @@ const std::vector<std::string> summary_columns = {"method",
                                                   "steps",
                                                   "energy_error_end",
                                                   "random_walk",
+                                                  "late_drift",
+                                                  "late_drift_low",
+                                                  "late_drift_high",
+                                                  "has_settled",
                                                   "exponential_rate",
                                                   "damping_ratio",
                                                   "blow_up_time",
@@ -227,6 +233,8 @@ void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated
   csv.field(run.summary.counts.steps);
   csv.field(run.path.back().error);
   csv.field(is_known ? e.walk : nothing);
+  write_interval(csv, e.rate.value != 0 || !is_known ? no_interval : e.late_drift);
+  csv.field(e.has_settled ? "yes" : "no");
   csv.field(e.rate.value != 0 ? e.rate.value : nothing);
   csv.field(e.fate == Fate::dissipates ? e.damping_ratio : nothing);
   csv.field(e.fate == Fate::blows_up ? e.blow_up_time : nothing);
@@ -314,6 +322,7 @@ int energy_drift(const CLI::App& app, const Arguments& a,
   const auto begin = std::chrono::steady_clock::now();
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.method_limit, "--method-limit", "the seconds a method may take");
+  require_options(app, a.options);
   for (const double rtol : a.rtols) require_positive(rtol, "--rtol", "a relative tolerance");
   const Scene drawn = load(a.scene);
   const Scene start = started(drawn, a.scene);

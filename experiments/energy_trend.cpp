@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -147,17 +148,46 @@ bool is_rounding(const Trend& trend, double largest_mean, double steps, const Tr
          (!trend.drift.excludes_zero() || std::abs(trend.drift.value) * s.step <= s.rounding);
 }
 
-void take_line(Trend& trend, std::span<const Sample> samples, const Blocks& blocks,
-               const TrendScales& scales) {
+// The line through samples from `begin` on.
+struct Line {
+  Interval drift;
+  double walk = 0, oscillation = 0, largest_mean = 0;
+};
+
+std::optional<Line> line_through(std::span<const Sample> samples, double begin) {
+  const Blocks blocks = in_blocks(samples, begin, [](const Sample& s) { return s.error; });
+  if (blocks.means.size() == 0) return {};
   const LocalLevel fit = fit_local_level(blocks.means);
-  trend.drift = scaled(fit.slope, 1 / blocks.length);
-  const double middle = blocks.begin + static_cast<double>(blocks.means.size()) / 2 * blocks.length;
-  trend.oscillation = oscillation_about(
-      samples, [&](double t) { return fit.level + trend.drift.value * (t - middle); });
-  if (fit.evidence > certain_walk) trend.walk = fit.walk / std::sqrt(blocks.length);
-  const double duration = samples.back().t;
+  Line line{.drift = scaled(fit.slope, 1 / blocks.length),
+            .largest_mean = blocks.means.lpNorm<Eigen::Infinity>()};
+  const double middle = begin + static_cast<double>(blocks.means.size()) / 2 * blocks.length;
+  line.oscillation = oscillation_about(
+      samples, [&](double t) { return fit.level + line.drift.value * (t - middle); });
+  if (fit.evidence > certain_walk) line.walk = fit.walk / std::sqrt(blocks.length);
+  return line;
+}
+
+bool holds(const Interval& interval, double value) {
+  return interval.low <= value && value <= interval.high;
+}
+
+void take_line(Trend& trend, std::span<const Sample> samples, const TrendScales& scales) {
+  std::optional<Line> line = line_through(samples, 0);
+  if (!line) return;
+  const double duration = samples.back().t, half = duration / 2;
+  const auto late =
+      std::ranges::find_if(samples, [&](const Sample& sample) { return sample.t > half; });
+  const auto second = line_through({late, samples.end()}, half);
+  trend.late_drift = second ? second->drift : line->drift;
+  trend.has_settled = line->drift.excludes_zero() && holds(trend.late_drift, 0) &&
+                      !holds(trend.late_drift, line->drift.value);
+  const double largest_mean = line->largest_mean;
+  if (trend.has_settled) line = second;
+  trend.drift = line->drift;
+  trend.walk = line->walk;
+  trend.oscillation = line->oscillation;
   const double steps = scales.step > 0 ? duration / scales.step : 1;
-  if (is_rounding(trend, blocks.means.lpNorm<Eigen::Infinity>(), steps, scales)) {
+  if (is_rounding(trend, largest_mean, steps, scales)) {
     trend.fate = Fate::round_off;
   } else if (trend.drift.excludes_zero()) {
     trend.fate = Fate::drifts;
@@ -181,6 +211,20 @@ std::string drift_words(const Interval& drift) {
 std::string no_drift_words(const Interval& drift) {
   return fmt::format("no drift (|slope| < {:.1e}/s)",
                      std::max(std::abs(drift.low), std::abs(drift.high)));
+}
+
+std::string settled_words(const Trend& trend) {
+  return trend.has_settled
+             ? fmt::format(" once it has settled at {:.1e} in the first half", trend.last_error)
+             : "";
+}
+
+// Where the drift of the second half is surely another one.
+std::string change_words(const Trend& trend) {
+  if (holds(trend.late_drift, trend.drift.value)) return "";
+  const bool is_less = std::abs(trend.late_drift.value) < std::abs(trend.drift.value);
+  return fmt::format(", {} ({:.2g}/s in the second half)", is_less ? "slows down" : "speeds up",
+                     trend.late_drift.value);
 }
 
 }  // namespace
@@ -211,7 +255,7 @@ Trend trend_of(std::span<const Sample> samples, Outcome outcome, const TrendScal
     }
     trend.rate = {};
   }
-  take_line(trend, samples, blocks, scales);
+  take_line(trend, samples, scales);
   return trend;
 }
 
@@ -220,15 +264,15 @@ Trend line_of(std::span<const Sample> samples, const TrendScales& scales) {
   const Blocks blocks = in_blocks(samples, 0, [](const Sample& sample) { return sample.error; });
   if (blocks.means.size() == 0) return trend;
   trend.last_error = blocks.means[blocks.means.size() - 1];
-  take_line(trend, samples, blocks, scales);
+  take_line(trend, samples, scales);
   return trend;
 }
 
 std::string in_words(const Trend& trend, const TrendScales& scales) {
   switch (trend.fate) {
     case Fate::bounded:
-      return fmt::format("bounded: oscillates by {:.1e}, {}", trend.oscillation,
-                         no_drift_words(trend.drift));
+      return fmt::format("bounded: oscillates by {:.1e}, {}{}", trend.oscillation,
+                         no_drift_words(trend.drift), settled_words(trend));
     case Fate::round_off: {
       const double root_step = trend.walk * std::sqrt(scales.step);
       if (trend.drift.excludes_zero()) {
@@ -243,11 +287,11 @@ std::string in_words(const Trend& trend, const TrendScales& scales) {
                                no_drift_words(trend.drift));
     }
     case Fate::wanders:
-      return fmt::format("wanders like a random walk of {:.1e} a root second, {}", trend.walk,
-                         no_drift_words(trend.drift));
+      return fmt::format("wanders like a random walk of {:.1e} a root second, {}{}", trend.walk,
+                         no_drift_words(trend.drift), settled_words(trend));
     case Fate::drifts:
-      return fmt::format("drifts by {}, oscillates by {:.1e}", drift_words(trend.drift),
-                         trend.oscillation);
+      return fmt::format("drifts by {}, oscillates by {:.1e}{}", drift_words(trend.drift),
+                         trend.oscillation, change_words(trend));
     case Fate::dissipates:
       return fmt::format(
           "dissipates like a damping ratio of {:.2g} (energy falls at {:.3g}/s, by {:.2g} of its "

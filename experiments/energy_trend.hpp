@@ -41,13 +41,18 @@ constexpr double blown_up = 10;
 
 // The errors e(t) of a run taken apart. With blocks of equal duration and their means m_j:
 //   m_j = level + drift t_j + random walk + noise          (LocalLevel),
-//   e = m + oscillation within the blocks,
-// or where the excess x = 1 + e/excess falls or rises by more than a tenth:
+//   e = level + drift t + oscillation.
+// If the second half of the run has no drift, and surely not that of the whole, the error has
+// settled: its trend is that of the second half.
+// Or where the excess x = 1 + e/excess falls or rises by more than a tenth:
 //   x = e^(rate t), which loses energy as a damping ratio zeta = -rate/(2 frequency) does.
 struct Trend {
   Fate fate = Fate::unknown;
   // [1/s]; of what falls or rises exponentially the slope with which that begins, excess rate.
   Interval drift;
+  bool has_settled = false;
+  // [1/s], over the second half of the run; differs from `drift` where that changes.
+  Interval late_drift;
   double oscillation = 0;  // half of what 95 % of the errors span about the trend
   double walk = 0;         // of the error in one second [1/sqrt(s)]; 0 where there is no evidence
   Interval rate;           // [1/s] of the exponential, zero where there is none

@@ -30,7 +30,7 @@ class Look {
     const double kinetic = scene_.kinetic(state), potential = scene_.potential(state);
     if (!std::isfinite(kinetic + potential)) return;
     scales_.kinetic = std::max(scales_.kinetic, kinetic);
-    size_ = std::max(size_, kinetic + std::abs(potential) + f_.cwiseAbs().dot(state.q.cwiseAbs()));
+    size_ = std::max(size_, kinetic + std::abs(potential));
     for (Index i = 0; i < f_.size(); ++i) {
       if (mass[i] > 0) accelerations_ += f_[i] * f_[i] / mass[i];
     }

@@ -12,8 +12,7 @@ struct MotionScales {
   double excess = 1;     // E(0) - V at the equilibrium downhill from the start, over `kinetic`; 1
                          // where there is none
   double frequency = 0;  // sqrt(<q'' M q''> / <q' M q'>) [rad/s]: where the kinetic energy is
-  double rounding = 0;  // 2^-52 (T + |V| + |f|.|q|), what a rounding of energy and positions makes,
-                        // over `kinetic`
+  double rounding = 0;   // 2^-52 of the largest T + |V|, over `kinetic`
   double linear = 1, angular = 1;  // the nodes' largest momenta, see ConservedMomenta
 };
 
