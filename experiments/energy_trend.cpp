@@ -17,9 +17,9 @@ constexpr std::ptrdiff_t samples_a_block = 4;
 // Less than this part of the excess energy lost or won is called a drift.
 constexpr double exponential_part = 0.1;
 // A loss is fitted until so much of the excess is left: then the slow modes remain.
-constexpr double nearly_gone = 0.1;
-// And a blow-up from here on, where what grows is more than what was there, up to here.
-constexpr double growing = 2, grown = 1e6;
+constexpr double nearly_gone = 0.1, tiny = 1e-3;
+// And a blow-up from here on, where what grows is far more than what was there, up to here.
+constexpr double growing = 100, grown = 1e8;
 // 2 ln of the ratio of likelihoods that chance exceeds once in a hundred times, the variance of the
 // walk being at the edge of what is possible (Self and Liang, J. American Statistical Association
 // 82 (1987) 605-610).
@@ -107,6 +107,11 @@ class Excess {
     const auto end = std::ranges::find_if(
         samples_, [&](const Sample& sample) { return of(sample) < nearly_gone; });
     take(trend, {samples_.begin(), end}, 0);
+    if (trend.rate.value != 0 || end == samples_.end()) return;
+    // Too few for a fit.
+    const double rate = std::log(std::clamp(of(*end), tiny, nearly_gone)) / end->t;
+    trend.rate = {rate, rate, rate};
+    trend.drift = scaled(trend.rate, scales_.excess);
   }
 
   void fit_blow_up(Trend& trend) const {
@@ -140,12 +145,13 @@ class Excess {
   const TrendScales& scales_;
 };
 
-// Whether that is no more than rounding makes of energies in a run.
+// Whether that is no more than rounding makes of energies in a run: what oscillates, and what walks
+// with the root of the steps or, where all roundings go one way, drifts with their number.
 bool is_rounding(const Trend& trend, double largest_mean, double steps, const TrendScales& s) {
-  const double once = roundings_of_energy * s.rounding;
-  return trend.oscillation <= once + roundings_of_step * s.rounding * std::sqrt(steps) &&
-         largest_mean <= once + roundings_of_step * s.rounding * std::sqrt(steps) &&
-         (!trend.drift.excludes_zero() || std::abs(trend.drift.value) * s.step <= s.rounding);
+  const double walked = (roundings_of_energy + roundings_of_step * std::sqrt(steps)) * s.rounding;
+  if (trend.oscillation > walked) return false;
+  return trend.drift.excludes_zero() ? std::abs(trend.drift.value) * s.step <= s.rounding
+                                     : largest_mean <= walked;
 }
 
 // The line through samples from `begin` on.

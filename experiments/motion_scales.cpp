@@ -16,6 +16,7 @@ namespace {
 
 constexpr double resolution = 0.5;  // h w_max
 constexpr int most_steps = 20000, stride = 4;
+constexpr double fine_rtol = 1e-6;
 constexpr double longest_run = 20;  // [s], for scenes of a size that no study of 10^6 steps suits
 
 // Looks at a motion and takes what is large in it into the scales.
@@ -82,10 +83,10 @@ MotionScales motion_scales(const ReducedScene& scene, const ConservedMomenta& mo
   Observer observer{{}, [&](const State& state) { look.at(state); }};
   for (int k = stride; k <= steps; k += stride) observer.times.push_back(k * h);
   const bool is_massless = scene.system().has_massless();
-  const Method& method = *find_method(is_massless ? "discrete_gradient" : "verlet");
+  const Method& method = *find_method(is_massless ? "ida" : "blanes_moan4");
   State state = scene.initial();
   const Deadline deadline(longest_run);
-  make_integrator(method, scene.system(), knobs_for(method, h, scene))
+  make_integrator(method, scene.system(), knobs_for(method, is_massless ? fine_rtol : h, scene))
       ->advance(state, steps * h, observer, deadline.token());
   look.finish();
 

@@ -19,8 +19,8 @@ struct MotionScales {
 // The largest finite natural frequency [rad/s] where the motion starts.
 double fastest_frequency(const ReducedScene& scene);
 
-// From a run of 20 000 steps at h w_max = 1/2, or to `until` [s] if that is earlier, by Verlet's
-// method; by the discrete-gradient method where nodes are massless.
+// From a run of 20 000 steps at h w_max = 1/2, or to `until` [s] if that is earlier, by Blanes
+// and Moan's method of order 4; by IDA where nodes are massless.
 MotionScales motion_scales(const ReducedScene& scene, const ConservedMomenta& momenta,
                            double until);
 

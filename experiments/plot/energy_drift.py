@@ -232,7 +232,7 @@ def draw_paths(sheet, rows, drift):
     high = max(times[-1] for _, times, _ in lines)
     least = min(errors.min() for _, _, errors in lines)
     axes.set_xlim(low, high)
-    axes.set_ylim(max(least / 3, LEAST), LARGEST)
+    axes.set_ylim(max(least / 3, LEAST), 3 * LARGEST)
     draw_guides(axes, low, high, max(least / 3, LEAST))
     ends = []
     for row, times, errors in lines:
@@ -240,7 +240,17 @@ def draw_paths(sheet, rows, drift):
         axes.plot(times, errors, color=color, linewidth=1.5)
         if times[-1] < 0.8 * high:
             axes.plot(times[-1:], errors[-1:], "o", color=color, markersize=3.5)
-        ends.append((label(row), color, times[-1], errors[-1]))
+            axes.annotate(
+                label(row),
+                (times[-1], errors[-1]),
+                (6, 0),
+                textcoords="offset points",
+                va="center",
+                fontsize=SMALL,
+                color=color,
+            )
+        else:
+            ends.append((label(row), color, times[-1], errors[-1]))
     axes.grid(True)
     log_ticks(axes.xaxis)
     log_ticks(axes.yaxis)
