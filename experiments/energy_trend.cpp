@@ -17,7 +17,7 @@ constexpr std::ptrdiff_t samples_a_block = 4;
 // Less than this part of the excess energy lost or won is called a drift.
 constexpr double exponential_part = 0.1;
 // A loss is fitted until so much of the excess is left: then the slow modes remain.
-constexpr double nearly_gone = 0.1, tiny = 1e-3;
+constexpr double nearly_gone = 0.1, tiny = 1e-3, half_back = 0.5;
 // And a blow-up from here on, where what grows is far more than what was there, up to here.
 constexpr double growing = 100, grown = 1e8;
 // 2 ln of the ratio of likelihoods that chance exceeds once in a hundred times, the variance of the
@@ -106,6 +106,9 @@ class Excess {
   void fit_slow(Trend& trend) const {
     const auto end = std::ranges::find_if(
         samples_, [&](const Sample& sample) { return of(sample) < nearly_gone; });
+    // An oscillation that is so large comes back.
+    if (std::any_of(end, samples_.end(), [&](const Sample& s) { return of(s) > half_back; }))
+      return;
     take(trend, {samples_.begin(), end}, 0);
     if (trend.rate.value != 0 || end == samples_.end()) return;
     // Too few for a fit.

@@ -15,7 +15,10 @@ from pathlib import Path
 import numpy as np
 from matplotlib import ticker
 from matplotlib.lines import Line2D
+from matplotlib.text import Text
 
+from chart import move_label
+from labels import Ink, place_labels
 from sheet import Sheet
 from style import COOL, FAINT, GRID, INK, WARM, number, power_of_ten, use_style
 
@@ -182,6 +185,41 @@ def label_ends(sheet, axes, box, ends):
         sheet.text(start, place, name, size=SMALL, color=color, va="center")
 
 
+def label_paths(sheet, axes, lines):
+    """Writes the names of lines near their ends, in the panel or to the right of it.
+
+    lines: name, colour, x and y of each.
+    """
+    box = axes.get_window_extent()
+    bounds = (box.x0, box.y0, box.x1 + LABELS * sheet.figure.dpi, box.y1)
+    ink = Ink(bounds)
+    texts, anchors = [], []
+    for name, color, xs, ys in lines:
+        pixels = [tuple(axes.transData.transform(point)) for point in zip(xs, ys)]
+        for start, end in zip(pixels, pixels[1:]):
+            ink.add_line(start, end, 2.0)
+        anchors.append(pixels[-3:])
+        texts.append(
+            axes.annotate(
+                name,
+                (0, 0),
+                (0, 0),
+                textcoords="offset points",
+                size=SMALL,
+                color=color,
+                ha="center",
+                va="center",
+                zorder=6,
+                annotation_clip=False,
+                bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.6},
+                arrowprops={"arrowstyle": "-", "color": color, "lw": 0.7, "shrinkA": 0},
+            )
+        )
+    sizes = [Text.get_window_extent(text).size for text in texts]
+    for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
+        move_label(text, axes.transData.inverted().transform(place.anchor), place)
+
+
 def log_ticks(axis):
     """Decades in few characters."""
     axis.set_major_locator(ticker.LogLocator(numticks=8))
@@ -209,9 +247,8 @@ def draw_guides(axes, low, high, bottom):
         start = 3 * bottom
         times = np.array([low, high])
         axes.plot(times, start * (times / low) ** power, color=GRID, linewidth=2.2, zorder=0)
-        x = low * (high / low) ** 0.22
-        y = start * (x / low) ** power
-        axes.annotate(words, (x, y), (-3, 5), textcoords="offset points", color=FAINT, fontsize=10)
+        end = (high, start * (high / low) ** power)
+        axes.annotate(words, end, (-4, 2), textcoords="offset points", color=FAINT, ha="right")
 
 
 def draw_paths(sheet, rows, drift):
@@ -234,29 +271,19 @@ def draw_paths(sheet, rows, drift):
     axes.set_xlim(low, high)
     axes.set_ylim(max(least / 3, LEAST), 3 * LARGEST)
     draw_guides(axes, low, high, max(least / 3, LEAST))
-    ends = []
+    named = []
     for row, times, errors in lines:
         color = FATES[row["fate"]][2]
         axes.plot(times, errors, color=color, linewidth=1.5)
         if times[-1] < 0.8 * high:
             axes.plot(times[-1:], errors[-1:], "o", color=color, markersize=3.5)
-            axes.annotate(
-                label(row),
-                (times[-1], errors[-1]),
-                (6, 0),
-                textcoords="offset points",
-                va="center",
-                fontsize=SMALL,
-                color=color,
-            )
-        else:
-            ends.append((label(row), color, times[-1], errors[-1]))
+        named.append((label(row), color, times, errors))
     axes.grid(True)
     log_ticks(axes.xaxis)
     log_ticks(axes.yaxis)
     axes.set_xlabel("t in s", labelpad=2)
     sheet.text(LEFT - 0.5, TOP - 0.17, "Size of the energy error over time", weight="bold", size=10)
-    label_ends(sheet, axes, box, ends)
+    label_paths(sheet, axes, named)
 
 
 def draw_tolerances(sheet, top, summary):

@@ -206,6 +206,11 @@ BOOST_AUTO_TEST_CASE(what_is_gone_in_a_few_steps_has_been_dissipated) {
   BOOST_TEST(trend.rate.value == -0.5 / h, boost::test_tools::tolerance(0.1));
 }
 
+BOOST_AUTO_TEST_CASE(an_oscillation_by_all_of_the_excess_is_bounded) {
+  const Trend trend = judged(series([](double t) { return 0.5 * (std::cos(170 * t) - 1); }));
+  BOOST_TEST(fate_name(trend.fate) == "bounded");
+}
+
 BOOST_AUTO_TEST_CASE(the_loss_of_a_twentieth_is_a_drift_and_of_a_fifth_a_decay) {
   const auto lost = [&](double part) {
     return judged(series([&](double t) { return std::expm1(std::log1p(-part) * t / duration); }));
