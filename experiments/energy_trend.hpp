@@ -42,8 +42,8 @@ constexpr double blown_up = 10;
 // The errors e(t) of a run taken apart. With blocks of equal duration and their means m_j:
 //   m_j = level + drift t_j + random walk + noise          (LocalLevel),
 //   e = level + drift t + oscillation.
-// If the second half of the run has no drift, and surely not that of the whole, the error has
-// settled: its trend is that of the second half.
+// Where the second half of the run has no drift, and surely not that of the whole, or says far more
+// surely what its drift is, the error has settled: its trend is that of the second half.
 // Or where the excess x = 1 + e/excess falls or rises by more than a tenth:
 //   x = e^(rate t), which loses energy as a damping ratio zeta = -rate/(2 frequency) does.
 struct Trend {
@@ -51,6 +51,7 @@ struct Trend {
   // [1/s]; of what falls or rises exponentially the slope with which that begins, excess rate.
   Interval drift;
   bool has_settled = false;
+  double first_half = 0;  // where that trend begins, if the error has settled
   // [1/s], over the second half of the run; differs from `drift` where that changes.
   Interval late_drift;
   double oscillation = 0;  // half of what 95 % of the errors span about the trend

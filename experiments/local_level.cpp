@@ -69,7 +69,8 @@ LocalLevel fit_local_level(const Vec& y) {
   mean /= sum;
   const double deviation =
       std::sqrt(std::max(square / sum - (mean - best.slope) * (mean - best.slope), 0.0));
-  // The 97.5 % quantile of Student's t, to 1 % (Abramowitz and Stegun, 26.7.5).
+  // The 97.5 % quantile of Student's t, to 0.1 % from ten degrees of freedom on and to a tenth with
+  // two (Abramowitz and Stegun, 26.7.5).
   const double freedom = static_cast<double>(y.size() - 2), z = 1.959964;
   const double quantile = z + (z * z * z + z) / (4 * freedom) +
                           (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
