@@ -358,9 +358,8 @@ def draw_table(sheet, rows, until):
             line = top + ROW / 2
             sheet.text(TABLE_LEFT + 0.17, line, label(row), color=INK, **middle)
             sheet.text(TABLE_LEFT + 2.45, line, measure_words(row), color=INK, **middle)
-            sheet.text(
-                TABLE_LEFT + TABLE_WIDTH, line, remark(row, until), color=FAINT, ha="right", **middle
-            )
+            right = {"color": FAINT, "ha": "right"} | middle
+            sheet.text(TABLE_LEFT + TABLE_WIDTH, line, remark(row, until), **right)
             top += ROW
         top += GROUP_GAP
 
@@ -369,7 +368,7 @@ def remark(row, until):
     """How far the run came, where that is not the end."""
     outcome = row["outcome"]
     if outcome == "reached_end" or row["fate"] == "blows_up":
-        return "settled" if row.get("has_settled") == "yes" else ""
+        return "in its second half" if row["has_settled"] == "yes" else ""
     part = float(row["t_reached"]) / until
     percent = f"{100 * part:.2g} %"
     return f"{percent} of t" if outcome == "over_budget" else f"{outcome} at {percent}"
@@ -395,7 +394,8 @@ def main(folder):
     sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center", color=INK)
     words = (
         f"{number(until / h)} steps of h = {number(h)} s, to t = {number(until)} s; "
-        f"errors E(t) − E(0) as parts of the largest kinetic energy, {number(origin['energy_scale'])} J"
+        "errors E(t) − E(0) as parts of the largest kinetic energy, "
+        f"{number(origin['energy_scale'])} J"
     )
     sheet.text(0.15, 0.52, words, size=10, color=FAINT, va="center")
     sheet.rule(0.7)
