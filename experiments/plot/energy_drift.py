@@ -185,14 +185,18 @@ def label_ends(sheet, axes, box, ends):
         sheet.text(start, place, name, size=SMALL, color=color, va="center")
 
 
-def label_paths(sheet, axes, lines):
+def label_paths(sheet, axes, lines, others):
     """Writes the names of lines near their ends, in the panel or to the right of it.
 
-    lines: name, colour, x and y of each.
+    lines: name, colour, x and y of each; others: texts to be left readable.
     """
     box = axes.get_window_extent()
     bounds = (box.x0, box.y0, box.x1 + LABELS * sheet.figure.dpi, box.y1)
     ink = Ink(bounds)
+    for text in others:
+        extent = text.get_window_extent()
+        for height in np.linspace(extent.y0, extent.y1, 5):
+            ink.add_line((extent.x0, height), (extent.x1, height), 20.0)
     texts, anchors = [], []
     for name, color, xs, ys in lines:
         pixels = [tuple(axes.transData.transform(point)) for point in zip(xs, ys)]
@@ -242,13 +246,16 @@ def telling(rows):
 
 
 def draw_guides(axes, low, high, bottom):
-    """Lines of slope 1/2 and 1 from the lower left."""
+    """Lines of slope 1/2 and 1 from the lower left; returns their names as they are drawn."""
+    names = []
     for power, words in ((0.5, "√t"), (1.0, "t")):
         start = 3 * bottom
         times = np.array([low, high])
         axes.plot(times, start * (times / low) ** power, color=GRID, linewidth=2.2, zorder=0)
         end = (high, start * (high / low) ** power)
-        axes.annotate(words, end, (-4, 2), textcoords="offset points", color=FAINT, ha="right")
+        style = {"textcoords": "offset points", "color": FAINT, "ha": "right"}
+        names.append(axes.annotate(words, end, (-4, 2), **style))
+    return names
 
 
 def draw_paths(sheet, rows, drift):
@@ -263,6 +270,8 @@ def draw_paths(sheet, rows, drift):
         times, errors = envelope(path[:, 0], np.abs(path[:, 1]))
         if times.size:
             lines.append((row, times, errors))
+    if not lines:
+        sys.exit("energy_drift.py: no run came far enough to be drawn")
     axes.set_xscale("log")
     axes.set_yscale("log")
     low = min(times[0] for _, times, _ in lines)
@@ -270,7 +279,7 @@ def draw_paths(sheet, rows, drift):
     least = min(errors.min() for _, _, errors in lines)
     axes.set_xlim(low, high)
     axes.set_ylim(max(least / 3, LEAST), 3 * LARGEST)
-    draw_guides(axes, low, high, max(least / 3, LEAST))
+    guides = draw_guides(axes, low, high, max(least / 3, LEAST))
     named = []
     for row, times, errors in lines:
         color = FATES[row["fate"]][2]
@@ -283,7 +292,7 @@ def draw_paths(sheet, rows, drift):
     log_ticks(axes.yaxis)
     axes.set_xlabel("t in s", labelpad=2)
     sheet.text(LEFT - 0.5, TOP - 0.17, "Size of the energy error over time", weight="bold", size=10)
-    label_paths(sheet, axes, named)
+    label_paths(sheet, axes, named, guides)
 
 
 def draw_tolerances(sheet, top, summary):
