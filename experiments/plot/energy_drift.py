@@ -253,7 +253,8 @@ def draw_guides(axes, low, high, bottom):
         times = np.array([low, high])
         axes.plot(times, start * (times / low) ** power, color=GRID, linewidth=2.2, zorder=0)
         end = (high, start * (high / low) ** power)
-        style = {"textcoords": "offset points", "color": FAINT, "ha": "right"}
+        style = {"textcoords": "offset points", "color": FAINT, "ha": "right", "zorder": 5}
+        style["bbox"] = {"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.4}
         names.append(axes.annotate(words, end, (-4, 2), **style))
     return names
 
