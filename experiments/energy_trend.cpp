@@ -19,7 +19,8 @@ constexpr std::ptrdiff_t samples_a_block = 4;
 constexpr double much_surer = 0.25;
 // Less than this part of the excess energy lost or won is called a drift.
 constexpr double exponential_part = 0.1;
-// A loss is fitted until so much of the excess is left: then the slow modes remain.
+// A loss is fitted until so much of the excess is left: then the slow modes remain. Less than
+// `tiny` is not told from nothing, and what comes back to half was no loss.
 constexpr double nearly_gone = 0.1, tiny = 1e-3, half_back = 0.5;
 // And a blow-up from here on, where what grows is far more than what was there, up to here.
 constexpr double growing = 100, grown = 1e8;
@@ -34,8 +35,6 @@ constexpr double roundings_of_energy = 100, roundings_of_step = 10;
 struct Blocks {
   Vec means;                     // empty where there are too few samples
   double begin = 0, length = 0;  // [s]
-
-  double middle(Index block) const { return begin + (static_cast<double>(block) + 0.5) * length; }
 };
 
 template <class Value>

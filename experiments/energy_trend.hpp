@@ -24,7 +24,8 @@ struct TrendScales {
 
 enum class Fate {
   bounded,     // no drift, and an oscillation about one level
-  round_off,   // nothing but rounding: a random walk, sqrt(t) (Brouwer's law), or less
+  round_off,   // nothing but rounding: a random walk, sqrt(t) (Brouwer's law), or less; or a drift
+               // of less than one rounding of the energy a step
   wanders,     // no drift, but a random walk larger than rounding makes
   drifts,      // the interval of the slope excludes zero
   dissipates,  // more than a tenth of the excess energy goes, exponentially
