@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "experiments/error.hpp"
+#include "src/model/system.hpp"
 #include "src/scene/scene.hpp"
 
 namespace qddot {
@@ -15,23 +15,32 @@ namespace qddot {
 //   else:               none.
 class Momenta {
  public:
-  Momenta(const Scene& scene, const Scales& scales);
+  explicit Momenta(const Scene& scene);
 
-  bool any_kept() const { return keeps_linear_ || !kept_.isZero(); }
-  // By how much `now`, at time t [s], differs from `start` in these: P over (whole mass x largest
-  // speed), L over (that x the scene's extent), the larger of both.
-  double change(const std::vector<Node>& start, const std::vector<Node>& now, double t) const;
+  bool has_linear() const { return !linear_axes_.empty(); }
+  bool has_angular() const { return !angular_axes_.empty(); }
+  bool any_kept() const { return has_linear() || has_angular(); }
+
+  // What is kept at time t [s], in components: [kg m/s] and [kg m^2/s].
+  Vec linear(const std::vector<Node>& nodes, double t) const;
+  Vec angular(const std::vector<Node>& nodes) const;
+
+  // What they are small or large by: the sum of the magnitudes of all nodes' own.
+  double linear_size(const std::vector<Node>& nodes) const;
+  double angular_size(const std::vector<Node>& nodes) const;
+
+  // By how much `now`, at time t [s], differs from `start` in these: P over (whole mass x `speed`
+  // [m/s]), L over (that x the scene's extent), the larger of both.
+  double change(const std::vector<Node>& start, const std::vector<Node>& now, double t,
+                double speed) const;
 
  private:
-  Eigen::Vector3d linear(const std::vector<Node>& nodes) const;
-  // About `centre_`, or where the linear one is kept about the centre of mass.
-  Eigen::Vector3d angular(const std::vector<Node>& nodes) const;
+  Eigen::Vector3d centre(const std::vector<Node>& nodes) const;
+  Eigen::Vector3d centre_velocity(const std::vector<Node>& nodes) const;
 
-  Eigen::Vector3d gravity_;
-  bool keeps_linear_ = false;
-  Eigen::Matrix3d kept_ = Eigen::Matrix3d::Zero();  // projects L onto what is kept of it
-  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-  double mass_ = 0, momentum_scale_ = 1, extent_ = 1;
+  std::vector<Eigen::Vector3d> linear_axes_, angular_axes_;
+  Eigen::Vector3d gravity_, pin_ = Eigen::Vector3d::Zero();
+  double mass_ = 0, extent_ = 1;
 };
 
 }  // namespace qddot

@@ -27,7 +27,7 @@ std::vector<double> looks(const Method& method, const Knobs& knobs, double until
 
 Watch::Watch(const Scene& start, const ReducedScene& scene, double until,
              const Reference& reference)
-    : scene_(scene), until_(until), reference_(reference), momenta_(start, reference.scales) {
+    : scene_(scene), until_(until), reference_(reference), momenta_(start) {
   if (reference.modal_shares.size() > 0) modes_ = ModalShares::at_equilibrium(scene);
 }
 
@@ -41,8 +41,10 @@ OnTheWay Watch::see(const Method& method, const Knobs& knobs, std::int64_t steps
       looks(method, knobs, until_, steps), [&](const State& now) {
         energy = std::max(
             energy, errors_between(scene_, now, now, reference_.energy, reference_.scales).energy);
-        if (momenta_.any_kept())
-          momentum = std::max(momentum, momenta_.change(nodes, scene_.expand(now), now.t));
+        if (momenta_.any_kept()) {
+          momentum = std::max(
+              momentum, momenta_.change(nodes, scene_.expand(now), now.t, reference_.scales.speed));
+        }
         if (modes_) path.push_back(now);
       }};
   const auto integrator = make_integrator(method, scene_.system(), knobs);

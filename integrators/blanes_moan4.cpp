@@ -27,6 +27,7 @@ Method blanes_moan4() {
           .order = 4,
           .stability_limit = 3.1634650665581848,  // where the trace of one step first exceeds 2
           .symplectic = true,
+          .takes_compensation = true,
           .make = create_splitting<blanes_moan4_splitting>};
 }
 

@@ -30,6 +30,7 @@ Method blanes_moan6() {
           .order = 6,
           .stability_limit = 3.1414310877528075,  // where the trace of one step first exceeds 2
           .symplectic = true,
+          .takes_compensation = true,
           .make = create_splitting<blanes_moan6_splitting>};
 }
 

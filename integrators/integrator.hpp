@@ -106,6 +106,9 @@ struct Knobs {
   // Of generalised-alpha methods: what a step multiplies a vibration of infinite frequency by, from
   // 0 (gone at once) to 1 (undamped).
   double spectral_radius = 0.8;
+  // Of splittings: whether to keep what rounding takes from q and v at each addition, and add it
+  // with the next (see compensated_sum.hpp).
+  bool compensated = false;
 };
 
 // Looks at a run from outside: `see` is called at each of `times` [s] (ascending, after the start,

@@ -33,6 +33,7 @@ Method kahan_li8() {
           .order = 8,
           .stability_limit = 3.0964386800007322,  // where the trace of one step first exceeds 2
           .symplectic = true,
+          .takes_compensation = true,
           .make = create_splitting<kahan_li8_splitting>};
 }
 

@@ -16,15 +16,21 @@ KickDrift::KickDrift(const Method& method, const System& system, const Knobs& kn
     : FixedStep(method, system, knobs),
       splitting_(splitting),
       kicks_first_(splitting.kicks.size() > splitting.drifts.size()),
+      q_(knobs.compensated, system.size()),
+      v_(knobs.compensated, system.size()),
       f_(system.size()) {}
 
 void KickDrift::start(const State& state) {
+  q_.restart();
+  v_.restart();
   if (kicks_first_) force(state.q, f_);
 }
 
-void KickDrift::kick(double size, State& state) const {
-  state.v += size * f_.cwiseQuotient(system().mass());
+void KickDrift::kick(double size, State& state) {
+  v_.add(state.v, size * f_.cwiseQuotient(system().mass()), state.v);
 }
+
+void KickDrift::drift(double size, State& state) { q_.add(state.q, size * state.v, state.q); }
 
 Outcome KickDrift::step(const State& now, double h, State& next) {
   const auto& [order, kicks, drifts] = splitting_;
@@ -32,14 +38,14 @@ Outcome KickDrift::step(const State& now, double h, State& next) {
   next.v = now.v;
   for (std::size_t i = 0; i < std::min(kicks.size(), drifts.size()); ++i) {
     if (kicks_first_) kick(kicks[i] * h, next);
-    next.q += (drifts[i] * h) * next.v;
+    drift(drifts[i] * h, next);
     force(next.q, f_);
     if (!kicks_first_) kick(kicks[i] * h, next);
   }
   if (kicks_first_) {
     kick(kicks.back() * h, next);
   } else {
-    next.q += (drifts.back() * h) * next.v;
+    drift(drifts.back() * h, next);
   }
   return Outcome::reached_end;
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "integrators/compensated_sum.hpp"
 #include "integrators/fixed_step.hpp"
 
 namespace qddot {
@@ -28,10 +29,12 @@ class KickDrift final : public FixedStep {
  private:
   void start(const State& state) override;
   Outcome step(const State& now, double h, State& next) override;
-  void kick(double size, State& state) const;
+  void kick(double size, State& state);
+  void drift(double size, State& state);
 
   const Splitting& splitting_;
   bool kicks_first_;
+  CompensatedSum q_, v_;
   Vec f_;  // where the last kick was, or where the next one is
 };
 

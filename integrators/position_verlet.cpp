@@ -21,6 +21,7 @@ Method position_verlet() {
               "position Verlet",
           .order = 2,
           .symplectic = true,
+          .takes_compensation = true,
           .make = create_splitting<position_verlet_splitting>};
 }
 

@@ -3,6 +3,7 @@
 //   v_{n+1} = v_n + h M^-1 f(q_n)
 //   q_{n+1} = q_n + h v_{n+1}
 // Order 1, one force a step. Bounded on q'' = -w^2 q for h w < 2, unbounded above.
+#include "integrators/compensated_sum.hpp"
 #include "integrators/fixed_step.hpp"
 #include "integrators/registry.hpp"
 
@@ -14,13 +15,20 @@ class SymplecticEuler final : public FixedStep {
   using FixedStep::FixedStep;
 
  private:
+  void start(const State&) override {
+    q_.restart();
+    v_.restart();
+  }
+
   Outcome step(const State& now, double h, State& next) override {
     force(now.q, f_);
-    next.v = now.v + h * f_.cwiseQuotient(system().mass());
-    next.q = now.q + h * next.v;
+    v_.add(now.v, h * f_.cwiseQuotient(system().mass()), next.v);
+    q_.add(now.q, h * next.v, next.q);
     return Outcome::reached_end;
   }
 
+  CompensatedSum q_{knobs().compensated, system().size()};
+  CompensatedSum v_{knobs().compensated, system().size()};
   Vec f_{system().size()};
 };
 
@@ -31,6 +39,7 @@ Method symplectic_euler() {
           .summary = "kick, then drift; energy error stays bounded below h = 2/w_max",
           .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.9",
           .symplectic = true,
+          .takes_compensation = true,
           .make = create<SymplecticEuler>};
 }
 

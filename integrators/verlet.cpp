@@ -4,6 +4,7 @@
 //   v_{n+1}   = v_{n+1/2} + h/2 M^-1 f(q_{n+1})
 // Order 2, symplectic, time-reversible. The last force of a step is the first of the next: one
 // evaluation a step, and one to begin. Bounded on q'' = -w^2 q for h w < 2, unbounded above.
+#include "integrators/compensated_sum.hpp"
 #include "integrators/fixed_step.hpp"
 #include "integrators/registry.hpp"
 
@@ -15,16 +16,22 @@ class Verlet final : public FixedStep {
   using FixedStep::FixedStep;
 
  private:
-  void start(const State& state) override { force(state.q, f_); }
+  void start(const State& state) override {
+    q_.restart();
+    v_.restart();
+    force(state.q, f_);
+  }
 
   Outcome step(const State& now, double h, State& next) override {
-    next.v = now.v + (h / 2) * f_.cwiseQuotient(system().mass());
-    next.q = now.q + h * next.v;
+    v_.add(now.v, (h / 2) * f_.cwiseQuotient(system().mass()), next.v);
+    q_.add(now.q, h * next.v, next.q);
     force(next.q, f_);
-    next.v += (h / 2) * f_.cwiseQuotient(system().mass());
+    v_.add(next.v, (h / 2) * f_.cwiseQuotient(system().mass()), next.v);
     return Outcome::reached_end;
   }
 
+  CompensatedSum q_{knobs().compensated, system().size()};
+  CompensatedSum v_{knobs().compensated, system().size()};
   Vec f_{system().size()};  // at the present state
 };
 
@@ -36,6 +43,7 @@ Method verlet() {
           .source = "Hairer, Lubich, Wanner, Acta Numerica 12 (2003) 399-450, eq. 1.5",
           .order = 2,
           .symplectic = true,
+          .takes_compensation = true,
           .make = create<Verlet>};
 }
 

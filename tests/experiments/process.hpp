@@ -23,13 +23,13 @@ inline std::string read_all(const std::string& path) {
 }
 
 // How a program ended; a signal counts as 128 + its number.
-struct Run {
+struct Exit {
   int status = -1;
   std::string out, err;
 };
 
 // Runs one of the programs to its end.
-inline Run run(const std::string& program, std::vector<std::string> arguments) {
+inline Exit run(const std::string& program, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), PROGRAM_FOLDER "/" + program);
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -62,13 +62,13 @@ inline bool contains(const std::string& text, const std::vector<std::string>& fr
 
 // Whether a program complained as it should: its status, and on stderr one line that starts with
 // its name and holds the fragments.
-inline bool complains(const Run& run, int status, const std::string& program,
+inline bool complains(const Exit& run, int status, const std::string& program,
                       const std::vector<std::string>& fragments) {
   return run.status == status && run.err.starts_with(program + ": ") &&
          run.err.find('\n') + 1 == run.err.size() && contains(run.err, fragments);
 }
 
-inline std::string in_words(const Run& run, const std::vector<std::string>& arguments) {
+inline std::string in_words(const Exit& run, const std::vector<std::string>& arguments) {
   std::string text;
   for (const std::string& argument : arguments) text += argument + ' ';
   return fmt::format("{}gives {}: {}", text, run.status, run.err);

@@ -22,7 +22,7 @@ Words joined(Words words, const Words& more) {
 // A finished map, small enough for a test: the motion is as in the default, the cloth is not.
 struct Crossed {
   Folder folder{};
-  Run result;
+  Exit result;
   Table winners, of_kinds, points;
 
   explicit Crossed(const Words& more) {
@@ -62,7 +62,7 @@ void check_refused(const Words& words, const Words& fragments) {
   for (std::string& word : all) {
     if (word == "OUT") word = folder / "out";
   }
-  const Run result = run("crossover", all);
+  const Exit result = run("crossover", all);
   BOOST_TEST(complains(result, 2, "crossover", fragments), in_words(result, all));
   BOOST_TEST(result.out == "");
   BOOST_TEST(folder.listing() == "", in_words(result, all));
@@ -245,7 +245,7 @@ BOOST_AUTO_TEST_CASE(a_place_taken_by_a_folder_is_known_before_anything_is_measu
   for (const char* name : {"points.csv", "crossover.csv", "kinds.csv", "points.json"}) {
     const Folder folder;
     std::filesystem::create_directories(folder / name);
-    const Run result = run("crossover", {"--ratios", "1", "--out", folder.path()});
+    const Exit result = run("crossover", {"--ratios", "1", "--out", folder.path()});
     BOOST_TEST(complains(result, 2, "crossover", {name}), name << ": " << result.err);
     BOOST_TEST(folder.listing() == name + std::string(" "));
   }

@@ -9,7 +9,7 @@ using namespace qddot;
 namespace {
 
 // w = sqrt(k/m) = 10 rad/s.
-Run simulate(std::vector<std::string> words) { return run("simulate", words); }
+Exit simulate(std::vector<std::string> words) { return run("simulate", words); }
 
 // The number behind `words` in the text.
 double number_behind(const std::string& text, const std::string& words) {
@@ -24,7 +24,7 @@ double number_behind(const std::string& text, const std::string& words) {
 BOOST_AUTO_TEST_SUITE(diagnosis)
 
 BOOST_AUTO_TEST_CASE(a_step_above_the_limit_is_named_with_what_holds) {
-  const Run result = simulate(
+  const Exit result = simulate(
       {"--scene", "oscillator", "--method", "verlet", "--step-size", "0.25", "--until", "100"});
   BOOST_TEST(complains(result, 3, "simulate",
                        {"it failed in step", "h w_max is 2.5 at the start", "verlet's limit of 2",
@@ -39,7 +39,7 @@ BOOST_AUTO_TEST_CASE(a_step_above_the_limit_is_named_with_what_holds) {
 }
 
 BOOST_AUTO_TEST_CASE(the_step_it_failed_in_is_the_one_after_the_last_that_was_taken) {
-  const Run result = simulate(
+  const Exit result = simulate(
       {"--scene", "oscillator", "--method", "verlet", "--step-size", "0.4", "--until", "100"});
   // rho = 7 + sqrt(48) at h w = 4, and |v| = 10 sinh-like growth to 1e30: 30 ln 10 / ln rho = 26.
   const double failed = number_behind(result.err, "it failed in step ");
@@ -49,8 +49,8 @@ BOOST_AUTO_TEST_CASE(the_step_it_failed_in_is_the_one_after_the_last_that_was_ta
 }
 
 BOOST_AUTO_TEST_CASE(explicit_euler_is_told_apart_since_no_step_holds) {
-  const Run result = simulate({"--scene", "oscillator", "--method", "explicit_euler", "--step-size",
-                               "0.1", "--until", "100"});
+  const Exit result = simulate({"--scene", "oscillator", "--method", "explicit_euler",
+                                "--step-size", "0.1", "--until", "100"});
   BOOST_TEST(complains(result, 3, "simulate", {"gains energy at every h", "h w^2/2", "5/s"}),
              result.err);
   BOOST_TEST(!contains(result.err, {"tried: h = "}), result.err);
@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(a_spring_that_stiffens_as_it_stretches_crosses_the_limit_on
       "dimension = 1\nuntil = 50\n"
       "nodes = [{position = [0], pinned = true}, {position = [1], velocity = [3], mass = 1}]\n"
       "springs = [{nodes = [0, 1], stiffness = 100, quartic = 100000}]\n");
-  const Run result = simulate({"--scene", scene, "--method", "verlet", "--step-size", "0.04"});
+  const Exit result = simulate({"--scene", scene, "--method", "verlet", "--step-size", "0.04"});
   BOOST_TEST(complains(result, 3, "simulate", {"at t = ", "above verlet's limit of 2"}),
              result.err);
   const double h_omega = number_behind(result.err, "h w_max is ");
@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(a_spring_that_stiffens_as_it_stretches_crosses_the_limit_on
 }
 
 BOOST_AUTO_TEST_CASE(newton_that_fails_names_a_step_at_which_it_does_not) {
-  const Run result =
+  const Exit result =
       simulate({"--scene", "pendulum", "--method", "discrete_gradient", "--step-size", "0.5"});
   BOOST_TEST(complains(result, 3, "simulate", {"it failed in step 2", "what holds, tried: h = "}),
              result.err);
@@ -84,12 +84,12 @@ BOOST_AUTO_TEST_CASE(newton_that_fails_names_a_step_at_which_it_does_not) {
 }
 
 BOOST_AUTO_TEST_CASE(a_run_that_reaches_its_end_above_the_limit_is_warned_of) {
-  const Run above = simulate({"--scene", "oscillator", "--method", "rk4", "--step-size", "0.3"});
+  const Exit above = simulate({"--scene", "oscillator", "--method", "rk4", "--step-size", "0.3"});
   BOOST_TEST(above.status == 0);
   BOOST_TEST(contains(above.err, {"warning", "2.8284/w_max"}), above.err);
-  const Run below = simulate({"--scene", "oscillator", "--method", "rk4", "--step-size", "0.28"});
+  const Exit below = simulate({"--scene", "oscillator", "--method", "rk4", "--step-size", "0.28"});
   BOOST_TEST(below.err == "");
-  const Run euler =
+  const Exit euler =
       simulate({"--scene", "oscillator", "--method", "explicit_euler", "--step-size", "0.01"});
   BOOST_TEST(contains(euler.err, {"warning", "grow at every h", "0.5/s"}), euler.err);
 }

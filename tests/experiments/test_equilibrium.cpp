@@ -18,7 +18,7 @@ BOOST_AUTO_TEST_SUITE(equilibrium)
 BOOST_AUTO_TEST_CASE(nodes_at_rest_are_written_as_simulate_writes_them) {
   const Folder folder;
   for (const char* scene : {"cloth", "oscillator", "pendulum"}) {
-    const Run result = run("equilibrium", {"--scene", scene, "--final", folder / "e.csv"});
+    const Exit result = run("equilibrium", {"--scene", scene, "--final", folder / "e.csv"});
     BOOST_TEST_REQUIRE(result.status == 0, result.err);
     BOOST_TEST(result.err == "");
     BOOST_TEST(contains(result.out, {scene, "largest force", "energy", "smallest eigenvalue of -K",
@@ -41,7 +41,7 @@ BOOST_AUTO_TEST_CASE(nodes_at_rest_are_written_as_simulate_writes_them) {
 
 BOOST_AUTO_TEST_CASE(sidecar_says_how_well_it_rests) {
   const Folder folder;
-  const Run result = run("equilibrium", {"--scene", "lattice", "--final", folder / "e.csv"});
+  const Exit result = run("equilibrium", {"--scene", "lattice", "--final", folder / "e.csv"});
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   const ReducedScene scene(load_scene("lattice"), Reductions::all_directions());
   const Equilibrium e = equilibrium_of(scene);
@@ -56,7 +56,7 @@ BOOST_AUTO_TEST_CASE(sidecar_says_how_well_it_rests) {
 }
 
 BOOST_AUTO_TEST_CASE(loose_scene_is_told_to_be_loose) {
-  const Run result = run("equilibrium", {"--scene", "pair"});
+  const Exit result = run("equilibrium", {"--scene", "pair"});
   BOOST_TEST(result.status == 0);
   BOOST_TEST(contains(result.out, {"not isolated"}));
 }
@@ -64,7 +64,7 @@ BOOST_AUTO_TEST_CASE(loose_scene_is_told_to_be_loose) {
 BOOST_AUTO_TEST_CASE(scene_without_rest_ends_with_status_3_and_one_sentence) {
   const Folder folder;
   const std::string path = folder.write("falling.toml", falling);
-  const Run result = run("equilibrium", {"--scene", path, "--final", folder / "e.csv"});
+  const Exit result = run("equilibrium", {"--scene", path, "--final", folder / "e.csv"});
   BOOST_TEST(complains(result, 3, "equilibrium", {"no equilibrium", "falls for ever"}), result.err);
   const auto origin = nlohmann::json::parse(read_all(folder / "e.json"));
   BOOST_TEST(origin.at("outcome").get<std::string>() == "unbounded");
@@ -81,12 +81,12 @@ BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
       {{"--scene", "cloth", "--final", folder / "none/e.csv"}, {"none/e.csv"}},
       {{"--scene", "cloth", "--finall", "x"}, {"--finall"}}};
   for (const auto& [words, fragments] : cases) {
-    const Run result = run("equilibrium", words);
+    const Exit result = run("equilibrium", words);
     BOOST_TEST(complains(result, 2, "equilibrium", fragments), in_words(result, words));
     BOOST_TEST(result.out == "");
   }
   BOOST_TEST(folder.listing() == "");
-  const Run help = run("equilibrium", {"--help"});
+  const Exit help = run("equilibrium", {"--help"});
   BOOST_TEST(help.status == 0);
   BOOST_TEST(contains(help.out, {"--scene", "--final"}));
 }

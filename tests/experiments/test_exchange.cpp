@@ -16,9 +16,9 @@ using Words = std::vector<std::string>;
 // at steps far above its accuracy, one that is unstable there, one that damps.
 struct Short {
   Folder folder{};
-  Run result = run("exchange", {"--scene", "fpu", "--until", "60", "--methods",
-                                "verlet,implicit_midpoint,rodas4,implicit_euler", "--h-omega",
-                                "0.1,2.25", "--out", folder / "out"});
+  Exit result = run("exchange", {"--scene", "fpu", "--until", "60", "--methods",
+                                 "verlet,implicit_midpoint,rodas4,implicit_euler", "--h-omega",
+                                 "0.1,2.25", "--out", folder / "out"});
   std::string file(const std::string& name) const { return folder / ("out/" + name); }
 };
 
@@ -42,7 +42,7 @@ void check_refused(const Words& words, const Words& fragments) {
   for (std::string& word : all) {
     if (word == "OUT") word = folder / "out";
   }
-  const Run result = run("exchange", all);
+  const Exit result = run("exchange", all);
   BOOST_TEST(complains(result, 2, "exchange", fragments), in_words(result, all));
   BOOST_TEST(folder.listing() == "");
 }
@@ -147,8 +147,8 @@ BOOST_AUTO_TEST_CASE(springs_of_several_parts_are_followed_and_the_fastest_part_
                    "{position = [10], mass = 1}, {position = [11], pinned = true}]\n"
                    "springs = [{nodes = [0, 1], stiffness = 400, rest_length = 1},"
                    "{nodes = [2, 3], stiffness = 100, rest_length = 1}]\n");
-  const Run result = run("exchange", {"--scene", scene, "--methods", "verlet", "--h-omega", "0.5",
-                                      "--out", folder / "out"});
+  const Exit result = run("exchange", {"--scene", scene, "--methods", "verlet", "--h-omega", "0.5",
+                                       "--out", folder / "out"});
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   const auto origin = nlohmann::json::parse(read_all(folder / "out/summary.json"));
   BOOST_TEST(std::abs(double(origin["omega"]) - 20) < 1e-11);  // sqrt(400 / 1) against 10

@@ -19,9 +19,9 @@ const std::set<std::string> solvers = {"local_global",          "local_global_ch
 // A cloth of 8 x 8 nodes.
 struct Small {
   Folder folder{};
-  Run result = run("local_global",
-                   {"--nodes", "8", "--iterations", "30", "--repeats", "1", "--swing", "0.1",
-                    "--stiffnesses", "100,200", "--resolutions", "4,6", "--out", folder / "out"});
+  Exit result = run("local_global",
+                    {"--nodes", "8", "--iterations", "30", "--repeats", "1", "--swing", "0.1",
+                     "--stiffnesses", "100,200", "--resolutions", "4,6", "--out", folder / "out"});
   std::string file(const std::string& name) const { return folder / ("out/" + name); }
 };
 
@@ -37,7 +37,7 @@ void check_refused(const Words& words, const Words& fragments) {
   for (std::string& word : all) {
     if (word == "OUT") word = folder / "out";
   }
-  const Run result = run("local_global", all);
+  const Exit result = run("local_global", all);
   BOOST_TEST(complains(result, 2, "local_global", fragments), in_words(result, all));
   BOOST_TEST(folder.listing() == "");
 }
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(positions_come_to_those_of_the_converged_step_which_has_an_
 BOOST_AUTO_TEST_CASE(the_error_of_the_step_is_of_second_order) {
   const auto own = [](const std::string& h) {
     const Folder folder;
-    const Run result =
+    const Exit result =
         run("local_global",
             {"--nodes",       "5",           "--iterations", "1",     "--repeats",     "1",
              "--swing",       "0.05",        "--until",      "0.001", "--stiffnesses", "100",

@@ -16,15 +16,15 @@ Words joined(Words words, const Words& more) {
   return words;
 }
 
-Run simulate(const std::string& method, const Words& more) {
+Exit simulate(const std::string& method, const Words& more) {
   const bool is_fixed = find_method(method)->knob == Knob::step_size;
   return run("simulate", joined({"--scene", "orbit", "--method", method, "--until", "0.1",
                                  is_fixed ? "--step-size" : "--rtol", "1e-3"},
                                 more));
 }
 
-Run measure(const std::string& out, const std::string& list, const Words& more,
-            const std::string& scene = "orbit") {
+Exit measure(const std::string& out, const std::string& list, const Words& more,
+             const std::string& scene = "orbit") {
   return run("work_precision", joined({"--scene", scene, "--until", "0.5", "--methods", list,
                                        "--point-limit", "0.05", "--repeats", "1", "--out", out},
                                       more));
@@ -32,10 +32,10 @@ Run measure(const std::string& out, const std::string& list, const Words& more,
 
 // Both programs refuse the words with one sentence that holds the fragments, and make no file.
 void check_refused(const Words& words, const Words& fragments) {
-  const Run one = simulate("ida", words);
+  const Exit one = simulate("ida", words);
   BOOST_TEST(complains(one, 2, "simulate", fragments), in_words(one, words));
   const Folder folder;
-  const Run many = measure(folder / "out", "ida", words);
+  const Exit many = measure(folder / "out", "ida", words);
   BOOST_TEST(complains(many, 2, "work_precision", fragments), in_words(many, words));
   BOOST_TEST(one.out + many.out == "");
   BOOST_TEST(folder.listing() == "");
@@ -44,8 +44,8 @@ void check_refused(const Words& words, const Words& fragments) {
 // points.csv of some methods; `scene` is a file's text, or orbit where there is none.
 Table points(const std::string& list, const Words& more, const std::string& scene = "") {
   const Folder folder;
-  const Run result = measure(folder / "out", list, more,
-                             scene.empty() ? "orbit" : folder.write("scene.toml", scene));
+  const Exit result = measure(folder / "out", list, more,
+                              scene.empty() ? "orbit" : folder.write("scene.toml", scene));
   BOOST_TEST_REQUIRE(result.status == 0, in_words(result, more));
   return read_csv(folder / "out/points.csv");
 }
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(a_method_is_allowed_its_own_orders) {
   for (const Method& method : methods()) {
     if (!method.varies_order) continue;
     for (const int order : {1, method.order}) {
-      const Run good = simulate(method.name, {"--max-order", std::to_string(order)});
+      const Exit good = simulate(method.name, {"--max-order", std::to_string(order)});
       BOOST_TEST(good.status == 0, method.name << ": " << good.err);
     }
     const std::string above = std::to_string(method.order + 1);

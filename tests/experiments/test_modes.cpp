@@ -33,7 +33,7 @@ std::string file_in(const Folder& folder, const char* name) {
   return folder / (std::string("out/") + name);
 }
 
-Run run_modes(const Folder& folder, std::vector<std::string> words) {
+Exit run_modes(const Folder& folder, std::vector<std::string> words) {
   words.insert(words.end(), {"--out", folder / "out"});
   return run("modes", words);
 }
@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_SUITE(modes)
 BOOST_AUTO_TEST_CASE(both_ends_of_the_spectrum_are_tabulated_by_rank) {
   const Folder folder;
   const int n = 30;
-  const Run result =
+  const Exit result =
       run_modes(folder, {"--scene", folder.write("row.toml", row(n)), "--count", "4"});
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   const Table table = read_csv(file_in(folder, "modes.csv"));
@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(both_ends_of_the_spectrum_are_tabulated_by_rank) {
 BOOST_AUTO_TEST_CASE(few_modes_are_all_tabulated) {
   for (const int count : {2, 3, 4, 10}) {
     const Folder folder;
-    const Run result = run_modes(
+    const Exit result = run_modes(
         folder, {"--scene", folder.write("row.toml", row(5)), "--count", std::to_string(count)});
     BOOST_TEST_REQUIRE(result.status == 0, result.err);
     const Table table = read_csv(file_in(folder, "modes.csv"));
@@ -86,7 +86,8 @@ BOOST_AUTO_TEST_CASE(few_modes_are_all_tabulated) {
 
 BOOST_AUTO_TEST_CASE(shapes_have_every_node_and_the_springs_join_them) {
   const Folder folder;
-  const Run result = run_modes(folder, {"--scene", "cloth", "--count", "3", "--at", "equilibrium"});
+  const Exit result =
+      run_modes(folder, {"--scene", "cloth", "--count", "3", "--at", "equilibrium"});
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   BOOST_TEST(contains(result.out, {"at equilibrium"}));
   const Scene rest = settled(load_scene("cloth"), "");
@@ -116,7 +117,7 @@ BOOST_AUTO_TEST_CASE(shapes_have_every_node_and_the_springs_join_them) {
 BOOST_AUTO_TEST_CASE(growth_is_written_as_a_negative_omega) {
   const Folder folder;
   const std::string path = folder.write("upright.toml", upright);
-  const Run result = run_modes(folder, {"--scene", path});
+  const Exit result = run_modes(folder, {"--scene", path});
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   const Table table = read_csv(file_in(folder, "modes.csv"));
   // w^2 = -m g / (l m) sideways and k / m along.
@@ -125,7 +126,7 @@ BOOST_AUTO_TEST_CASE(growth_is_written_as_a_negative_omega) {
   BOOST_TEST(std::abs(table.value(1, "omega") - 10) < 1e-12);
   BOOST_TEST(contains(result.out, {"unstable: 1", "grows"}));
   // Hanging, it is a stable pendulum.
-  const Run hanging = run_modes(folder, {"--scene", path, "--at", "equilibrium"});
+  const Exit hanging = run_modes(folder, {"--scene", path, "--at", "equilibrium"});
   BOOST_TEST(contains(hanging.out, {"unstable: 0"}));
   const Table stable = read_csv(file_in(folder, "modes.csv"));
   BOOST_TEST(std::abs(stable.value(0, "omega") - std::sqrt(10 / 1.1)) < 1e-12);
@@ -145,11 +146,11 @@ BOOST_AUTO_TEST_CASE(scene_without_modes_or_rest_is_refused) {
       "dimension = 2\nnodes = [{position = [0, 0], pinned = true}, {position = [1, 0], mass = 0}, "
       "{position = [2, 0], mass = 1}]\nsprings = [{nodes = [0, 1], stiffness = 100}, "
       "{nodes = [1, 2], stiffness = 100}]\n");
-  const Run massless = run_modes(folder, {"--scene", loose});
+  const Exit massless = run_modes(folder, {"--scene", loose});
   BOOST_TEST(complains(massless, 3, "modes", {"massless"}), massless.err);
   const std::string falling = folder.write(
       "falling.toml", "dimension = 1\ngravity = [-1]\nnodes = [{position = [0], mass = 1}]\n");
-  const Run fall = run_modes(folder, {"--scene", falling, "--at", "equilibrium"});
+  const Exit fall = run_modes(folder, {"--scene", falling, "--at", "equilibrium"});
   BOOST_TEST(complains(fall, 2, "modes", {falling, "falls for ever"}), fall.err);
   BOOST_TEST(run_modes(folder, {"--scene", falling}).status == 0);
 }
@@ -165,13 +166,13 @@ BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
       {{"--scene", "cloth", "--at", "rest"}, {"--at: rest", "drawn or equilibrium"}}};
   for (const auto& [words, fragments] : cases) {
     const Folder folder;
-    const Run result = run_modes(folder, words);
+    const Exit result = run_modes(folder, words);
     BOOST_TEST(complains(result, 2, "modes", fragments), in_words(result, words));
     BOOST_TEST(folder.listing() == "");
   }
-  const Run no_folder = run("modes", {"--scene", "cloth"});
+  const Exit no_folder = run("modes", {"--scene", "cloth"});
   BOOST_TEST(complains(no_folder, 2, "modes", {"--out is missing"}), no_folder.err);
-  const Run help = run("modes", {"--help"});
+  const Exit help = run("modes", {"--help"});
   BOOST_TEST(help.status == 0);
   BOOST_TEST(contains(help.out, {"--scene", "--out", "--count", "--at", "growth rate"}));
 }

@@ -4,13 +4,14 @@
 
 #include "experiments/momenta.hpp"
 #include "integrators/registry.hpp"
+#include "src/scene/reduce.hpp"
 #include "src/scene/scene_file.hpp"
 
 using namespace qddot;
 
 namespace {
 
-constexpr Scales unit{.displacement = 1, .speed = 1, .kinetic = 1};
+constexpr double speed = 1;
 
 // By how much an accurate run to `until` changes what its scene keeps.
 double change_of_run(const Scene& scene, double until) {
@@ -19,9 +20,9 @@ double change_of_run(const Scene& scene, double until) {
       make_integrator(*find_method("kahan_li8"), reduced.system(), {.step_size = 1e-3});
   State state = reduced.initial();
   BOOST_TEST_REQUIRE((integrator->advance(state, until).outcome == Outcome::reached_end));
-  const Momenta momenta(scene, unit);
+  const Momenta momenta(scene);
   BOOST_TEST_REQUIRE(momenta.any_kept());
-  return momenta.change(reduced.expand(reduced.initial()), reduced.expand(state), until);
+  return momenta.change(reduced.expand(reduced.initial()), reduced.expand(state), until, speed);
 }
 
 // Three masses in a triangle, turning and flying, and pins that springs join to them.
@@ -61,7 +62,7 @@ BOOST_AUTO_TEST_CASE(what_symmetry_says_is_kept) {
 }
 
 BOOST_AUTO_TEST_CASE(what_it_does_not_say_is_not_asked_for) {
-  const auto any_kept = [](const Scene& scene) { return Momenta(scene, unit).any_kept(); };
+  const auto any_kept = [](const Scene& scene) { return Momenta(scene).any_kept(); };
   BOOST_TEST(!any_kept(triangle({at, {1.3, 0.2, 1}}, down)));
   BOOST_TEST(!any_kept(triangle({at, {1.3, 0.2, 1}, {0, 3, 1}}, none)));
   BOOST_TEST(!any_kept(load_scene("cloth")));
@@ -72,21 +73,22 @@ BOOST_AUTO_TEST_CASE(what_it_does_not_say_is_not_asked_for) {
 
 BOOST_AUTO_TEST_CASE(a_push_and_a_turn_are_seen_by_their_size) {
   const Scene scene = triangle({}, none);
-  const Momenta momenta(scene, unit);
+  const Momenta momenta(scene);
   auto nodes = scene.nodes;
   nodes[0].velocity += Eigen::Vector3d(0, 0, 0.35);  // 1 kg of 3.5 kg
-  BOOST_TEST(momenta.change(scene.nodes, nodes, 0) == 0.1, boost::test_tools::tolerance(1e-14));
+  BOOST_TEST(momenta.change(scene.nodes, nodes, 0, speed) == 0.1,
+             boost::test_tools::tolerance(1e-14));
   // A turn about the pin: 1 kg at 1 m by 0.2 m/s, over 3.5 kg m/s times the extent.
   const Scene held = triangle({none}, down);
   nodes = held.nodes;
   nodes[0].velocity.y() += 0.2;
   const double extent = Eigen::Vector3d(2, 1, 0.4).norm();
-  BOOST_TEST(Momenta(held, unit).change(held.nodes, nodes, 0) == 0.2 / (3.5 * extent),
+  BOOST_TEST(Momenta(held).change(held.nodes, nodes, 0, speed) == 0.2 / (3.5 * extent),
              boost::test_tools::tolerance(1e-14));
   // But not one about another axis than gravity's.
   nodes = held.nodes;
   nodes[0].velocity.z() += 0.2;
-  BOOST_TEST(Momenta(held, unit).change(held.nodes, nodes, 0) == 0);
+  BOOST_TEST(Momenta(held).change(held.nodes, nodes, 0, speed) == 0);
 }
 
 BOOST_AUTO_TEST_CASE(negative_control_without_gravitys_part_a_fall_is_a_change) {
@@ -95,7 +97,7 @@ BOOST_AUTO_TEST_CASE(negative_control_without_gravitys_part_a_fall_is_a_change) 
   scene.gravity.setZero();
   auto nodes = scene.nodes;
   for (Node& node : nodes) node.velocity += 0.5 * down;
-  BOOST_TEST(Momenta(scene, unit).change(scene.nodes, nodes, 0.5) > 1);
+  BOOST_TEST(Momenta(scene).change(scene.nodes, nodes, 0.5, speed) > 1);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

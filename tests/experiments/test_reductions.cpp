@@ -24,7 +24,7 @@ Ended run_without(const std::string& scene, const std::string& reductions) {
   std::vector<std::string> words = {"--scene", scene,     "--method", "verlet",  "--step-size",
                                     "1e-5",    "--until", "0.01",     "--final", folder / "f.csv"};
   if (!reductions.empty()) words.insert(words.end(), {"--no-reduce", reductions});
-  const Run result = run("simulate", words);
+  const Exit result = run("simulate", words);
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   return {json_of(folder / "f.json").at("reduced").at("unknowns"), read_csv(folder / "f.csv")};
 }
@@ -63,11 +63,11 @@ BOOST_AUTO_TEST_CASE(each_reduction_can_be_left_out_with_the_same_result) {
 BOOST_AUTO_TEST_CASE(unknown_names_are_answered_with_the_known_ones) {
   std::vector<std::string> names = {"--no-reduce", "gravity"};
   for (const auto& name : reduction_names) names.emplace_back(name);
-  const Run result = run("simulate", {"--scene", "chain", "--explain", "--no-reduce", "gravity"});
+  const Exit result = run("simulate", {"--scene", "chain", "--explain", "--no-reduce", "gravity"});
   BOOST_TEST(complains(result, 2, "simulate", names), result.err);
   for (const char* program : {"work_precision", "convergence"}) {
     const Folder folder;
-    const Run refused =
+    const Exit refused =
         run(program, {"--scene", "chain", "--out", folder / "out", "--no-reduce", "gravity"});
     BOOST_TEST(complains(refused, 2, program, names), refused.err);
     BOOST_TEST(folder.listing() == "");
@@ -75,11 +75,11 @@ BOOST_AUTO_TEST_CASE(unknown_names_are_answered_with_the_known_ones) {
 }
 
 BOOST_AUTO_TEST_CASE(explain_prints_what_is_left_and_runs_nothing) {
-  const Run result = run("simulate", {"--scene", "cloth", "--explain"});
+  const Exit result = run("simulate", {"--scene", "cloth", "--explain"});
   BOOST_TEST(result.status == 0, result.err);
   BOOST_TEST(contains(result.out, {"1347 unknowns of 2700", "pins", "mirror", "x = 0.5",
                                    "449 of 898", "w_max", "2/w_max", "no direction grows"}));
-  const Run without = run("simulate", {"--scene", "cloth", "--explain", "--no-reduce", "mirror"});
+  const Exit without = run("simulate", {"--scene", "cloth", "--explain", "--no-reduce", "mirror"});
   BOOST_TEST(contains(without.out, {"2694 unknowns of 2700"}));
   BOOST_TEST(!contains(without.out, {"mirror"}));
 }
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(a_step_beyond_the_stable_one_is_warned_of_with_both_numbers
     return run("simulate",
                {"--scene", "oscillator", "--method", method, "--step-size", h, "--until", until});
   };
-  const Run above = simulate("verlet", "0.201", "1");
+  const Exit above = simulate("verlet", "0.201", "1");
   BOOST_TEST(above.status == 0);
   BOOST_TEST(complains(above, 0, "simulate", {"warning", "h = 0.201 s", "2/w_max = 0.2 s"}),
              above.err);
@@ -122,25 +122,25 @@ BOOST_AUTO_TEST_CASE(a_step_beyond_the_stable_one_is_warned_of_with_both_numbers
   BOOST_TEST(simulate("implicit_euler", "0.5", "1").err == "");
   BOOST_TEST(simulate("exact", "0.5", "1").err == "");
   // Where it blows up, one sentence says both.
-  const Run blown = simulate("verlet", "1", "200");
+  const Exit blown = simulate("verlet", "1", "200");
   BOOST_TEST(complains(blown, 3, "simulate", {"grew without bound", "2/w_max = 0.2 s"}), blown.err);
 }
 
 BOOST_AUTO_TEST_CASE(exact_is_offered_where_k_is_constant_only) {
   const Folder folder;
-  const Run refused =
+  const Exit refused =
       run("simulate", {"--scene", "orbit", "--method", "exact", "--step-size", "1"});
   BOOST_TEST(complains(refused, 2, "simulate", {"orbit", "exact", "verlet"}), refused.err);
   const auto names_in = [&](const char* scene) {
-    const Run result = run("work_precision", {"--scene", scene, "--until", "0.1", "--repeats", "1",
-                                              "--point-limit", "0.2", "--out", folder.path()});
+    const Exit result = run("work_precision", {"--scene", scene, "--until", "0.1", "--repeats", "1",
+                                               "--point-limit", "0.2", "--out", folder.path()});
     BOOST_TEST(result.status == 0, result.err);
     return read_all(folder / "points.csv");
   };
   BOOST_TEST(contains(names_in("oscillator"), {",exact,"}));
   BOOST_TEST(!contains(names_in("orbit"), {",exact,"}));
-  const Run named = run("work_precision", {"--scene", "orbit", "--until", "0.1", "--methods",
-                                           "exact", "--out", folder / "none"});
+  const Exit named = run("work_precision", {"--scene", "orbit", "--until", "0.1", "--methods",
+                                            "exact", "--out", folder / "none"});
   BOOST_TEST(complains(named, 2, "work_precision", {"orbit", "exact"}), named.err);
 }
 
@@ -152,8 +152,8 @@ BOOST_AUTO_TEST_CASE(a_scene_that_starts_at_equilibrium_does) {
                                          "nodes = [{position = [0, 0], pinned = true},"
                                          " {position = [0.6, 0.8], mass = 1}]\n"
                                          "springs = [{nodes = [0, 1], stiffness = 100}]\n");
-  const Run result = run("simulate", {"--scene", scene, "--method", "verlet", "--step-size", "1e-3",
-                                      "--final", folder / "f.csv"});
+  const Exit result = run("simulate", {"--scene", scene, "--method", "verlet", "--step-size",
+                                       "1e-3", "--final", folder / "f.csv"});
   BOOST_TEST(result.status == 0, result.err);
   const Table end = read_csv(folder / "f.csv");
   // Hanging, 0.1 m longer, to what rounding leaves of the residual.

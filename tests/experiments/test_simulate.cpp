@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(each_output_has_the_every_behind_it_and_a_single_one_is_for
     for (const std::string& word : outputs) {
       arguments.push_back(word.ends_with(".csv") ? folder / word : word);
     }
-    const Run result = run("simulate", arguments);
+    const Exit result = run("simulate", arguments);
     BOOST_TEST(result.status == 0, in_words(result, arguments));
     return std::array{std::ssize(read_csv(folder / "g.csv").rows) / 2,
                       std::ssize(read_csv(folder / "e.csv").rows)};
@@ -212,7 +212,7 @@ BOOST_AUTO_TEST_CASE(every_table_has_a_sidecar_that_says_where_it_comes_from) {
 }
 
 BOOST_AUTO_TEST_CASE(the_lists_name_everything) {
-  const Run methods_text = run("simulate", {"--list-methods"});
+  const Exit methods_text = run("simulate", {"--list-methods"});
   const Table methods_table = parse_csv(run("simulate", {"--list-methods", "--csv"}).out);
   BOOST_TEST(methods_table.rows.size() == methods().size());
   for (std::size_t i = 0; i < methods_table.rows.size(); ++i) {
@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(the_lists_name_everything) {
     BOOST_TEST(methods_table.text(i, "source") == methods()[i].source);
     BOOST_TEST(contains(methods_text.out, {methods()[i].name, methods()[i].summary}));
   }
-  const Run scenes_text = run("simulate", {"--list-scenes"});
+  const Exit scenes_text = run("simulate", {"--list-scenes"});
   const Table scenes_table = parse_csv(run("simulate", {"--csv", "--list-scenes"}).out);
   std::size_t row = 0;
   for (const Generator& generator : generators()) {

@@ -17,15 +17,15 @@ Words knob_of(const Method& method) {
 }
 
 // Runs a method on a scene and asks for the end.
-Run simulate(const std::string& scene, const Method& method, const Folder& folder,
-             const Words& more = {}) {
+Exit simulate(const std::string& scene, const Method& method, const Folder& folder,
+              const Words& more = {}) {
   Words words = {"--scene", scene, "--method", method.name, "--final", folder / "f.csv"};
   for (const Words& part : {knob_of(method), more})
     words.insert(words.end(), part.begin(), part.end());
   return run("simulate", words);
 }
 
-Run verlet(const Folder& folder, const Words& options) {
+Exit verlet(const Folder& folder, const Words& options) {
   Words words = {"--method", "verlet",         "--final", folder / "f.csv",
                  "--energy", folder / "e.csv", "--every", "1"};
   words.insert(words.end(), options.begin(), options.end());
@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(without_a_spring_nodes_fly_freely) {
       "dimension = 2\nuntil = 0.5\n"
       "nodes = [{position = [1, 2], velocity = [3, -4], mass = 2}, {position = [0, 0], mass = 1}]");
   for (const Method& method : methods()) {
-    const Run result = simulate(scene, method, folder);
+    const Exit result = simulate(scene, method, folder);
     BOOST_TEST(result.status == 0, method.name << ": " << result.err);
     const Table end = read_csv(folder / "f.csv");
     BOOST_TEST(end.value(0, "x") == 2.5, boost::test_tools::tolerance(1e-12));
@@ -86,7 +86,7 @@ BOOST_AUTO_TEST_CASE(where_all_is_pinned_nothing_moves_and_every_method_is_done)
                    " {position = [3, 4, 5], pinned = true}]\n"
                    "springs = [{nodes = [0, 1], stiffness = 10, rest_length = 1}]\n");
   for (const Method& method : methods()) {
-    const Run result =
+    const Exit result =
         simulate(scene, method, folder, {"--energy", folder / "e.csv", "--every", "0.25"});
     BOOST_TEST(result.status == 0, method.name << ": " << result.err);
     if (result.status != 0) continue;
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(a_massless_node_is_for_methods_that_accept_it) {
   for (const Method& method : methods()) {
     const Folder folder;
     const std::string scene = folder.write("s.toml", quartic_massless);
-    const Run result = simulate(scene, method, folder);
+    const Exit result = simulate(scene, method, folder);
     if (method.accepts_massless) {
       BOOST_TEST(result.status == 0, method.name << ": " << result.err);
       BOOST_TEST(result.err == "");
@@ -126,14 +126,14 @@ BOOST_AUTO_TEST_CASE(two_springs_in_series_are_one_while_in_tension) {
   // k = 20 N/m: a quarter of the period 2 pi sqrt(1/20) s, and 0.5 m of stretch, until it is slack.
   const double slack = M_PI / 2 / std::sqrt(20.0);
   const Method& method = *find_method("verlet");
-  const Run stopped = simulate(scene, method, folder);
+  const Exit stopped = simulate(scene, method, folder);
   BOOST_TEST(complains(stopped, 3, "simulate", {"of 0.5 s", "compression", "--no-reduce massless"}),
              stopped.err);
   const auto sidecar = nlohmann::json::parse(read_all(folder / "f.json"));
   BOOST_TEST(sidecar.at("outcome") == "went_slack");
   const double reached = sidecar.at("t_reached");
   BOOST_TEST((reached <= slack && reached > slack - 0.02));
-  const Run before = simulate(scene, method, folder, {"--until", "0.3"});
+  const Exit before = simulate(scene, method, folder, {"--until", "0.3"});
   BOOST_TEST(before.status == 0, before.err);
   const Table end = read_csv(folder / "f.csv");
   // Verlet's error at h w < 0.05 is below (h w)^2 w t / 24.
@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(without_any_horizon_the_run_is_refused) {
   const Folder folder;
   const std::string scene =
       folder.write("s.toml", "dimension = 1\nnodes = [{position = [0], mass = 1}]");
-  const Run result = verlet(folder, {"--scene", scene, "--step-size", "0.1"});
+  const Exit result = verlet(folder, {"--scene", scene, "--step-size", "0.1"});
   BOOST_TEST(complains(result, 2, "simulate", {"--until", "missing", "greater than 0"}),
              result.err);
   BOOST_TEST(folder.listing() == "s.toml ");
@@ -196,20 +196,20 @@ BOOST_AUTO_TEST_CASE(malformed_scenes_are_refused_with_one_sentence) {
   for (const auto& [text, fragments] : cases) {
     const Folder folder;
     const std::string scene = folder.write("bad.toml", text);
-    const Run result = verlet(folder, {"--scene", scene, "--step-size", "0.1"});
+    const Exit result = verlet(folder, {"--scene", scene, "--step-size", "0.1"});
     BOOST_TEST(complains(result, 2, "simulate", {scene}), text << " gives " << result.err);
     BOOST_TEST(contains(result.err, fragments), text << " gives " << result.err);
     BOOST_TEST(folder.listing() == "bad.toml ");
   }
   const Folder folder;
-  const Run result = verlet(folder, {"--scene", folder.path(), "--step-size", "0.1"});
+  const Exit result = verlet(folder, {"--scene", folder.path(), "--step-size", "0.1"});
   BOOST_TEST(complains(result, 2, "simulate", {folder.path()}), result.err);
 }
 
 BOOST_AUTO_TEST_CASE(above_its_limit_an_explicit_method_diverges_and_says_so) {
   // w = 10 rad/s: h w = 3 is above Verlet's limit of 2.
   const Folder folder;
-  const Run result =
+  const Exit result =
       verlet(folder, {"--scene", "oscillator", "--step-size", "0.3", "--until", "99"});
   const Table end = read_csv(folder / "f.csv"), energy = read_csv(folder / "e.csv");
   const auto sidecar = nlohmann::json::parse(read_all(folder / "f.json"));
@@ -229,8 +229,8 @@ BOOST_AUTO_TEST_CASE(above_its_limit_an_explicit_method_diverges_and_says_so) {
 BOOST_AUTO_TEST_CASE(a_tolerance_beyond_rounding_is_not_reached) {
   for (const char* method : {"ida", "arkode_dirk2"}) {
     const Folder folder;
-    const Run result = run("simulate", {"--scene", "oscillator", "--method", method, "--rtol",
-                                        "1e-30", "--final", folder / "f.csv"});
+    const Exit result = run("simulate", {"--scene", "oscillator", "--method", method, "--rtol",
+                                         "1e-30", "--final", folder / "f.csv"});
     BOOST_TEST(complains(result, 3, "simulate", {"of 2 s reached", "raise --rtol"}), result.err);
     BOOST_TEST(read_csv(folder / "f.csv").value(1, "x") == 1);
   }
@@ -242,17 +242,17 @@ BOOST_AUTO_TEST_CASE(after_millions_of_steps_samples_still_land_on_steps) {
   const Words options = {"--scene", "oscillator", "--step-size", "5e-6", "--until", "66"};
   Words words = {"--method", "verlet", "--final", folder / "alone.csv"};
   words.insert(words.end(), options.begin(), options.end());
-  const Run alone = run("simulate", words);
+  const Exit alone = run("simulate", words);
   words[3] = folder / "seen.csv";
   words.insert(words.end(), {"--energy", folder / "e.csv", "--every", "0.005"});
-  const Run seen = run("simulate", words);
+  const Exit seen = run("simulate", words);
   BOOST_TEST(alone.out == seen.out);  // as many steps
   BOOST_TEST(read_all(folder / "alone.csv") == read_all(folder / "seen.csv"));
 }
 
 BOOST_AUTO_TEST_CASE(negative_control_below_its_limit_it_arrives) {
   const Folder folder;
-  const Run result =
+  const Exit result =
       verlet(folder, {"--scene", "oscillator", "--step-size", "0.19", "--until", "99"});
   BOOST_TEST(result.status == 0);
   BOOST_TEST(std::abs(read_csv(folder / "f.csv").value(1, "x")) < 10);

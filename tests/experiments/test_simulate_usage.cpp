@@ -35,7 +35,7 @@ Words words_of(const std::map<std::string, Words>& options, const Folder& folder
 void check_refused(const std::map<std::string, Words>& options, const Words& fragments) {
   const Folder folder;
   const Words words = words_of(options, folder);
-  const Run result = run("simulate", words);
+  const Exit result = run("simulate", words);
   BOOST_TEST(complains(result, 2, "simulate", fragments), in_words(result, words));
   BOOST_TEST(result.out == "");
   BOOST_TEST(folder.listing() == "", in_words(result, words));
@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_SUITE(simulate_usage)
 
 BOOST_AUTO_TEST_CASE(help_names_every_option) {
   for (const char* word : {"--help", "-h"}) {
-    const Run result = run("simulate", {word});
+    const Exit result = run("simulate", {word});
     BOOST_TEST(result.status == 0);
     BOOST_TEST(result.err == "");
     BOOST_TEST(contains(result.out, {"--scene", "--method", "--step-size", "--rtol", "--atol",
@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(a_value_that_is_missing_is_missed) {
     others.erase(option);
     Words words = words_of(others, folder);
     words.push_back(option);
-    const Run result = run("simulate", words);
+    const Exit result = run("simulate", words);
     BOOST_TEST(complains(result, 2, "simulate", {option}), in_words(result, words));
     BOOST_TEST(folder.listing() == "");
   }
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(options_given_twice_or_unknown_are_refused) {
     const Folder folder;
     Words words = words_of(good_options(), folder);
     words.insert(words.end(), {option, "0.5"});
-    const Run result = run("simulate", words);
+    const Exit result = run("simulate", words);
     BOOST_TEST(complains(result, 2, "simulate", {option}), in_words(result, words));
   }
 }
@@ -168,9 +168,9 @@ BOOST_AUTO_TEST_CASE(every_is_for_outputs_over_time) {
   check_value_refused("--every", "1e-12", {"--every", "1e-12", "allowed"});
   // The one before both outputs belongs to neither.
   const Folder folder;
-  const Run result = run("simulate", {"--scene", "orbit", "--method", "verlet", "--step-size",
-                                      "0.01", "--every", "0.1", "--trajectory", folder / "g.csv",
-                                      "--energy", folder / "e.csv", "--every", "0.2"});
+  const Exit result = run("simulate", {"--scene", "orbit", "--method", "verlet", "--step-size",
+                                       "0.01", "--every", "0.1", "--trajectory", folder / "g.csv",
+                                       "--energy", folder / "e.csv", "--every", "0.2"});
   BOOST_TEST(complains(result, 2, "simulate", {"--every", "0.1", "--trajectory"}));
   BOOST_TEST(folder.listing() == "");
 }
@@ -202,7 +202,7 @@ BOOST_AUTO_TEST_CASE(two_outputs_do_not_go_to_one_file) {
     const Words words = {"--scene",     "oscillator",   "--method", "verlet",
                          "--step-size", "0.1",          "--final",  folder / "f.csv",
                          "--energy",    folder / other, "--every",  "1"};
-    const Run result = run("simulate", words);
+    const Exit result = run("simulate", words);
     BOOST_TEST(complains(result, 2, "simulate", {other}), in_words(result, words));
     BOOST_TEST(folder.listing() == "");
   }
@@ -212,14 +212,14 @@ BOOST_AUTO_TEST_CASE(a_sidecar_that_cannot_be_written_is_known_before_the_table)
   const Folder folder;
   std::filesystem::create_directories(folder / "f.json");
   const Words words = words_of(good_options(), folder);
-  const Run result = run("simulate", words);
+  const Exit result = run("simulate", words);
   BOOST_TEST(complains(result, 2, "simulate", {"f.json"}), in_words(result, words));
   BOOST_TEST(folder.listing() == "f.json ");
 }
 
 BOOST_AUTO_TEST_CASE(negative_control_the_command_line_that_is_spoiled_is_good) {
   const Folder folder;
-  const Run result = run("simulate", words_of(good_options(), folder));
+  const Exit result = run("simulate", words_of(good_options(), folder));
   BOOST_TEST(result.status == 0);
   BOOST_TEST(result.err == "");
   BOOST_TEST(folder.listing() == "e.csv e.json f.csv f.json g.csv g.json ");

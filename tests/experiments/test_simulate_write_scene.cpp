@@ -16,7 +16,7 @@ Words with(Words words, const Words& more) {
 }
 
 void check_refused(const Words& words, const Words& fragments) {
-  const Run result = run("simulate", words);
+  const Exit result = run("simulate", words);
   BOOST_TEST(complains(result, 2, "simulate", fragments), in_words(result, words));
   BOOST_TEST(result.out == "");
 }
@@ -28,7 +28,7 @@ BOOST_AUTO_TEST_SUITE(simulate_write_scene)
 BOOST_AUTO_TEST_CASE(a_scene_is_written_without_a_run) {
   const Folder folder;
   for (const char* scene : {"cloth", "orbit"}) {
-    const Run result = run("simulate", {"--scene", scene, "--write-scene", folder / "s.toml"});
+    const Exit result = run("simulate", {"--scene", scene, "--write-scene", folder / "s.toml"});
     BOOST_TEST(result.status == 0);
     BOOST_TEST(result.err == "");
     BOOST_TEST(result.out == "");
@@ -40,11 +40,11 @@ BOOST_AUTO_TEST_CASE(a_scene_is_written_without_a_run) {
 BOOST_AUTO_TEST_CASE(a_written_scene_moves_as_the_one_it_is_of) {
   const Folder folder;
   const Words knobs = {"--method", "verlet", "--step-size", "5e-4", "--until", "0.01"};
-  const Run first = run("simulate", with(knobs, {"--scene", "cloth", "--write-scene",
-                                                 folder / "s.toml", "--final", folder / "a.csv"}));
+  const Exit first = run("simulate", with(knobs, {"--scene", "cloth", "--write-scene",
+                                                  folder / "s.toml", "--final", folder / "a.csv"}));
   BOOST_TEST(first.status == 0);
   BOOST_TEST(folder.listing() == "a.csv a.json s.toml ");
-  const Run second =
+  const Exit second =
       run("simulate", with(knobs, {"--scene", folder / "s.toml", "--final", folder / "b.csv"}));
   BOOST_TEST(second.status == 0);
   BOOST_TEST((read_all(folder / "a.csv") == read_all(folder / "b.csv")));

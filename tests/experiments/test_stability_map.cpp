@@ -9,7 +9,7 @@ using namespace qddot;
 
 namespace {
 
-Run run_map(const Folder& folder, std::vector<std::string> words) {
+Exit run_map(const Folder& folder, std::vector<std::string> words) {
   words.insert(words.end(), {"--out", folder / "out"});
   return run("stability_map", words);
 }
@@ -29,7 +29,7 @@ BOOST_AUTO_TEST_SUITE(stability_map)
 
 BOOST_AUTO_TEST_CASE(limits_are_predicted_and_measured_in_seconds) {
   const Folder folder;
-  const Run result = run_map(
+  const Exit result = run_map(
       folder,
       with(small, {"--methods", "explicit_euler,verlet,rk4,implicit_euler", "--columns", "3"}));
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
@@ -49,8 +49,8 @@ BOOST_AUTO_TEST_CASE(limits_are_predicted_and_measured_in_seconds) {
 
 BOOST_AUTO_TEST_CASE(the_map_has_a_row_for_each_run_and_theory_beside_it) {
   const Folder folder;
-  const Run result = run_map(folder, with(small, {"--methods", "verlet,implicit_euler,ida", "--low",
-                                                  "1", "--high", "4", "--columns", "3"}));
+  const Exit result = run_map(folder, with(small, {"--methods", "verlet,implicit_euler,ida",
+                                                   "--low", "1", "--high", "4", "--columns", "3"}));
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   const Table map = table(folder, "map.csv");
   BOOST_TEST(map.header.starts_with(
@@ -78,7 +78,7 @@ BOOST_AUTO_TEST_CASE(the_map_has_a_row_for_each_run_and_theory_beside_it) {
 
 BOOST_AUTO_TEST_CASE(modes_are_excited_where_the_scene_rests) {
   const Folder folder;
-  const Run result =
+  const Exit result =
       run_map(folder, {"--scene", "pendulum", "--methods", "verlet,implicit_euler", "--step-size",
                        "0.01", "--amplitudes", "0.1", "--columns", "1"});
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
@@ -99,8 +99,8 @@ BOOST_AUTO_TEST_CASE(modes_are_excited_where_the_scene_rests) {
 
 BOOST_AUTO_TEST_CASE(rows_vary_a_parameter_of_the_generator) {
   const Folder folder;
-  const Run result = run_map(folder, {"--scene", "orbit", "--vary", "radius", "--amplitudes",
-                                      "1.1,1.5", "--methods", "verlet", "--columns", "2"});
+  const Exit result = run_map(folder, {"--scene", "orbit", "--vary", "radius", "--amplitudes",
+                                       "1.1,1.5", "--methods", "verlet", "--columns", "2"});
   BOOST_TEST_REQUIRE(result.status == 0, result.err);
   const Table map = table(folder, "map.csv");
   BOOST_TEST_REQUIRE(map.rows.size() == 4u);
@@ -122,11 +122,11 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_sentence_and_nothing_is_written) {
       {with(small, {"--until", "-2"}), {"--until", "-2"}}};
   for (const auto& [words, fragments] : cases) {
     const Folder folder;
-    const Run result = run_map(folder, words);
+    const Exit result = run_map(folder, words);
     BOOST_TEST(complains(result, 2, "stability_map", fragments), in_words(result, words));
     BOOST_TEST(folder.listing() == "", in_words(result, words));
   }
-  const Run nowhere = run("stability_map", small);
+  const Exit nowhere = run("stability_map", small);
   BOOST_TEST(complains(nowhere, 2, "stability_map", {"--out"}));
 }
 

@@ -41,7 +41,7 @@ Words joined(Words words, const Words& more) {
 // A finished comparison.
 struct Compared {
   Folder folder{};
-  Run result;
+  Exit result;
   Table table;
 
   // `text`: a scene file's, or a generator's name.
@@ -66,7 +66,7 @@ void check_refused(const Words& words, const Words& fragments) {
   for (std::string& word : all) {
     if (word == "OUT") word = folder / "out";
   }
-  const Run result = run("stock_sundials", all);
+  const Exit result = run("stock_sundials", all);
   BOOST_TEST(complains(result, 2, "stock_sundials", fragments), in_words(result, all));
   BOOST_TEST(result.out == "");
   BOOST_TEST(folder.listing() == "", in_words(result, all));

@@ -11,7 +11,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 // The last of an option counts, so that `more` may overrule what stands before.
-Run measure(const std::string& out, const Words& more) {
+Exit measure(const std::string& out, const Words& more) {
   Words words = {"--methods", "verlet", "--point-limit", "0.05", "--repeats", "1", "--out", out};
   words.insert(words.end(), more.begin(), more.end());
   return run("work_precision", words);
@@ -23,7 +23,7 @@ void check_refused(const Words& words, const Words& fragments) {
   for (std::string& word : all) {
     if (word.starts_with("OUT")) word = folder / word;
   }
-  const Run result = run("work_precision", all);
+  const Exit result = run("work_precision", all);
   BOOST_TEST(complains(result, 2, "work_precision", fragments), in_words(result, all));
   BOOST_TEST(result.out == "");
   BOOST_TEST(folder.listing() == "");
@@ -45,7 +45,7 @@ struct Cache {
     json["made_by"] = "marked";
     write(json.dump(1));
   }
-  Run run_on(const std::string& scene, const std::string& until) const {
+  Exit run_on(const std::string& scene, const std::string& until) const {
     return measure(folder.path(), {"--scene", scene, "--until", until});
   }
   void write(const std::string& text) const { folder.write("reference.json", text); }
@@ -58,7 +58,7 @@ struct Cache {
 BOOST_AUTO_TEST_SUITE(work_precision_usage)
 
 BOOST_AUTO_TEST_CASE(help_names_every_option) {
-  const Run result = run("work_precision", {"--help"});
+  const Exit result = run("work_precision", {"--help"});
   BOOST_TEST(result.status == 0);
   BOOST_TEST(contains(result.out,
                       {"--scene", "--until", "--methods", "--repeats", "--point-limit", "--out"}));
@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(a_place_taken_by_a_folder_is_known_before_anything_is_measu
   for (const char* name : {"points.csv", "front.csv", "reference.json"}) {
     const Folder folder;
     std::filesystem::create_directories(folder / name);
-    const Run result = measure(folder.path(), {"--scene", "orbit", "--until", "0.1"});
+    const Exit result = measure(folder.path(), {"--scene", "orbit", "--until", "0.1"});
     BOOST_TEST(complains(result, 2, "work_precision", {name}), name << ": " << result.err);
     BOOST_TEST(folder.listing() == name + std::string(" "));
   }
@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(a_scene_with_a_massless_node_or_no_horizon_is_refused) {
   const std::string spring = "}]\nsprings = [{nodes = [0, 1], stiffness = 1}]\n";
   const std::string massless = folder.write("massless.toml", nodes + "0" + spring);
   const std::string endless = folder.write("endless.toml", nodes + "1" + spring);
-  Run result = measure(folder / "out", {"--scene", massless, "--until", "1"});
+  Exit result = measure(folder / "out", {"--scene", massless, "--until", "1"});
   BOOST_TEST(complains(result, 2, "work_precision", {massless, "nodes[1].mass", "allowed"}),
              result.err);
   result = measure(folder / "out", {"--scene", endless});
@@ -124,8 +124,8 @@ BOOST_AUTO_TEST_CASE(a_scene_with_a_massless_node_or_no_horizon_is_refused) {
 BOOST_AUTO_TEST_CASE(where_all_is_pinned_every_method_is_exact) {
   const Folder folder;
   const std::string scene = folder.write("s.toml", pinned);
-  const Run result = run("work_precision", {"--scene", scene, "--point-limit", "0.05", "--repeats",
-                                            "1", "--out", folder / "out"});
+  const Exit result = run("work_precision", {"--scene", scene, "--point-limit", "0.05", "--repeats",
+                                             "1", "--out", folder / "out"});
   BOOST_TEST_REQUIRE(result.status == 0);
   const Table points = read_csv(folder / "out/points.csv");
   BOOST_TEST(points.rows.size() >= methods().size());
@@ -186,7 +186,7 @@ BOOST_AUTO_TEST_CASE(a_damaged_reference_is_made_anew) {
         with("energy", "much"), with("q", {1, nullptr, 2}), with("v", "none"), with("q", {1, 2, 3}),
         with("v", nlohmann::json::array())}) {
     cache.write(text);
-    const Run result = cache.run_on("orbit", "0.1");
+    const Exit result = cache.run_on("orbit", "0.1");
     BOOST_TEST(result.status == 0, text << " gives " << result.err);
     BOOST_TEST(!cache.is_marked(), "taken as it is: " << text);
     BOOST_TEST(cache.json().at("q").size() == 2u);

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "experiments/energy_trend.hpp"
+#include "experiments/motion_scales.hpp"
+#include "integrators/method.hpp"
+
+namespace qddot {
+
+// How the invariants of a run are looked at.
+struct DriftPlan {
+  double step_size = 0,
+         until = 0;     // [s]; adaptive methods are looked at at multiples of it as well
+  double seconds = 10;  // that the run may take
+};
+
+struct DriftPoint {
+  double t = 0, energy = 0, error = 0;  // [s], [J], relative
+};
+
+// One method's run, and what became of the scene's invariants in it.
+struct DriftRun {
+  const Method* method = nullptr;
+  double value = 0;  // of its knob
+  Summary summary{};
+  double seconds = 0;
+  TrendScales scales{};
+  Trend energy{};
+  // Of the component that changed most, where there is one that should stay.
+  std::optional<Trend> linear{}, angular{};
+  std::vector<DriftPoint> path{};  // from t = 0 on, some in each octave and some at equal distances
+};
+
+// Runs the method on the scene. Energy errors are (E(t) - E(0)) / scales.kinetic, those of momenta
+// relative to scales.linear and angular.
+DriftRun run_drift(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+                   const Momenta& momenta, const MotionScales& scales, const DriftPlan& plan);
+
+// The verdict on its energy in words, with how far it came.
+std::string verdict(const DriftRun& run, double until);
+
+}  // namespace qddot

@@ -1,0 +1,423 @@
+"""Draws where each method's energy goes over a long run of one scene.
+
+Call: energy_drift.py DIR, the folder with drift.csv, summary.csv and tolerance.csv of the program
+energy_drift; writes DIR/energy_drift.png and DIR/energy_drift.svg. Above on the left the size of
+the energy error over time for some methods of each fate, below it that of the adaptive methods
+over their tolerance; on the right the verdict on every method. One colour a fate in all three.
+"""
+
+import csv
+import json
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib import ticker
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+
+from chart import move_label
+from labels import Ink, place_labels
+from sheet import Sheet
+from style import COOL, FAINT, GRID, INK, WARM, number, power_of_ten, use_style
+
+WIDTH = 12.6
+LEFT, PANEL_WIDTH, LABELS = 0.75, 4.75, 1.6
+TOP, PANEL_HEIGHT, DOWN, TOLERANCE_HEIGHT = 1.15, 4.3, 0.95, 2.35
+TABLE_LEFT, TABLE_WIDTH = 7.55, 4.9
+ROW, HEADING, GROUP_GAP = 0.172, 0.26, 0.1
+FONT_SIZE, SMALL = 9, 8.5
+LABEL_STEP = 0.15
+MOST_LINES, MOST_TOLERANCE_LABELS = 11, 14
+# Below this an error is not told from none.
+LEAST = 1e-17
+LARGEST = 1e3
+BINS_A_DECADE = 10
+
+# The fates in the order of the table: title, what the number beside a method is, colour.
+FATES = {
+    "round_off": ("nothing but round-off", "error at the end", COOL[3]),
+    "bounded": ("bounded: no drift", "oscillation", COOL[0]),
+    "wanders": ("wanders without drift", "oscillation", COOL[2]),
+    "drifts": ("drifts", "1/s", WARM[2]),
+    "dissipates": ("dissipates", "damping ratio", WARM[4]),
+    "grows": ("gains energy", "rate in 1/s", WARM[0]),
+    "blows_up": ("blows up", "when", WARM[1]),
+    "unknown": ("too short to tell", "", FAINT),
+}
+# The methods whose errors are drawn over time first, where they were run.
+TELLING = (
+    "verlet",
+    "rk4",
+    "implicit_euler",
+    "explicit_euler",
+    "symplectic_euler",
+    "kahan_li8",
+    "implicit_midpoint",
+    "discrete_gradient",
+    "generalized_alpha",
+    "blanes_moan4",
+    "cvode_adams",
+    "semi_implicit_euler",
+    "exact",
+)
+
+
+def read(path):
+    """The rows of a table."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def optional(text):
+    """A number, or no number where the field is empty."""
+    return float(text) if text else math.nan
+
+
+def key(row):
+    """What tells runs apart."""
+    return row["method"], float(row["value"])
+
+
+def one_a_method(summary):
+    """A row a method: of adaptive ones, that of the middle one of the tolerances."""
+    runs = {}
+    for row in summary:
+        runs.setdefault(row["method"], []).append(row)
+    chosen = []
+    for rows in runs.values():
+        rows.sort(key=lambda row: -float(row["value"]))
+        chosen.append(rows[len(rows) // 2])
+    return chosen
+
+
+def label(row):
+    """The name of a run, with the tolerance of an adaptive one."""
+    name = row["method"]
+    return f"{name} {number(float(row['value']))}" if row["knob"] == "rtol" else name
+
+
+def measure(row):
+    """The number that says most of a run of its fate."""
+    column = {
+        "round_off": "energy_error_end",
+        "bounded": "oscillation",
+        "wanders": "oscillation",
+        "drifts": "drift_rate",
+        "dissipates": "damping_ratio",
+        "grows": "exponential_rate",
+        "blows_up": "blow_up_time",
+    }.get(row["fate"])
+    return optional(row[column]) if column else math.nan
+
+
+def measure_words(row):
+    """The same in words, with what is known of its interval."""
+    value = measure(row)
+    if math.isnan(value):
+        return ""
+    if row["fate"] == "drifts":
+        half = (float(row["drift_rate_high"]) - float(row["drift_rate_low"])) / 2
+        return f"{number(value)} ± {number(half)} /s"
+    if row["fate"] == "blows_up":
+        rate = optional(row["exponential_rate"])
+        return f"at {number(value)} s" + ("" if math.isnan(rate) else f", {number(rate)} /s")
+    if row["fate"] == "grows":
+        return f"{number(value)} /s"
+    if row["fate"] == "dissipates":
+        return f"ζ = {number(value)}"
+    return f"± {number(abs(value))}"
+
+
+def envelope(times, errors):
+    """The largest errors in intervals of time that are equally long on a logarithmic axis."""
+    good = (times > 0) & np.isfinite(errors) & (errors < LARGEST)
+    times, errors = times[good], np.maximum(errors[good], LEAST)
+    if times.size == 0:
+        return times, errors
+    places = np.floor(BINS_A_DECADE * np.log10(times)).astype(int)
+    kept = [np.flatnonzero(places == place) for place in np.unique(places)]
+    return (
+        np.array([times[own].mean() for own in kept]),
+        np.array([errors[own].max() for own in kept]),
+    )
+
+
+def spread(wanted, step, low, high):
+    """Places at least `step` from each other, near those wanted; both in one order."""
+    order = np.argsort(wanted)
+    places = np.array(wanted, dtype=float)[order]
+    for _ in range(200):
+        for i in range(1, len(places)):
+            overlap = step - (places[i] - places[i - 1])
+            if overlap > 0:
+                places[i - 1] -= overlap / 2
+                places[i] += overlap / 2
+        places = np.clip(places, low, high)
+    # What the limits have pushed together.
+    for i in range(1, len(places)):
+        places[i] = max(places[i], places[i - 1] + step)
+    result = np.empty_like(places)
+    result[order] = places
+    return result
+
+
+def label_ends(sheet, axes, box, ends):
+    """Writes names to the right of a panel, each beside the end of its line or led to it.
+
+    box: left, top, width and height of the panel in inches; ends: name, colour, x, y of each.
+    """
+    left, top, width, height = box
+    if not ends:
+        return
+    to_pixels = axes.transData.transform
+    dpi = sheet.figure.dpi
+    points = [to_pixels((x, y)) / dpi for _, _, x, y in ends]
+    wanted = [sheet.height - point[1] for point in points]
+    places = spread(wanted, LABEL_STEP, top, top + height)
+    for (name, color, _, _), point, at, place in zip(ends, points, wanted, places):
+        start = left + width + 0.16
+        xs = np.array([point[0] + 0.03, left + width + 0.04, start - 0.03]) / sheet.width
+        ys = 1 - np.array([at, at, place]) / sheet.height
+        line = Line2D(xs, ys, color=color, linewidth=0.6, alpha=0.6)
+        sheet.figure.add_artist(line)
+        sheet.text(start, place, name, size=SMALL, color=color, va="center")
+
+
+def label_paths(sheet, axes, lines, others):
+    """Writes the names of lines near their ends, in the panel or to the right of it.
+
+    lines: name, colour, x and y of each; others: texts to be left readable.
+    """
+    box = axes.get_window_extent()
+    bounds = (box.x0, box.y0, box.x1 + LABELS * sheet.figure.dpi, box.y1)
+    ink = Ink(bounds)
+    for text in others:
+        extent = text.get_window_extent()
+        for height in np.linspace(extent.y0, extent.y1, 5):
+            ink.add_line((extent.x0, height), (extent.x1, height), 20.0)
+    texts, anchors = [], []
+    for name, color, xs, ys in lines:
+        pixels = [tuple(axes.transData.transform(point)) for point in zip(xs, ys)]
+        for start, end in zip(pixels, pixels[1:]):
+            ink.add_line(start, end, 2.0)
+        anchors.append(pixels[-3:])
+        texts.append(
+            axes.annotate(
+                name,
+                (0, 0),
+                (0, 0),
+                textcoords="offset points",
+                size=SMALL,
+                color=color,
+                ha="center",
+                va="center",
+                zorder=6,
+                annotation_clip=False,
+                bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.6},
+                arrowprops={"arrowstyle": "-", "color": color, "lw": 0.7, "shrinkA": 0},
+            )
+        )
+    sizes = [Text.get_window_extent(text).size for text in texts]
+    for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
+        move_label(text, axes.transData.inverted().transform(place.anchor), place)
+
+
+def log_ticks(axis):
+    """Decades in few characters."""
+    axis.set_major_locator(ticker.LogLocator(numticks=8))
+    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: power_of_ten(value)))
+    axis.set_minor_locator(ticker.NullLocator())
+
+
+def telling(rows):
+    """The runs that are drawn over time: the telling methods first, then others of rare fates."""
+    chosen = [row for name in TELLING for row in rows if row["method"] == name]
+    counts = {}
+    for row in chosen:
+        counts[row["fate"]] = counts.get(row["fate"], 0) + 1
+    for row in rows:
+        if row not in chosen and counts.get(row["fate"], 0) == 0:
+            counts[row["fate"]] = 1
+            chosen.insert(0, row)
+    others = [row for row in rows if row not in chosen]
+    return (chosen + others)[:MOST_LINES]
+
+
+def draw_guides(axes, low, high, bottom):
+    """Lines of slope 1/2 and 1 from the lower left; returns their names as they are drawn."""
+    names = []
+    for power, words in ((0.5, "√t"), (1.0, "t")):
+        start = 3 * bottom
+        times = np.array([low, high])
+        axes.plot(times, start * (times / low) ** power, color=GRID, linewidth=2.2, zorder=0)
+        end = (high, start * (high / low) ** power)
+        style = {"textcoords": "offset points", "color": FAINT, "ha": "right", "zorder": 5}
+        style["bbox"] = {"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.4}
+        names.append(axes.annotate(words, end, (-4, 2), **style))
+    return names
+
+
+def draw_paths(sheet, rows, drift):
+    """The errors over time."""
+    box = (LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT)
+    axes = sheet.axes(*box)
+    lines = []
+    for row in telling(rows):
+        path = drift.get(key(row))
+        if path is None:
+            continue
+        times, errors = envelope(path[:, 0], np.abs(path[:, 1]))
+        if times.size:
+            lines.append((row, times, errors))
+    if not lines:
+        sys.exit("energy_drift.py: no run came far enough to be drawn")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    low = min(times[0] for _, times, _ in lines)
+    high = max(times[-1] for _, times, _ in lines)
+    least = min(errors.min() for _, _, errors in lines)
+    axes.set_xlim(low, high)
+    axes.set_ylim(max(least / 3, LEAST), 3 * LARGEST)
+    guides = draw_guides(axes, low, high, max(least / 3, LEAST))
+    named = []
+    for row, times, errors in lines:
+        color = FATES[row["fate"]][2]
+        axes.plot(times, errors, color=color, linewidth=1.5)
+        if times[-1] < 0.8 * high:
+            axes.plot(times[-1:], errors[-1:], "o", color=color, markersize=3.5)
+        named.append((label(row), color, times, errors))
+    axes.grid(True)
+    log_ticks(axes.xaxis)
+    log_ticks(axes.yaxis)
+    axes.set_xlabel("t in s", labelpad=2)
+    sheet.text(LEFT - 0.5, TOP - 0.17, "Size of the energy error over time", weight="bold", size=10)
+    label_paths(sheet, axes, named, guides)
+
+
+def draw_tolerances(sheet, top, summary):
+    """The errors at the end over the tolerance."""
+    runs = {}
+    for row in summary:
+        if row["knob"] == "rtol":
+            runs.setdefault(row["method"], []).append(row)
+    runs = {name: rows for name, rows in runs.items() if len(rows) > 1}
+    if not runs:
+        return
+    title = "Energy error of adaptive methods at their end, over rtol"
+    sheet.text(LEFT - 0.5, top - 0.17, title, weight="bold", size=10)
+    box = (LEFT, top, PANEL_WIDTH, TOLERANCE_HEIGHT)
+    axes = sheet.axes(*box)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    ends = []
+    for name, rows in runs.items():
+        rows.sort(key=lambda row: -float(row["value"]))
+        values = np.array([float(row["value"]) for row in rows])
+        errors = np.array([abs(optional(row["energy_error_end"])) for row in rows])
+        errors = np.clip(errors, LEAST, LARGEST)
+        color = FATES[rows[len(rows) // 2]["fate"]][2]
+        axes.plot(values, errors, color=color, linewidth=1.1, alpha=0.85)
+        for row, value, error in zip(rows, values, errors):
+            axes.plot([value], [error], "o", color=FATES[row["fate"]][2], markersize=3.8)
+        ends.append((name, color, values[-1], errors[-1]))
+    axes.invert_xaxis()
+    axes.grid(True)
+    log_ticks(axes.xaxis)
+    log_ticks(axes.yaxis)
+    axes.set_xlabel("rtol (finer to the right)", labelpad=2)
+    ends.sort(key=lambda end: -end[3])
+    if len(ends) > MOST_TOLERANCE_LABELS:  # the ends of the list and some between
+        places = np.linspace(0, len(ends) - 1, MOST_TOLERANCE_LABELS).round().astype(int)
+        ends = [ends[place] for place in sorted(set(places))]
+    label_ends(sheet, axes, box, ends)
+
+
+def groups_of(rows):
+    """The rows by fate, in order, those of one fate by size."""
+    for fate in FATES:
+        own = [row for row in rows if row["fate"] == fate]
+        if own:
+            own.sort(key=lambda row: abs(measure(row)) if measure(row) == measure(row) else 0)
+            if fate == "blows_up":
+                own.reverse()
+            yield fate, own
+
+
+def table_height(rows):
+    """In inches."""
+    return sum(HEADING + ROW * len(own) + GROUP_GAP for _, own in groups_of(rows))
+
+
+def draw_table(sheet, rows, until):
+    """The verdicts."""
+    top = TOP - 0.3
+    middle = {"va": "center", "size": FONT_SIZE}
+    for fate, own in groups_of(rows):
+        title, meaning, color = FATES[fate]
+        bar = sheet.axes(TABLE_LEFT, top, 0.07, HEADING + ROW * len(own))
+        bar.set_axis_off()
+        bar.axvspan(0, 1, color=color)
+        line = top + HEADING / 2
+        count = f"{title} ({len(own)})"
+        sheet.text(TABLE_LEFT + 0.17, line, count, color=color, weight="bold", **middle)
+        sheet.text(TABLE_LEFT + 2.45, line, meaning, color=FAINT, **middle)
+        top += HEADING
+        for row in own:
+            line = top + ROW / 2
+            sheet.text(TABLE_LEFT + 0.17, line, label(row), color=INK, **middle)
+            sheet.text(TABLE_LEFT + 2.45, line, measure_words(row), color=INK, **middle)
+            right = {"color": FAINT, "ha": "right"} | middle
+            sheet.text(TABLE_LEFT + TABLE_WIDTH, line, remark(row, until), **right)
+            top += ROW
+        top += GROUP_GAP
+
+
+def remark(row, until):
+    """How far the run came, where that is not the end."""
+    outcome = row["outcome"]
+    if outcome == "reached_end" or row["fate"] == "blows_up":
+        return "in its second half" if row["has_settled"] == "yes" else ""
+    part = float(row["t_reached"]) / until
+    percent = f"{100 * part:.2g} %"
+    return f"{percent} of t" if outcome == "over_budget" else f"{outcome} at {percent}"
+
+
+def main(folder):
+    """Draws the picture."""
+    use_style()
+    folder = Path(folder)
+    origin = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary = read(folder / "summary.csv")
+    drift = {}
+    for row in read(folder / "drift.csv"):
+        point = (float(row["t"]), optional(row["relative_error"]))
+        drift.setdefault(key(row), []).append(point)
+    drift = {run: np.array(path) for run, path in drift.items()}
+    rows = one_a_method(summary)
+    has_tolerances = any(row["knob"] == "rtol" for row in summary)
+    panels = TOP + PANEL_HEIGHT + 0.65 + (DOWN - 0.1 + TOLERANCE_HEIGHT if has_tolerances else 0)
+    sheet = Sheet(WIDTH, max(panels, TOP + table_height(rows)))
+    until, h = origin["until"], origin["step_size"]
+    title = f"{origin['scene']['name']}: where the energy goes"
+    sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center", color=INK)
+    words = (
+        f"{number(until / h)} steps of h = {number(h)} s, to t = {number(until)} s; "
+        "errors E(t) − E(0) as parts of the largest kinetic energy, "
+        f"{number(origin['energy_scale'])} J"
+    )
+    sheet.text(0.15, 0.52, words, size=10, color=FAINT, va="center")
+    sheet.rule(0.7)
+    draw_paths(sheet, rows, drift)
+    if has_tolerances:
+        draw_tolerances(sheet, TOP + PANEL_HEIGHT + DOWN, summary)
+    draw_table(sheet, rows, until)
+    for extension in ("png", "svg"):
+        sheet.save(str(folder / f"energy_drift.{extension}"))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("Usage: energy_drift.py DIR")
+    main(sys.argv[1])
