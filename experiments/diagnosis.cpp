@@ -112,8 +112,10 @@ std::string crossed(const Method& method, double h, const Before& before, Outcom
         method.name, h * before.omega * before.omega / 2);
   }
   if (h * before.omega > limit) {
-    return fmt::format("h w_max is {:.3g} {} (w_max = {:.4g} rad/s), above {}'s limit of {:.4g}",
-                       h * before.omega, when(before.t_of_omega), before.omega, method.name, limit);
+    return fmt::format(
+        "h w_max is {:.3g} {} (w_max = {:.4g} rad/s), above {}'s limit of {:.5g}/w_max = {:.4g} s",
+        h * before.omega, when(before.t_of_omega), before.omega, method.name, limit,
+        limit / before.omega);
   }
   if (method.implicit && before.buckling * h > 0.1) {
     return fmt::format(
