@@ -6,8 +6,8 @@ namespace qddot {
 
 // What steps a method of adaptive steps takes where the motion that it sees is slow and a fast
 // vibration is all but at rest beside it: q1'' = -q1 from (1, 0) and q2'' = -w^2 q2 from (0, 1e-6),
-// over ten periods of the slow one. An explicit method has to hold h w below its limit all the same:
-// by a bound of w, or else by steps that it rejects once q2 has grown to where it is seen.
+// over ten periods of the slow one. An explicit method has to hold h w below its limit all the
+// same: by a bound of w, or else by steps that it rejects once q2 has grown to where it is seen.
 struct ChosenSteps {
   Outcome outcome{};
   Counts counts{};

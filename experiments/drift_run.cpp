@@ -145,7 +145,7 @@ DriftRun run_drift(const Method& method, const Knobs& knobs, const ReducedScene&
 std::string verdict(const DriftRun& run, double until) {
   const auto& [outcome, t, counts, seconds, message] = run.summary;
   const std::string words = in_words(run.energy, run.scales);
-  if (outcome == Outcome::reached_end || run.energy.fate == Fate::blows_up) return words;
+  if (outcome == Outcome::reached_end || run.energy.verdict == Verdict::blows_up) return words;
   if (outcome == Outcome::over_budget) {
     return fmt::format("{}; over {:.2g} of the run, when its time was up", words, t / until);
   }

@@ -2,8 +2,8 @@
 // dissipated, blows up or is nothing but round-off, over 10^5 to 10^7 steps.
 //
 //   energy_drift --scene cloth --out results/cloth
-//   energy_drift --scene orbit --step-size 0.01 --until 1e4 --methods verlet,rk4 --out
-//   results/orbit energy_drift --scene orbit --methods verlet --compensated --out results/orbit
+//   energy_drift --scene orbit --step-size 0.01 --until 1e4 --methods verlet --out results/orbit
+//   energy_drift --scene orbit --methods verlet --compensated --out results/compensated
 //
 //  1. Scales come from one accurate run: errors are (E(t) - E(0)) over the largest kinetic energy.
 //  2. Fixed-step methods take steps of H, adaptive ones run at each tolerance, all on one thread
@@ -141,7 +141,7 @@ std::vector<DriftRun> run_all(const std::vector<Job>& jobs, const Arguments& a,
 #pragma omp critical
       show_progress(fmt::format("{} of {} runs: {} {:.3g}: {}", ++finished, jobs.size(),
                                 jobs[i].method->name, jobs[i].value,
-                                fate_name(runs[i].energy.fate)));
+                                verdict_name(runs[i].energy.verdict)));
     } catch (...) {
 #pragma omp critical
       trouble = std::current_exception();
@@ -208,7 +208,7 @@ void write_interval(Csv& csv, const Interval& interval) {
 
 constexpr Interval no_interval{nothing, nothing, nothing};
 Interval drift_of(const Trend& trend) {
-  return trend.fate == Fate::unknown ? no_interval : trend.drift;
+  return trend.verdict == Verdict::unknown ? no_interval : trend.drift;
 }
 
 void write_momentum(Csv& csv, const std::optional<Trend>& trend) {
@@ -218,7 +218,7 @@ void write_momentum(Csv& csv, const std::optional<Trend>& trend) {
 
 void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated) {
   const Trend& e = run.energy;
-  const bool is_known = e.fate != Fate::unknown;
+  const bool is_known = e.verdict != Verdict::unknown;
   csv.field(run.method->name);
   csv.field(name(run.summary.outcome));
   write_interval(csv, drift_of(e));
@@ -226,7 +226,7 @@ void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated
   csv.field(verdict(run, until));
   csv.field(knob_name(run.method->knob));
   csv.field(run.value);
-  csv.field(fate_name(e.fate));
+  csv.field(verdict_name(e.verdict));
   csv.field(run.summary.t_reached);
   csv.field(run.summary.counts.steps);
   csv.field(run.path.back().error);
@@ -234,8 +234,8 @@ void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated
   write_interval(csv, e.rate.value != 0 || !is_known ? no_interval : e.late_drift);
   csv.field(e.has_settled ? "yes" : "no");
   csv.field(e.rate.value != 0 ? e.rate.value : nothing);
-  csv.field(e.fate == Fate::dissipates ? e.damping_ratio : nothing);
-  csv.field(e.fate == Fate::blows_up ? e.blow_up_time : nothing);
+  csv.field(e.verdict == Verdict::dissipates ? e.damping_ratio : nothing);
+  csv.field(e.verdict == Verdict::blows_up ? e.blow_up_time : nothing);
   write_momentum(csv, run.linear);
   write_momentum(csv, run.angular);
   csv.field(compensated && run.method->takes_compensation ? "yes" : "no");

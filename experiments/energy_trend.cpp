@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 namespace qddot {
 namespace {
 
@@ -183,10 +181,6 @@ std::optional<Line> line_through(std::span<const Sample> samples, double begin) 
   return line;
 }
 
-bool holds(const Interval& interval, double value) {
-  return interval.low <= value && value <= interval.high;
-}
-
 void take_line(Trend& trend, std::span<const Sample> samples, const TrendScales& scales) {
   std::optional<Line> line = line_through(samples, 0);
   if (!line) return;
@@ -195,8 +189,8 @@ void take_line(Trend& trend, std::span<const Sample> samples, const TrendScales&
       std::ranges::find_if(samples, [&](const Sample& sample) { return sample.t > half; });
   const auto second = line_through({late, samples.end()}, half);
   trend.late_drift = second ? second->drift : line->drift;
-  const bool has_stopped = line->drift.excludes_zero() && holds(trend.late_drift, 0) &&
-                           !holds(trend.late_drift, line->drift.value);
+  const bool has_stopped = line->drift.excludes_zero() && trend.late_drift.holds(0) &&
+                           !trend.late_drift.holds(line->drift.value);
   trend.has_settled =
       second && (has_stopped || second->uncertainty() < much_surer * line->uncertainty());
   const double largest_mean = line->largest_mean;
@@ -209,43 +203,14 @@ void take_line(Trend& trend, std::span<const Sample> samples, const TrendScales&
   trend.oscillation = line->oscillation;
   const double steps = scales.step > 0 ? duration / scales.step : 1;
   if (is_rounding(trend, largest_mean, steps, scales)) {
-    trend.fate = Fate::round_off;
+    trend.verdict = Verdict::round_off;
   } else if (trend.drift.excludes_zero()) {
-    trend.fate = Fate::drifts;
+    trend.verdict = Verdict::drifts;
   } else if (trend.walk * std::sqrt(duration) > trend.oscillation) {
-    trend.fate = Fate::wanders;
+    trend.verdict = Verdict::wanders;
   } else {
-    trend.fate = Fate::bounded;
+    trend.verdict = Verdict::bounded;
   }
-}
-
-std::string in_roundings(double value, const TrendScales& scales) {
-  return scales.rounding > 0
-             ? fmt::format(", {:.2g} roundings of the energy", value / scales.rounding)
-             : "";
-}
-
-std::string drift_words(const Interval& drift) {
-  return fmt::format("{:.3g}/s ({:.3g} to {:.3g})", drift.value, drift.low, drift.high);
-}
-
-std::string no_drift_words(const Interval& drift) {
-  return fmt::format("no drift (|slope| < {:.1e}/s)",
-                     std::max(std::abs(drift.low), std::abs(drift.high)));
-}
-
-std::string settled_words(const Trend& trend) {
-  return trend.has_settled
-             ? fmt::format(" in the second half, after {:.1e} in the first", trend.first_half)
-             : "";
-}
-
-// Where the drift of the second half is surely another one.
-std::string change_words(const Trend& trend) {
-  if (holds(trend.late_drift, trend.drift.value)) return "";
-  const bool is_less = std::abs(trend.late_drift.value) < std::abs(trend.drift.value);
-  return fmt::format(", {} ({:.2g}/s in the second half)", is_less ? "slows down" : "speeds up",
-                     trend.late_drift.value);
 }
 
 }  // namespace
@@ -258,7 +223,7 @@ Trend trend_of(std::span<const Sample> samples, Outcome outcome, const TrendScal
   const Excess excess(samples, scales);
   if (high != samples.end() ||
       (!samples.empty() && (outcome == Outcome::diverged || outcome == Outcome::not_finite))) {
-    trend.fate = Fate::blows_up;
+    trend.verdict = Verdict::blows_up;
     trend.last_error = samples.back().error;
     trend.blow_up_time = high != samples.end() ? high->t : samples.back().t;
     excess.fit_blow_up(trend);
@@ -270,7 +235,7 @@ Trend trend_of(std::span<const Sample> samples, Outcome outcome, const TrendScal
   if (std::abs(trend.last_error) > exponential_part * scales.excess) {
     excess.fit_slow(trend);
     if (trend.last_error * trend.rate.value > 0 && trend.rate.excludes_zero()) {
-      trend.fate = trend.last_error > 0 ? Fate::grows : Fate::dissipates;
+      trend.verdict = trend.last_error > 0 ? Verdict::grows : Verdict::dissipates;
       if (scales.frequency > 0) trend.damping_ratio = -trend.rate.value / (2 * scales.frequency);
       return trend;
     }
@@ -287,50 +252,6 @@ Trend line_of(std::span<const Sample> samples, const TrendScales& scales) {
   trend.last_error = blocks.means[blocks.means.size() - 1];
   take_line(trend, samples, scales);
   return trend;
-}
-
-std::string in_words(const Trend& trend, const TrendScales& scales) {
-  switch (trend.fate) {
-    case Fate::bounded:
-      return fmt::format("bounded: oscillates by {:.1e}, {}{}", trend.oscillation,
-                         no_drift_words(trend.drift), settled_words(trend));
-    case Fate::round_off: {
-      const double root_step = trend.walk * std::sqrt(scales.step);
-      if (trend.drift.excludes_zero()) {
-        return fmt::format("only round-off, which adds up: drifts by {}{} a step",
-                           drift_words(trend.drift),
-                           in_roundings(trend.drift.value * scales.step, scales));
-      }
-      return root_step > 0
-                 ? fmt::format("only round-off: random walk of {:.1e} a root step{}, {}", root_step,
-                               in_roundings(root_step, scales), no_drift_words(trend.drift))
-                 : fmt::format("only round-off: stays within {:.1e}, {}", trend.oscillation,
-                               no_drift_words(trend.drift));
-    }
-    case Fate::wanders:
-      return fmt::format("wanders like a random walk of {:.1e} a root second, {}{}", trend.walk,
-                         no_drift_words(trend.drift), settled_words(trend));
-    case Fate::drifts:
-      return fmt::format("drifts by {}{}, oscillates by {:.1e}{}", drift_words(trend.drift),
-                         settled_words(trend), trend.oscillation, change_words(trend));
-    case Fate::dissipates:
-      return fmt::format(
-          "dissipates like a damping ratio of {:.2g} (energy falls at {:.3g}/s, by {:.2g} of its "
-          "excess)",
-          trend.damping_ratio, -trend.rate.value, -trend.last_error / scales.excess);
-    case Fate::grows:
-      return fmt::format("grows at {:.3g}/s ({:.3g} to {:.3g}), by {:.2g} of its excess",
-                         trend.rate.value, trend.rate.low, trend.rate.high,
-                         trend.last_error / scales.excess);
-    case Fate::blows_up:
-      return trend.rate.value > 0
-                 ? fmt::format("grows: blows up at t = {:.4g} s (rate {:.3g}/s)",
-                               trend.blow_up_time, trend.rate.value)
-                 : fmt::format("grows: blows up at t = {:.4g} s, at once", trend.blow_up_time);
-    case Fate::unknown:
-      break;
-  }
-  return "too short for a verdict";
 }
 
 }  // namespace qddot

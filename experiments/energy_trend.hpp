@@ -22,7 +22,7 @@ struct TrendScales {
   double step = 0;       // the mean length of a step [s]
 };
 
-enum class Fate {
+enum class Verdict {
   bounded,     // no drift, and an oscillation about one level
   round_off,   // nothing but rounding: a random walk, sqrt(t) (Brouwer's law), or less; or a drift
                // of less than one rounding of the energy a step
@@ -33,10 +33,10 @@ enum class Fate {
   blows_up,    // the error exceeds `blown_up`
   unknown,     // too few samples
 };
-constexpr const char* fate_name(Fate fate) {
+constexpr const char* verdict_name(Verdict verdict) {
   constexpr const char* names[] = {"bounded",    "round_off", "wanders",  "drifts",
                                    "dissipates", "grows",     "blows_up", "unknown"};
-  return names[static_cast<int>(fate)];
+  return names[static_cast<int>(verdict)];
 }
 constexpr double blown_up = 10;
 
@@ -48,7 +48,7 @@ constexpr double blown_up = 10;
 // Or where the excess x = 1 + e/excess falls or rises by more than a tenth:
 //   x = e^(rate t), which loses energy as a damping ratio zeta = -rate/(2 frequency) does.
 struct Trend {
-  Fate fate = Fate::unknown;
+  Verdict verdict = Verdict::unknown;
   // [1/s]; of what falls or rises exponentially the slope with which that begins, excess rate.
   Interval drift;
   bool has_settled = false;

@@ -1,24 +1,13 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "experiments/amplitude_rows.hpp"
 #include "experiments/fate.hpp"
-#include "experiments/rest.hpp"
 
 namespace qddot {
-
-// A scene at one amplitude of its motion, and what linear theory knows of it.
-struct AmplitudeRow {
-  double amplitude;
-  std::unique_ptr<ReducedScene> scene;
-  double rest_energy;       // [J]
-  double omega_max;         // at the start [rad/s]
-  double buckling_rate;     // likewise [1/s], zero where nothing pushes to the side
-  std::vector<Mode> modes;  // about the start
-};
 
 // One run of the map.
 struct Cell {

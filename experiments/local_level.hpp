@@ -8,7 +8,8 @@ namespace qddot {
 struct Interval {
   double value = 0, low = 0, high = 0;
 
-  bool excludes_zero() const { return low > 0 || high < 0; }
+  bool holds(double x) const { return low <= x && x <= high; }
+  bool excludes_zero() const { return !holds(0); }
 };
 
 // What a series y_1 ... y_n at equal distances says of the model

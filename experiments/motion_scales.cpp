@@ -70,8 +70,7 @@ double fastest_frequency(const ReducedScene& scene) {
   return squares.size() > 0 ? std::sqrt(std::max(squares[0], 0.0)) : 0;
 }
 
-MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta,
-                           double until) {
+MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, double until) {
   MotionScales scales{
       .energy = scene.energy(scene.initial()), .kinetic = 0, .linear = 0, .angular = 0};
   Look look(scene, momenta, scales);

@@ -26,6 +26,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/amplitude_rows.hpp"
 #include "experiments/chosen_steps.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/fate_map.hpp"
@@ -35,10 +36,7 @@
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
-#include "experiments/rest.hpp"
 #include "experiments/scene_choice.hpp"
-#include "src/analysis/natural_modes.hpp"
-#include "src/scene/generators.hpp"
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/settle.hpp"
 
@@ -46,7 +44,7 @@ namespace qddot {
 namespace {
 
 constexpr int linear_points = 60;  // a decade
-constexpr int modes_excited = 12, modes_predicted = 48;
+constexpr int modes_excited = 12;
 constexpr int most_columns = 1000, most_amplitudes = 1000;
 constexpr std::array tolerances = {1e-2, 1e-4, 1e-6};
 constexpr std::array fast_frequencies = {1., 10., 100., 1000.};
@@ -107,80 +105,18 @@ void require(const Arguments& a) {
   }
 }
 
-// The scene as a generator draws it with its parameter `vary` set.
-Scene drawn_with(const Arguments& a, double value) {
-  const Generator* generator = find_generator(a.scene.name);
-  if (!generator) {
-    throw InvalidInput(
-        fmt::format("--vary {}: scene {} is not a generator's, whose parameters can be varied",
-                    a.vary, a.scene.name));
-  }
-  return generate(*generator, {{a.vary, value}}, a.scene.name);
-}
-
-// The scene with each node moved from its place at rest to `amplitude` times its distance from it,
-// velocities likewise.
-Scene scaled(const Scene& start, const Scene& rest, double amplitude) {
-  Scene scene = start;
-  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-    Node& node = scene.nodes[i];
-    const Eigen::Vector3d& origin = rest.nodes[i].position;
-    node.position = origin + amplitude * (node.position - origin);
-    node.velocity *= amplitude;
-  }
-  return scene;
-}
-
-double energy_at_rest(const Scene& rest) {
-  const ReducedScene scene(rest, Reductions::only({Reduction::pins}));
-  return scene.potential(scene.initial());
-}
-
-AmplitudeRow row_of(double amplitude, const Scene& start, double rest_energy,
-                    const Reductions& reductions) {
-  AmplitudeRow row{.amplitude = amplitude,
-                   .scene = std::make_unique<ReducedScene>(start, reductions),
-                   .rest_energy = rest_energy,
-                   .omega_max = 0,
-                   .buckling_rate = 0,
-                   .modes = {}};
-  const System& system = row.scene->system();
-  const Vec& q = row.scene->initial().q;
-  row.modes = sampled_modes(system, q, modes_predicted);
-  row.omega_max = row.modes.empty() ? 0 : row.modes.back().omega;
-  row.buckling_rate = buckling_rate(system, q);
-  return row;
-}
-
-// The rows of the map; none, with a sentence, where the scene has no equilibrium.
+// The rows of the map; none where the scene has no equilibrium.
 std::vector<AmplitudeRow> rows_of(const Arguments& a, const Scene& start,
                                   const std::optional<Scene>& rest) {
   const Reductions reductions = reductions_of(a.scene);
-  std::vector<AmplitudeRow> rows;
-  for (const double amplitude : a.amplitudes) {
-    if (!a.vary.empty()) {
-      const Scene scene = drawn_with(a, amplitude);
-      rows.push_back(
-          row_of(amplitude, scene, energy_at_rest(settled(scene, a.scene.name)), reductions));
-    } else if (rest) {
-      rows.push_back(
-          row_of(amplitude, scaled(start, *rest, amplitude), energy_at_rest(*rest), reductions));
-    }
+  if (!a.vary.empty()) return varied_rows(a.scene.name, a.vary, a.amplitudes, reductions);
+  if (!rest) return {};
+  auto rows = scaled_rows(start, *rest, a.amplitudes, reductions);
+  if (rows.size() < a.amplitudes.size()) {
+    fmt::print(stderr, "stability_map: {} of {} amplitudes are left out, at which nothing moves\n",
+               a.amplitudes.size() - rows.size(), a.amplitudes.size());
   }
-  std::erase_if(rows, [&](const AmplitudeRow& row) {
-    const double energy = row.scene->energy(row.scene->initial()) - row.rest_energy;
-    if (row.omega_max > 0 && energy > 0) return false;
-    fmt::print(stderr, "stability_map: nothing vibrates at amplitude {}: that row is left out\n",
-               row.amplitude);
-    return true;
-  });
   return rows;
-}
-
-// At the start [rad/s]; zero where nothing vibrates.
-double omega_max_of(const ReducedScene& scene) {
-  const NaturalModes highest = highest_modes(scene.system(), scene.initial().q, 1);
-  return highest.squares.size() == 0 ? 0 : std::sqrt(std::max(0.0, highest.squares[0]));
 }
 
 bool has_linear_step(const Method& method) {

@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(over_a_million_steps_verlet_does_not_drift_and_rk4_does) {
   const Study orbit("orbit");
   const DriftRun verlet = orbit.of("verlet", 0.02, 1e6);
   BOOST_TEST(holds_zero(verlet.energy.drift));
-  BOOST_TEST(fate_name(verlet.energy.fate) == "bounded");
+  BOOST_TEST(verdict_name(verlet.energy.verdict) == "bounded");
   // h^2 w^2/8 and thereabouts.
   BOOST_TEST(verlet.energy.oscillation > 1e-4);
   BOOST_TEST(verlet.energy.oscillation < 1e-2);
@@ -88,10 +88,10 @@ BOOST_AUTO_TEST_CASE(one_coefficient_off_by_a_thousandth_is_caught) {
   const double h = 0.02, until = 1e5 * h;
   const DriftRun right = orbit.of(leaning_verlet<0>(), h, h, until);
   BOOST_TEST(holds_zero(right.energy.drift));
-  BOOST_TEST(fate_name(right.energy.fate) == "bounded");
+  BOOST_TEST(verdict_name(right.energy.verdict) == "bounded");
   const DriftRun wrong = orbit.of(leaning_verlet<1>(), h, h, until);
   BOOST_TEST(wrong.energy.drift.high < 0);
-  BOOST_TEST(fate_name(wrong.energy.fate) != "bounded");
+  BOOST_TEST(verdict_name(wrong.energy.verdict) != "bounded");
   // On the oscillator by what the determinant says.
   const Study oscillator("oscillator");
   const double z = 100 * h * h;
@@ -107,11 +107,11 @@ BOOST_AUTO_TEST_CASE(implicit_euler_dissipates_and_explicit_euler_grows_as_predi
     const double rate = std::log1p(h * h * w * w) / h;  // E changes by 1 + h^2 w^2 a step
     const DriftRun falls = oscillator.of("implicit_euler", h, 1e5);
     BOOST_TEST(falls.scales.frequency == w, boost::test_tools::tolerance(1e-3));
-    BOOST_TEST(fate_name(falls.energy.fate) == "dissipates");
+    BOOST_TEST(verdict_name(falls.energy.verdict) == "dissipates");
     // E counts T and V alike, what falls steadily is not quite E: a ripple of h w/2.
     BOOST_TEST(falls.energy.damping_ratio == rate / (2 * w), boost::test_tools::tolerance(0.01));
     const DriftRun grows = oscillator.of("explicit_euler", h, 1e5);
-    BOOST_TEST(fate_name(grows.energy.fate) == "blows_up");
+    BOOST_TEST(verdict_name(grows.energy.verdict) == "blows_up");
     BOOST_TEST(grows.energy.rate.value == rate, boost::test_tools::tolerance(1e-3));
     BOOST_TEST(grows.energy.blow_up_time == std::log(11) / rate,
                boost::test_tools::tolerance(0.01));
@@ -124,16 +124,16 @@ BOOST_AUTO_TEST_CASE(beyond_its_limit_verlet_blows_up_at_its_rate) {
   // The larger root of x^2 - (2 - z) x + 1; energy grows with its square.
   const double root = (z - 2) / 2 + std::sqrt((z - 2) * (z - 2) / 4 - 1);
   const DriftRun run = oscillator.of("verlet", h, 1e5);
-  BOOST_TEST(fate_name(run.energy.fate) == "blows_up");
+  BOOST_TEST(verdict_name(run.energy.verdict) == "blows_up");
   BOOST_TEST(run.energy.rate.value == 2 * std::log(root) / h, boost::test_tools::tolerance(0.01));
-  BOOST_TEST(fate_name(oscillator.of("verlet", 0.199, 1e5).energy.fate) == "bounded");
+  BOOST_TEST(verdict_name(oscillator.of("verlet", 0.199, 1e5).energy.verdict) == "bounded");
 }
 
 BOOST_AUTO_TEST_CASE(what_only_rounds_is_called_so) {
   const Study oscillator("oscillator");
   const DriftRun exact = oscillator.of("exact", 0.05, 1e6);
-  BOOST_TEST(fate_name(exact.energy.fate) == "round_off");
-  BOOST_TEST(fate_name(oscillator.of("verlet", 0.05, 1e6).energy.fate) == "bounded");
+  BOOST_TEST(verdict_name(exact.energy.verdict) == "round_off");
+  BOOST_TEST(verdict_name(oscillator.of("verlet", 0.05, 1e6).energy.verdict) == "bounded");
 }
 
 BOOST_AUTO_TEST_CASE(momenta_are_looked_at_where_they_stay) {
@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(a_run_out_of_time_has_its_verdict_over_what_it_reached) {
       run_drift(method, knobs_for(method, 0.02, orbit.scene), orbit.scene, orbit.momenta, scales,
                 {.step_size = 0.02, .until = 1e9, .seconds = 0.3});
   BOOST_TEST((run.summary.outcome == Outcome::over_budget));
-  BOOST_TEST(fate_name(run.energy.fate) == "bounded");
+  BOOST_TEST(verdict_name(run.energy.verdict) == "bounded");
   const std::string words = verdict(run, 1e9);
   BOOST_TEST(words.find("of the run, when its time was up") != words.npos);
 }

@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(one_sine_spans_its_amplitude) {
   const Trend trend = judged(series([](double t) { return 3e-5 * std::sin(170 * t) + 1e-5; }));
   // 95 % of its values lie within sin(0.95 pi/2) = 0.997 of it; some 2000 samples.
   BOOST_TEST(trend.oscillation == 3e-5, boost::test_tools::tolerance(0.01));
-  BOOST_TEST(fate_name(trend.fate) == "bounded");
+  BOOST_TEST(verdict_name(trend.verdict) == "bounded");
 }
 
 BOOST_AUTO_TEST_CASE(a_slope_under_an_oscillation_is_found_within_its_interval) {
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(a_slope_under_an_oscillation_is_found_within_its_interval) 
     for (int seed = 0; seed < seeds; ++seed) {
       const auto vibrates = vibration(1e-4, 0.3 * seed);
       const Trend trend = judged(series([&](double t) { return vibrates(t) + slope * t; }));
-      BOOST_TEST(fate_name(trend.fate) == "drifts");
+      BOOST_TEST(verdict_name(trend.verdict) == "drifts");
       BOOST_TEST(trend.drift.value * sign > 0);
       BOOST_TEST(trend.drift.excludes_zero());
       BOOST_TEST(says(trend, "drifts by"));
@@ -134,8 +134,8 @@ BOOST_AUTO_TEST_CASE(a_slope_far_below_what_the_oscillation_hides_is_not_claimed
   int claims = 0;
   for (int seed = 0; seed < seeds; ++seed) {
     const auto vibrates = vibration(1e-4, 0.3 * seed);
-    claims +=
-        judged(series([&](double t) { return vibrates(t) + 1e-10 * t; })).fate == Fate::drifts;
+    claims += judged(series([&](double t) { return vibrates(t) + 1e-10 * t; })).verdict ==
+              Verdict::drifts;
   }
   BOOST_TEST(claims <= most_misses);
 }
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(a_random_walk_is_no_drift_and_its_size_is_found) {
     misses += trend.drift.excludes_zero();
     seen += trend.walk > 0;
     size += trend.walk * std::sqrt(h) / seeds;
-    BOOST_TEST(fate_name(trend.fate) == "round_off");
+    BOOST_TEST(verdict_name(trend.verdict) == "round_off");
     BOOST_TEST(says(trend, "only round-off"));
   }
   BOOST_TEST(misses <= most_misses);
@@ -160,7 +160,7 @@ BOOST_AUTO_TEST_CASE(a_random_walk_is_no_drift_and_its_size_is_found) {
 
 BOOST_AUTO_TEST_CASE(the_same_walk_a_million_roundings_large_is_not_called_round_off) {
   const Trend trend = judged(walk(1e-10, 1), {.rounding = 1e-16, .step = h});
-  BOOST_TEST(fate_name(trend.fate) == "wanders");
+  BOOST_TEST(verdict_name(trend.verdict) == "wanders");
   BOOST_TEST(says(trend, "random walk"));
   BOOST_TEST(says(trend, "no drift"));
 }
@@ -170,7 +170,7 @@ BOOST_AUTO_TEST_CASE(a_drift_that_outgrows_its_walk_is_one) {
     auto samples = walk(1e-13, seed);                                 // 1e-10 by the end
     for (Sample& sample : samples) sample.error -= 1e-12 * sample.t;  // 1e-9
     const Trend trend = judged(samples, {.rounding = 1e-17, .step = h});
-    BOOST_TEST(fate_name(trend.fate) == "drifts");
+    BOOST_TEST(verdict_name(trend.verdict) == "drifts");
     BOOST_TEST(trend.drift.high < 0);
   }
 }
@@ -178,11 +178,11 @@ BOOST_AUTO_TEST_CASE(a_drift_that_outgrows_its_walk_is_one) {
 BOOST_AUTO_TEST_CASE(round_off_that_adds_up_says_so) {
   const TrendScales scales{.rounding = 2e-16, .step = h};
   const Trend biased = judged(series([](double t) { return 1e-17 / h * t; }), scales);
-  BOOST_TEST(fate_name(biased.fate) == "round_off");
+  BOOST_TEST(verdict_name(biased.verdict) == "round_off");
   BOOST_TEST(says(biased, "adds up", scales));
   BOOST_TEST(!says(biased, "no drift", scales));
   const Trend more = judged(series([](double t) { return 1e-15 / h * t; }), scales);
-  BOOST_TEST(fate_name(more.fate) == "drifts");
+  BOOST_TEST(verdict_name(more.verdict) == "drifts");
 }
 
 BOOST_AUTO_TEST_CASE(a_decay_is_the_damping_that_it_is) {
@@ -196,7 +196,7 @@ BOOST_AUTO_TEST_CASE(a_decay_is_the_damping_that_it_is) {
                                  return 1.4 * (left - 1) + left * ripple(t);
                                }),
                                scales);
-    BOOST_TEST(fate_name(trend.fate) == "dissipates");
+    BOOST_TEST(verdict_name(trend.verdict) == "dissipates");
     BOOST_TEST(trend.damping_ratio == zeta, boost::test_tools::tolerance(0.01));
     BOOST_TEST(trend.drift.value == -1.4 * 2 * zeta * w, boost::test_tools::tolerance(0.01));
     BOOST_TEST(trend.drift.high < 0);
@@ -206,31 +206,31 @@ BOOST_AUTO_TEST_CASE(a_decay_is_the_damping_that_it_is) {
 
 BOOST_AUTO_TEST_CASE(what_is_gone_in_a_few_steps_has_been_dissipated) {
   const Trend trend = judged(series([](double t) { return std::expm1(-0.5 * t / h); }, 200 * h));
-  BOOST_TEST(fate_name(trend.fate) == "dissipates");
+  BOOST_TEST(verdict_name(trend.verdict) == "dissipates");
   BOOST_TEST(trend.rate.value == -0.5 / h, boost::test_tools::tolerance(0.1));
 }
 
 BOOST_AUTO_TEST_CASE(an_oscillation_by_all_of_the_excess_is_bounded) {
   const Trend trend = judged(series([](double t) { return 0.5 * (std::cos(170 * t) - 1); }));
-  BOOST_TEST(fate_name(trend.fate) == "bounded");
+  BOOST_TEST(verdict_name(trend.verdict) == "bounded");
 }
 
 BOOST_AUTO_TEST_CASE(the_loss_of_a_twentieth_is_a_drift_and_of_a_fifth_a_decay) {
   const auto lost = [&](double part) {
     return judged(series([&](double t) { return std::expm1(std::log1p(-part) * t / duration); }));
   };
-  BOOST_TEST(fate_name(lost(0.05).fate) == "drifts");
+  BOOST_TEST(verdict_name(lost(0.05).verdict) == "drifts");
   BOOST_TEST(lost(0.05).drift.high < 0);
-  BOOST_TEST(fate_name(lost(0.2).fate) == "dissipates");
+  BOOST_TEST(verdict_name(lost(0.2).verdict) == "dissipates");
   const Trend won = judged(series([&](double t) { return 0.2 * t / duration; }));
-  BOOST_TEST(fate_name(won.fate) == "grows");
+  BOOST_TEST(verdict_name(won.verdict) == "grows");
   BOOST_TEST(won.drift.low > 0);
 }
 
 BOOST_AUTO_TEST_CASE(a_blow_up_has_its_time_and_rate) {
   const double rate = 0.04;
   const Trend trend = judged(series([&](double t) { return std::expm1(rate * t); }));
-  BOOST_TEST(fate_name(trend.fate) == "blows_up");
+  BOOST_TEST(verdict_name(trend.verdict) == "blows_up");
   BOOST_TEST(trend.rate.value == rate, boost::test_tools::tolerance(1e-3));
   BOOST_TEST(trend.blow_up_time == std::log(11) / rate, boost::test_tools::tolerance(0.01));
   BOOST_TEST(says(trend, "blows up at t = "));
@@ -238,19 +238,19 @@ BOOST_AUTO_TEST_CASE(a_blow_up_has_its_time_and_rate) {
   const auto vibrates = vibration(1e-2, 0);
   const Trend late =
       judged(series([&](double t) { return vibrates(t) + 1e-12 * std::exp(rate * t); }, 900));
-  BOOST_TEST(fate_name(late.fate) == "blows_up");
+  BOOST_TEST(verdict_name(late.verdict) == "blows_up");
   BOOST_TEST(late.rate.value == rate, boost::test_tools::tolerance(0.02));
   // And before it is there.
   BOOST_TEST(
-      fate_name(
+      verdict_name(
           judged(series([&](double t) { return vibrates(t) + 1e-12 * std::exp(rate * t); }, 450))
-              .fate) == "bounded");
+              .verdict) == "bounded");
 }
 
 BOOST_AUTO_TEST_CASE(a_run_that_diverged_between_two_samples_has_blown_up) {
   const Trend trend =
       judged(series([](double) { return 1e-3; }, 100 * h), {.step = h}, Outcome::diverged);
-  BOOST_TEST(fate_name(trend.fate) == "blows_up");
+  BOOST_TEST(verdict_name(trend.verdict) == "blows_up");
   BOOST_TEST(trend.blow_up_time == 100 * h);
   BOOST_TEST(says(trend, "at once"));
 }
@@ -258,11 +258,11 @@ BOOST_AUTO_TEST_CASE(a_run_that_diverged_between_two_samples_has_blown_up) {
 BOOST_AUTO_TEST_CASE(few_samples_have_no_verdict_and_no_error_is_no_drift) {
   const auto short_series = series([](double t) { return t; }, 3 * h);
   const Trend trend = judged(short_series);
-  BOOST_TEST(fate_name(trend.fate) == "unknown");
+  BOOST_TEST(verdict_name(trend.verdict) == "unknown");
   BOOST_TEST(says(trend, "too short"));
-  BOOST_TEST(fate_name(judged({}).fate) == "unknown");
+  BOOST_TEST(verdict_name(judged({}).verdict) == "unknown");
   const Trend nothing = judged(series([](double) { return 0.0; }));
-  BOOST_TEST(fate_name(nothing.fate) == "round_off");
+  BOOST_TEST(verdict_name(nothing.verdict) == "round_off");
   BOOST_TEST(!nothing.drift.excludes_zero());
 }
 

@@ -1,0 +1,97 @@
+#include "experiments/amplitude_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "src/analysis/natural_modes.hpp"
+#include "src/scene/generators.hpp"
+#include "src/scene/invalid_input.hpp"
+#include "src/scene/settle.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr int modes_predicted = 48;
+
+// The scene as a generator draws it with its parameter `vary` set.
+Scene drawn_with(const std::string& name, const std::string& vary, double value) {
+  const Generator* generator = find_generator(name);
+  if (!generator) {
+    throw InvalidInput(fmt::format(
+        "--vary {}: scene {} is not a generator's, whose parameters can be varied", vary, name));
+  }
+  return generate(*generator, {{vary, value}}, name);
+}
+
+// The scene with each node moved from its place at rest to `amplitude` times its distance from it,
+// velocities likewise.
+Scene scaled(const Scene& start, const Scene& rest, double amplitude) {
+  Scene scene = start;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    Node& node = scene.nodes[i];
+    const Eigen::Vector3d& origin = rest.nodes[i].position;
+    node.position = origin + amplitude * (node.position - origin);
+    node.velocity *= amplitude;
+  }
+  return scene;
+}
+
+double energy_at_rest(const Scene& rest) {
+  const ReducedScene scene(rest, Reductions::only({Reduction::pins}));
+  return scene.potential(scene.initial());
+}
+
+AmplitudeRow row_of(double amplitude, const Scene& start, double rest_energy,
+                    const Reductions& reductions) {
+  AmplitudeRow row{.amplitude = amplitude,
+                   .scene = std::make_unique<ReducedScene>(start, reductions),
+                   .rest_energy = rest_energy,
+                   .omega_max = 0,
+                   .buckling_rate = 0,
+                   .modes = {}};
+  const System& system = row.scene->system();
+  const Vec& q = row.scene->initial().q;
+  row.modes = sampled_modes(system, q, modes_predicted);
+  row.omega_max = row.modes.empty() ? 0 : row.modes.back().omega;
+  row.buckling_rate = buckling_rate(system, q);
+  return row;
+}
+
+bool moves(const AmplitudeRow& row) {
+  return row.omega_max > 0 && row.scene->energy(row.scene->initial()) > row.rest_energy;
+}
+
+}  // namespace
+
+double omega_max_of(const ReducedScene& scene) {
+  const NaturalModes highest = highest_modes(scene.system(), scene.initial().q, 1);
+  return highest.squares.size() == 0 ? 0 : std::sqrt(std::max(0.0, highest.squares[0]));
+}
+
+std::vector<AmplitudeRow> scaled_rows(const Scene& start, const Scene& rest,
+                                      const std::vector<double>& amplitudes,
+                                      const Reductions& reductions) {
+  std::vector<AmplitudeRow> rows;
+  for (const double amplitude : amplitudes) {
+    rows.push_back(
+        row_of(amplitude, scaled(start, rest, amplitude), energy_at_rest(rest), reductions));
+  }
+  std::erase_if(rows, [](const AmplitudeRow& row) { return !moves(row); });
+  return rows;
+}
+
+std::vector<AmplitudeRow> varied_rows(const std::string& generator, const std::string& vary,
+                                      const std::vector<double>& values,
+                                      const Reductions& reductions) {
+  std::vector<AmplitudeRow> rows;
+  for (const double value : values) {
+    const Scene scene = drawn_with(generator, vary, value);
+    rows.push_back(row_of(value, scene, energy_at_rest(settled(scene, generator)), reductions));
+  }
+  std::erase_if(rows, [](const AmplitudeRow& row) { return !moves(row); });
+  return rows;
+}
+
+}  // namespace qddot

@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "experiments/energy_trend.hpp"
+
+namespace qddot {
+namespace {
+
+std::string in_roundings(double value, const TrendScales& scales) {
+  return scales.rounding > 0
+             ? fmt::format(", {:.2g} roundings of the energy", value / scales.rounding)
+             : "";
+}
+
+std::string drift_words(const Interval& drift) {
+  return fmt::format("{:.3g}/s ({:.3g} to {:.3g})", drift.value, drift.low, drift.high);
+}
+
+std::string no_drift_words(const Interval& drift) {
+  return fmt::format("no drift (|slope| < {:.1e}/s)",
+                     std::max(std::abs(drift.low), std::abs(drift.high)));
+}
+
+std::string settled_words(const Trend& trend) {
+  return trend.has_settled
+             ? fmt::format(" in the second half, after {:.1e} in the first", trend.first_half)
+             : "";
+}
+
+// Where the drift of the second half is surely another one.
+std::string change_words(const Trend& trend) {
+  if (trend.late_drift.holds(trend.drift.value)) return "";
+  const bool is_less = std::abs(trend.late_drift.value) < std::abs(trend.drift.value);
+  return fmt::format(", {} ({:.2g}/s in the second half)", is_less ? "slows down" : "speeds up",
+                     trend.late_drift.value);
+}
+
+}  // namespace
+
+std::string in_words(const Trend& trend, const TrendScales& scales) {
+  switch (trend.verdict) {
+    case Verdict::bounded:
+      return fmt::format("bounded: oscillates by {:.1e}, {}{}", trend.oscillation,
+                         no_drift_words(trend.drift), settled_words(trend));
+    case Verdict::round_off: {
+      const double root_step = trend.walk * std::sqrt(scales.step);
+      if (trend.drift.excludes_zero()) {
+        return fmt::format("only round-off, which adds up: drifts by {}{} a step",
+                           drift_words(trend.drift),
+                           in_roundings(trend.drift.value * scales.step, scales));
+      }
+      return root_step > 0
+                 ? fmt::format("only round-off: random walk of {:.1e} a root step{}, {}", root_step,
+                               in_roundings(root_step, scales), no_drift_words(trend.drift))
+                 : fmt::format("only round-off: stays within {:.1e}, {}", trend.oscillation,
+                               no_drift_words(trend.drift));
+    }
+    case Verdict::wanders:
+      return fmt::format("wanders like a random walk of {:.1e} a root second, {}{}", trend.walk,
+                         no_drift_words(trend.drift), settled_words(trend));
+    case Verdict::drifts:
+      return fmt::format("drifts by {}{}, oscillates by {:.1e}{}", drift_words(trend.drift),
+                         settled_words(trend), trend.oscillation, change_words(trend));
+    case Verdict::dissipates:
+      return fmt::format(
+          "dissipates like a damping ratio of {:.2g} (energy falls at {:.3g}/s, by {:.2g} of its "
+          "excess)",
+          trend.damping_ratio, -trend.rate.value, -trend.last_error / scales.excess);
+    case Verdict::grows:
+      return fmt::format("grows at {:.3g}/s ({:.3g} to {:.3g}), by {:.2g} of its excess",
+                         trend.rate.value, trend.rate.low, trend.rate.high,
+                         trend.last_error / scales.excess);
+    case Verdict::blows_up:
+      return trend.rate.value > 0
+                 ? fmt::format("grows: blows up at t = {:.4g} s (rate {:.3g}/s)",
+                               trend.blow_up_time, trend.rate.value)
+                 : fmt::format("grows: blows up at t = {:.4g} s, at once", trend.blow_up_time);
+    case Verdict::unknown:
+      break;
+  }
+  return "too short for a verdict";
+}
+
+}  // namespace qddot
