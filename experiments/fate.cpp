@@ -49,15 +49,15 @@ struct Run {
 };
 
 Run run(const Method& method, const Knobs& knobs, const ReducedScene& scene, double until,
-        const Judgement& judgement) {
+        const FateOptions& options) {
   Run result{.summary = {}, .samples = {}, .end = scene.initial()};
-  const double start = scene.energy(result.end) - judgement.rest_energy;
-  const Deadline deadline(judgement.seconds);
+  const double start = scene.energy(result.end) - options.rest_energy;
+  const Deadline deadline(options.seconds);
   std::stop_source stop;
   const std::stop_callback pass_on(deadline.token(), [&] { stop.request_stop(); });
   Vec before = result.end.q;
   const auto see = [&](const State& state) {
-    const double ratio = (scene.energy(state) - judgement.rest_energy) / start;
+    const double ratio = (scene.energy(state) - options.rest_energy) / start;
     if (method.linearly_implicit && !result.pushed && !(ratio < suspicious)) {
       result.pushed = knobs.step_size * buckling_rate(scene.system(), before);
     }
@@ -142,9 +142,9 @@ double difference(const ReducedScene& scene, const State& a, const State& b) {
 }  // namespace
 
 Fate fate_of(const Method& method, const Knobs& knobs, const ReducedScene& scene,
-             const Judgement& judgement) {
-  const double until = std::max(judgement.until, least_steps * knobs.step_size);
-  const Run r = run(method, knobs, scene, until, judgement);
+             const FateOptions& options) {
+  const double until = std::max(options.until, least_steps * knobs.step_size);
+  const Run r = run(method, knobs, scene, until, options);
   Fate fate{.outcome = "",
             .growth_rate = growth_rate(r.samples),
             .t_reached = r.summary.t_reached,
@@ -153,11 +153,11 @@ Fate fate_of(const Method& method, const Knobs& knobs, const ReducedScene& scene
             .mean_step = r.summary.t_reached /
                          static_cast<double>(std::max<std::int64_t>(1, r.summary.counts.steps)),
             .counts = r.summary.counts};
-  fate.outcome = judged(r, fate, judgement.tolerated);
+  fate.outcome = judged(r, fate, options.tolerated);
   if (method.takes_iterations && r.summary.outcome == Outcome::reached_end) {
     Knobs to_the_end = knobs;
     to_the_end.iterations = more_iterations * std::max(10, knobs.iterations);
-    const Run solved = run(method, to_the_end, scene, until, judgement);
+    const Run solved = run(method, to_the_end, scene, until, options);
     if (solved.summary.outcome == Outcome::reached_end &&
         difference(scene, r.end, solved.end) > other_motion) {
       fate.outcome = "unconverged";

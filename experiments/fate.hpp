@@ -7,9 +7,9 @@
 
 namespace qddot {
 
-// How a run is judged: by its energy above that at rest, X = E - V(rest), which the exact motion
-// keeps.
-struct Judgement {
+// How a run is made and judged: by its energy above that at rest, X = E - V(rest), which the exact
+// motion keeps.
+struct FateOptions {
   double rest_energy = 0;  // V at rest [J]
   double tolerated = 0.5;  // the part of X that may be lost or gained
   double until = 0;        // [s]; at least `least_steps` steps are taken
@@ -42,6 +42,6 @@ struct Fate {
 // and 400 times more. Growth is fitted to the later half of where X exceeds three times what it was
 // (all of it where that is short), or, where it does not stay there, of the run.
 Fate fate_of(const Method& method, const Knobs& knobs, const ReducedScene& scene,
-             const Judgement& judgement);
+             const FateOptions& options);
 
 }  // namespace qddot

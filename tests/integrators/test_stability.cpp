@@ -64,6 +64,25 @@ Run run_chain(const char* method, double h, int steps) {
   return run(method_named(method), *system, state, steps * h, {.step_size = h});
 }
 
+// The energies 1/2 m (y_j'^2 + w_j^2 y_j^2) of the chain's modes sin(j i pi/(N + 1)) about where it
+// rests, the quadratic invariants of its motion.
+Vec modal_energies(const State& s) {
+  const State rest = State{0, Vec::LinSpaced(masses, 1, masses), Vec::Zero(masses)};
+  Vec energies(masses);
+  for (int j = 1; j <= masses; ++j) {
+    const double angle = j * M_PI / (masses + 1);
+    const double omega = 2 * std::sqrt(stiffness / mass) * std::sin(angle / 2);
+    double y = 0, v = 0;
+    for (int i = 0; i < masses; ++i) {
+      const double shape = std::sqrt(2. / (masses + 1)) * std::sin((i + 1) * angle);
+      y += shape * (s.q[i] - rest.q[i]);
+      v += shape * s.v[i];
+    }
+    energies[j - 1] = mass / 2 * (v * v + omega * omega * y * y);
+  }
+  return energies;
+}
+
 // How far a run forward and, with the velocities turned round, back again ends from its start.
 double return_distance(const Method& method) {
   const Problem p = hammock(3);
@@ -167,6 +186,23 @@ BOOST_AUTO_TEST_CASE(a_linear_chain_stays_bounded_below_the_limit_and_explodes_a
     const Run above = run_chain(method, 1.001 * 2 / w_max, 20000);
     BOOST_TEST(name(above.summary.outcome) == "diverged");
   }
+}
+
+BOOST_AUTO_TEST_CASE(implicit_midpoint_keeps_the_energy_of_each_mode_of_a_linear_chain) {
+  const int steps = 10000;
+  const double h = 3 / w_max;
+  const Vec start = modal_energies(run_chain("implicit_midpoint", h, 0).state);
+  const auto lost = [&](const char* method) {
+    const Run r = run_chain(method, h, steps);
+    BOOST_REQUIRE(r.summary.message == "");
+    return (modal_energies(r.state) - start).cwiseAbs().maxCoeff() / start.maxCoeff();
+  };
+  // Rounding of 1e4 steps on positions of 13 m, 1e-15 each against displacements of 0.1 m, all one
+  // way at the worst.
+  BOOST_TEST(lost("implicit_midpoint") < 1e-9);
+  BOOST_TEST(lost("trapezoidal") <
+             1e-9);  // which is conjugate to it, and the same where f is linear
+  BOOST_TEST(lost("generalized_alpha") > 0.5);
 }
 
 BOOST_AUTO_TEST_CASE(reversible_methods_run_backwards_to_their_start) {
