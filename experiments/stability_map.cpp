@@ -22,6 +22,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -389,7 +390,12 @@ int main(int argc, char** argv) {
   CLI::App app("Measures where each method is stable, and compares with theory.", "stability_map");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
-  return qddot::run_program(app, argc, argv, [&] {
-    return qddot::stability_map(app, arguments, {argv, argv + argc});
+  return qddot::run_program(app, argc, argv, [&]() -> int {
+    try {
+      return qddot::stability_map(app, arguments, {argv, argv + argc});
+    } catch (const std::domain_error& no_modes) {
+      fmt::print(stderr, "stability_map: {}\n", no_modes.what());
+      return qddot::end_not_reached;
+    }
   });
 }

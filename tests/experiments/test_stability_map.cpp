@@ -108,6 +108,19 @@ BOOST_AUTO_TEST_CASE(rows_vary_a_parameter_of_the_generator) {
   BOOST_TEST(map.value(2, "amplitude") == 1.5);
 }
 
+BOOST_AUTO_TEST_CASE(a_scene_without_natural_modes_is_said_to_have_none) {
+  const Folder folder;
+  const std::string scene = folder.write(
+      "loose.toml",
+      "dimension = 3\nuntil = 1\ngravity = [0, 0, -9.81]\n"
+      "nodes = [{position = [0, 0, 0], pinned = true}, {position = [0.5, 0, 0], mass = 0},"
+      " {position = [1, 0, 0.2], mass = 1}]\n"
+      "springs = [{nodes = [0, 1], stiffness = 100, rest_length = 0.4},"
+      " {nodes = [1, 2], stiffness = 100, rest_length = 0.4}]\n");
+  const Exit result = run_map(folder, {"--scene", scene, "--methods", "implicit_euler"});
+  BOOST_TEST(complains(result, 3, "stability_map", {"massless node"}), result.err);
+}
+
 BOOST_AUTO_TEST_CASE(bad_input_is_one_sentence_and_nothing_is_written) {
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases = {
       {{"--scene", "nowhere"}, {"nowhere"}},
