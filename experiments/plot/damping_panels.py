@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from chart import move_label
-from labels import Ink, place_labels
+from labels import Ink, line_label, place_labels
 from sheet import Sheet
 from style import COOL, FAINT, GRID, INK, MARKERS, WARM, Family, Look, number, power_of_ten
 from style import short_names
@@ -146,20 +146,7 @@ def label_curves(axes, named, marks=()):
         for start, end in zip(pixels, pixels[1:]):
             ink.add_line(start, end, 2.0)
         anchors.append(anchors_of(axes, pixels))
-        texts.append(
-            axes.annotate(
-                words,
-                (0, 0),
-                (0, 0),
-                textcoords="offset points",
-                size=9,
-                color=look.text_color,
-                ha="center",
-                va="center",
-                zorder=6,
-                arrowprops={"arrowstyle": "-", "color": look.color, "lw": 0.8, "shrinkA": 0},
-            )
-        )
+        texts.append(line_label(axes, words, look.color, look.text_color))
     sizes = [Text.get_window_extent(text).size for text in texts]
     for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
         move_label(text, axes.transData.inverted().transform(place.anchor), place)

@@ -18,15 +18,14 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from chart import move_label
-from labels import Ink, place_labels
+from drift_table import FATES, draw_table, label, optional, table_height
+from labels import Ink, line_label, place_labels
 from sheet import Sheet
-from style import COOL, FAINT, GRID, INK, WARM, number, power_of_ten, use_style
+from style import FAINT, GRID, INK, number, power_of_ten, use_style
 
 WIDTH = 12.6
 LEFT, PANEL_WIDTH, LABELS = 0.75, 4.75, 1.6
 TOP, PANEL_HEIGHT, DOWN, TOLERANCE_HEIGHT = 1.15, 4.3, 0.95, 2.35
-TABLE_LEFT, TABLE_WIDTH = 7.55, 4.9
-ROW, HEADING, GROUP_GAP = 0.172, 0.26, 0.1
 FONT_SIZE, SMALL = 9, 8.5
 LABEL_STEP = 0.15
 MOST_LINES, MOST_TOLERANCE_LABELS = 11, 14
@@ -35,17 +34,6 @@ LEAST = 1e-17
 LARGEST = 1e3
 BINS_A_DECADE = 10
 
-# The fates in the order of the table: title, what the number beside a method is, colour.
-FATES = {
-    "round_off": ("nothing but round-off", "error at the end", COOL[3]),
-    "bounded": ("bounded: no drift", "oscillation", COOL[0]),
-    "wanders": ("wanders without drift", "oscillation", COOL[2]),
-    "drifts": ("drifts", "1/s", WARM[2]),
-    "dissipates": ("dissipates", "damping ratio", WARM[4]),
-    "grows": ("gains energy", "rate in 1/s", WARM[0]),
-    "blows_up": ("blows up", "when", WARM[1]),
-    "unknown": ("too short to tell", "", FAINT),
-}
 # The methods whose errors are drawn over time first, where they were run.
 TELLING = (
     "verlet",
@@ -70,11 +58,6 @@ def read(path):
         return list(csv.DictReader(file))
 
 
-def optional(text):
-    """A number, or no number where the field is empty."""
-    return float(text) if text else math.nan
-
-
 def key(row):
     """What tells runs apart."""
     return row["method"], float(row["value"])
@@ -90,44 +73,6 @@ def one_a_method(summary):
         rows.sort(key=lambda row: -float(row["value"]))
         chosen.append(rows[len(rows) // 2])
     return chosen
-
-
-def label(row):
-    """The name of a run, with the tolerance of an adaptive one."""
-    name = row["method"]
-    return f"{name} {number(float(row['value']))}" if row["knob"] == "rtol" else name
-
-
-def measure(row):
-    """The number that says most of a run of its fate."""
-    column = {
-        "round_off": "energy_error_end",
-        "bounded": "oscillation",
-        "wanders": "oscillation",
-        "drifts": "drift_rate",
-        "dissipates": "damping_ratio",
-        "grows": "exponential_rate",
-        "blows_up": "blow_up_time",
-    }.get(row["fate"])
-    return optional(row[column]) if column else math.nan
-
-
-def measure_words(row):
-    """The same in words, with what is known of its interval."""
-    value = measure(row)
-    if math.isnan(value):
-        return ""
-    if row["fate"] == "drifts":
-        half = (float(row["drift_rate_high"]) - float(row["drift_rate_low"])) / 2
-        return f"{number(value)} ± {number(half)} /s"
-    if row["fate"] == "blows_up":
-        rate = optional(row["exponential_rate"])
-        return f"at {number(value)} s" + ("" if math.isnan(rate) else f", {number(rate)} /s")
-    if row["fate"] == "grows":
-        return f"{number(value)} /s"
-    if row["fate"] == "dissipates":
-        return f"ζ = {number(value)}"
-    return f"± {number(abs(value))}"
 
 
 def envelope(times, errors):
@@ -203,22 +148,7 @@ def label_paths(sheet, axes, lines, others):
         for start, end in zip(pixels, pixels[1:]):
             ink.add_line(start, end, 2.0)
         anchors.append(pixels[-3:])
-        texts.append(
-            axes.annotate(
-                name,
-                (0, 0),
-                (0, 0),
-                textcoords="offset points",
-                size=SMALL,
-                color=color,
-                ha="center",
-                va="center",
-                zorder=6,
-                annotation_clip=False,
-                bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.6},
-                arrowprops={"arrowstyle": "-", "color": color, "lw": 0.7, "shrinkA": 0},
-            )
-        )
+        texts.append(line_label(axes, name, color, color, SMALL, on_white=True))
     sizes = [Text.get_window_extent(text).size for text in texts]
     for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
         move_label(text, axes.transData.inverted().transform(place.anchor), place)
@@ -334,56 +264,6 @@ def draw_tolerances(sheet, top, summary):
     label_ends(sheet, axes, box, ends)
 
 
-def groups_of(rows):
-    """The rows by fate, in order, those of one fate by size."""
-    for fate in FATES:
-        own = [row for row in rows if row["fate"] == fate]
-        if own:
-            own.sort(key=lambda row: abs(measure(row)) if measure(row) == measure(row) else 0)
-            if fate == "blows_up":
-                own.reverse()
-            yield fate, own
-
-
-def table_height(rows):
-    """In inches."""
-    return sum(HEADING + ROW * len(own) + GROUP_GAP for _, own in groups_of(rows))
-
-
-def draw_table(sheet, rows, until):
-    """The verdicts."""
-    top = TOP - 0.3
-    middle = {"va": "center", "size": FONT_SIZE}
-    for fate, own in groups_of(rows):
-        title, meaning, color = FATES[fate]
-        bar = sheet.axes(TABLE_LEFT, top, 0.07, HEADING + ROW * len(own))
-        bar.set_axis_off()
-        bar.axvspan(0, 1, color=color)
-        line = top + HEADING / 2
-        count = f"{title} ({len(own)})"
-        sheet.text(TABLE_LEFT + 0.17, line, count, color=color, weight="bold", **middle)
-        sheet.text(TABLE_LEFT + 2.45, line, meaning, color=FAINT, **middle)
-        top += HEADING
-        for row in own:
-            line = top + ROW / 2
-            sheet.text(TABLE_LEFT + 0.17, line, label(row), color=INK, **middle)
-            sheet.text(TABLE_LEFT + 2.45, line, measure_words(row), color=INK, **middle)
-            right = {"color": FAINT, "ha": "right"} | middle
-            sheet.text(TABLE_LEFT + TABLE_WIDTH, line, remark(row, until), **right)
-            top += ROW
-        top += GROUP_GAP
-
-
-def remark(row, until):
-    """How far the run came, where that is not the end."""
-    outcome = row["outcome"]
-    if outcome == "reached_end" or row["fate"] == "blows_up":
-        return "in its second half" if row["has_settled"] == "yes" else ""
-    part = float(row["t_reached"]) / until
-    percent = f"{100 * part:.2g} %"
-    return f"{percent} of t" if outcome == "over_budget" else f"{outcome} at {percent}"
-
-
 def main(folder):
     """Draws the picture."""
     use_style()
@@ -412,7 +292,7 @@ def main(folder):
     draw_paths(sheet, rows, drift)
     if has_tolerances:
         draw_tolerances(sheet, TOP + PANEL_HEIGHT + DOWN, summary)
-    draw_table(sheet, rows, until)
+    draw_table(sheet, TOP - 0.3, rows, until)
     for extension in ("png", "svg"):
         sheet.save(str(folder / f"energy_drift.{extension}"))
 

@@ -1,7 +1,6 @@
 """Small maps of what becomes of a run over step size and amplitude, one a method."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
@@ -9,8 +8,9 @@ from matplotlib.colors import ListedColormap, to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
+from fates import OUTCOMES, color_of, panels_of, sections_of
 from sheet import Sheet
-from style import COOL, FAINT, INK, number, power_of_ten, short_names
+from style import FAINT, INK, number, power_of_ten, short_names
 
 COLUMNS = 6
 PANEL, ACROSS, DOWN = 1.8, 0.25, 0.17
@@ -22,134 +22,11 @@ MOST_TICKS = 7
 # A panel of more cells than this is an image in the vector file too.
 MOST_SHAPES = 10000
 
-# What an outcome is called and its colour; others are called as they are named.
-OUTCOMES = {
-    "bounded": ("bounded", "#E6EEE4"),
-    "leaked": ("energy leaked", "#9CC8E6"),
-    "gained": ("energy gained", "#F3B63C"),
-    "diverged": ("diverged: the deeper, the faster", "#B3261E"),
-    "newton_failed": ("Newton failed", "#8B5A9F"),
-    "indefinite_matrix": ("matrix indefinite", "#2B2B2B"),
-    "unconverged": ("iterations end elsewhere", "#8A7B1E"),
-    "step_too_small": ("step collapsed", "#CC79A7"),
-    "over_budget": ("not finished in time", "#FFFFFF"),
-}
-OTHERS = COOL[::-1]
-HOLDS = ("bounded", "leaked", "over_budget")
-GROWS = ("gained", "diverged")
-# The growth of the amplitude in a step, as a logarithm, where the colour is faintest and deepest.
-FAINTEST, SLOWEST, FASTEST = 0.35, 3e-3, 1.0
 LIMIT = {"color": INK, "linewidth": 1.3, "linestyle": (0, (4, 2))}
 BUCKLING = {"color": INK, "linewidth": 1.3, "linestyle": (0, (1, 1.2))}
 UNFORESEEN = {"color": INK, "linewidth": 1.3}
-# Nearer to the limit than this no run is held against theory.
-AT_LIMIT = 0.999
-
-
-@dataclass(frozen=True)
-class Run:
-    """The fate of one run; numbers that the file does not have are NaN."""
-
-    method: str
-    knob: str
-    value: float
-    h: float
-    h_omega: float
-    amplitude: float
-    outcome: str
-    growth_rate: float
-    omega_max: float
-    buckling_rate: float
-
-    @property
-    def column(self):
-        """Where it stands from left to right: by step size, or by tolerance, the finer on the
-        left."""
-        return round(math.log10(self.h_omega if self.knob == "step_size" else self.value), 6)
-
-    @property
-    def depth(self):
-        """How deep its colour is."""
-        growth = self.growth_rate * self.h
-        if self.outcome != "diverged" or not 0 < growth < FASTEST:
-            return 1.0
-        share = math.log(max(growth, SLOWEST) / SLOWEST) / math.log(FASTEST / SLOWEST)
-        return FAINTEST + (1 - FAINTEST) * share
-
-
-@dataclass(frozen=True)
-class Panel:
-    """Methods of one limit whose runs all have the same fates; an unknown limit is NaN."""
-
-    methods: list
-    limit: float
-    runs: list
-
-    @property
-    def is_swept(self):
-        """Whether the columns are step sizes."""
-        return self.runs[0].knob == "step_size"
-
-    @property
-    def fails_from(self):
-        """The first column with a run that fails; None where all hold."""
-        return min((run.column for run in self.runs if run.outcome not in HOLDS), default=None)
-
-    def is_unforeseen(self, run):
-        """Whether its energy grew where linear theory says that it does not."""
-        return run.outcome in GROWS and self.is_swept and run.h_omega < AT_LIMIT * self.limit
-
-    @property
-    def note(self):
-        """The limit by theory, where there is one, and where runs fail, in words."""
-        failing = self.fails_from
-        if failing is None:
-            unfinished = all(run.outcome == "over_budget" for run in self.runs)
-            fate = "not finished" if unfinished else "never fails"
-        else:
-            sign = "≤ " if failing == min(run.column for run in self.runs) else ""
-            fate = f"fails from {sign}{number(10**failing)}"
-        if not self.is_swept or not self.limit < math.inf:
-            return fate
-        return f"limit {number(self.limit) if self.limit else 0}, {fate}"
-
-
-def panels_of(runs, limits):
-    """The panels in the order of the methods."""
-    by_method = {}
-    for run in runs:
-        by_method.setdefault(run.method, []).append(run)
-    groups = {}
-    for method, own in by_method.items():
-        fates = frozenset((run.column, run.amplitude, run.outcome) for run in own)
-        key = (own[0].knob, str(limits.get(method)), fates)
-        groups.setdefault(key, Panel([], limits.get(method, math.nan), own)).methods.append(method)
-    return list(groups.values())
-
-
-def sections_of(panels):
-    """The panels by what linear theory says of them, each group under its heading."""
-    kinds = (
-        (
-            "Linear theory: stable below a limit (dashed)",
-            lambda p: p.is_swept and p.limit < math.inf,
-        ),
-        (
-            "Linear theory: stable at every step size; whatever fails here, it does not see",
-            lambda p: p.is_swept and p.limit == math.inf,
-        ),
-        ("No linear limit known", lambda p: p.is_swept and math.isnan(p.limit)),
-        ("Step sizes chosen by the method itself, at rtol", lambda p: not p.is_swept),
-    )
-    sections = [(title, [panel for panel in panels if fits(panel)]) for title, fits in kinds]
-    return [(title, own) for title, own in sections if own]
-
-
-def color_of(outcome):
-    """The colour of an outcome."""
-    if outcome in OUTCOMES:
-        return OUTCOMES[outcome][1]
-    return OTHERS[sum(map(ord, outcome)) % len(OTHERS)]
+# How many colours of the key fit into a line.
+KEYS = 7
 
 
 def mixed(color, share):
@@ -163,9 +40,6 @@ def edges(values):
     first = values[0] - (middle[0] - values[0] if middle else 0.5)
     last = values[-1] + (values[-1] - middle[-1] if middle else 0.5)
     return [first, *middle, last]
-
-# How many colours of the key fit into a line.
-KEYS = 7
 
 
 class Cells:

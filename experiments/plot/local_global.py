@@ -17,7 +17,7 @@ from matplotlib import ticker
 from matplotlib.text import Text
 
 from chart import move_label
-from labels import Ink, place_labels
+from labels import Ink, line_label, place_labels
 from sheet import Sheet
 from style import COOL, FAINT, FRONT, GRID, INK, WARM, Family, Look, power_of_ten, seconds
 from style import use_style
@@ -108,21 +108,10 @@ def label_lines(axes, lines, taken):
             ink.add_line(start, end, 2.0)
         anchors.append(pixels[1:] if len(pixels) > 1 else pixels)
         words, look = SOLVERS[name]
-        texts.append(
-            axes.annotate(
-                words,
-                (0, 0),
-                (0, 0),
-                textcoords="offset points",
-                size=FONT_SIZE,
-                color=look.text_color,
-                ha="center",
-                va="center",
-                zorder=6,
-                bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.8},
-                arrowprops={"arrowstyle": "-", "color": look.color, "lw": 0.8, "shrinkA": 0},
-            )
+        label = line_label(
+            axes, words, look.color, look.text_color, FONT_SIZE, on_white=True
         )
+        texts.append(label)
     sizes = [Text.get_window_extent(text).size for text in texts]
     for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
         move_label(text, axes.transData.inverted().transform(place.anchor), place)

@@ -11,7 +11,8 @@ import sys
 from pathlib import Path
 
 from damping_panels import DampingSheet
-from fate_panels import FateSheet, Run
+from fate_panels import FateSheet
+from fates import Run
 from measurements import BadInput, parse, read_rows
 from style import use_style
 

@@ -1,0 +1,132 @@
+"""What became of runs over step size and amplitude: those of methods alike belong together."""
+
+import math
+from dataclasses import dataclass
+
+from style import COOL, number
+
+# What an outcome is called and its colour; others are called as they are named.
+OUTCOMES = {
+    "bounded": ("bounded", "#E6EEE4"),
+    "leaked": ("energy leaked", "#9CC8E6"),
+    "gained": ("energy gained", "#F3B63C"),
+    "diverged": ("diverged: the deeper, the faster", "#B3261E"),
+    "newton_failed": ("Newton failed", "#8B5A9F"),
+    "indefinite_matrix": ("matrix indefinite", "#2B2B2B"),
+    "unconverged": ("iterations end elsewhere", "#8A7B1E"),
+    "step_too_small": ("step collapsed", "#CC79A7"),
+    "over_budget": ("not finished in time", "#FFFFFF"),
+}
+OTHERS = COOL[::-1]
+HOLDS = ("bounded", "leaked", "over_budget")
+GROWS = ("gained", "diverged")
+# The growth of the amplitude in a step, as a logarithm, where the colour is faintest and deepest.
+FAINTEST, SLOWEST, FASTEST = 0.35, 3e-3, 1.0
+# Nearer to the limit than this no run is held against theory.
+AT_LIMIT = 0.999
+
+
+@dataclass(frozen=True)
+class Run:
+    """The fate of one run; numbers that the file does not have are NaN."""
+
+    method: str
+    knob: str
+    value: float
+    h: float
+    h_omega: float
+    amplitude: float
+    outcome: str
+    growth_rate: float
+    omega_max: float
+    buckling_rate: float
+
+    @property
+    def column(self):
+        """Where it stands from left to right: by step size, or by tolerance, the finer on the
+        left."""
+        return round(math.log10(self.h_omega if self.knob == "step_size" else self.value), 6)
+
+    @property
+    def depth(self):
+        """How deep its colour is."""
+        growth = self.growth_rate * self.h
+        if self.outcome != "diverged" or not 0 < growth < FASTEST:
+            return 1.0
+        share = math.log(max(growth, SLOWEST) / SLOWEST) / math.log(FASTEST / SLOWEST)
+        return FAINTEST + (1 - FAINTEST) * share
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Methods of one limit whose runs all have the same fates; an unknown limit is NaN."""
+
+    methods: list
+    limit: float
+    runs: list
+
+    @property
+    def is_swept(self):
+        """Whether the columns are step sizes."""
+        return self.runs[0].knob == "step_size"
+
+    @property
+    def fails_from(self):
+        """The first column with a run that fails; None where all hold."""
+        return min((run.column for run in self.runs if run.outcome not in HOLDS), default=None)
+
+    def is_unforeseen(self, run):
+        """Whether its energy grew where linear theory says that it does not."""
+        return run.outcome in GROWS and self.is_swept and run.h_omega < AT_LIMIT * self.limit
+
+    @property
+    def note(self):
+        """The limit by theory, where there is one, and where runs fail, in words."""
+        failing = self.fails_from
+        if failing is None:
+            unfinished = all(run.outcome == "over_budget" for run in self.runs)
+            fate = "not finished" if unfinished else "never fails"
+        else:
+            sign = "≤ " if failing == min(run.column for run in self.runs) else ""
+            fate = f"fails from {sign}{number(10**failing)}"
+        if not self.is_swept or not self.limit < math.inf:
+            return fate
+        return f"limit {number(self.limit) if self.limit else 0}, {fate}"
+
+
+def panels_of(runs, limits):
+    """The panels in the order of the methods."""
+    by_method = {}
+    for run in runs:
+        by_method.setdefault(run.method, []).append(run)
+    groups = {}
+    for method, own in by_method.items():
+        fates = frozenset((run.column, run.amplitude, run.outcome) for run in own)
+        key = (own[0].knob, str(limits.get(method)), fates)
+        groups.setdefault(key, Panel([], limits.get(method, math.nan), own)).methods.append(method)
+    return list(groups.values())
+
+
+def sections_of(panels):
+    """The panels by what linear theory says of them, each group under its heading."""
+    kinds = (
+        (
+            "Linear theory: stable below a limit (dashed)",
+            lambda p: p.is_swept and p.limit < math.inf,
+        ),
+        (
+            "Linear theory: stable at every step size; whatever fails here, it does not see",
+            lambda p: p.is_swept and p.limit == math.inf,
+        ),
+        ("No linear limit known", lambda p: p.is_swept and math.isnan(p.limit)),
+        ("Step sizes chosen by the method itself, at rtol", lambda p: not p.is_swept),
+    )
+    sections = [(title, [panel for panel in panels if fits(panel)]) for title, fits in kinds]
+    return [(title, own) for title, own in sections if own]
+
+
+def color_of(outcome):
+    """The colour of an outcome."""
+    if outcome in OUTCOMES:
+        return OUTCOMES[outcome][1]
+    return OTHERS[sum(map(ord, outcome)) % len(OTHERS)]
