@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "experiments/deadline.hpp"
-#include "experiments/error.hpp"
+#include "experiments/linear_step.hpp"
 #include "experiments/rest.hpp"
 #include "experiments/timing.hpp"
 #include "experiments/tolerance_scales.hpp"
@@ -27,9 +27,7 @@ constexpr std::size_t most_named = 3;
 // kinetic energy so far.
 constexpr double same = 0.5;
 
-bool has_own_step(const Method& method) {
-  return method.knob == Knob::step_size && method.order > 0 && !method.needs_split;
-}
+bool has_own_step(const Method& method) { return has_linear_step(method) && method.order > 0; }
 
 // Runs the method and calls see() for each of some times up to `until`, for `seconds` at most.
 Summary run(const Method& method, const Knobs& knobs, const ReducedScene& scene, double until,

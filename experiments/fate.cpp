@@ -61,7 +61,7 @@ Run run(const Method& method, const Knobs& knobs, const ReducedScene& scene, dou
     if (method.linearly_implicit && !result.pushed && !(ratio < suspicious)) {
       result.pushed = knobs.step_size * buckling_rate(scene.system(), before);
     }
-    before = state.q;
+    if (method.linearly_implicit) before = state.q;
     if (std::isfinite(ratio)) result.samples.push_back({state.t, ratio});
     if (!(ratio < enough)) {
       result.was_stopped = true;

@@ -90,7 +90,7 @@ std::ofstream begun(const std::string& file, const std::string& key,
 
 double predicted_growth_rate(const Cell& cell) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (cell.method->knob != Knob::step_size || cell.method->needs_split) return none;
+  if (!has_linear_step(*cell.method)) return none;
   const double h = cell.h_omega / cell.row->omega_max;
   double largest = -std::numeric_limits<double>::infinity();
   for (const Mode& mode : cell.row->modes) {

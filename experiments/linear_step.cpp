@@ -126,7 +126,7 @@ std::vector<Complex> roots_of(const Responses& y, double noise) {
 }
 
 LinearStep linear_step(const Method& method, double h_omega, Knobs knobs) {
-  if (method.knob != Knob::step_size) {
+  if (!has_linear_step(method)) {
     throw std::invalid_argument(method.name + " has no step of its own: it chooses its steps");
   }
   knobs.step_size = h_omega;  // w = 1

@@ -25,6 +25,12 @@ struct LinearStep {
   double period_error() const;
 };
 
+// Whether the method steps an oscillator by a matrix of its own: its steps are fixed, and not for a
+// part of the forces only.
+inline bool has_linear_step(const Method& method) {
+  return method.knob == Knob::step_size && !method.needs_split;
+}
+
 // The responses Y_0 = 1, Y_1, Y_2, ... after each step of the two starts (1, 0) and (0, 1), as the
 // columns of 2 x 2 matrices.
 using Responses = std::vector<Eigen::Matrix2d>;

@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -33,7 +32,7 @@
 #include "experiments/fate_map.hpp"
 #include "experiments/linear_limit.hpp"
 #include "experiments/linear_step.hpp"
-#include "experiments/modal_step.hpp"
+#include "experiments/modal_table.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
@@ -45,7 +44,6 @@ namespace qddot {
 namespace {
 
 constexpr int linear_points = 60;  // a decade
-constexpr int modes_excited = 12;
 constexpr int most_columns = 1000, most_amplitudes = 1000;
 constexpr std::array tolerances = {1e-2, 1e-4, 1e-6};
 constexpr std::array fast_frequencies = {1., 10., 100., 1000.};
@@ -120,10 +118,6 @@ std::vector<AmplitudeRow> rows_of(const Arguments& a, const Scene& start,
   return rows;
 }
 
-bool has_linear_step(const Method& method) {
-  return method.knob == Knob::step_size && !method.needs_split;
-}
-
 std::vector<double> spaced(double low, double high, int count) {
   std::vector<double> values;
   for (int i = 0; i < count; ++i) {
@@ -183,46 +177,6 @@ void tabulate_adaptive(Csv& csv, const std::vector<const Method*>& methods) {
                 s.counts.stability_limited_steps);
       }
     }
-  }
-}
-
-// Excites modes of the scene at rest with each method, side by side.
-void tabulate_modes(Csv& csv, const std::vector<const Method*>& methods, const ReducedScene& rest,
-                    double step_size) {
-  const auto modes = sampled_modes(rest.system(), rest.initial().q, modes_excited);
-  if (modes.empty()) return;
-  const double h = step_size > 0 ? step_size : 1 / modes.back().omega;
-  struct Row {
-    const Method* method;
-    const Mode* mode;
-    LinearStep predicted{}, measured{};
-    std::string verdict{};
-  };
-  std::vector<Row> rows;
-  for (const Method* method : methods) {
-    if (!has_linear_step(*method) || !applies_to(*method, rest.system())) continue;
-    for (const Mode& mode : modes) rows.push_back({method, &mode});
-  }
-#pragma omp parallel for schedule(dynamic)
-  for (Row& row : rows) {
-    row.predicted = linear_step(*row.method, h * row.mode->omega);
-    try {
-      row.measured = modal_step(*row.method, rest, *row.mode, {.step_size = h});
-      row.verdict = modal_verdict(row.measured);
-    } catch (const std::exception& why) {
-      row.verdict = why.what();
-    }
-#pragma omp critical
-    show_progress(fmt::format("{} in mode {}", row.method->name, row.mode->rank));
-  }
-  for (const Row& row : rows) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const bool is_measured = !row.measured.roots.empty();
-    csv.row(row.method->name, h, row.mode->rank, row.mode->omega, h * row.mode->omega,
-            row.predicted.damping_ratio(), is_measured ? row.measured.damping_ratio() : none,
-            row.predicted.period_error(), is_measured ? row.measured.period_error() : none,
-            row.predicted.spectral_radius(), is_measured ? row.measured.spectral_radius() : none,
-            row.verdict);
   }
 }
 
@@ -335,10 +289,7 @@ int stability_map(const CLI::App& app, const Arguments& a,
       a.out + "/adaptive.csv",
       {"method", "rtol", "omega_fast", "outcome", "h_omega_mean", "rejected_share", "energy_fast",
        "energy_error", "steps", "rejected", "stability_limited_steps"});
-  CsvFile modal_csv(a.out + "/modal.csv",
-                    {"method", "h", "mode", "omega", "h_omega", "damping_ratio_predicted",
-                     "damping_ratio_measured", "period_error_predicted", "period_error_measured",
-                     "spectral_radius_predicted", "spectral_radius_measured", "verdict"});
+  CsvFile modal_csv(a.out + "/modal.csv", modal_columns());
   CsvFile map_csv(a.out + "/map.csv",
                   {"method", "h", "h_omega", "amplitude", "outcome", "growth_rate",
                    "predicted_growth_rate", "t_reached", "energy_end", "energy_max", "steps",

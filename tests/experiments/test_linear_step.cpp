@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(a_step_beyond_all_numbers_grows_beyond_all_bounds) {
 
 BOOST_AUTO_TEST_CASE(measured_limits_are_theory_s) {
   for (const Method& method : methods()) {
-    if (method.knob != Knob::step_size || method.needs_split) continue;
+    if (!has_linear_step(method)) continue;
     BOOST_TEST_CONTEXT(method.name) {
       const double predicted = linear_limit(method), measured = measured_limit(method);
       if (predicted == 0 || std::isinf(predicted)) {
@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(measured_limits_are_theory_s) {
 
 BOOST_AUTO_TEST_CASE(limits_hold_from_both_sides) {
   for (const Method& method : methods()) {
-    if (method.knob != Knob::step_size || method.needs_split) continue;
+    if (!has_linear_step(method)) continue;
     const double limit = linear_limit(method);
     if (limit == 0 || std::isinf(limit)) continue;
     BOOST_TEST_CONTEXT(method.name) {
