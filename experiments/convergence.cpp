@@ -11,6 +11,7 @@
 //     to the order of the method as h -> 0.
 #include <cmath>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

@@ -4,6 +4,7 @@
 //   equilibrium --scene cloth --final rest.csv
 #include <memory>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

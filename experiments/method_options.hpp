@@ -1,8 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "experiments/measurement.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace qddot {
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "experiments/reference.hpp"

@@ -3,9 +3,11 @@
 #include <functional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "src/scene/scene.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace qddot {
 

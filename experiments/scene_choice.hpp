@@ -3,12 +3,15 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
 #include "integrators/method.hpp"
 #include "src/scene/reduce.hpp"
 #include "src/scene/scene.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace qddot {
 

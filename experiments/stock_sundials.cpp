@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

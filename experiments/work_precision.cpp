@@ -11,6 +11,7 @@
 //  3. points.csv holds every point, the failed ones with the reason; front.csv, for each accuracy
 //     from 1e-1 to 1e-9, the fastest method that reached it: of the positions at the end or, where
 //     that is beyond the chaotic motion's horizon and nobody knows them, of the energy on the way.
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
