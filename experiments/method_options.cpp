@@ -47,9 +47,12 @@ void add_method_options(CLI::App& app, MethodOptions& options) {
                  "how many a step, of methods that take as many as they are told (default: their "
                  "own)")
       ->take_last();
+  const std::string own =
+      options.solve_tolerance > 0 ? fmt::format("{}", options.solve_tolerance) : "the method's own";
   app.add_option("--solve-tolerance", options.solve_tolerance,
                  "what part of the error of its prediction a nonlinear solve of a hand-written "
-                 "implicit method may leave (default: the method's own)")
+                 "implicit method may leave (default: " +
+                     own + ")")
       ->take_last();
   app.add_option("--spectral-radius", options.spectral_radius,
                  "what a step of generalised-alpha methods leaves of a vibration of infinite "

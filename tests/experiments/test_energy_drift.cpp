@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include <boost/test/unit_test.hpp>
@@ -100,6 +101,28 @@ BOOST_AUTO_TEST_CASE(step_and_horizon_have_defaults) {
   BOOST_TEST(std::abs(summary.value(0, "value") - 0.05) < 1e-12);  // h w = 1/2
   BOOST_TEST(summary.value(0, "steps") == 1e6);
   BOOST_TEST(contains(summary.text(0, "verdict"), {"bounded", "no drift"}));
+}
+
+BOOST_AUTO_TEST_CASE(what_drifts_is_the_method_and_not_what_its_solves_leave) {
+  const auto rate = [](std::vector<std::string> words) {
+    const Folder folder;
+    words.insert(words.end(), {"--scene", "orbit", "--until", "5000", "--methods",
+                               "trapezoidal,generalized_alpha"});
+    const Exit result = run_energy_drift(folder, words);
+    BOOST_TEST_REQUIRE(result.status == 0, result.err);
+    const Table summary = table_in(folder, "summary.csv");
+    return std::array{summary.value(0, "drift_rate_low"), summary.value(1, "drift_rate")};
+  };
+  const auto [least_gain, loss] = rate({});
+  const auto [loose_least_gain, loose_loss] = rate({"--solve-tolerance", "0.0001"});
+  const auto [tight_least_gain, tight_loss] = rate({"--solve-tolerance", "1e-12"});
+  // The trapezoidal rule is conjugate to a symplectic method and bounded.
+  BOOST_TEST(tight_least_gain < 0);
+  BOOST_TEST(least_gain < 0);
+  BOOST_TEST(loose_least_gain > 0);
+  // 1e-9 is worth 3e-7 of the loss, 1e-4 a third of it.
+  BOOST_TEST(loss == tight_loss, boost::test_tools::tolerance(1e-5));
+  BOOST_TEST(loose_loss > 0.8 * tight_loss);
 }
 
 BOOST_AUTO_TEST_CASE(compensation_is_for_those_that_take_it) {
