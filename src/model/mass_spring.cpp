@@ -5,11 +5,15 @@
 #include <stdexcept>
 
 #include "src/model/block_pattern.hpp"
+#include "src/model/force_kernel.hpp"
 #include "src/model/layout.hpp"
 #include "src/model/network_halves.hpp"
 
 namespace qddot {
 namespace {
+
+// Measured: from so many nodes on vectors sum forces faster than a loop over springs does.
+constexpr Index fewest_for_vectors = 16;
 
 // Springs between nodes all of whose coordinates are unknowns are kept apart, by their first
 // unknowns alone; the few that touch a node on a mirror go through the layout.
@@ -41,8 +45,8 @@ class MassSpring final : public System {
   };
 
  public:
-  explicit MassSpring(const Network& network)
-      : MassSpring(network, {network.node_mass.size(), network.zero_coordinates}) {}
+  MassSpring(const Network& network, Forces forces)
+      : MassSpring(network, forces, {network.node_mass.size(), network.zero_coordinates}) {}
 
   double potential(const Vec& q) const override {
     double v = constant_energy_ - weight_.dot(q);
@@ -51,6 +55,7 @@ class MassSpring final : public System {
   }
 
   void force(const Vec& q, Vec& f) const override {
+    if (kernel_) return kernel_->force(q, weight_, f);
     sum_forces(
         [&](const auto& spring) { return spring_force(spring.law, between(q, spring)); },
         [&](const auto& spring) { return spring_force(spring.law, edge_between(q, spring)); }, f);
@@ -106,7 +111,7 @@ class MassSpring final : public System {
   }
 
  private:
-  MassSpring(const Network& network, const Layout<D>& layout)
+  MassSpring(const Network& network, Forces forces, const Layout<D>& layout)
       : System(masses(network, layout)),
         layout_(layout),
         weight_(weights(network, layout)),
@@ -125,6 +130,10 @@ class MassSpring final : public System {
     for (const auto& [i, place, law, holds, stiff] : network.anchors) {
       take_anchor({i, Eigen::Map<const Point>(place.data()), law}, holds);
     }
+    if (forces == Forces::by_vectors ||
+        (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
+      kernel_.emplace(network, layout_);
+    }
     linear_ = network.uses_constant_stiffness;
     const Vec anywhere = Vec::Zero(size());
     for_all(anywhere, [&](const SpringLaw& law, const Point&) {
@@ -134,9 +143,9 @@ class MassSpring final : public System {
     if (network.offers_split) {
       const Network stiff = only(network, true);
       const std::vector<int> nodes = pulled_nodes(stiff);
-      split_ = {std::make_shared<MassSpring>(stiff),
-                std::make_shared<MassSpring>(only(network, false)),
-                std::make_shared<MassSpring>(among(nodes, stiff)),
+      split_ = {std::make_shared<MassSpring>(stiff, forces),
+                std::make_shared<MassSpring>(only(network, false), forces),
+                std::make_shared<MassSpring>(among(nodes, stiff), forces),
                 {}};
       for (const int i : nodes) {
         for (int a = 0; a < layout.count(i); ++a) {
@@ -328,19 +337,20 @@ class MassSpring final : public System {
   bool linear_ = false;
   HasLaplacian has_laplacian_ = HasLaplacian::as_bound;
   SymmetricMatrix pattern_;
+  std::optional<ForceKernel<D>> kernel_;
   std::optional<Split> split_;
 };
 
 }  // namespace
 
-std::unique_ptr<System> make_mass_spring(const Network& network) {
+std::unique_ptr<System> make_mass_spring(const Network& network, Forces forces) {
   switch (network.dimension) {
     case 1:
-      return std::make_unique<MassSpring<1>>(network);
+      return std::make_unique<MassSpring<1>>(network, forces);
     case 2:
-      return std::make_unique<MassSpring<2>>(network);
+      return std::make_unique<MassSpring<2>>(network, forces);
     case 3:
-      return std::make_unique<MassSpring<3>>(network);
+      return std::make_unique<MassSpring<3>>(network, forces);
     default:
       throw std::invalid_argument("a network has 1, 2 or 3 dimensions");
   }
