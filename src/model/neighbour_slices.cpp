@@ -10,7 +10,7 @@ namespace qddot {
 namespace {
 
 // A slot of one shift is worth it where it serves at least so many rows.
-constexpr int enough_rows = (lanes + 1) / 2;
+constexpr int enough_rows = lanes > 4 ? lanes / 2 : 2;
 // Measured: what a slot that gathers costs, in slots of one shift.
 constexpr double cost_of_gather = 1.6;
 // Rows are sorted within so many: beyond, positions are no longer near each other in memory.
