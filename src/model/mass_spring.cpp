@@ -8,6 +8,7 @@
 #include "src/model/force_kernel.hpp"
 #include "src/model/layout.hpp"
 #include "src/model/network_halves.hpp"
+#include "src/model/springs_by_node.hpp"
 
 namespace qddot {
 namespace {
@@ -55,7 +56,7 @@ class MassSpring final : public System {
   }
 
   void force(const Vec& q, Vec& f) const override {
-    if (kernel_) return kernel_->force(q, weight_, f);
+    if (by_node_) return qddot::sum_forces(*by_node_, q, weight_, f);
     sum_forces(
         [&](const auto& spring) { return spring_force(spring.law, between(q, spring)); },
         [&](const auto& spring) { return spring_force(spring.law, edge_between(q, spring)); }, f);
@@ -132,7 +133,7 @@ class MassSpring final : public System {
     }
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
-      kernel_.emplace(network, layout_);
+      by_node_.emplace(network, layout_);
     }
     linear_ = network.uses_constant_stiffness;
     const Vec anywhere = Vec::Zero(size());
@@ -337,7 +338,7 @@ class MassSpring final : public System {
   bool linear_ = false;
   HasLaplacian has_laplacian_ = HasLaplacian::as_bound;
   SymmetricMatrix pattern_;
-  std::optional<ForceKernel<D>> kernel_;
+  std::optional<SpringsByNode<D>> by_node_;
   std::optional<Split> split_;
 };
 
