@@ -9,6 +9,7 @@
 #include "src/model/layout.hpp"
 #include "src/model/network_halves.hpp"
 #include "src/model/springs_by_node.hpp"
+#include "src/model/stiffness_kernel.hpp"
 
 namespace qddot {
 namespace {
@@ -76,15 +77,21 @@ class MassSpring final : public System {
   void stiffness(const Vec& q, SymmetricMatrix& k) const override { softened_stiffness(q, 1, k); }
 
   void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
-    assemble(q, k, [compression](const SpringLaw& law, const Point& d) {
+    const auto block = [compression](const SpringLaw& law, const Point& d) {
       return spring_stiffness(law, d, compression);
-    });
+    };
+    if (!by_node_) return assemble(q, k, block);
+    columns_->stiffness(*by_node_, q, compression, k);
+    add_left_out(q, k, block);
   }
 
   void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
-    assemble(q, k, [](const SpringLaw& law, const Point& d) {
+    const auto block = [](const SpringLaw& law, const Point& d) {
       return spring_material_stiffness(law, d);
-    });
+    };
+    if (!by_node_) return assemble(q, k, block);
+    columns_->material_stiffness(*by_node_, q, k);
+    add_left_out(q, k, block);
   }
 
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
@@ -134,6 +141,7 @@ class MassSpring final : public System {
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
       by_node_.emplace(network, layout_);
+      columns_.emplace(network, layout_, *by_node_, pattern_);
     }
     linear_ = network.uses_constant_stiffness;
     const Vec anywhere = Vec::Zero(size());
@@ -226,19 +234,58 @@ class MassSpring final : public System {
   template <class BlockOf>
   void assemble(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
     k.coeffs().setZero();
-    for (std::size_t e = 0; e < links_.size(); ++e) {
-      const Link& link = links_[e];
+    add_own_blocks(q, k, block);
+    for (std::size_t e = 0; e < links_.size(); ++e) add_link_block(q, k, block, e);
+    add_image_blocks(q, k, block);
+  }
+
+  // What the columns leave out.
+  template <class BlockOf>
+  void add_left_out(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
+    for (const int e : columns_->links_left_out()) add_link_block(q, k, block, e);
+    add_image_blocks(q, k, block);
+  }
+
+  template <class BlockOf>
+  void add_own_blocks(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
+    for (const Link& link : links_) {
       const Block b = block(link.law, between(q, link));
       subtract_from_diagonal(k, link.i, b);
       subtract_from_diagonal(k, link.j, b);
-      add_below_diagonal(k, std::min(link.i, link.j), link_places_[e], b);
     }
+    for (const Image& image : images_) {
+      const Block b = block(image.law, between(q, image));
+      subtract_from_diagonal(k, image.i, b);
+      subtract_from_diagonal(k, image.j, image.mirror.asDiagonal() * b * image.mirror.asDiagonal());
+    }
+    for (const Anchor& anchor : anchors_) {
+      subtract_from_diagonal(k, anchor.i, block(anchor.law, between(q, anchor)));
+    }
+    for (const EdgeLink& link : edge_links_) {
+      const Block b = block(link.law, edge_between(q, link));
+      edge_subtract_from_diagonal(k, link.i, b);
+      edge_subtract_from_diagonal(k, link.j,
+                                  link.mirror.asDiagonal() * b * link.mirror.asDiagonal());
+    }
+    for (const Anchor& anchor : edge_anchors_) {
+      edge_subtract_from_diagonal(k, anchor.i, block(anchor.law, edge_between(q, anchor)));
+    }
+  }
+
+  template <class BlockOf>
+  void add_link_block(const Vec& q, SymmetricMatrix& k, const BlockOf& block, std::size_t e) const {
+    const Link& link = links_[e];
+    add_below_diagonal(k, std::min(link.i, link.j), link_places_[e],
+                       block(link.law, between(q, link)));
+  }
+
+  // Of images and of links whose nodes have fewer unknowns.
+  template <class BlockOf>
+  void add_image_blocks(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
     for (std::size_t e = 0; e < images_.size(); ++e) {
       const auto& [i, j, mirror, law] = images_[e];
       const Block b = block(law, between(q, images_[e]));
       const Block bs = b * mirror.asDiagonal(), sb = mirror.asDiagonal() * b;
-      subtract_from_diagonal(k, i, b);
-      subtract_from_diagonal(k, j, sb * mirror.asDiagonal());
       if (i == j) {
         subtract_from_diagonal(k, i, -(bs + sb));
       } else {
@@ -246,22 +293,14 @@ class MassSpring final : public System {
         add_below_diagonal(k, std::min(i, j), image_places_[e], i > j ? bs : sb);
       }
     }
-    for (const Anchor& anchor : anchors_) {
-      subtract_from_diagonal(k, anchor.i, block(anchor.law, between(q, anchor)));
-    }
     for (const EdgeLink& link : edge_links_) {
       const Block b = block(link.law, edge_between(q, link));
       const Block bs = b * link.mirror.asDiagonal(), sb = link.mirror.asDiagonal() * b;
-      edge_subtract_from_diagonal(k, link.i, b);
-      edge_subtract_from_diagonal(k, link.j, sb * link.mirror.asDiagonal());
       if (link.i == link.j) {
         edge_subtract_from_diagonal(k, link.i, -(bs + sb));
       } else {
         edge_add_below_diagonal(k, link, link.i > link.j ? bs : sb);
       }
-    }
-    for (const Anchor& anchor : edge_anchors_) {
-      edge_subtract_from_diagonal(k, anchor.i, block(anchor.law, edge_between(q, anchor)));
     }
   }
 
@@ -339,6 +378,7 @@ class MassSpring final : public System {
   HasLaplacian has_laplacian_ = HasLaplacian::as_bound;
   SymmetricMatrix pattern_;
   std::optional<SpringsByNode<D>> by_node_;
+  std::optional<StiffnessKernel<D>> columns_;
   std::optional<Split> split_;
 };
 
