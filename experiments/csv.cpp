@@ -1,12 +1,24 @@
 #include "experiments/csv.hpp"
 
+#include <array>
+#include <cmath>
+
 #include <nlohmann/json.hpp>
+
+#include "experiments/digits.hpp"
 
 namespace qddot {
 
 Csv::Csv(const std::vector<std::string>& header) {
   for (const auto& name : header) field(name);
   end_row();
+}
+
+void Csv::field(double value) {
+  separate();
+  if (!std::isfinite(value)) return;
+  std::array<char, most_digits> digits;
+  text_.append(digits.data(), write_digits(value, digits.data()));
 }
 
 void Csv::field(std::string_view text) {

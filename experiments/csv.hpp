@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cmath>
 #include <concepts>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,14 +24,12 @@ class Csv {
     (field(fields), ...);
     end_row();
   }
-  void field(double value) {
-    separate();
-    if (std::isfinite(value)) fmt::format_to(std::back_inserter(text_), "{:.17g}", value);
-  }
+  void field(double value);
   template <std::integral Integer>
   void field(Integer value) {
     separate();
-    fmt::format_to(std::back_inserter(text_), "{}", value);
+    const fmt::format_int digits(value);
+    text_.append(digits.data(), digits.data() + digits.size());
   }
   void field(std::string_view text);
   void end_row();

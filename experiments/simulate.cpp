@@ -9,12 +9,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/aside.hpp"
 #include "experiments/catalogue.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/diagnosis.hpp"
@@ -214,13 +216,15 @@ class Output {
       energy_ = std::make_unique<CsvFile>(
           a.energy_path, std::vector<std::string>{"t", "kinetic", "potential", "total"});
     }
+    if (trajectory_ || energy_) aside_.emplace([this](const State& state) { see(state); });
   }
 
   Observer observer() {
-    return {merged(trajectory_times_, energy_times_), [this](const State& state) { see(state); }};
+    return {merged(trajectory_times_, energy_times_),
+            [this](const State& state) { aside_->see(state); }};
   }
 
-  // Takes a state at time 0 or one that the observer asked for.
+  // Takes the state at time 0, before the run, or one that the observer asked for.
   void see(const State& state) {
     if (trajectory_ && is_sample(trajectory_times_, state.t)) {
       const auto nodes = scene_.expand(state);
@@ -240,6 +244,7 @@ class Output {
 
   bool is_asked_for() const { return final_ || trajectory_ || energy_; }
   void finish(const State& state, const nlohmann::json& origin) {
+    if (aside_) aside_->finish();
     if (final_) {
       const auto nodes = scene_.expand(state);
       for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -256,6 +261,7 @@ class Output {
   const ReducedScene& scene_;
   std::vector<double> trajectory_times_, energy_times_;
   std::unique_ptr<CsvFile> final_, trajectory_, energy_;
+  std::optional<Aside> aside_;
 };
 
 std::string in_words(const Counts& c) {

@@ -34,12 +34,13 @@ class Exact final : public FixedStep {
                           system().size(), largest_size));
       return Outcome::solver_failed;
     }
-    next = motion_->after(now, h);
+    motion_->propagate(now, h, next, scratch_);
     ++counts().force_evaluations;
     return Outcome::reached_end;
   }
 
   std::optional<LinearMotion> motion_;
+  LinearMotion::Scratch scratch_;
 };
 
 }  // namespace

@@ -25,7 +25,8 @@ class Chebyshev final : public LocalGlobal {
       : LocalGlobal(method, system, knobs) {
     SymmetricMatrix l = system.stiffness_pattern();
     system.laplacian(l);
-    frequency_ = frequency_bound(system.mass(), l);
+    Vec row_sums;
+    frequency_ = frequency_bound(system.mass(), l, row_sums);
   }
 
  private:

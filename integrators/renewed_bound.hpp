@@ -19,7 +19,7 @@ class RenewedBound {
   double at(std::int64_t step, const Stiffness& stiffness) {
     if (renewed_at_ == never || step >= renewed_at_ + steps_with_one) {
       stiffness(k_);
-      w_max_ = frequency_bound(system_.mass(), k_);
+      w_max_ = frequency_bound(system_.mass(), k_, row_sums_);
       renewed_at_ = step;
     }
     return w_max_;
@@ -30,6 +30,7 @@ class RenewedBound {
 
   const System& system_;
   SymmetricMatrix k_;
+  Vec row_sums_;
   double w_max_ = 0;
   std::int64_t renewed_at_ = never;
 };

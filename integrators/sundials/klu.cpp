@@ -28,13 +28,14 @@ class Klu final : public NewtonMatrix {
 
  private:
   void set_explicit_form(double gamma, const SymmetricMatrix& k) override {
-    fill(1, -gamma, -gamma * mass_.cwiseInverse(), k, Vec::Ones(mass_.size()));
+    s_ = -gamma * mass_.cwiseInverse();
+    e_.setOnes();
+    pattern_.fill(1, -gamma, s_, k, e_, SM_DATA_S(entries_.get()));
   }
   void set_implicit_form(double c, const SymmetricMatrix& k) override {
-    fill(c, -1, Vec::Constant(mass_.size(), -1), k, c * mass_);
-  }
-  void fill(double alpha, double beta, const Vec& s, const SymmetricMatrix& k, const Vec& e) {
-    pattern_.fill(alpha, beta, s, k, e, SM_DATA_S(entries_.get()));
+    s_.setConstant(-1);
+    e_ = c * mass_;
+    pattern_.fill(c, -1, s_, k, e_, SM_DATA_S(entries_.get()));
   }
 
   void begin_run() override {
@@ -69,6 +70,7 @@ class Klu final : public NewtonMatrix {
 
   const Vec& mass_;
   FirstOrderPattern pattern_;
+  Vec s_{mass_.size()}, e_{mass_.size()};  // of FirstOrderPattern::fill
   Vector vector_;
   Matrix entries_;
   LinearSolver klu_;

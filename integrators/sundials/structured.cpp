@@ -63,7 +63,8 @@ class Structured final : public NewtonMatrix {
   bool is_solved() {
     for (int refinements = 0;; ++refinements) {
       residual_ = b_ - mass_.cwiseProduct(a_);
-      residual_ += k_->selfadjointView<Eigen::Lower>() * (gamma_ * gamma_ * a_);
+      scaled_ = gamma_ * gamma_ * a_;
+      residual_.noalias() += k_->selfadjointView<Eigen::Lower>() * scaled_;
       if (residual_.norm() <= largest_residual * b_.norm()) return true;
       if (refinements == 1) return false;
       factors_.solve(residual_, correction_);
@@ -77,7 +78,7 @@ class Structured final : public NewtonMatrix {
   const SymmetricMatrix* k_ = nullptr;
   double gamma_ = 0;
   bool is_implicit_ = false;
-  Vec b_, a_, residual_, correction_;
+  Vec b_, a_, scaled_, residual_, correction_;
 };
 
 }  // namespace

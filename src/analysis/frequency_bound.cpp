@@ -7,13 +7,19 @@ namespace qddot {
 double frequency_bound(const System& system, const Vec& q) {
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
-  return frequency_bound(system.mass(), k);
+  Vec row_sums;
+  return frequency_bound(system.mass(), k, row_sums);
 }
 
-double frequency_bound(const Vec& mass, const SymmetricMatrix& k) {
-  if (mass.size() == 0) return 0;
-  const SymmetricMatrix sizes = k.cwiseAbs();
-  const Vec row_sums = sizes.selfadjointView<Eigen::Lower>() * Vec::Ones(mass.size());
+double frequency_bound(const Vec& mass, const SymmetricMatrix& k, Vec& row_sums) {
+  row_sums.setZero(mass.size());
+  for (Index j = 0; j < k.cols(); ++j) {
+    for (SymmetricMatrix::InnerIterator entry(k, j); entry; ++entry) {
+      const double size = std::abs(entry.value());
+      row_sums[j] += size;
+      if (entry.row() != j) row_sums[entry.row()] += size;
+    }
+  }
   double largest = 0;
   for (Index i = 0; i < mass.size(); ++i) {
     if (row_sums[i] > 0) largest = std::max(largest, row_sums[i] / mass[i]);

@@ -8,7 +8,7 @@ namespace qddot {
 // Gershgorin's circles of M^-1 K: w^2 <= max_i sum_j |K_ij| / m_i. Zero where n = 0; infinite
 // where a massless node has stiffness.
 double frequency_bound(const System& system, const Vec& q);
-// The same for masses and a K that are there already.
-double frequency_bound(const Vec& mass, const SymmetricMatrix& k);
+// The same for masses and a K that are there already. `row_sums` is scratch, of any length.
+double frequency_bound(const Vec& mass, const SymmetricMatrix& k, Vec& row_sums);
 
 }  // namespace qddot

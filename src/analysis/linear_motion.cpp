@@ -30,20 +30,34 @@ LinearMotion::LinearMotion(const System& system)
 }
 
 State LinearMotion::after(const State& from, double duration) const {
+  State to;
+  Scratch scratch;
+  propagate(from, duration, to, scratch);
+  return to;
+}
+
+void LinearMotion::propagate(const State& from, double duration, State& to,
+                             Scratch& scratch) const {
+  auto& [f, velocity, push, y, rate] = scratch;
   const double t = duration;
-  if (omega_.size() == 0) return {from.t + t, from.q, from.v};
-  Vec f(from.q.size());
+  f.resize(from.q.size());
+  y.resize(omega_.size());
+  rate.resize(omega_.size());
   system_.force(from.q, f);
-  const Vec velocity = u_.transpose() * root_mass_.cwiseProduct(from.v);  // y'(0)
-  const Vec push = u_.transpose() * f.cwiseQuotient(root_mass_);          // U'b
-  Vec y(omega_.size()), rate(omega_.size());
+  y = root_mass_.cwiseProduct(from.v);
+  velocity.noalias() = u_.transpose() * y;  // y'(0)
+  f = f.cwiseQuotient(root_mass_);
+  push.noalias() = u_.transpose() * f;  // U'b
   for (Index j = 0; j < omega_.size(); ++j) {
     const double wt = omega_[j] * t, half = sinc(wt / 2);
     y[j] = velocity[j] * t * sinc(wt) + push[j] * 0.5 * t * t * half * half;
     rate[j] = velocity[j] * std::cos(wt) + push[j] * t * sinc(wt);
   }
-  return {from.t + t, from.q + (u_ * y).cwiseQuotient(root_mass_),
-          (u_ * rate).cwiseQuotient(root_mass_)};
+  to.t = from.t + t;
+  to.q.noalias() = u_ * y;
+  to.q = from.q + to.q.cwiseQuotient(root_mass_);
+  to.v.noalias() = u_ * rate;
+  to.v = to.v.cwiseQuotient(root_mass_);
 }
 
 }  // namespace qddot

@@ -17,8 +17,15 @@ class LinearMotion {
   // Throws std::invalid_argument unless K is constant and every mass is positive.
   explicit LinearMotion(const System& system);
 
+  // What a motion needs room for besides its end.
+  struct Scratch {
+    Vec f, velocity, push, y, rate;
+  };
+
   // The state a time `duration` [s] after `from`.
   State after(const State& from, double duration) const;
+  // The same into `to`, another state, without allocation where both have been used before.
+  void propagate(const State& from, double duration, State& to, Scratch& scratch) const;
 
  private:
   const System& system_;
