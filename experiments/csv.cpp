@@ -1,11 +1,10 @@
 #include "experiments/csv.hpp"
 
-#include <array>
 #include <cmath>
+#include <iterator>
 
+#include <fmt/compile.h>
 #include <nlohmann/json.hpp>
-
-#include "experiments/digits.hpp"
 
 namespace qddot {
 
@@ -16,9 +15,8 @@ Csv::Csv(const std::vector<std::string>& header) {
 
 void Csv::field(double value) {
   separate();
-  if (!std::isfinite(value)) return;
-  std::array<char, most_digits> digits;
-  text_.append(digits.data(), write_digits(value, digits.data()));
+  if (std::isfinite(value))
+    fmt::format_to(std::back_inserter(text_), FMT_COMPILE("{:.17g}"), value);
 }
 
 void Csv::field(std::string_view text) {
