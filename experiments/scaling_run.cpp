@@ -20,7 +20,7 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 // What is held while a scene is reduced, at most, over what is left of it then.
-constexpr double passing_memory = 2;
+constexpr double passing_memory = 2.2;
 // How long f and the triad are each looked at [s].
 constexpr double look = 0.05;
 

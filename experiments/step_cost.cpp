@@ -2,19 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "experiments/timing.hpp"
 
 namespace qddot {
 namespace {
 
-// A timed run is at least so long [s], if that takes no more than so many steps.
-constexpr double shortest_run = 0.05;
+// A timed run is at least so long [s], if that takes no more than so many steps: short runs are the
+// ones that nothing else disturbs.
+constexpr double shortest_run = 5e-3;
 constexpr double most_steps = 10000, least_steps = 3;
-constexpr int repeats = 5;
+// The least of runs that take so long together [s], or of so many.
+constexpr double timed_together = 0.3;
+constexpr int fewest_runs = 2;
 // A first step at least so long [s] is as good as any other, and the only one.
-constexpr double own_warm_up = 1;
+constexpr double own_warm_up = 5;
 
 struct Run {
   Summary summary;
@@ -52,14 +54,15 @@ StepCost step_cost(Integrator& integrator, double step_size, const ReducedScene&
     return cost_of(first, forces(first));
   }
   const double steps = std::clamp(std::ceil(shortest_run / first.seconds), least_steps, most_steps);
-  std::vector<Run> runs;
-  for (int i = 0; i < repeats; ++i) {
-    runs.push_back(run(integrator, step_size, steps, scene));
-    if (runs.back().summary.outcome != Outcome::reached_end) return cost_of(runs.back(), 0);
+  Run least;
+  double spent = 0;
+  for (int i = 0; i < fewest_runs || spent < timed_together; ++i) {
+    Run next = run(integrator, step_size, steps, scene);
+    if (next.summary.outcome != Outcome::reached_end) return cost_of(next, 0);
+    spent += next.seconds;
+    if (i == 0 || next.seconds < least.seconds) least = std::move(next);
   }
-  const auto middle = runs.begin() + repeats / 2;
-  std::ranges::nth_element(runs, middle, {}, &Run::seconds);
-  return cost_of(*middle, (forces(*middle) - forces(first)) / (steps - 1));
+  return cost_of(least, (forces(least) - forces(first)) / (steps - 1));
 }
 
 }  // namespace qddot

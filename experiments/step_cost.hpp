@@ -18,9 +18,9 @@ struct StepCost {
   }
 };
 
-// Runs steps of the size in `knobs` from the scene's start: one to warm up, then several times as
-// many as the clock needs, of which the run of median length counts; a first step of a second or
-// more is taken as it is. Forces before the first step belong to no step and are taken off.
+// Runs steps of that size [s] from the scene's start: one to warm up, then again and again as many
+// as the clock needs, of which the fastest run counts; a first step of some seconds is taken as it
+// is. Forces before the first step belong to no step and are taken off.
 StepCost step_cost(Integrator& integrator, double step_size, const ReducedScene& scene);
 
 }  // namespace qddot

@@ -60,6 +60,9 @@ Generator lattice() {
               return (static_cast<std::size_t>(x) * ny + y) * nz + z;
             };
             Scene scene{.gravity = {0, 0, -p.at("gravity")}, .until = p.at("until")};
+            const SceneSize size = size_of_lattice(p);
+            scene.nodes.reserve(size.nodes);
+            scene.springs.reserve(size.springs);
             for (int x = 0; x < nx; ++x) {
               for (int y = 0; y < ny; ++y) {
                 for (int z = 0; z < nz; ++z) {
