@@ -21,10 +21,11 @@ from sheet import Sheet
 from style import FAINT, GRID, INK, Family, Look, power_of_ten, seconds, use_style
 
 WIDTH, HEIGHT = 13.2, 9.3
-LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.75, 1.5, 3.97, 3.4
+LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.95, 1.5, 3.9, 3.4
 ACROSS, BELOW, LOWER_HEIGHT = 0.2, 5.75, 2.9
-ROOF_WIDTH, MEMORY_WIDTH, MEMORY_LEFT, EXPONENTS_LEFT = 4.3, 3.0, 5.75, 9.95
+ROOF_WIDTH, MEMORY_WIDTH, MEMORY_LEFT, EXPONENTS_LEFT = 4.3, 2.95, 6.15, 9.55
 FONT_SIZE = 9
+EXPONENTS_SHOWN = 0.6, 2.4
 
 IMPLICIT = Family("implicit", (), "-", True, 1.6)
 ONCE = Family("once", (), (0, (1, 1.4)), False, 1.2)
@@ -121,12 +122,11 @@ def law_of(scene, phase):
 
 
 def draw_law(axes, points, law, color):
-    """Theory's growth as a wide faint line through the last of the points, with its name."""
+    """Theory's growth as a wide faint line through the last of the points; returns its name."""
     n = np.geomspace(points[0][0], points[0][-1], 50)
     cost = law[0](n) * points[1][-1] / law[0](points[0][-1])
     axes.plot(n, cost, color=color, linewidth=6, alpha=0.16, solid_capstyle="butt", zorder=1)
-    note = {"textcoords": "offset points", "size": FONT_SIZE, "color": color, "zorder": 6}
-    axes.annotate(f"${law[1]}$", (n[-1], cost[-1]), (7, 0), va="center", **note)
+    return rf"$\sim {law[1]}$"
 
 
 def draw_scene(axes, scene, lines, implicit, explicit):
@@ -138,7 +138,7 @@ def draw_scene(axes, scene, lines, implicit, explicit):
             continue
         draw_series(axes, points, look)
         if phase in ("factorization", "solve", "force"):
-            draw_law(axes, points, law_of(scene, phase), look.color)
+            words = f"{words} {draw_law(axes, points, law_of(scene, phase), look.color)}"
         drawn.append((points, words, look))
     points = lines.get((scene, explicit, "step"))
     if points is not None:
@@ -166,14 +166,15 @@ def draw_scenes(sheet, rows, origin):
         style_axes(axes, nodes_words, seconds)
         panels.append((axes, draw_scene(axes, scene, lines, implicit, explicit)))
         sheet.text(left, TOP - 0.12, scene, size=11, weight="bold", color=INK)
-        cut = [c for c in origin["left_out"] if c["scene"] == scene and c["method"] in (implicit, "")]
+        cut = [c for c in origin["left_out"] if c["scene"] == scene]
+        cut = [c["nodes"] for c in cut if c["method"] in (implicit, "")]
         if cut:
-            words = f"{implicit} ends before {nodes_words(cut[0]['nodes'])} nodes"
+            words = f"{implicit} left out from {cut[0]:,.0f} nodes on"
             axes.text(0.99, 0.02, words, size=8, color=FAINT, ha="right", transform=axes.transAxes)
     reach = [[f(a.get_xlim()[i] for a, _ in panels) for i, f in enumerate((min, max))],
              [f(a.get_ylim()[i] for a, _ in panels) for i, f in enumerate((min, max))]]
     for i, (axes, drawn) in enumerate(panels):
-        axes.set_xlim(reach[0][0], reach[0][1] * 2)
+        axes.set_xlim(*reach[0])
         axes.set_ylim(*reach[1])
         axes.set_xlabel("nodes", fontsize=10)
         axes.tick_params(labelleft=i == 0)
@@ -189,8 +190,9 @@ def springs_words(value):
 
 def draw_roofline(sheet, rows):
     """Springs a second over the memory that f reads and writes, and what the machine allows."""
-    axes = sheet.axes(LEFT + 0.1, BELOW, ROOF_WIDTH, LOWER_HEIGHT)
+    axes = sheet.axes(LEFT, BELOW, ROOF_WIDTH, LOWER_HEIGHT)
     style_axes(axes, memory_words, springs_words)
+    axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
     sheet.text(LEFT, BELOW - 0.15, "f against the machine", size=11, weight="bold", color=INK)
     drawn = []
     for scene, look in SCENES.items():
@@ -210,8 +212,11 @@ def draw_roofline(sheet, rows):
     axes.set_ylabel("springs a second", fontsize=10)
     low, high = axes.get_ylim()
     axes.set_ylim(low / 1.3, high * 1.2)
-    words = "dotted: what the triad's bandwidth and the\npeak of multiplications and additions allow"
-    axes.text(0.02, 0.03, words, size=8, color=FAINT, transform=axes.transAxes, linespacing=1.3)
+    words = (
+        "dotted: what the triad's bandwidth and the\n"
+        "peak of multiplications and additions allow"
+    )
+    sheet.text(LEFT + 2.0, BELOW - 0.07, words, size=8, color=FAINT, va="bottom")
     label_series(axes, drawn)
 
 
@@ -227,15 +232,15 @@ def draw_memory(sheet, rows):
     """The bytes of the factors over the nodes, with theory's growth."""
     axes = sheet.axes(MEMORY_LEFT, BELOW, MEMORY_WIDTH, LOWER_HEIGHT)
     style_axes(axes, nodes_words, memory_words)
-    sheet.text(MEMORY_LEFT, BELOW - 0.15, "Memory of the factors", size=11, weight="bold", color=INK)
+    words = "Memory of the factors"
+    sheet.text(MEMORY_LEFT, BELOW - 0.15, words, size=11, weight="bold", color=INK)
     drawn = []
     for (scene, _, phase), points in series(rows, "bytes").items():
         if phase != "factorization":
             continue
         draw_series(axes, points, SCENES[scene])
-        draw_law(axes, points, FILL[scene], SCENES[scene].color)
-        drawn.append((points, scene, SCENES[scene]))
-    axes.set_xlim(right=axes.get_xlim()[1] * 3)
+        law = draw_law(axes, points, FILL[scene], SCENES[scene].color)
+        drawn.append((points, f"{scene} {law}", SCENES[scene]))
     axes.set_xlabel("nodes", fontsize=10)
     label_series(axes, drawn)
 
@@ -244,7 +249,7 @@ def draw_exponents(sheet, rows):
     """The exponents with their intervals, and theory's as ticks, a row a phase."""
     names = {"symbolic": "analysis", "force": "f", "stiffness": "K", "factorization":
              "factorisation", "solve": "solve", "fill": "factors' memory"}
-    axes = sheet.axes(EXPONENTS_LEFT + 1.1, BELOW, WIDTH - EXPONENTS_LEFT - 1.3, LOWER_HEIGHT)
+    axes = sheet.axes(EXPONENTS_LEFT + 1.15, BELOW, WIDTH - EXPONENTS_LEFT - 1.35, LOWER_HEIGHT)
     sheet.text(EXPONENTS_LEFT, BELOW - 0.15, "Exponents, and theory's", size=11, weight="bold",
                color=INK)
     implicit = next((r["method"] for r in rows if r["phase"] == "factorization"), None)
@@ -259,10 +264,11 @@ def draw_exponents(sheet, rows):
                   **look.marker_style(4.5))
     axes.set_yticks(range(len(names)), names.values(), size=FONT_SIZE)
     axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.set_xlim(*EXPONENTS_SHOWN)
     axes.grid(True, axis="x", color=GRID)
     axes.tick_params(length=0, labelsize=FONT_SIZE)
     axes.spines[["left"]].set_visible(False)
-    axes.set_xlabel("p of $n^p$, with its 95 %; black: theory", fontsize=10)
+    axes.set_xlabel("with 95 %; black: theory", fontsize=10)
 
 
 def main(folder):
@@ -275,14 +281,14 @@ def main(folder):
     title = "How the cost of a step grows"
     sheet.text(0.2, 0.3, title, size=15, weight="bold", va="center", color=INK)
     largest = max(row["nodes"] for row in rows)
+    smallest = min(row["nodes"] for row in rows)
     words = (
-        f"100 to {largest:,.0f} nodes, one core of {origin['cpu']}; three unknowns a node, the "
-        "lattice a cube"
+        f"{smallest:,.0f} to {largest:,.0f} nodes, one core of {origin['cpu']}; three unknowns a "
+        "node, the lattice a cube"
     )
-    sheet.text(0.2, 0.62, words.replace("100", f"{min(r['nodes'] for r in rows):,.0f}", 1), size=10,
-               color=FAINT, va="center")
-    sheet.text(0.2, 0.86, "wide and faint: what theory lets each phase grow like, through its last "
-               "point", size=10, color=FAINT, va="center")
+    sheet.text(0.2, 0.62, words, size=10, color=FAINT, va="center")
+    words = "wide and faint: how theory lets each phase grow, through its last point"
+    sheet.text(0.2, 0.86, words, size=10, color=FAINT, va="center")
     sheet.rule(1.04)
     draw_scenes(sheet, rows, origin)
     draw_roofline(sheet, read(folder / "roofline.csv"))
