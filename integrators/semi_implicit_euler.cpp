@@ -23,8 +23,7 @@ class SemiImplicitEuler final : public FixedStep {
     force(now.q, f_);
     if (!factorize(now.q, h)) return Outcome::indefinite_matrix;
     b_ = system().mass().cwiseProduct(now.v) + h * f_;
-    matrix_.solve(b_, next.v);
-    ++counts().solves;
+    solve(b_, next.v);
     next.q = now.q + h * next.v;
     return Outcome::reached_end;
   }
@@ -35,7 +34,14 @@ class SemiImplicitEuler final : public FixedStep {
     stiffness(q, k_);
     ++counts().factorizations;
     factorized_h_ = h;
+    const Stopwatch watch(seconds(), &Seconds::factorization);
     return matrix_.factorize(1, h * h, k_) != EffectiveMass::Definiteness::singular;
+  }
+
+  void solve(const Vec& b, Vec& x) {
+    const Stopwatch watch(seconds(), &Seconds::solve);
+    matrix_.solve(b, x);
+    ++counts().solves;
   }
 
   Vec f_{system().size()}, b_{system().size()};

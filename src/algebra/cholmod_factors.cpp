@@ -1,6 +1,7 @@
 #include "src/algebra/cholmod_factors.hpp"
 
 #include <cmath>
+#include <numeric>
 #include <omp.h>
 #include <stdexcept>
 
@@ -62,6 +63,15 @@ class CholmodFactors : public Factors {
   }
 
   Index negative_pivots() const override { return factor_ ? negative_pivots(current_) : 0; }
+
+  Index bytes() const override {
+    if (!factor_) return 0;
+    if (factor_->is_super) return static_cast<Index>(sizeof(double) * factor_->xsize);
+    // Each number has its row's index with it.
+    const auto* counts = static_cast<const int*>(factor_->ColCount);
+    const Index numbers = std::accumulate(counts, counts + factor_->n, Index{0});
+    return static_cast<Index>(sizeof(double) + sizeof(int)) * numbers;
+  }
 
   void solve(const Vec& b, Vec& x) override {
     if (!factor_) return;

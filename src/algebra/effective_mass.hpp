@@ -42,6 +42,9 @@ class EffectiveMass {
   // x = (a M - s K)^-1 b with the last factors, which must not be singular; b, x: n.
   void solve(const Vec& b, Vec& x) { factors_->solve(b, x); }
 
+  // Memory [bytes] that the factors take, workspace and the analysis' indices left out.
+  Index bytes() const { return factors_->bytes(); }
+
  private:
   std::unique_ptr<Factors> factors_;
 };

@@ -21,6 +21,9 @@ class Factors {
   virtual void solve(const Vec& b, Vec& x) = 0;
   // The same for four right-hand sides at once; b, x: n x 4, sized by the caller.
   virtual void solve(const FourColumns& b, FourColumns& x) = 0;
+  // Memory [bytes] of the factors alone, known from the analysis on: what a solve reads once
+  // forwards and once backwards.
+  virtual Index bytes() const = 0;
 };
 
 }  // namespace qddot

@@ -40,6 +40,10 @@ class Multifrontal : public Factors {
 
   Index negative_pivots() const override { return negative_; }
 
+  Index bytes() const override {
+    return static_cast<Index>(sizeof(double)) * (fronts_.factor_size + diagonal_.size());
+  }
+
   void solve(const Vec& b, Vec& x) override {
     const auto& place = fronts_.place();
     for (Index i = 0; i < b.size(); ++i) y_.get()[place[i]] = b[i];

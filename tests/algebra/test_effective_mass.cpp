@@ -241,6 +241,19 @@ BOOST_AUTO_TEST_CASE(free_pair_without_mass_is_singular) {
   BOOST_TEST(solver.factorize(1, 1, k) == Definiteness::positive);
 }
 
+BOOST_AUTO_TEST_CASE(factors_take_the_room_of_their_numbers) {
+  for (const auto who : {EffectiveMass::Solver::multifrontal, EffectiveMass::Solver::cholmod}) {
+    for (const Case& c : cases(1.2)) {
+      const Index n = c.system->size(), entries = c.system->stiffness_pattern().nonZeros();
+      const EffectiveMass solver(*c.system, who);
+      // L has at least the entries of K's lower triangle, and at most those of a square, filled up
+      // to strips of 8, besides the pivots; each has 8 bytes, or 12 with its row's index.
+      BOOST_TEST(solver.bytes() >= 8 * entries);
+      BOOST_TEST(solver.bytes() <= 12 * (n + 16) * (n + 1));
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(no_unknowns_are_solved_for_at_once) {
   const auto system = make_mass_spring({.dimension = 3});
   EffectiveMass solver(*system);

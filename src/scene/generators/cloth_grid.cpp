@@ -26,6 +26,9 @@ Scene draw_cloth(const GeneratorValues& p) {
   const int count = static_cast<int>(p.at("nodes"));
   const double spacing = p.at("side") / (count - 1);
   Scene scene{.gravity = {0, 0, -p.at("gravity")}, .until = p.at("until")};
+  const SceneSize size = cloth_size(p);
+  scene.nodes.reserve(size.nodes);
+  scene.springs.reserve(size.springs);
   for (int i = 0; i < count; ++i) {
     for (int j = 0; j < count; ++j) {
       scene.nodes.push_back({.position = {spacing * i, spacing * j, 0},

@@ -42,8 +42,8 @@ Generator lattice() {
   return {.name = "lattice",
           .summary = "a cantilever block of masses and springs, one face pinned",
           .parameters = {{"nodes_x", 24, 1, 4000, "nodes along the beam", true},
-                         {"nodes_y", 8, 1, 60, "nodes across", true},
-                         {"nodes_z", 8, 1, 60, "nodes in height", true},
+                         {"nodes_y", 8, 1, 4000, "nodes across", true},
+                         {"nodes_z", 8, 1, 4000, "nodes in height", true},
                          {"length", 1, least, most, "the beam's length in m"},
                          {"mass", 1, least, most, "of all nodes together in kg"},
                          {"stiffness", 5e4, 0, most, "of each spring in N/m"},
@@ -60,6 +60,9 @@ Generator lattice() {
               return (static_cast<std::size_t>(x) * ny + y) * nz + z;
             };
             Scene scene{.gravity = {0, 0, -p.at("gravity")}, .until = p.at("until")};
+            const SceneSize size = size_of_lattice(p);
+            scene.nodes.reserve(size.nodes);
+            scene.springs.reserve(size.springs);
             for (int x = 0; x < nx; ++x) {
               for (int y = 0; y < ny; ++y) {
                 for (int z = 0; z < nz; ++z) {

@@ -17,6 +17,7 @@ Body make_body(const Component& component, const std::vector<Node>& nodes,
   pins.erase(std::ranges::unique(pins).begin(), pins.end());
   body.nodes.insert(body.nodes.end(), pins.begin(), pins.end());
 
+  for (auto* vectors : {&body.x, &body.v}) vectors->reserve(body.nodes.size());
   double total_mass = 0;
   for (const std::size_t i : body.nodes) {
     const Node& node = nodes[i];
@@ -34,6 +35,7 @@ Body make_body(const Component& component, const std::vector<Node>& nodes,
                                           : std::lower_bound(body.nodes.begin(), free_end, node);
     return static_cast<std::size_t>(found - body.nodes.begin());
   };
+  body.springs.reserve(component.springs.size());
   for (const std::size_t e : component.springs) {
     const auto [a, b] = springs[e].nodes;
     body.springs.push_back(

@@ -75,6 +75,7 @@ Folded folded(const Body& body, const Mirrors& mirrors) {
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {
     result.images.push_back(image_of(i, mirrors, result.y));
   }
+  result.springs.reserve(body.springs.size());
   for (const qddot::Spring& spring : body.springs) {
     const ImageOf &a = result.images[spring.nodes[0]], &b = result.images[spring.nodes[1]];
     Folded::Spring image{a.original, b.original,   a.signs.cwiseProduct(b.signs),

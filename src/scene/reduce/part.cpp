@@ -82,6 +82,7 @@ Part::Part(const Body& body, int dimension, const Reductions& reductions) {
     nodes_.push_back(body.nodes[i]);
     images_.push_back({number, half.images[i].signs});
   }
+  network.links.reserve(half.springs.size());
   for (const Folded::Spring& spring : half.springs) add_spring(spring, half, numbers, network);
 
   if (network.uses_constant_stiffness && !with_pins) {

@@ -33,6 +33,7 @@ class Condenser {
       for (const std::size_t e : chain_) is_gone[e] = true;
       all.push_back(*series);
     }
+    if (all.empty()) return all;
     std::vector<Spring> left;
     for (std::size_t e = 0; e < springs_.size(); ++e) {
       if (!is_gone[e]) left.push_back(springs_[e]);

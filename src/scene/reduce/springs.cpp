@@ -33,6 +33,7 @@ std::vector<Spring> merged_springs(const std::vector<Spring>& springs) {
   }
 
   std::vector<Spring> merged;
+  merged.reserve(springs.size());
   for (std::size_t i = 0; i < springs.size(); ++i) {
     const auto& law = sums[i].law;
     if (law.stiffness > 0 || law.quartic > 0)

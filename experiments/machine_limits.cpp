@@ -1,0 +1,47 @@
+#include "experiments/machine_limits.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "experiments/timing.hpp"
+#include "src/model/system.hpp"
+
+namespace qddot {
+namespace {
+
+using Lanes = double __attribute__((vector_size(__BIGGEST_ALIGNMENT__)));
+// More chains of dependent operations than two units of latency 4 need.
+constexpr int chains = 12, rounds = 10000;
+
+}  // namespace
+
+double triad_bandwidth(double bytes, double seconds) {
+  const Index n = std::max<Index>(1, static_cast<Index>(bytes / (3 * sizeof(double))));
+  Vec a = Vec::Zero(n), b = Vec::Ones(n), c = Vec::Ones(n);
+  double s = 0.5;
+  const double least = least_seconds(seconds, [&] {
+    a = b + s * c;
+    asm volatile("" : "+m"(s) : "r"(a.data()) : "memory");  // a pass is not left out
+  });
+  return 3 * sizeof(double) * static_cast<double>(n) / least;
+}
+
+double peak_flops(double seconds) {
+  std::array<Lanes, chains> x{};
+  Lanes factor = 0.5 + Lanes{}, term = 1 + Lanes{};
+  const double least = least_seconds(seconds, [&] {
+    asm volatile("" : "+m"(factor), "+m"(term));
+    const Lanes m = factor, t = term;
+    std::array<Lanes, chains> y = x;
+    for (int i = 0; i < rounds; ++i) {
+#pragma GCC unroll 16
+      for (Lanes& chain : y) chain = chain * m + t;
+    }
+    x = y;
+    asm volatile("" : "+m"(x));
+  });
+  constexpr double lanes = sizeof(Lanes) / sizeof(double);
+  return 2 * lanes * chains * rounds / least;
+}
+
+}  // namespace qddot

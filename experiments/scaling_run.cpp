@@ -1,0 +1,170 @@
+#include "experiments/scaling_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "experiments/machine_limits.hpp"
+#include "experiments/memory.hpp"
+#include "experiments/progress.hpp"
+#include "experiments/step_cost.hpp"
+#include "experiments/timing.hpp"
+#include "integrators/registry.hpp"
+#include "src/algebra/effective_mass.hpp"
+#include "src/analysis/frequency_bound.hpp"
+
+namespace qddot {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+// What is held while a scene is reduced, at most, over what is left of it then.
+constexpr double passing_memory = 2.2;
+// How long f and the triad are each looked at [s].
+constexpr double look = 0.05;
+
+const std::vector<std::string> phases_before = {"scene", "reduce"};
+const std::vector<std::string> phases_of_method = {"symbolic",      "force", "stiffness",
+                                                   "factorization", "solve", "rest"};
+
+// What making something takes.
+struct Making {
+  double seconds, bytes;
+};
+
+template <class T, class Make>
+Making make(std::optional<T>& made, const Make& how) {
+  const double before = allocated_memory();
+  const double seconds = seconds_of([&] { made.emplace(how()); });
+  return {seconds, allocated_memory() - before};
+}
+
+std::string at(const std::string& scene, double nodes) {
+  return fmt::format("{}, {:g} nodes", scene, nodes);
+}
+
+double moving_springs(const Scene& scene) {
+  return static_cast<double>(std::ranges::count_if(scene.springs, [&](const Spring& spring) {
+    return !scene.nodes[spring.nodes[0]].pinned || !scene.nodes[spring.nodes[1]].pinned;
+  }));
+}
+
+double bytes_of(const SymmetricMatrix& k) {
+  return static_cast<double>(k.nonZeros() * (sizeof(double) + sizeof(int)) +
+                             k.outerSize() * sizeof(int));
+}
+
+}  // namespace
+
+void ScalingRun::measure(const SizedScenes& scenes, const std::vector<double>& sizes,
+                         std::vector<const Method*> methods) {
+  for (const double size : sizes) {
+    if (methods.empty() || !fits(scenes, "", phases_before, size, passing_memory)) return;
+    show_progress(at(scenes.name, std::round(size)));
+    std::optional<Scene> drawn;
+    std::optional<ReducedScene> reduced;
+    const Making drawing = make(drawn, [&] { return scenes.draw(size); });
+    sizes_.push_back({.scene = scenes.name,
+                      .hash = content_hash(*drawn),
+                      .nodes = static_cast<double>(drawn->nodes.size()),
+                      .springs = static_cast<double>(drawn->springs.size())});
+    add("", "scene", drawing.seconds, drawing.bytes);
+    const Making reducing = make(reduced, [&] { return ReducedScene(*drawn, limits_.reductions); });
+    add("", "reduce", reducing.seconds, reducing.bytes);
+    const double moving = moving_springs(*drawn);
+    drawn.reset();
+    sizes_.back().unknowns = reduced->system().size();
+    sizes_.back().force = force_rate(*reduced, moving, look);
+    sizes_.back().triad = triad_bandwidth(sizes_.back().force.bytes, look);
+    measure_size(scenes, *reduced, methods);
+  }
+}
+
+void ScalingRun::measure_size(const SizedScenes& scenes, const ReducedScene& scene,
+                              std::vector<const Method*>& methods) {
+  const double nodes = sizes_.back().nodes;
+  double stable = 0;  // half of what is certainly stable [s]; zero until an explicit method asks
+  std::erase_if(methods, [&](const Method* method) {
+    if (!fits(scenes, method->name, phases_of_method, nodes, 1)) return true;
+    if (!method->implicit && stable == 0) {
+      stable = 1 / frequency_bound(scene.system(), scene.initial().q);
+    }
+    show_progress(at(fmt::format("{}, {}", scenes.name, method->name), nodes));
+    try {
+      measure_method(*method, scene, method->implicit ? limits_.step_size : stable);
+    } catch (const std::exception& error) {  // out of memory
+      leave_out(method->name, nodes, error.what());
+      return true;
+    }
+    return false;
+  });
+}
+
+void ScalingRun::measure_method(const Method& method, const ReducedScene& scene, double step_size) {
+  const System& system = scene.system();
+  double stiffness_bytes = nothing, factor_bytes = nothing;
+  if (method.needs_stiffness) {
+    std::optional<EffectiveMass> matrix;
+    const Making analysis = make(matrix, [&] { return EffectiveMass(system); });
+    add(method.name, "symbolic", analysis.seconds, analysis.bytes);
+    stiffness_bytes = bytes_of(system.stiffness_pattern());
+    factor_bytes = static_cast<double>(matrix->bytes());
+  }
+  std::optional<std::unique_ptr<Integrator>> integrator;
+  const Making all = make(integrator, [&] {
+    return make_integrator(method, system, {.step_size = step_size, .timed = true});
+  });
+  const StepCost cost = step_cost(**integrator, step_size, scene);
+  if (cost.outcome != Outcome::reached_end) {
+    has_failed_ = true;
+    leave_out(method.name, sizes_.back().nodes,
+              fmt::format("{}: {}", name(cost.outcome), cost.message));
+    return;
+  }
+  const auto& [force, stiffness, factorization, solve] = cost.parts;
+  add(method.name, "force", force, nothing);
+  if (stiffness > 0) add(method.name, "stiffness", stiffness, stiffness_bytes);
+  if (factorization > 0) add(method.name, "factorization", factorization, factor_bytes);
+  if (solve > 0) add(method.name, "solve", solve, nothing);
+  add(method.name, "rest", cost.rest(), nothing);
+  add(method.name, "step", cost.total, all.bytes);
+}
+
+// Whether these phases of a method, or those before any, may be expected to stay within the limits;
+// leaves out what does not. `memory`: how many times what they will hold is held at once.
+bool ScalingRun::fits(const SizedScenes& scenes, const std::string& method,
+                      const std::vector<std::string>& phases, double nodes, double memory) {
+  double seconds = 0, bytes = 0;
+  for (const std::string& phase : phases) {
+    seconds += expected_seconds(costs_, scenes, method, phase, nodes);
+    if (method.empty()) bytes += expected_bytes(costs_, scenes, method, phase, nodes);
+  }
+  if (!method.empty()) bytes = expected_bytes(costs_, scenes, method, "step", nodes);
+  bytes = memory * bytes + allocated_memory();
+  const auto refuse = [&](const std::string& why) {
+    left_out_.push_back({scenes.name, method, nodes, why});
+    return false;
+  };
+  if (seconds > limits_.seconds) {
+    return refuse(
+        fmt::format("it would take about {:.3g} s, more than {:g} s", seconds, limits_.seconds));
+  }
+  if (bytes > limits_.bytes) {
+    return refuse(fmt::format("it would take about {:.3g} GB, more than {:.3g} GB", 1e-9 * bytes,
+                              1e-9 * limits_.bytes));
+  }
+  return true;
+}
+
+void ScalingRun::leave_out(const std::string& method, double nodes, std::string why) {
+  left_out_.push_back({sizes_.back().scene, method, nodes, std::move(why)});
+}
+
+void ScalingRun::add(const std::string& method, const std::string& phase, double seconds,
+                     double bytes) {
+  const ScalingSize& size = sizes_.back();
+  costs_.push_back({size.scene, size.nodes, size.springs, method, phase, seconds, bytes});
+}
+
+}  // namespace qddot

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/force_rate.hpp"
+#include "experiments/phase_table.hpp"
+#include "integrators/method.hpp"
+#include "src/scene/reduce.hpp"
+
+namespace qddot {
+
+// How far a measurement of scaling goes, and how it steps.
+struct ScalingLimits {
+  double seconds;    // that a step and its analysis may take
+  double bytes;      // that the process may allocate
+  double step_size;  // h of implicit methods [s]
+  Reductions reductions;
+};
+
+// One scene at one size: where its numbers come from, and how fast its f is.
+struct ScalingSize {
+  std::string scene, hash;
+  double nodes, springs;
+  Index unknowns = 0;
+  ForceRate force{};
+  double triad = 0;  // [bytes/s], over arrays of as many bytes as the force's
+};
+
+// What was not measured: the scene from that many nodes on, with that method or with any.
+struct LeftOut {
+  std::string scene, method;  // no method: any
+  double nodes;
+  std::string why;
+};
+
+// Costs of steps by scene, size, method and phase, gathered from small scenes to large ones. What
+// theory and the size before let expect beyond the limits is left out, with everything larger.
+class ScalingRun {
+ public:
+  explicit ScalingRun(const ScalingLimits& limits) : limits_(limits) {}
+
+  // The scene at about each of these numbers of nodes, ascending, with the methods.
+  void measure(const SizedScenes& scenes, const std::vector<double>& sizes,
+               std::vector<const Method*> methods);
+
+  const std::vector<PhaseCost>& costs() const { return costs_; }
+  const std::vector<ScalingSize>& sizes() const { return sizes_; }
+  const std::vector<LeftOut>& left_out() const { return left_out_; }
+  // Whether some run did not reach its end; it is among what is left out.
+  bool has_failed() const { return has_failed_; }
+
+ private:
+  void measure_size(const SizedScenes& scenes, const ReducedScene& scene,
+                    std::vector<const Method*>& methods);
+  void measure_method(const Method& method, const ReducedScene& scene, double step_size);
+  bool fits(const SizedScenes& scenes, const std::string& method,
+            const std::vector<std::string>& phases, double nodes, double memory);
+  void leave_out(const std::string& method, double nodes, std::string why);
+  void add(const std::string& method, const std::string& phase, double seconds, double bytes);
+
+  ScalingLimits limits_;
+  std::vector<PhaseCost> costs_;
+  std::vector<ScalingSize> sizes_;  // the last is at hand
+  std::vector<LeftOut> left_out_;
+  bool has_failed_ = false;
+};
+
+}  // namespace qddot
