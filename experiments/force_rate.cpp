@@ -5,12 +5,13 @@
 namespace qddot {
 namespace {
 
-// Of a spring two indices and k, l0, c; of an unknown its q and weight are read, its f is written.
-constexpr double bytes_of_spring = 2 * sizeof(int) + 3 * sizeof(double);
-constexpr double bytes_of_unknown = 3 * sizeof(double);
-// d = x_j - x_i: 3; l^2 = d.d: 5; l: 1; s = l - l0: 1; tau = s (k + c s^2): 4; tau/l: 1;
-// (tau/l) d: 3; added to f_i and f_j: 6.
-constexpr double flops_of_spring = 24;
+// Of a spring k and l0 are read at each of its ends (see SpringsByNode); of an unknown its q and
+// weight are read, its f is written, and its position goes to memory and back.
+constexpr double bytes_of_spring = 2 * 2 * sizeof(double);
+constexpr double bytes_of_unknown = 5 * sizeof(double);
+// At each end d = x_j - x_i: 3; l^2 = d.d: 5; l: 1; s = l - l0: 1; tau = k s: 1; tau/l: 1;
+// f_i += (tau/l) d: 6.
+constexpr double flops_of_spring = 2 * 18;
 
 }  // namespace
 
