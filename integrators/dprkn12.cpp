@@ -104,7 +104,8 @@ const NystromPair& dprkn12_pair() {
 
 namespace {
 
-std::unique_ptr<Integrator> make(const Method& method, const System& system, const Knobs& knobs) {
+std::unique_ptr<Integrator> make_dprkn12(const Method& method, const System& system,
+                                         const Knobs& knobs) {
   // Steps are so long that no polynomial through their ends is as accurate as they are.
   return std::make_unique<Nystrom>(method, system, knobs, dprkn12_pair(), 0);
 }
@@ -123,7 +124,7 @@ Method dprkn12() {
           .knob = Knob::rtol,
           .needs_stiffness = true,
           .interpolates = true,
-          .make = make};
+          .make = make_dprkn12};
 }
 
 }  // namespace qddot

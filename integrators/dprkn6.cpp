@@ -38,7 +38,8 @@ const NystromPair& dprkn6_pair() {
 
 namespace {
 
-std::unique_ptr<Integrator> make(const Method& method, const System& system, const Knobs& knobs) {
+std::unique_ptr<Integrator> make_dprkn6(const Method& method, const System& system,
+                                        const Knobs& knobs) {
   return std::make_unique<Nystrom>(method, system, knobs, dprkn6_pair(), 4);
 }
 
@@ -56,7 +57,7 @@ Method dprkn6() {
           .knob = Knob::rtol,
           .needs_stiffness = true,
           .interpolates = true,
-          .make = make};
+          .make = make_dprkn6};
 }
 
 }  // namespace qddot

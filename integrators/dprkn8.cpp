@@ -37,7 +37,8 @@ const NystromPair& dprkn8_pair() {
 
 namespace {
 
-std::unique_ptr<Integrator> make(const Method& method, const System& system, const Knobs& knobs) {
+std::unique_ptr<Integrator> make_dprkn8(const Method& method, const System& system,
+                                        const Knobs& knobs) {
   return std::make_unique<Nystrom>(method, system, knobs, dprkn8_pair(), 4);
 }
 
@@ -55,7 +56,7 @@ Method dprkn8() {
           .knob = Knob::rtol,
           .needs_stiffness = true,
           .interpolates = true,
-          .make = make};
+          .make = make_dprkn8};
 }
 
 }  // namespace qddot

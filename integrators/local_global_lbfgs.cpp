@@ -14,7 +14,7 @@
 namespace qddot {
 namespace {
 
-constexpr int window = 5;
+constexpr int most_pairs = 5;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // A decrease of the energy that is a smaller part of it cannot be told from rounding.
 constexpr double hidden = 100 * epsilon;
@@ -68,24 +68,24 @@ class Lbfgs final : public LocalGlobal {
   // A pair without curvature would make the metric indefinite; it is left out, and so is the
   // oldest, whose place it has taken.
   void remember(const Vec& v) {
-    Pair& pair = pairs_[pairs_seen_ % window];
+    Pair& pair = pairs_[pairs_seen_ % most_pairs];
     pair.s = v - last_v_;
     pair.y = r_ - last_r_;
     pair.sy = pair.s.dot(pair.y);
     if (pair.sy > epsilon * pair.s.norm() * pair.y.norm()) {
       ++pairs_seen_;
-      pairs_used_ = std::min(pairs_used_ + 1, window);
+      pairs_used_ = std::min(pairs_used_ + 1, most_pairs);
     } else {
-      pairs_used_ = std::min(pairs_used_, window - 1);
+      pairs_used_ = std::min(pairs_used_, most_pairs - 1);
     }
   }
 
-  Pair& newest(int i) { return pairs_[(pairs_seen_ - 1 - i) % window]; }
+  Pair& newest(int i) { return pairs_[(pairs_seen_ - 1 - i) % most_pairs]; }
 
   bool is_at_rounding_ = false;  // differences are noise from here on; plain steps do no harm
   int iteration_ = 0, pairs_seen_ = 0, pairs_used_ = 0;
   double energy_ = 0;
-  std::array<Pair, window> pairs_;
+  std::array<Pair, most_pairs> pairs_;
   Vec r_{system().size()}, p_{system().size()}, last_v_{system().size()}, last_r_{system().size()};
 };
 

@@ -12,13 +12,13 @@ namespace {
 
 using namespace sundials;
 
-struct Table {
+struct ExplicitTable {
   int order;
   ARKODE_ERKTableID id;
   const char* name;
   const char* source;
 };
-constexpr Table tables[] = {
+constexpr ExplicitTable explicit_tables[] = {
     {2, ARKODE_HEUN_EULER_2_1_2, "HEUN_EULER_2_1_2", "Heun's method with Euler's inside it"},
     {3, ARKODE_BOGACKI_SHAMPINE_4_2_3, "BOGACKI_SHAMPINE_4_2_3",
      "Bogacki and Shampine, Applied Mathematics Letters 2:4 (1989) 321-325"},
@@ -35,7 +35,7 @@ class Erk final : public Arkode {
  public:
   Erk(const Method& method, const System& system, const Knobs& knobs)
       : Erk(method, system, knobs,
-            ButcherTable(check(ARKodeButcherTable_LoadERK(tables[which].id)))) {}
+            ButcherTable(check(ARKodeButcherTable_LoadERK(explicit_tables[which].id)))) {}
 
  private:
   Erk(const Method& method, const System& system, const Knobs& knobs, ButcherTable table)
@@ -47,7 +47,7 @@ class Erk final : public Arkode {
 
 template <int which>
 Method erk() {
-  const Table& table = tables[which];
+  const ExplicitTable& table = explicit_tables[which];
   return {.name = fmt::format("arkode_erk{}", table.order),
           .summary = fmt::format("SUNDIALS ARKODE, adaptive explicit of order {}, ARKODE_{}, "
                                  "steps held to 1/w_max",

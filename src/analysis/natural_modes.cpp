@@ -19,7 +19,7 @@ namespace {
 using Eigen::MatrixXd;
 
 // Up to here the dense decomposition takes no longer than Lanczos' method, and it cannot fail.
-constexpr Index most_dense = 400;
+constexpr Index largest_dense = 400;
 // Shifts stand off the spectrum by this part of its width, or as many times more as it takes.
 constexpr double least_offset = 1e-8;
 constexpr double growth = 4;
@@ -103,7 +103,7 @@ NaturalModes modes_beside(const Pencil& p, EffectiveMass& matrix, double offset,
 }
 
 bool is_small(const Pencil& p, Index count) {
-  return p.system.size() <= most_dense || 4 * count >= p.system.size();
+  return p.system.size() <= largest_dense || 4 * count >= p.system.size();
 }
 
 }  // namespace

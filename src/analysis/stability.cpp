@@ -9,7 +9,7 @@ namespace qddot {
 namespace {
 
 constexpr double threshold = 1e-10;
-constexpr int most_tries = 20;
+constexpr int most_raises = 20;
 
 Vec row_sums(const SymmetricMatrix& k) {
   const SymmetricMatrix sizes = k.cwiseAbs();
@@ -35,7 +35,7 @@ int unstable_directions(const System& system, const Vec& q) {
   EffectiveMass matrix(system, metric);
   // LDL' without pivoting can meet a pivot that is zero, but hardly with several tau.
   double tau = threshold * bound;
-  for (int tries = 0; tries < most_tries; ++tries, tau *= 1.1) {
+  for (int tries = 0; tries < most_raises; ++tries, tau *= 1.1) {
     if (matrix.factorize(tau, 1, k) == EffectiveMass::Definiteness::singular) continue;
     return static_cast<int>(matrix.negative_pivots());
   }
