@@ -4,7 +4,8 @@
 //   q_{n+1} = q_n + h v_{n+1}
 // Order 1, one factorisation a step (one a run where K is constant). Not to be confused with
 // symplectic_euler, which the literature calls semi-implicit as well. An indefinite matrix is
-// solved with as it stands, as the formula says; a singular one ends the run.
+// solved with as it stands, as the formula says, but by conjugate gradients; a singular one ends
+// the run.
 #include "integrators/fixed_step.hpp"
 #include "integrators/registry.hpp"
 #include "src/algebra/effective_mass.hpp"
@@ -23,8 +24,10 @@ class SemiImplicitEuler final : public FixedStep {
     force(now.q, f_);
     if (!factorize(now.q, h)) return Outcome::indefinite_matrix;
     b_ = system().mass().cwiseProduct(now.v) + h * f_;
-    matrix_.solve(b_, next.v);
     ++counts().solves;
+    if (const Outcome outcome = judge(matrix_.solve(b_, next.v)); outcome != Outcome::reached_end) {
+      return outcome;
+    }
     next.q = now.q + h * next.v;
     return Outcome::reached_end;
   }
@@ -40,7 +43,7 @@ class SemiImplicitEuler final : public FixedStep {
 
   Vec f_{system().size()}, b_{system().size()};
   SymmetricMatrix k_{system().stiffness_pattern()};
-  EffectiveMass matrix_{system()};
+  EffectiveMass matrix_{system(), knobs().solver};
   double factorized_h_ = 0;
 };
 
@@ -54,6 +57,7 @@ Method semi_implicit_euler() {
           .linearly_implicit = true,
           .needs_stiffness = true,
           .accepts_massless = true,
+          .takes_solver = true,
           .make = create<SemiImplicitEuler>};
 }
 

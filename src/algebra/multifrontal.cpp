@@ -40,7 +40,7 @@ class Multifrontal : public Factors {
 
   Index negative_pivots() const override { return negative_; }
 
-  void solve(const Vec& b, Vec& x) override {
+  Solution solve(const Vec& b, Vec& x) override {
     const auto& place = fronts_.place();
     for (Index i = 0; i < b.size(); ++i) y_.get()[place[i]] = b[i];
     for (const Front& f : fronts_) forward(f);
@@ -48,14 +48,16 @@ class Multifrontal : public Factors {
     for (const Front* f = fronts_.end(); f != fronts_.begin();) backward(*--f);
     x.resize(b.size());
     for (Index i = 0; i < b.size(); ++i) x[i] = y_.get()[place[i]];
+    return Solution::found;
   }
 
-  void solve(const FourColumns& b, FourColumns& x) override {
+  Solution solve(const FourColumns& b, FourColumns& x) override {
     const auto& place = fronts_.place();
     for (Index i = 0; i < b.rows(); ++i) row(y_.get(), place[i]) = row(b.data(), i);
     for (const Front& f : fronts_) forwards(f);
     for (const Front* f = fronts_.end(); f != fronts_.begin();) backwards(*--f);
     for (Index i = 0; i < b.rows(); ++i) row(x.data(), i) = row(y_.get(), place[i]);
+    return Solution::found;
   }
 
  private:
