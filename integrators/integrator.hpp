@@ -158,7 +158,7 @@ class Integrator {
   Outcome judge(const State& state) const;
   // Whether a solve found what it was to find: reached_end, or else why not (indefinite_matrix, or
   // solver_failed, which is explained).
-  Outcome judge(Solution solution);
+  Outcome judge(SolveOutcome solution);
   // Says more than the outcome's advice does.
   void explain(std::string message) { message_ = std::move(message); }
 

@@ -48,7 +48,7 @@ class Structured final : public NewtonMatrix {
     } else {
       b_ = mass_.cwiseProduct(rs.q + gamma_ * rs.v);
     }
-    if (factors_.solve(b_, a_) != Solution::found) return 1;
+    if (factors_.solve(b_, a_) != SolveOutcome::found) return 1;
     if (definiteness_ == EffectiveMass::Definiteness::indefinite && !is_solved()) return 1;
     if (is_implicit_) {
       ab.v = a_ / gamma_ - rs.q;
@@ -66,7 +66,7 @@ class Structured final : public NewtonMatrix {
       residual_ += k_->selfadjointView<Eigen::Lower>() * (gamma_ * gamma_ * a_);
       if (residual_.norm() <= largest_residual * b_.norm()) return true;
       if (refinements == 1) return false;
-      if (factors_.solve(residual_, correction_) != Solution::found) return false;
+      if (factors_.solve(residual_, correction_) != SolveOutcome::found) return false;
       a_ += correction_;
     }
   }

@@ -57,7 +57,6 @@ class BlockRows {
 
   Index rows() const { return std::ssize(first_) - 1; }
   Index size() const { return B * rows(); }
-  Index blocks() const { return std::ssize(column_); }
   Eigen::Map<const Block> diagonal(Index i) const {
     return Eigen::Map<const Block>(block(diagonal_[i]));
   }

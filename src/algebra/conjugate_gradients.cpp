@@ -16,7 +16,7 @@ constexpr double safe_tolerance = 1e-10;
 constexpr int most_iterations = 10000;
 
 template <int B>
-class ConjugateGradients final : public Factors {
+class ConjugateGradients final : public IterativeFactors {
  public:
   ConjugateGradients(const SymmetricMatrix& pattern, const std::vector<int>& starts, Vec diagonal)
       : diagonal_(std::move(diagonal)),
@@ -39,25 +39,27 @@ class ConjugateGradients final : public Factors {
 
   Index negative_pivots() const override { return definiteness_ == Definiteness::indefinite; }
 
+  Index iterations() const override { return iterations_; }
+
   void set_tolerance(double tolerance) override { tolerance_ = tolerance; }
 
-  Solution solve(const Vec& b, Vec& x) override {
+  SolveOutcome solve(const Vec& b, Vec& x) override {
     x.resize(b.size());
-    if (definiteness_ != Definiteness::positive) return Solution::indefinite;
+    if (definiteness_ != Definiteness::positive) return SolveOutcome::indefinite;
     matrix_.spread(b.data(), r_.get());
-    const Solution solution = iterate();
-    if (solution == Solution::indefinite) definiteness_ = Definiteness::indefinite;
+    const SolveOutcome solution = iterate();
+    if (solution == SolveOutcome::indefinite) definiteness_ = Definiteness::indefinite;
     matrix_.gather(x_.get(), x.data());
     return solution;
   }
 
-  Solution solve(const FourColumns& b, FourColumns& x) override {
+  SolveOutcome solve(const FourColumns& b, FourColumns& x) override {
     Vec one(b.rows());
     for (Index c = 0; c < b.cols(); ++c) {
-      if (const Solution s = solve(b.col(c), one); s != Solution::found) return s;
+      if (const SolveOutcome s = solve(b.col(c), one); s != SolveOutcome::found) return s;
       x.col(c) = one;
     }
-    return Solution::found;
+    return SolveOutcome::found;
   }
 
  private:
@@ -66,20 +68,21 @@ class ConjugateGradients final : public Factors {
   using Block = typename Rows::Block;
 
   // A x = r, from x = 0.
-  Solution iterate() {
+  SolveOutcome iterate() {
     auto x = all(x_), r = all(r_), z = all(z_), p = all(p_), q = all(q_);
     x.setZero();
     double rz = precondition();
     if (!std::isfinite(rz)) {  // as a direct solver answers what is no number
       x.setConstant(std::numeric_limits<double>::quiet_NaN());
-      return Solution::found;
+      return SolveOutcome::found;
     }
     const double enough = tolerance_ * tolerance_ * rz;
     p = z;
     for (int i = 0; rz > enough; ++i) {
-      if (i == most_iterations) return Solution::not_converged;
+      if (i == most_iterations) return SolveOutcome::not_converged;
+      ++iterations_;
       const double curvature = matrix_.multiply(p_.get(), q_.get());
-      if (!(curvature > 0)) return Solution::indefinite;
+      if (!(curvature > 0)) return SolveOutcome::indefinite;
       const double length = rz / curvature;
       x += length * p;
       r -= length * q;
@@ -87,7 +90,7 @@ class ConjugateGradients final : public Factors {
       rz = precondition();
       p = z + (rz / before) * p;
     }
-    return Solution::found;
+    return SolveOutcome::found;
   }
 
   // z = P^-1 r; returns r'z.
@@ -129,11 +132,13 @@ class ConjugateGradients final : public Factors {
   LargeArray x_, r_, z_, p_, q_;
   Definiteness definiteness_ = Definiteness::singular;
   double tolerance_ = safe_tolerance;
+  Index iterations_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Factors> make_conjugate_gradients(const SymmetricMatrix& pattern, Vec diagonal) {
+std::unique_ptr<IterativeFactors> make_conjugate_gradients(const SymmetricMatrix& pattern,
+                                                           Vec diagonal) {
   static_assert(most_block_unknowns == 3);
   const std::vector<int> starts = block_starts(pattern);
   int largest = 1;

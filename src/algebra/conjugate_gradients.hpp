@@ -6,6 +6,13 @@
 
 namespace qddot {
 
+// Factors that do their work in solve().
+class IterativeFactors : public Factors {
+ public:
+  // Of all solves so far; each multiplies with the matrix once.
+  virtual Index iterations() const = 0;
+};
+
 // Conjugate gradients (Hestenes and Stiefel, J. Research NBS 49 (1952) 409-436) with the blocks on
 // the diagonal, one for each node, as preconditioner P (block Jacobi). Memory and the work of an
 // iteration are proportional to the springs, where L of a direct factorisation grows faster; how
@@ -26,6 +33,7 @@ namespace qddot {
 // more. Who solves for a correction that is itself only good to some part should set that part. A
 // solve that takes more than 10 000 iterations has not_converged: that many cost more than most
 // factorisations.
-std::unique_ptr<Factors> make_conjugate_gradients(const SymmetricMatrix& pattern, Vec diagonal);
+std::unique_ptr<IterativeFactors> make_conjugate_gradients(const SymmetricMatrix& pattern,
+                                                           Vec diagonal);
 
 }  // namespace qddot

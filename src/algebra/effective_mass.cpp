@@ -1,5 +1,6 @@
 #include "src/algebra/effective_mass.hpp"
 
+#include "src/algebra/automatic_factors.hpp"
 #include "src/algebra/cholmod_factors.hpp"
 #include "src/algebra/conjugate_gradients.hpp"
 #include "src/algebra/multifrontal.hpp"
@@ -15,6 +16,7 @@ std::unique_ptr<Factors> make_factors(Solver solver, const SymmetricMatrix& patt
     case Solver::conjugate_gradients:
       return make_conjugate_gradients(pattern, std::move(diagonal));
     case Solver::automatic:
+      return make_automatic_factors(pattern, std::move(diagonal));
     case Solver::multifrontal:
       break;
   }

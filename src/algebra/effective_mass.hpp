@@ -41,7 +41,7 @@ class EffectiveMass {
 
   // x = (a M - s K)^-1 b with the last factors, which must not be singular; b, x: n. A direct
   // solver always finds it; where it is not found x is of no use.
-  Solution solve(const Vec& b, Vec& x) { return factors_->solve(b, x); }
+  SolveOutcome solve(const Vec& b, Vec& x) { return factors_->solve(b, x); }
 
   // What part of b an iterative solve may leave; others do not care.
   void set_tolerance(double tolerance) { factors_->set_tolerance(tolerance); }

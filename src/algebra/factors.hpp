@@ -20,9 +20,9 @@ class Factors {
   virtual Definiteness factorize(double a, double s, const SymmetricMatrix& k) = 0;
   virtual bool factorize_positive(double a, double s, const SymmetricMatrix& k) = 0;
   virtual Index negative_pivots() const = 0;
-  virtual Solution solve(const Vec& b, Vec& x) = 0;
+  virtual SolveOutcome solve(const Vec& b, Vec& x) = 0;
   // The same for four right-hand sides at once; b, x: n x 4, sized by the caller.
-  virtual Solution solve(const FourColumns& b, FourColumns& x) = 0;
+  virtual SolveOutcome solve(const FourColumns& b, FourColumns& x) = 0;
   // What an iterative solve may leave; direct ones leave rounding errors whatever is asked for.
   virtual void set_tolerance(double) {}
 };

@@ -18,9 +18,9 @@ constexpr int panel = 96;
 
 class Multifrontal : public Factors {
  public:
-  Multifrontal(const SymmetricMatrix& pattern, Vec diagonal)
+  Multifrontal(const SymmetricMatrix& pattern, Vec diagonal, Elimination elimination)
       : diagonal_(std::move(diagonal)),
-        fronts_(pattern),
+        fronts_(pattern, std::move(elimination)),
         l_(fronts_.factor_size),
         updates_(fronts_.update_size),
         columns_(fronts_.pivot_columns_size),
@@ -40,7 +40,7 @@ class Multifrontal : public Factors {
 
   Index negative_pivots() const override { return negative_; }
 
-  Solution solve(const Vec& b, Vec& x) override {
+  SolveOutcome solve(const Vec& b, Vec& x) override {
     const auto& place = fronts_.place();
     for (Index i = 0; i < b.size(); ++i) y_.get()[place[i]] = b[i];
     for (const Front& f : fronts_) forward(f);
@@ -48,16 +48,16 @@ class Multifrontal : public Factors {
     for (const Front* f = fronts_.end(); f != fronts_.begin();) backward(*--f);
     x.resize(b.size());
     for (Index i = 0; i < b.size(); ++i) x[i] = y_.get()[place[i]];
-    return Solution::found;
+    return SolveOutcome::found;
   }
 
-  Solution solve(const FourColumns& b, FourColumns& x) override {
+  SolveOutcome solve(const FourColumns& b, FourColumns& x) override {
     const auto& place = fronts_.place();
     for (Index i = 0; i < b.rows(); ++i) row(y_.get(), place[i]) = row(b.data(), i);
     for (const Front& f : fronts_) forwards(f);
     for (const Front* f = fronts_.end(); f != fronts_.begin();) backwards(*--f);
     for (Index i = 0; i < b.rows(); ++i) row(x.data(), i) = row(y_.get(), place[i]);
-    return Solution::found;
+    return SolveOutcome::found;
   }
 
  private:
@@ -268,7 +268,12 @@ class Multifrontal : public Factors {
 }  // namespace
 
 std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal) {
-  return std::make_unique<Multifrontal>(pattern, std::move(diagonal));
+  return make_multifrontal(pattern, std::move(diagonal), eliminate(pattern));
+}
+
+std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal,
+                                           Elimination elimination) {
+  return std::make_unique<Multifrontal>(pattern, std::move(diagonal), std::move(elimination));
 }
 
 }  // namespace qddot

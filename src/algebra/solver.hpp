@@ -27,7 +27,7 @@ inline std::optional<Solver> find_solver(std::string_view name) {
 }
 
 // What became of a solve.
-enum class Solution {
+enum class SolveOutcome {
   found,
   indefinite,     // the matrix is not positive definite, and this solver needs it to be
   not_converged,  // too many iterations
