@@ -4,8 +4,8 @@
 //   q_{n+1} = q_n + h v_{n+1}
 // Order 1, one factorisation a step (one a run where K is constant). Not to be confused with
 // symplectic_euler, which the literature calls semi-implicit as well. An indefinite matrix is
-// solved with as it stands, as the formula says, but by conjugate gradients; a singular one ends
-// the run.
+// solved with as it stands, as the formula says, but conjugate gradients alone end the run, as a
+// singular one does.
 #include "integrators/fixed_step.hpp"
 #include "integrators/registry.hpp"
 #include "src/algebra/effective_mass.hpp"

@@ -12,7 +12,7 @@ namespace {
 
 // Work is counted in operations of a factorisation. In the time of these the machine takes an entry
 // of L there and back, in a solve, and an entry of the triangle twice, in an iteration: both wait
-// for memory.
+// for memory. Measured on lattices and cloths of 4000 to 30,000 unknowns, at 60 Gflop/s.
 constexpr double per_factor_entry = 30, per_matrix_entry = 22;
 // Where a factorisation is no more than so many iterations' work there is little to be won: all is
 // multifrontal, and exact to rounding.
