@@ -13,8 +13,8 @@ enum class Definiteness { positive, indefinite, singular };
 using FourColumns = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
 // A way to factorise a D - s K, D diagonal and K of a pattern that is analysed once, and to solve
-// with it. Functions as those of EffectiveMass. K, when factorised, must stay as it is until the last
-// solve.
+// with it. Functions as those of EffectiveMass. K, when factorised, must stay as it is until the
+// last solve.
 class Factors {
  public:
   virtual ~Factors() = default;
