@@ -31,6 +31,7 @@ Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
   knobs.iterations = options.iterations;
   knobs.solve_tolerance = options.solve_tolerance;
   knobs.spectral_radius = options.spectral_radius;
+  knobs.solver = find_solver(options.solver).value();
   return with_tolerance_scales(knobs, scene);
 }
 

@@ -27,6 +27,7 @@ struct MethodOptions {
   int iterations = 0;
   double solve_tolerance = 0;
   double spectral_radius = Knobs{}.spectral_radius;
+  std::string solver = "automatic";  // by its name
 };
 
 // How long a point may take, how often it is timed, and how it is run.

@@ -1,6 +1,7 @@
 #include "experiments/method_options.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -19,6 +20,10 @@ void require_that(bool is_allowed, const char* option, const T& value, const std
   }
 }
 
+std::string solver_list() {
+  return fmt::format("one of {}", fmt::join(solver_names | std::views::values, ", "));
+}
+
 void require_values(const CLI::App& app, const MethodOptions& o, int highest_order) {
   if (app.count("--max-order") > 0) {
     require_that(o.max_order >= 1 && o.max_order <= highest_order, "--max-order", o.max_order,
@@ -33,6 +38,7 @@ void require_values(const CLI::App& app, const MethodOptions& o, int highest_ord
   }
   require_that(o.spectral_radius >= 0 && o.spectral_radius <= 1, "--spectral-radius",
                o.spectral_radius, "from 0 to 1");
+  require_that(find_solver(o.solver).has_value(), "--solver", o.solver, solver_list());
 }
 
 }  // namespace
@@ -59,6 +65,10 @@ void add_method_options(CLI::App& app, MethodOptions& options) {
                  "frequency, from 0 to 1")
       ->take_last()
       ->capture_default_str();
+  app.add_option("--solver", options.solver,
+                 "what solves with the n x n matrices of implicit steps: " + solver_list())
+      ->take_last()
+      ->capture_default_str();
 }
 
 void require_options(const CLI::App& app, const MethodOptions& options) {
@@ -80,6 +90,7 @@ void require_options(const CLI::App& app, const MethodOptions& options, const Me
   require("--iterations", &Method::takes_iterations);
   require("--solve-tolerance", &Method::takes_solve_tolerance);
   require("--spectral-radius", &Method::takes_spectral_radius);
+  require("--solver", &Method::takes_solver);
   require_values(app, options, method.order);
 }
 

@@ -8,7 +8,8 @@ class App;
 
 namespace qddot {
 
-// Adds --max-order, --stability-detection, --iterations, --solve-tolerance and --spectral-radius.
+// Adds --max-order, --stability-detection, --iterations, --solve-tolerance, --spectral-radius and
+// --solver.
 void add_method_options(CLI::App& app, MethodOptions& options);
 
 // Throws InvalidInput unless each option that is given is allowed for some method, or for this one.

@@ -55,7 +55,9 @@ class Newton final : public FixedStep {
       ++counts().factorizations;
       return matrix_.factorize_positive(1, s, k_);
     };
-    return is_clamped ? works(0) : compression_.find(works);
+    if (is_clamped) return works(0);
+    compression_.harden();
+    return compression_.find(works);
   }
 
   Vec f_{system().size()}, r_{system().size()}, p_{system().size()}, v_{system().size()};

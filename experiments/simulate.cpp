@@ -180,7 +180,8 @@ Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& metho
           .stability_detection = a.options.stability_detection,
           .iterations = a.options.iterations,
           .solve_tolerance = a.options.solve_tolerance,
-          .spectral_radius = a.options.spectral_radius};
+          .spectral_radius = a.options.spectral_radius,
+          .solver = find_solver(a.options.solver).value()};
 }
 
 // A place for the scene that is asked for, taken before anything else is done.

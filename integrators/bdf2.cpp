@@ -57,6 +57,7 @@ Method bdf2() {
       .needs_stiffness = true,
       .accepts_massless = true,
       .takes_solve_tolerance = true,
+      .takes_solver = true,
       .make = create<Bdf2>};
 }
 

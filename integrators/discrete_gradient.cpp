@@ -62,6 +62,7 @@ Method discrete_gradient() {
           .implicit = true,
           .needs_stiffness = true,
           .takes_solve_tolerance = true,
+          .takes_solver = true,
           .make = create<DiscreteGradient>};
 }
 

@@ -82,6 +82,7 @@ Method generalized_alpha() {
           .needs_stiffness = true,
           .takes_solve_tolerance = true,
           .takes_spectral_radius = true,
+          .takes_solver = true,
           .make = create<ChungHulbert>};
 }
 
@@ -94,6 +95,7 @@ Method hht() {
           .needs_stiffness = true,
           .takes_solve_tolerance = true,
           .takes_spectral_radius = true,
+          .takes_solver = true,
           .make = create<Hht>};
 }
 

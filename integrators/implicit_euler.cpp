@@ -36,6 +36,7 @@ Method implicit_euler() {
           .needs_stiffness = true,
           .accepts_massless = true,
           .takes_solve_tolerance = true,
+          .takes_solver = true,
           .make = create<ImplicitEuler>};
 }
 

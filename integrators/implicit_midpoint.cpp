@@ -47,6 +47,7 @@ Method implicit_midpoint() {
           .symplectic = true,
           .needs_stiffness = true,
           .takes_solve_tolerance = true,
+          .takes_solver = true,
           .make = create<ImplicitMidpoint>};
 }
 

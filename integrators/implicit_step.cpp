@@ -11,6 +11,9 @@ constexpr int most_halvings = 30;
 // Corrections that shrink more slowly than this are worth new factors, which cost as much as some
 // ten solves.
 constexpr double slowest_rate = 0.3;
+// Of what a stage may leave of the prediction's error, the part that an iterative solve for a
+// correction may leave of the residual: where all is linear one correction is all there is.
+constexpr double linear_share = 0.1;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // Of the positions: where corrections no longer shrink below this, rounding makes them.
 constexpr double rounding = 1e-12;
@@ -30,7 +33,9 @@ ImplicitStep::ImplicitStep(const Method& method, const System& system, const Kno
       before_(system.size()),
       start_(system.size()),
       k_(system.stiffness_pattern()),
-      matrix_(system) {}
+      matrix_(system, knobs.solver) {
+  matrix_.set_tolerance(linear_share * tolerance_);
+}
 
 void ImplicitStep::start(const State&) {
   factorized_s_ = last_missed_ = 0;
@@ -62,7 +67,14 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
       are_wanted = false;
       last = 0;
     }
-    if (const Outcome outcome = correction(); outcome != Outcome::reached_end) return outcome;
+    Outcome outcome = correction();
+    while (outcome == Outcome::indefinite_matrix && compression_.soften()) {
+      outcome = factorize_softened(q, s);
+      if (outcome == Outcome::reached_end) outcome = correction();
+      are_new = are_of_u = true;
+      last = 0;
+    }
+    if (outcome != Outcome::reached_end) return outcome;
     const double size = p_.lpNorm<Eigen::Infinity>(), place = (q + u_).lpNorm<Eigen::Infinity>();
     double rate = 1;
     if (last > 0) rate = size / last;
@@ -112,6 +124,11 @@ void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compressio
 }
 
 Outcome ImplicitStep::factorize(const Vec& q, double s) {
+  compression_.harden();
+  return factorize_softened(q, s);
+}
+
+Outcome ImplicitStep::factorize_softened(const Vec& q, double s) {
   factorized_s_ = 0;
   bool is_finite = true;
   const bool is_positive = compression_.find([&](double kept) {
@@ -131,9 +148,11 @@ Outcome ImplicitStep::factorize(const Vec& q, double s) {
 // p = -(M - s K)^-1 r.
 Outcome ImplicitStep::correction() {
   const Stopwatch watch(seconds(), &Seconds::solve);
-  matrix_.solve(r_, p_);
   ++counts().solves;
   ++counts().newton_iterations;
+  if (const Outcome outcome = judge(matrix_.solve(r_, p_)); outcome != Outcome::reached_end) {
+    return outcome;
+  }
   p_ = -p_;
   return p_.allFinite() ? Outcome::reached_end : Outcome::not_finite;
 }

@@ -48,7 +48,10 @@ class ImplicitStep : public FixedStep {
   virtual bool is_minimisation() const { return true; }
 
   void residual(const Vec& q, double s);
+  // With twice the compression that the last factors have, where that works, or with as much.
   Outcome factorize(const Vec& q, double s);
+  Outcome factorize_softened(const Vec& q, double s);
+  // With conjugate gradients indefinite_matrix as well: only now they may see that it is.
   Outcome correction();
   double search(const Vec& q, double s);
   double objective(const Vec& q, double s);

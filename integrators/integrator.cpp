@@ -125,6 +125,13 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
   return {outcome, state.t, counts_, seconds_, message_};
 }
 
+Outcome Integrator::judge(SolveOutcome solution) {
+  if (solution == SolveOutcome::found) return Outcome::reached_end;
+  if (solution == SolveOutcome::indefinite) return Outcome::indefinite_matrix;
+  explain("conjugate gradients did not converge; take a shorter step or the multifrontal solver");
+  return Outcome::solver_failed;
+}
+
 Outcome Integrator::judge(const State& state) const {
   const double speed_squared = state.v.squaredNorm();
   if (std::isnan(speed_squared)) return Outcome::not_finite;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "src/algebra/solver.hpp"
 #include "src/model/system.hpp"
 
 namespace qddot {
@@ -106,6 +107,7 @@ struct Knobs {
   // Of generalised-alpha methods: what a step multiplies a vibration of infinite frequency by, from
   // 0 (gone at once) to 1 (undamped).
   double spectral_radius = 0.8;
+  Solver solver = Solver::automatic;  // of methods that solve with M - s K
   // Of splittings: whether to keep what rounding takes from q and v at each addition, and add it
   // with the next (see compensated_sum.hpp).
   bool compensated = false;
@@ -154,6 +156,9 @@ class Integrator {
   // Whether a state can be accepted: reached_end, or else why not (not_finite, diverged,
   // went_slack).
   Outcome judge(const State& state) const;
+  // Whether a solve found what it was to find: reached_end, or else why not (indefinite_matrix, or
+  // solver_failed, which is explained).
+  Outcome judge(SolveOutcome solution);
   // Says more than the outcome's advice does.
   void explain(std::string message) { message_ = std::move(message); }
 

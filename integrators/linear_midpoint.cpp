@@ -57,7 +57,7 @@ class LinearMidpoint final : public FixedStep {
         change_(system.size()),
         own_(implicit_.size()),
         own_change_(implicit_.size()) {
-    if (implicit_.size() > 0) matrix_ = std::make_unique<EffectiveMass>(implicit_);
+    if (implicit_.size() > 0) matrix_ = std::make_unique<EffectiveMass>(implicit_, knobs.solver);
   }
 
  private:
@@ -82,11 +82,9 @@ class LinearMidpoint final : public FixedStep {
   // v += h A^-1 f; A is M for the unknowns that are not implicit.
   Outcome kick(double h, State& next) {
     if (!split_) {
-      const Outcome outcome = factorize(h, next.q);
-      if (outcome == Outcome::reached_end) {
-        solve(f_, change_);
-        next.v += h * change_;
-      }
+      Outcome outcome = factorize(h, next.q);
+      if (outcome == Outcome::reached_end) outcome = solve(f_, change_);
+      if (outcome == Outcome::reached_end) next.v += h * change_;
       return outcome;
     }
     change_ = f_.cwiseQuotient(system().mass());
@@ -97,7 +95,9 @@ class LinearMidpoint final : public FixedStep {
         return outcome;
       }
       for (std::size_t a = 0; a < core.size(); ++a) own_[a] = f_[core[a]];
-      solve(own_, own_change_);
+      if (const Outcome outcome = solve(own_, own_change_); outcome != Outcome::reached_end) {
+        return outcome;
+      }
       for (std::size_t a = 0; a < core.size(); ++a) change_[core[a]] = own_change_[a];
     }
     next.v += h * change_;
@@ -122,10 +122,10 @@ class LinearMidpoint final : public FixedStep {
                                                          : Outcome::indefinite_matrix;
   }
 
-  void solve(const Vec& b, Vec& x) {
+  Outcome solve(const Vec& b, Vec& x) {
     ++counts().solves;
     const Stopwatch watch(seconds(), &Seconds::solve);
-    matrix_->solve(b, x);
+    return judge(matrix_->solve(b, x));
   }
 
   const Split* split_;                     // none: every spring is in the matrix
@@ -147,6 +147,7 @@ Method linear_midpoint() {
           .order = 2,
           .implicit = true,
           .needs_stiffness = true,
+          .takes_solver = true,
           .make = create<LinearMidpoint<plain>>};
 }
 
@@ -157,6 +158,7 @@ Method linear_midpoint4() {
           .order = 4,
           .implicit = true,
           .needs_stiffness = true,
+          .takes_solver = true,
           .make = create<LinearMidpoint<suzuki>>};
 }
 

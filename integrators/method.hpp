@@ -49,7 +49,8 @@ struct Method {
   bool needs_laplacian = false;        // takes System::laplacian()
   bool takes_iterations = false;       // listens to Knobs::iterations,
   bool takes_solve_tolerance = false;  // Knobs::solve_tolerance
-  bool takes_spectral_radius = false;  // Knobs::spectral_radius
+  bool takes_spectral_radius = false;  // Knobs::spectral_radius,
+  bool takes_solver = false;           // Knobs::solver
   bool takes_compensation = false;     // and Knobs::compensated
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
 };

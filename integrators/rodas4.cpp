@@ -41,6 +41,7 @@ Method rodas4() {
           .implicit = true,
           .needs_stiffness = true,
           .interpolates = true,
+          .takes_solver = true,
           .make = make};
 }
 

@@ -1,5 +1,7 @@
 #include "integrators/rosenbrock.hpp"
 
+#include <algorithm>
+
 #include "integrators/table_row.hpp"
 
 namespace qddot {
@@ -7,6 +9,9 @@ namespace {
 
 // Between two ends of steps: errs by h^6 where the step does by h^5.
 constexpr std::size_t instants = 2;
+// Of the relative tolerance, the part of each stage that an iterative solve may leave; and the
+// most.
+constexpr double linear_share = 1e-2, loosest = 1e-4;
 
 }  // namespace
 
@@ -20,7 +25,9 @@ Rosenbrock::Rosenbrock(const Method& method, const System& system, const Knobs& 
       s_(system.size()),
       x_(system.size()),
       k_(system.stiffness_pattern()),
-      matrix_(system) {}
+      matrix_(system, knobs.solver) {
+  matrix_.set_tolerance(std::min(linear_share * knobs.rtol, loosest));
+}
 
 void Rosenbrock::start(const State& state) {
   AdaptiveStep::start(state);
@@ -54,8 +61,10 @@ Outcome Rosenbrock::attempt(const Instant& now, double h, Instant& next, Vec& er
     s_.noalias() += table_.gamma * (u_v_.leftCols(i) * as_vec(table_.c[row]));
     s_ = system().mass().cwiseProduct(r_ + g * s_);
     const Stopwatch watch(seconds(), &Seconds::solve);
-    matrix_.solve(s_, x_);
     ++counts().solves;
+    if (const Outcome outcome = judge(matrix_.solve(s_, x_)); outcome != Outcome::reached_end) {
+      return outcome;
+    }
     u_q_.col(i) = x_;
     u_v_.col(i) = (x_ - r_) / g;
   }

@@ -4,7 +4,8 @@
 //   q_{n+1} = q_n + h v_{n+1}
 // Order 1, one factorisation a step (one a run where K is constant). Not to be confused with
 // symplectic_euler, which the literature calls semi-implicit as well. An indefinite matrix is
-// solved with as it stands, as the formula says; a singular one ends the run.
+// solved with as it stands, as the formula says, but conjugate gradients alone end the run, as a
+// singular one does.
 #include "integrators/fixed_step.hpp"
 #include "integrators/registry.hpp"
 #include "src/algebra/effective_mass.hpp"
@@ -23,7 +24,9 @@ class SemiImplicitEuler final : public FixedStep {
     force(now.q, f_);
     if (!factorize(now.q, h)) return Outcome::indefinite_matrix;
     b_ = system().mass().cwiseProduct(now.v) + h * f_;
-    solve(b_, next.v);
+    if (const Outcome outcome = solve(b_, next.v); outcome != Outcome::reached_end) {
+      return outcome;
+    }
     next.q = now.q + h * next.v;
     return Outcome::reached_end;
   }
@@ -38,15 +41,15 @@ class SemiImplicitEuler final : public FixedStep {
     return matrix_.factorize(1, h * h, k_) != EffectiveMass::Definiteness::singular;
   }
 
-  void solve(const Vec& b, Vec& x) {
+  Outcome solve(const Vec& b, Vec& x) {
     const Stopwatch watch(seconds(), &Seconds::solve);
-    matrix_.solve(b, x);
     ++counts().solves;
+    return judge(matrix_.solve(b, x));
   }
 
   Vec f_{system().size()}, b_{system().size()};
   SymmetricMatrix k_{system().stiffness_pattern()};
-  EffectiveMass matrix_{system()};
+  EffectiveMass matrix_{system(), knobs().solver};
   double factorized_h_ = 0;
 };
 
@@ -60,6 +63,7 @@ Method semi_implicit_euler() {
           .linearly_implicit = true,
           .needs_stiffness = true,
           .accepts_massless = true,
+          .takes_solver = true,
           .make = create<SemiImplicitEuler>};
 }
 

@@ -45,6 +45,7 @@ Method trapezoidal() {
           .implicit = true,
           .needs_stiffness = true,
           .takes_solve_tolerance = true,
+          .takes_solver = true,
           .make = create<Trapezoidal>};
 }
 

@@ -58,6 +58,7 @@ Method trbdf2() {
           .implicit = true,
           .needs_stiffness = true,
           .takes_solve_tolerance = true,
+          .takes_solver = true,
           .make = create<TrBdf2>};
 }
 

@@ -138,6 +138,7 @@ Method bdf(const char* name, const char* solver) {
           .needs_stiffness = true,
           .varies_order = true,
           .detects_instability = true,
+          .takes_solver = make_matrix == make_structured,
           .make = create<Bdf<make_matrix>>};
 }
 

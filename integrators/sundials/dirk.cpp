@@ -50,6 +50,7 @@ Method dirk(const char* suffix, const char* solver) {
           .knob = Knob::rtol,
           .implicit = true,
           .needs_stiffness = true,
+          .takes_solver = make_matrix == make_structured,
           .make = create<Dirk<order, make_matrix>>};
 }
 template <int order>

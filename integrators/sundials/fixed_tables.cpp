@@ -56,6 +56,7 @@ Method fixed(const char* name, int order, const char* what, const char* source) 
           .family = Family::sundials,
           .implicit = true,
           .needs_stiffness = true,
+          .takes_solver = true,
           .make = create<FixedTable<make_table>>};
 }
 

@@ -224,6 +224,7 @@ Method ida(const char* name, const char* solver) {
           .needs_stiffness = true,
           .accepts_massless = true,
           .varies_order = true,
+          .takes_solver = make_matrix == make_structured,
           .make = create<Ida<make_matrix>>};
 }
 

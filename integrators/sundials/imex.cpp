@@ -61,6 +61,7 @@ Method imex() {
           .implicit = true,
           .needs_stiffness = true,
           .needs_split = true,
+          .takes_solver = true,
           .make = create<Imex<order>>};
 }
 

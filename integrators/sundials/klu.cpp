@@ -79,7 +79,7 @@ class Klu final : public NewtonMatrix {
 
 }  // namespace
 
-std::unique_ptr<NewtonMatrix> make_klu(const System& system, SUNContext context) {
+std::unique_ptr<NewtonMatrix> make_klu(const System& system, SUNContext context, Solver) {
   return std::make_unique<Klu>(system, context);
 }
 

@@ -52,8 +52,9 @@ class NewtonMatrix {
 
 // The second-order structure: eliminating one half leaves the symmetric n x n matrix
 // M - gamma^2 K, gamma = 1/c (derivation in structured.cpp).
-std::unique_ptr<NewtonMatrix> make_structured(const System& system, SUNContext context);
+std::unique_ptr<NewtonMatrix> make_structured(const System& system, SUNContext context,
+                                              Solver solver);
 // The stock way: KLU on all 2n x 2n entries.
-std::unique_ptr<NewtonMatrix> make_klu(const System& system, SUNContext context);
+std::unique_ptr<NewtonMatrix> make_klu(const System& system, SUNContext context, Solver);
 
 }  // namespace qddot::sundials

@@ -38,7 +38,7 @@ Stepper::Stepper(const Method& method, const System& system, const Knobs& knobs,
   absolute.v.setConstant(is_given ? knobs.atol : rtol() * knobs.speed);
   if (!make_matrix) return;
   k_ = implicit_part.stiffness_pattern();
-  matrix_ = make_matrix(implicit_part, context());
+  matrix_ = make_matrix(implicit_part, context(), knobs.solver);
   matrix_->time_into(seconds());
 }
 

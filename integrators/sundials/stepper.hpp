@@ -13,7 +13,7 @@
 namespace qddot::sundials {
 
 // Makes the matrix of Newton's iteration; none (nullptr) where there is no such iteration.
-using MakeMatrix = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext);
+using MakeMatrix = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext, Solver);
 
 // The parts of a system's forces, or the system itself where it has none, which is to be made but
 // never run.

@@ -18,8 +18,8 @@ constexpr double largest_residual = 1e-8;
 
 class Structured final : public NewtonMatrix {
  public:
-  Structured(const System& system, SUNContext context)
-      : NewtonMatrix(context), mass_(system.mass()), factors_(system), b_(system.size()) {}
+  Structured(const System& system, SUNContext context, Solver solver)
+      : NewtonMatrix(context), mass_(system.mass()), factors_(system, solver), b_(system.size()) {}
 
  private:
   void set_explicit_form(double gamma, const SymmetricMatrix& k) override {
@@ -48,7 +48,7 @@ class Structured final : public NewtonMatrix {
     } else {
       b_ = mass_.cwiseProduct(rs.q + gamma_ * rs.v);
     }
-    factors_.solve(b_, a_);
+    if (factors_.solve(b_, a_) != SolveOutcome::found) return 1;
     if (definiteness_ == EffectiveMass::Definiteness::indefinite && !is_solved()) return 1;
     if (is_implicit_) {
       ab.v = a_ / gamma_ - rs.q;
@@ -67,7 +67,7 @@ class Structured final : public NewtonMatrix {
       residual_.noalias() += k_->selfadjointView<Eigen::Lower>() * scaled_;
       if (residual_.norm() <= largest_residual * b_.norm()) return true;
       if (refinements == 1) return false;
-      factors_.solve(residual_, correction_);
+      if (factors_.solve(residual_, correction_) != SolveOutcome::found) return false;
       a_ += correction_;
     }
   }
@@ -83,8 +83,9 @@ class Structured final : public NewtonMatrix {
 
 }  // namespace
 
-std::unique_ptr<NewtonMatrix> make_structured(const System& system, SUNContext context) {
-  return std::make_unique<Structured>(system, context);
+std::unique_ptr<NewtonMatrix> make_structured(const System& system, SUNContext context,
+                                              Solver solver) {
+  return std::make_unique<Structured>(system, context, solver);
 }
 
 }  // namespace qddot::sundials

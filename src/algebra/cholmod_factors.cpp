@@ -73,8 +73,8 @@ class CholmodFactors : public Factors {
     return static_cast<Index>(sizeof(double) + sizeof(int)) * numbers;
   }
 
-  void solve(const Vec& b, Vec& x) override {
-    if (!factor_) return;
+  SolveOutcome solve(const Vec& b, Vec& x) override {
+    if (!factor_) return SolveOutcome::found;
     cholmod_dense right{};
     right.nrow = right.nzmax = right.d = static_cast<std::size_t>(b.size());
     right.ncol = 1;
@@ -86,14 +86,16 @@ class CholmodFactors : public Factors {
       throw std::runtime_error("CHOLMOD could not solve: out of memory");
     }
     x = Eigen::Map<const Vec>(static_cast<const double*>(x_->x), b.size());
+    return SolveOutcome::found;
   }
 
-  void solve(const FourColumns& b, FourColumns& x) override {
+  SolveOutcome solve(const FourColumns& b, FourColumns& x) override {
     Vec solution(b.rows());
     for (Index c = 0; c < b.cols(); ++c) {
       solve(b.col(c), solution);
       x.col(c) = solution;
     }
+    return SolveOutcome::found;
   }
 
  private:

@@ -15,9 +15,9 @@ class EffectiveMass {
   // Signs of the factorised matrix. `indefinite` (compressed springs outweigh the mass) can still
   // be solved with; `singular` cannot.
   using Definiteness = qddot::Definiteness;
-  // Who factorises: multifrontal.hpp, or cholmod_factors.hpp to compare with.
-  enum class Solver { multifrontal, cholmod };
 
+  // Without a solver named, a direct one, which all that is said below is true of; what is
+  // different with conjugate gradients is said in conjugate_gradients.hpp.
   explicit EffectiveMass(const System& system, Solver solver = Solver::multifrontal);
   // The same with another diagonal (n entries) in place of the system's masses.
   EffectiveMass(const System& system, Vec diagonal, Solver solver = Solver::multifrontal);
@@ -39,8 +39,12 @@ class EffectiveMass {
   // it must not have been singular.
   Index negative_pivots() const { return factors_->negative_pivots(); }
 
-  // x = (a M - s K)^-1 b with the last factors, which must not be singular; b, x: n.
-  void solve(const Vec& b, Vec& x) { factors_->solve(b, x); }
+  // x = (a M - s K)^-1 b with the last factors, which must not be singular; b, x: n. A direct
+  // solver always finds it; where it is not found x is of no use.
+  SolveOutcome solve(const Vec& b, Vec& x) { return factors_->solve(b, x); }
+
+  // What part of b an iterative solve may leave; others do not care.
+  void set_tolerance(double tolerance) { factors_->set_tolerance(tolerance); }
 
   // Memory [bytes] that the factors take, workspace and the analysis' indices left out.
   Index bytes() const { return factors_->bytes(); }

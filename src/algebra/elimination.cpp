@@ -1,10 +1,11 @@
 #include "src/algebra/elimination.hpp"
 
 #include <algorithm>
-#include <span>
 #include <stdexcept>
 
 #include <suitesparse/cholmod.h>
+
+#include "src/algebra/blocks.hpp"
 
 namespace qddot {
 
@@ -15,33 +16,18 @@ struct Graph {
   std::vector<int> start, rows, unknowns;
 };
 
-// As many as a node has. CHOLMOD merges supernodes of few vertices whatever zeros that brings in.
-constexpr int most_unknowns = 3;
-
-bool same_column(const SymmetricMatrix& a, int i, int j) {
-  const auto column = [&](int k) {
-    return std::span(a.innerIndexPtr() + a.outerIndexPtr()[k],
-                     a.innerIndexPtr() + a.outerIndexPtr()[k + 1]);
-  };
-  return std::ranges::equal(column(i), column(j));
-}
-
+// CHOLMOD merges supernodes of few vertices whatever zeros that brings in.
 Graph block_graph(const SymmetricMatrix& pattern) {
-  const SymmetricMatrix whole = pattern.selfadjointView<Eigen::Lower>();
-  const int n = static_cast<int>(pattern.rows());
+  const std::vector<int> first = block_starts(pattern);
   Graph graph;
-  std::vector<int> vertex(n), first;
-  for (int j = 0; j < n; ++j) {
-    if (j == 0 || graph.unknowns.back() == most_unknowns || !same_column(whole, j - 1, j)) {
-      first.push_back(j);
-      graph.unknowns.push_back(0);
-    }
-    vertex[j] = static_cast<int>(first.size()) - 1;
-    ++graph.unknowns.back();
+  std::vector<int> vertex(pattern.rows());
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+    graph.unknowns.push_back(first[v + 1] - first[v]);
+    std::fill(vertex.begin() + first[v], vertex.begin() + first[v + 1], static_cast<int>(v));
   }
-  for (const int j : first) {
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
     graph.start.push_back(static_cast<int>(graph.rows.size()));
-    for (SymmetricMatrix::InnerIterator entry(pattern, j); entry; ++entry) {
+    for (SymmetricMatrix::InnerIterator entry(pattern, first[v]); entry; ++entry) {
       const int i = vertex[entry.row()];
       if (std::ssize(graph.rows) == graph.start.back() || graph.rows.back() != i)
         graph.rows.push_back(i);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "src/algebra/elimination.hpp"
-
 namespace qddot {
 
 namespace {
@@ -17,8 +15,7 @@ int append(std::vector<T>& all, const std::vector<T>& more) {
 
 }  // namespace
 
-Fronts::Fronts(const SymmetricMatrix& pattern) {
-  Elimination elimination = eliminate(pattern);
+Fronts::Fronts(const SymmetricMatrix& pattern, Elimination elimination) {
   place_ = std::move(elimination.place);
   const int n = static_cast<int>(pattern.rows());
   const int count = static_cast<int>(elimination.supernodes.size());

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "src/algebra/elimination.hpp"
 #include "src/model/system.hpp"
 
 namespace qddot {
@@ -41,7 +42,7 @@ class Fronts {
     int source, target;
   };
 
-  explicit Fronts(const SymmetricMatrix& pattern);
+  Fronts(const SymmetricMatrix& pattern, Elimination elimination);
 
   // In the order of elimination: children before their parent.
   const std::vector<Front>& all() const { return all_; }

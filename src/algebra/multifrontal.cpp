@@ -18,9 +18,9 @@ constexpr int panel = 96;
 
 class Multifrontal : public Factors {
  public:
-  Multifrontal(const SymmetricMatrix& pattern, Vec diagonal)
+  Multifrontal(const SymmetricMatrix& pattern, Vec diagonal, Elimination elimination)
       : diagonal_(std::move(diagonal)),
-        fronts_(pattern),
+        fronts_(pattern, std::move(elimination)),
         l_(fronts_.factor_size),
         updates_(fronts_.update_size),
         columns_(fronts_.pivot_columns_size),
@@ -44,7 +44,7 @@ class Multifrontal : public Factors {
     return static_cast<Index>(sizeof(double)) * (fronts_.factor_size + diagonal_.size());
   }
 
-  void solve(const Vec& b, Vec& x) override {
+  SolveOutcome solve(const Vec& b, Vec& x) override {
     const auto& place = fronts_.place();
     for (Index i = 0; i < b.size(); ++i) y_.get()[place[i]] = b[i];
     for (const Front& f : fronts_) forward(f);
@@ -52,14 +52,16 @@ class Multifrontal : public Factors {
     for (const Front* f = fronts_.end(); f != fronts_.begin();) backward(*--f);
     x.resize(b.size());
     for (Index i = 0; i < b.size(); ++i) x[i] = y_.get()[place[i]];
+    return SolveOutcome::found;
   }
 
-  void solve(const FourColumns& b, FourColumns& x) override {
+  SolveOutcome solve(const FourColumns& b, FourColumns& x) override {
     const auto& place = fronts_.place();
     for (Index i = 0; i < b.rows(); ++i) row(y_.get(), place[i]) = row(b.data(), i);
     for (const Front& f : fronts_) forwards(f);
     for (const Front* f = fronts_.end(); f != fronts_.begin();) backwards(*--f);
     for (Index i = 0; i < b.rows(); ++i) row(x.data(), i) = row(y_.get(), place[i]);
+    return SolveOutcome::found;
   }
 
  private:
@@ -270,7 +272,12 @@ class Multifrontal : public Factors {
 }  // namespace
 
 std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal) {
-  return std::make_unique<Multifrontal>(pattern, std::move(diagonal));
+  return make_multifrontal(pattern, std::move(diagonal), eliminate(pattern));
+}
+
+std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal,
+                                           Elimination elimination) {
+  return std::make_unique<Multifrontal>(pattern, std::move(diagonal), std::move(elimination));
 }
 
 }  // namespace qddot

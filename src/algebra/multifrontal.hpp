@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "src/algebra/elimination.hpp"
 #include "src/algebra/factors.hpp"
 
 namespace qddot {
@@ -10,5 +11,8 @@ namespace qddot {
 // TOMS 9:3, 1983; Liu, SIAM Review 34:1, 1992) on the order and supernodes of elimination.hpp.
 // Throws std::bad_alloc or std::runtime_error when out of memory, here only.
 std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal);
+// The same, of a pattern that is analysed already.
+std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal,
+                                           Elimination elimination);
 
 }  // namespace qddot

@@ -169,7 +169,9 @@ BOOST_AUTO_TEST_CASE(options_of_how_steps_are_solved_are_refused_where_they_mean
       {"--solve-tolerance", "implicit_euler", "1e-8", "1", "between 0 and 1", "local_global"},
       {"--solve-tolerance", "bdf2", "0.1", "0", "between 0 and 1", "verlet"},
       {"--spectral-radius", "hht", "0", "1.5", "from 0 to 1", "trapezoidal"},
-      {"--spectral-radius", "generalized_alpha", "1", "-1", "from 0 to 1", "ida"}};
+      {"--spectral-radius", "generalized_alpha", "1", "-1", "from 0 to 1", "ida"},
+      {"--solver", "implicit_euler", "conjugate_gradients", "lu", "multifrontal", "verlet"},
+      {"--solver", "ida", "cholmod", "klu", "one of automatic", "ida_klu"}};
   for (const auto& [option, method, good, bad, allowed, other] : cases) {
     BOOST_TEST_CONTEXT(option << " " << method) {
       BOOST_TEST(simulate(method, {option, good}).status == 0);

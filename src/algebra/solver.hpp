@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace qddot {
+
+// Who solves with the matrices a M - s K of implicit stages: the own multifrontal factorisation,
+// CHOLMOD's to compare with, conjugate gradients without a factorisation, or whichever of the first
+// and the last takes less work (see automatic_factors.hpp).
+enum class Solver { automatic, multifrontal, cholmod, conjugate_gradients };
+
+inline constexpr std::array<std::pair<Solver, std::string_view>, 4> solver_names = {
+    {{Solver::automatic, "automatic"},
+     {Solver::multifrontal, "multifrontal"},
+     {Solver::cholmod, "cholmod"},
+     {Solver::conjugate_gradients, "conjugate_gradients"}}};
+
+// The solver of that name, if there is one.
+inline std::optional<Solver> find_solver(std::string_view name) {
+  for (const auto& [solver, own] : solver_names) {
+    if (own == name) return solver;
+  }
+  return {};
+}
+
+// What became of a solve.
+enum class SolveOutcome {
+  found,
+  indefinite,     // the matrix is not positive definite, and this solver needs it to be
+  not_converged,  // too many iterations
+};
+
+}  // namespace qddot

@@ -1,0 +1,246 @@
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+
+#include "src/algebra/conjugate_gradients.hpp"
+#include "src/algebra/multifrontal.hpp"
+#include "src/scene/generators.hpp"
+#include "src/scene/reduce.hpp"
+#include "tests/measure.hpp"
+#include "tests/problems.hpp"
+
+using namespace qddot;
+
+BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::Definiteness)
+BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::SolveOutcome)
+
+namespace {
+
+// D - s K, both triangles.
+SymmetricMatrix whole(const Vec& diagonal, double s, const SymmetricMatrix& k) {
+  SymmetricMatrix sum = -s * k;
+  for (Index i = 0; i < diagonal.size(); ++i) sum.coeffRef(i, i) += diagonal[i];
+  return sum.selfadjointView<Eigen::Lower>();
+}
+
+// |A x - b| over |A| |x| + |b|, in the largest norm.
+double backward_error(const SymmetricMatrix& a, const Vec& x, const Vec& b) {
+  if (b.size() == 0) return 0;
+  const double norm = (a.cwiseAbs() * Vec::Ones(a.rows())).maxCoeff();
+  return distance(a * x, b) / (norm * x.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
+}
+
+// P, the d x d blocks on the diagonal of A.
+Eigen::MatrixXd blocks_of(const SymmetricMatrix& a, int d) {
+  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(a.rows(), a.rows());
+  for (Index i = 0; i < a.rows(); i += d)
+    p.block(i, i, d, d) = Eigen::MatrixXd(a.block(i, i, d, d));
+  return p;
+}
+
+Scene drawn(const std::string& name, const GeneratorValues& values, double stretch) {
+  Scene scene = generate(*find_generator(name), values, "test");
+  for (Spring& spring : scene.springs) spring.law.rest_length /= stretch;
+  return scene;
+}
+
+// A scene's system and its K a little away from its start, with every spring at about `stretch`
+// times its rest length.
+struct Displaced {
+  Displaced(const std::string& name, const GeneratorValues& values, double stretch,
+            const Reductions& reductions = Reductions::only({Reduction::pins}))
+      : scene(drawn(name, values, stretch), reductions) {
+    std::mt19937 random(13);
+    Vec q = scene.initial().q;
+    const double size = q.size() > 0 ? std::max(q.cwiseAbs().maxCoeff(), 1e-3) : 0;
+    std::uniform_real_distribution<double> uniform(-1e-3 * size, 1e-3 * size);
+    for (double& x : q) x += uniform(random);
+    k = stiffness_at(scene.system(), q);
+  }
+  const Vec& mass() const { return scene.system().mass(); }
+
+  ReducedScene scene;
+  SymmetricMatrix k;
+};
+
+// n masses of 1 kg on springs of stiffness `stiffness` between two pins. The eigenvalues of M - K
+// are 1 + 4 stiffness sin^2(j pi / (2 (n + 1))), those of K negative for a positive stiffness.
+SymmetricMatrix chain(int n, double stiffness) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < n; ++i) {
+    entries.emplace_back(i, i, -2 * stiffness);
+    if (i > 0) entries.emplace_back(i, i - 1, stiffness);
+  }
+  SymmetricMatrix k(n, n);
+  k.setFromTriplets(entries.begin(), entries.end());
+  return k;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(conjugate_gradients)
+
+// What the residual leaves in the largest norm is the tolerance times at most the root of the ratio
+// of the largest and smallest block, 1e2 for the scenes' masses and stiffnesses, and of n.
+BOOST_AUTO_TEST_CASE(every_scene_is_solved_or_known_to_be_indefinite) {
+  int found = 0, indefinite = 0;
+  for (const Generator& generator : generators()) {
+    for (const auto& reductions : {Reductions{}, Reductions::only({Reduction::pins})}) {
+      for (const double stretch : {0.9, 1.1}) {
+        const Displaced at(generator.name, {}, stretch, reductions);
+        const auto factors = make_conjugate_gradients(at.k, at.mass());
+        const auto reference = make_multifrontal(at.k, at.mass());
+        factors->set_tolerance(1e-13);
+        for (const double s : {0.0, 1e-8, 1e-6, 1e-4, 1e-2}) {
+          BOOST_TEST_CONTEXT(generator.name << " of " << at.mass().size() << ", s = " << s) {
+            const bool positive = reference->factorize_positive(1, s, at.k);
+            const bool passes = factors->factorize_positive(1, s, at.k);
+            BOOST_TEST((passes || !positive));
+            const Vec b = Vec::LinSpaced(at.mass().size(), -1, 2);
+            Vec x;
+            const SolveOutcome outcome = factors->solve(b, x);
+            BOOST_TEST((outcome == SolveOutcome::found) == positive);
+            BOOST_TEST((outcome == SolveOutcome::indefinite) == !positive);
+            if (!positive) BOOST_TEST(factors->negative_pivots() == 1);
+            if (outcome == SolveOutcome::found) {
+              BOOST_TEST(backward_error(whole(at.mass(), s, at.k), x, b) < 1e-10);
+            }
+            (positive ? found : indefinite) += 1;
+          }
+        }
+      }
+    }
+  }
+  BOOST_TEST(found >= 40);
+  BOOST_TEST(indefinite >= 5);
+}
+
+// Rounding of the updated residual, far below the tolerances here, is the 1 %; an iteration never
+// shrinks it a thousandfold.
+BOOST_AUTO_TEST_CASE(the_tolerance_is_what_is_left) {
+  const struct {
+    Displaced at;
+    int dimension;
+  } cases[] = {{{"lattice", {{"nodes_x", 8}, {"nodes_y", 5}, {"nodes_z", 5}}, 1.2}, 3},
+               {{"cloth", {{"nodes", 12}}, 1.2}, 3}};
+  for (const auto& [at, dimension] : cases) {
+    const double s = 1e-5;
+    const SymmetricMatrix a = whole(at.mass(), s, at.k);
+    const auto factors = make_conjugate_gradients(at.k, at.mass());
+    BOOST_TEST(factors->factorize_positive(1, s, at.k));
+    const Eigen::LLT<Eigen::MatrixXd> p(blocks_of(a, dimension));
+    const Vec b = Vec::LinSpaced(at.mass().size(), -1, 2);
+    Vec x;
+    for (const double tolerance : {1e-1, 1e-4, 1e-8}) {
+      factors->set_tolerance(tolerance);
+      BOOST_TEST((factors->solve(b, x) == SolveOutcome::found));
+      const Vec r = b - a * x;
+      const double left = std::sqrt(r.dot(p.solve(r)) / b.dot(p.solve(b)));
+      BOOST_TEST(left < 1.01 * tolerance);
+      BOOST_TEST(left > 1e-3 * tolerance);
+    }
+  }
+}
+
+// |e_i|_A <= 2 ((root - 1)/(root + 1))^i |e_0|_A with root = sqrt(kappa), and a residual is at most
+// root times as large beside the first as the error beside the first: after root/2 ln(2 root/tol)
+// iterations it is below tol. One iteration brings the right-hand side one mass further along.
+BOOST_AUTO_TEST_CASE(iterations_grow_with_the_root_of_the_condition_number) {
+  constexpr int n = 400;
+  constexpr double tolerance = 1e-8;
+  for (const double stiffness : {1.0, 30.0, 1e3, 3e4}) {
+    const SymmetricMatrix k = chain(n, stiffness);
+    const auto factors = make_conjugate_gradients(k, Vec::Ones(n));
+    factors->set_tolerance(tolerance);
+    factors->factorize_positive(1, 1, k);
+    Vec x;
+    BOOST_TEST((factors->solve(Vec::Unit(n, 0), x) == SolveOutcome::found));
+    const double root = std::sqrt(1 + 4 * stiffness);
+    BOOST_TEST(static_cast<double>(factors->iterations()) <
+               root / 2 * std::log(2 * root / tolerance) + 1);
+    BOOST_TEST(static_cast<double>(factors->iterations()) >
+               std::min<double>(n - 1, root / 4 * std::log(1 / tolerance)));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(too_many_iterations_are_given_up) {
+  constexpr int n = 30000;  // so many it takes for the end of the chain to hear of its start
+  const SymmetricMatrix k = chain(n, 1);
+  const auto factors = make_conjugate_gradients(k, Vec::Zero(n));
+  BOOST_TEST(factors->factorize_positive(0, 1, k));
+  Vec x;
+  BOOST_TEST((factors->solve(Vec::Unit(n, 0), x) == SolveOutcome::not_converged));
+}
+
+// From both sides of the s at which the largest eigenvalue lambda of M^-1 K makes M - s K
+// indefinite.
+BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_found_out_by_a_right_hand_side_that_sees_it) {
+  for (const auto& at :
+       {Displaced("lattice", {{"nodes_x", 6}, {"nodes_y", 4}, {"nodes_z", 4}}, 0.9),
+        Displaced("cloth", {{"nodes", 8}}, 0.9)}) {
+    const Vec root = at.mass().cwiseSqrt();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+        root.cwiseInverse().asDiagonal() * dense(at.k) * root.cwiseInverse().asDiagonal());
+    const double lambda = eigen.eigenvalues().maxCoeff();
+    BOOST_TEST_REQUIRE(lambda > 0);
+    const auto factors = make_conjugate_gradients(at.k, at.mass());
+    Vec x;
+    const Vec b = Vec::LinSpaced(at.mass().size(), -1, 2);
+    BOOST_TEST(factors->factorize_positive(1, 0.99 / lambda, at.k));
+    BOOST_TEST((factors->solve(b, x) == SolveOutcome::found));
+    const bool passes = factors->factorize_positive(1, 1.01 / lambda, at.k);
+    BOOST_TEST((factors->solve(b, x) == SolveOutcome::indefinite));
+    BOOST_TEST(factors->negative_pivots() == 1);
+    // And not by one in the eigenvectors of P^-1 A of which it is positive, where it is solved.
+    if (!passes) continue;
+    BOOST_TEST(factors->factorize_positive(1, 1.01 / lambda, at.k));
+    const SymmetricMatrix a = whole(at.mass(), 1.01 / lambda, at.k);
+    const Eigen::MatrixXd p = blocks_of(a, 3);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> parts{Eigen::MatrixXd(a), p};
+    Vec among = b;
+    for (Index i = 0; i < b.size() && parts.eigenvalues()[i] <= 0; ++i) {
+      const auto v = parts.eigenvectors().col(i);
+      among -= v * v.dot(p * among);
+    }
+    const Vec right = p * among;
+    factors->set_tolerance(1e-4);
+    BOOST_TEST((factors->solve(right, x) == SolveOutcome::found));
+    BOOST_TEST(backward_error(a, x, right) < 1e-3);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_block_that_is_not_positive_definite_is_seen_at_once) {
+  const SymmetricMatrix k = chain(9, 1);
+  const auto factors = make_conjugate_gradients(k, Vec::Ones(9));
+  Vec x;
+  BOOST_TEST((factors->factorize(1, -0.6, k) == Definiteness::indefinite));  // 1 - 1.2
+  BOOST_TEST((factors->solve(Vec::Ones(9), x) == SolveOutcome::indefinite));
+  BOOST_TEST((factors->factorize(1, -0.5, k) == Definiteness::singular));
+  BOOST_TEST((factors->factorize(INFINITY, 1, k) == Definiteness::singular));
+  BOOST_TEST(!factors->factorize_positive(0, 0, k));
+  // And nothing of it is left.
+  BOOST_TEST((factors->factorize(1, 1, k) == Definiteness::positive));
+  BOOST_TEST(factors->negative_pivots() == 0);
+  BOOST_TEST((factors->solve(Vec::Ones(9), x) == SolveOutcome::found));
+}
+
+BOOST_AUTO_TEST_CASE(zero_is_solved_by_zero_and_no_number_by_none) {
+  const SymmetricMatrix k = chain(9, 1);
+  const auto factors = make_conjugate_gradients(k, Vec::Ones(9));
+  factors->factorize_positive(1, 1, k);
+  Vec x;
+  BOOST_TEST((factors->solve(Vec::Zero(9), x) == SolveOutcome::found));
+  BOOST_TEST(x == Vec::Zero(9));
+  factors->solve(Vec::Constant(9, std::numeric_limits<double>::quiet_NaN()), x);
+  BOOST_TEST(!x.allFinite());
+  const SymmetricMatrix none(0, 0);
+  const auto empty = make_conjugate_gradients(none, Vec());
+  BOOST_TEST(empty->factorize_positive(1, 1, none));
+  BOOST_TEST((empty->solve(Vec(), x) == SolveOutcome::found));
+  BOOST_TEST(x.size() == 0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

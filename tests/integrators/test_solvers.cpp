@@ -1,0 +1,78 @@
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(solvers)
+
+namespace {
+
+std::vector<Method> methods_with_solver() {
+  std::vector<Method> list = general_methods();
+  std::erase_if(list, [](const Method& method) { return !method.takes_solver; });
+  return list;
+}
+
+}  // namespace
+
+// Fixed steps are the same ones, solved to 1e-10 and less of what changes in each; steps that are
+// chosen may fall elsewhere, and agree to some tolerances.
+BOOST_AUTO_TEST_CASE(every_method_ends_in_the_same_state_with_every_solver) {
+  const Problem p = hammock(3);
+  const auto system = make_mass_spring(p.network);
+  BOOST_TEST(methods_with_solver().size() >= 20u);
+  for (const Method& method : methods_with_solver()) {
+    Knobs knobs = knobs_of(method, 0.01, 1e-6);
+    knobs.solve_tolerance = 1e-10;
+    knobs.solver = Solver::multifrontal;
+    const Run reference = run(method, *system, p.initial, 1, knobs);
+    BOOST_TEST(reference.summary.message == "", method.name);
+    for (const auto& [solver, name] : solver_names) {
+      BOOST_TEST_CONTEXT(method.name << " with " << name) {
+        knobs.solver = solver;
+        const Run r = run(method, *system, p.initial, 1, knobs);
+        BOOST_TEST(r.summary.message == "");
+        const bool is_fixed = method.knob == Knob::step_size;
+        BOOST_TEST(distance(r.state, reference.state) < (is_fixed ? 1e-7 : 1e-3));
+        if (is_fixed) BOOST_TEST(r.summary.counts.steps == reference.summary.counts.steps);
+      }
+    }
+  }
+}
+
+// A column of unit masses in 2D, compressed to a third and bent a little to both sides: in these
+// steps M - h^2 K is indefinite, which conjugate gradients see in a solve. Minimisations keep less
+// of the compression; a formula that takes K as it is says why it cannot go on.
+BOOST_AUTO_TEST_CASE(compression_is_softened_or_reported_with_conjugate_gradients) {
+  constexpr int masses = 5;
+  Problem p{{.dimension = 2, .node_mass = Vec::Ones(masses)}, {}};
+  const SpringLaw law{.stiffness = 1e4, .rest_length = 3};
+  p.network.anchors = {{0, {0, 0, 0}, law}, {masses - 1, {masses + 1, 0, 0}, law}};
+  for (int i = 0; i + 1 < masses; ++i) p.network.links.push_back({i, i + 1, law});
+  p.initial = {0, Vec(2 * masses), Vec::Zero(2 * masses)};
+  for (int i = 0; i < masses; ++i)
+    p.initial.q.segment<2>(2 * i) << i + 1, (i % 2 == 0 ? 0.01 : -0.02) * (1 + 0.3 * i);
+  const auto system = make_mass_spring(p.network);
+  const Knobs knobs{.step_size = 0.05, .solver = Solver::conjugate_gradients};
+  const Run minimised = run(method_named("implicit_euler"), *system, p.initial, 1, knobs);
+  BOOST_TEST(minimised.summary.message == "");
+  BOOST_TEST(total_energy(*system, minimised.state) < 0.5 * total_energy(*system, p.initial));
+  const Run formula = run(method_named("semi_implicit_euler"), *system, p.initial, 1, knobs);
+  BOOST_TEST((formula.summary.outcome == Outcome::indefinite_matrix));
+}
+
+// Fixed nodes so far apart in stiffness that ten thousand iterations do not do.
+BOOST_AUTO_TEST_CASE(too_many_iterations_are_told) {
+  constexpr int masses = 30000;
+  const Network network = linear_chain(masses, 1e-9, 1);
+  const auto system = make_mass_spring(network);
+  State start{0, Vec::LinSpaced(masses, 1, masses), Vec::Zero(masses)};
+  start.v[0] = 1;
+  const Run r = run(method_named("semi_implicit_euler"), *system, start, 10,
+                    {.step_size = 10, .solver = Solver::conjugate_gradients});
+  BOOST_TEST((r.summary.outcome == Outcome::solver_failed));
+  BOOST_TEST(r.summary.message.find("did not converge") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
