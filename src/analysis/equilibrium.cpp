@@ -13,7 +13,7 @@ namespace {
 using Outcome = Equilibrium::Outcome;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr int most_iterations = 2000;
+constexpr int most_steps = 2000;
 constexpr int most_polishing = 3;
 constexpr int most_halvings = 40;
 constexpr int most_shifts = 60;
@@ -40,7 +40,7 @@ class Descent {
   }
 
   Equilibrium run() {
-    while (iterations_ < most_iterations) {
+    while (iterations_ < most_steps) {
       if (!k_.coeffs().allFinite() || !f_.allFinite())
         return end(Outcome::not_converged, overflows);
       if (largest(q_ - start_) > far_away * length_) return end(Outcome::unbounded, falls_for_ever);

@@ -13,7 +13,7 @@ namespace {
 
 // Of w^2, as a residual: there is an eigenvalue as near, mostly far nearer (3e-6 off for a chain of
 // 1e5 masses, whose eigenvalues crowd at the end).
-constexpr double tolerance = 1e-4;
+constexpr double relative_error = 1e-4;
 // Lanczos' basis would be the whole space.
 constexpr Index most_dense = 40;
 
@@ -36,7 +36,7 @@ double largest_frequency(const System& system, const Vec& q) {
     return bound * std::sqrt(std::max(top, 0.0));
   }
   const auto apply = [&](const Vec& x, Vec& y) { y = k.selfadjointView<Eigen::Lower>() * x; };
-  return bound * std::sqrt(std::max(leading_value(apply, k.rows(), tolerance), 0.0));
+  return bound * std::sqrt(std::max(leading_value(apply, k.rows(), relative_error), 0.0));
 }
 
 }  // namespace qddot

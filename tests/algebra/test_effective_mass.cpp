@@ -242,7 +242,7 @@ BOOST_AUTO_TEST_CASE(free_pair_without_mass_is_singular) {
 }
 
 BOOST_AUTO_TEST_CASE(factors_take_the_room_of_their_numbers) {
-  for (const auto who : {EffectiveMass::Solver::multifrontal, EffectiveMass::Solver::cholmod}) {
+  for (const auto who : {Solver::multifrontal, Solver::cholmod}) {
     for (const Case& c : cases(1.2)) {
       const Index n = c.system->size(), entries = c.system->stiffness_pattern().nonZeros();
       const EffectiveMass solver(*c.system, who);

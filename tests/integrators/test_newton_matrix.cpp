@@ -16,7 +16,7 @@ using namespace qddot::sundials;
 enum class Form { explicit_gamma, implicit_c };
 constexpr Form both_forms[] = {Form::explicit_gamma, Form::implicit_c};
 
-using Make = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext);
+using Make = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext, qddot::Solver);
 
 // A Newton matrix of a system and the solver behind it, used as SUNDIALS does.
 class Solver {
@@ -24,7 +24,7 @@ class Solver {
   Solver(Make make, const System& system)
       : x_(make_stock_vector(system.size(), context_.get())),
         b_(clone(x_.get())),
-        matrix_(make(system, context_.get())) {}
+        matrix_(make(system, context_.get(), qddot::Solver::multifrontal)) {}
 
   int factorize(Form form, double gamma, const SymmetricMatrix& k) {
     if (form == Form::explicit_gamma) matrix_->set_explicit_form(gamma, k);
