@@ -32,13 +32,6 @@ constexpr Places first_places = []<std::size_t... i>(std::index_sequence<i...>) 
 inline Lanes load(const double* x) { return *reinterpret_cast<const Lanes*>(x); }
 inline void store(double* x, Lanes value) { *reinterpret_cast<Lanes*>(x) = value; }
 
-// S = A D: a strip of k columns times a diagonal.
-inline void scale(const double* a, const double* d, int k, double* s) {
-  for (int p = 0; p < k; ++p) {
-    for (int i = 0; i < height; ++i) s[p * height + i] = a[p * height + i] * d[p];
-  }
-}
-
 // C = C - A W', or C = -A W' where `fresh`. C: columns `ld` apart; A: strips `stride` apart, of k
 // columns; W: the first `tile_columns` rows of a strip of k columns.
 template <int strips, bool fresh>
@@ -88,6 +81,13 @@ inline Lanes splat(const Lanes* x, int i) {
 inline Lanes below(Lanes x, int v, int i) { return first_places + v * lanes > i ? x : Lanes{}; }
 inline Lanes above(Lanes x, int v, int i) { return first_places + v * lanes < i ? x : Lanes{}; }
 
+// y = y + x, n entries. The last vector is read and written whole, beyond them unchanged.
+inline void add(const double* x, int n, double* y) {
+  int i = 0;
+  for (; i + lanes <= n; i += lanes) store(y + i, load(y + i) + load(x + i));
+  if (i < n) store(y + i, load(y + i) + (first_places < n - i ? load(x + i) : Lanes{}));
+}
+
 // A = L D L' of 8 pivots without pivoting.
 struct Block {
   double l[height * height];   // without the diagonal; L' above it
@@ -96,6 +96,7 @@ struct Block {
   int negative = 0;
   bool regular = true;  // every pivot is a number that can be divided by
 
+  Block() = default;
   // A: the lower triangle of columns `a_ld` apart.
   Block(const double* a, Index a_ld) {
     Lanes x[height][vectors], y[height][vectors];
@@ -130,9 +131,10 @@ struct Block {
   }
 };
 
-// A strip of L below a block: L = A (D L')^-1, A's 8 columns `ld` apart. Of L the first k columns
-// are kept.
-inline void divide_strip(const double* a, Index ld, const Block& block, int k, double* l) {
+// A strip of L below a block: L D = A L'^-1, A's 8 columns `ld` apart. Of L and L D the first k
+// columns are kept.
+inline void divide_strip(const double* a, Index ld, const Block& block, int k, double* l,
+                         double* scaled) {
 #pragma GCC unroll 4
   for (int v = 0; v < vectors; ++v) {
     Lanes x[height];
@@ -140,6 +142,7 @@ inline void divide_strip(const double* a, Index ld, const Block& block, int k, d
     for (int j = 0; j < height; ++j) x[j] = load(a + j * ld + v * lanes);
 #pragma GCC unroll 8
     for (int p = 0; p < height; ++p) {
+      if (p < k) store(scaled + p * height + v * lanes, x[p]);
       x[p] *= block.inverse[p];
 #pragma GCC unroll 8
       for (int j = p + 1; j < height; ++j) x[j] -= x[p] * block.ld[p * height + j];
