@@ -169,20 +169,26 @@ class Multifrontal : public Factors {
     });
   }
 
-  // A child's update in the front's columns [first, end).
+  // A child's update in the front's columns [first, end), all of pivots or none. Rows of one run in
+  // all columns, then the next: close together, a sum would wait for the one before it to be
+  // stored.
   void add_update(const Front& child, const Open& open, int first, int end) {
-    const double* from = update(child, open.w);
+    const Index x_ld = child.below_height();
+    const Index y_ld = first < open.f.pivot_height() ? open.f.height() : open.f.below_height();
     const auto runs = fronts_.runs(child);
-    auto run =
-        std::ranges::lower_bound(runs, first, {}, [](const Run& r) { return r.to + r.length - 1; });
-    for (; run != runs.end() && run->to < end; ++run) {
-      const int last = std::min(run->length, end - run->to);
-      for (int j = std::max(0, first - run->to); j < last; ++j) {
-        const double* column = from + Index{run->from + j} * child.below_height();
-        double* to = open.column(run->to + j);
-        add(column + run->from + j, run->length - j, to + run->to + j);
-        for (auto below = run + 1; below != runs.end(); ++below)
-          add(column + below->from, below->length, to + below->to);
+    const auto start = std::ranges::lower_bound(
+        runs, first, {}, [](const Run& run) { return run.to + run.length - 1; });
+    for (auto rows = start; rows != runs.end(); ++rows) {
+      for (auto run = start; run <= rows && run->to < end; ++run) {
+        const int last = std::min(run->length, end - run->to);
+        int j = std::max(0, first - run->to);
+        const auto add_columns = [&](int count, int above) {
+          add(update(child, open.w) + (run->from + j) * x_ld + rows->from + above, x_ld,
+              rows->length - above, count, open.column(run->to + j) + rows->to + above, y_ld);
+          j += count;
+        };
+        if (run < rows) add_columns(last - j, 0);
+        while (j < last) add_columns(std::min(height, last - j), j);
       }
     }
   }

@@ -38,6 +38,14 @@ template <int strips, bool fresh>
 inline void subtract_tile(double* c, Index ld, const double* a, Index stride, const double* w,
                           int k) {
   constexpr int rows = strips * vectors;
+  // C may be in a farther cache than A and W: where there are many products, it is fetched before.
+  if (k >= 48) {
+#pragma GCC unroll 16
+    for (int j = 0; j < tile_columns; ++j) {
+#pragma GCC unroll 16
+      for (int i = 0; i < strips; ++i) __builtin_prefetch(c + j * ld + i * height, 1);
+    }
+  }
   Lanes sum[tile_columns][rows] = {};
   for (int p = 0; p < k; ++p, a += height, w += height) {
     Lanes x[rows];
@@ -81,11 +89,15 @@ inline Lanes splat(const Lanes* x, int i) {
 inline Lanes below(Lanes x, int v, int i) { return first_places + v * lanes > i ? x : Lanes{}; }
 inline Lanes above(Lanes x, int v, int i) { return first_places + v * lanes < i ? x : Lanes{}; }
 
-// y = y + x, n entries. The last vector is read and written whole, beyond them unchanged.
-inline void add(const double* x, int n, double* y) {
-  int i = 0;
-  for (; i + lanes <= n; i += lanes) store(y + i, load(y + i) + load(x + i));
-  if (i < n) store(y + i, load(y + i) + (first_places < n - i ? load(x + i) : Lanes{}));
+// Y = Y + X, n rows of columns x_ld and y_ld apart. A column's last vector is read and written
+// whole, beyond it unchanged.
+inline void add(const double* x, Index x_ld, int n, int columns, double* y, Index y_ld) {
+  const int whole = n / lanes * lanes;
+  const auto rest = first_places < n - whole;
+  for (int j = 0; j < columns; ++j, x += x_ld, y += y_ld) {
+    for (int i = 0; i < whole; i += lanes) store(y + i, load(y + i) + load(x + i));
+    if (whole < n) store(y + whole, load(y + whole) + (rest ? load(x + whole) : Lanes{}));
+  }
 }
 
 // A = L D L' of 8 pivots without pivoting.
