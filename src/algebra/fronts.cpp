@@ -55,6 +55,8 @@ Fronts::Fronts(const SymmetricMatrix& pattern) {
   }
   for (int s = 0; s < count; ++s) {
     Front& f = all_[s];
+    std::ranges::sort(entries[s], {}, &Entry::target);
+    std::ranges::sort(diagonal[s], {}, &Entry::target);
     f.entry_start = static_cast<int>(entries_.size());
     f.entry_end = append(entries_, entries[s]);
     f.diagonal_start = static_cast<int>(diagonal_.size());
@@ -85,7 +87,7 @@ int Fronts::position(const Front& f, int row) const {
 // where they are smaller. A share is what a few threads divide well among them; work that takes no
 // longer than threads to meet is not divided.
 void Fronts::divide(const std::vector<int>& parents) {
-  constexpr double shares = 32, least_work = 4e6;  // operations
+  constexpr double shares = 16, least_work = 1e7;  // operations
   const int count = static_cast<int>(all_.size());
   std::vector<double> work(count);
   std::vector<int> start(count);  // the first front of each subtree

@@ -61,6 +61,7 @@ class Fronts {
   const std::vector<int>& place() const { return place_; }
 
   std::span<const int> rows(const Front& f) const { return part(rows_, f.row_start, f.row_end); }
+  // By ascending target.
   std::span<const Entry> entries(const Front& f) const {
     return part(entries_, f.entry_start, f.entry_end);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <omp.h>
+#include <optional>
 
 #include "src/algebra/fronts.hpp"
 #include "src/algebra/large_array.hpp"
@@ -87,9 +88,13 @@ class Multifrontal : public Factors {
     if (most == 1) {
       work(task, Team(), workspaces_[0]);
     } else {
-      std::atomic<int> tickets = 0;
+      std::optional<Meeting> meeting;
 #pragma omp parallel num_threads(most)
-      work(task, Team(omp_get_num_threads(), tickets), workspaces_[omp_get_thread_num()]);
+      {
+#pragma omp single
+        meeting.emplace(omp_get_num_threads());
+        work(task, Team(*meeting), workspaces_[omp_get_thread_num()]);
+      }
     }
     return !failed_;
   }
@@ -131,7 +136,11 @@ class Multifrontal : public Factors {
     assemble_pivots(task, open, team);
     for (int from = 0; from < open.f.pivots && !failed_; from += panel)
       eliminate(open, from, std::min(from + panel, open.f.pivots), task.only_positive, team);
-    add_children(open, open.f.pivot_strips(), open.f.strips(), team);
+    if (fronts_.children(open.f).empty()) return;
+    const int pivot_height = open.f.pivot_height();
+    team.share_parts(open.f.below_strips(), 1, [&](int from, int end) {
+      add_children(open, pivot_height + from * height, pivot_height + end * height);
+    });
   }
 
   // The lower triangle of the pivots' columns before they are eliminated: the matrix' entries and
@@ -139,34 +148,33 @@ class Multifrontal : public Factors {
   void assemble_pivots(const Task& task, const Open& open, Team& team) {
     const Front& f = open.f;
     double* columns = open.w.columns.get();
-    team.share_parts(f.pivot_height(), height, [&](int from, int end) {
+    team.share_parts(f.pivot_strips(), 1, [&](int from, int end) {
+      from *= height;
+      end *= height;
       for (int j = from; j < end; ++j) {
         double* column = columns + Index{j} * f.height();
         std::fill(column + j / height * height, column + f.height(), 0.0);
       }
-    });
-    const auto entries = fronts_.entries(f);
-    team.share_parts(static_cast<int>(entries.size()), 4096, [&](int from, int end) {
-      for (const auto [source, target] : entries.subspan(from, end - from))
+      const auto in_columns = [&](std::span<const Fronts::Entry> entries) {
+        const auto first =
+            std::ranges::lower_bound(entries, from * f.height(), {}, &Fronts::Entry::target);
+        return std::ranges::subrange(
+            first, std::ranges::lower_bound(first, entries.end(), end * f.height(), {},
+                                            &Fronts::Entry::target));
+      };
+      for (const auto [source, target] : in_columns(fronts_.entries(f)))
         columns[target] = -task.s * task.k[source];
-    });
-    team.share_parts(1, 1, [&](int, int) {
-      for (const auto [source, target] : fronts_.diagonal(f))
+      for (const auto [source, target] : in_columns(fronts_.diagonal(f)))
         columns[target] += task.a * diagonal_[source];
       // The columns that fill up the last strip are those of the identity.
-      for (int j = f.pivots; j < f.pivot_height(); ++j) columns[Index{j} * (f.height() + 1)] = 1;
+      for (int j = std::max(f.pivots, from); j < end; ++j) columns[Index{j} * (f.height() + 1)] = 1;
+      add_children(open, from, end);
     });
-    add_children(open, 0, f.pivot_strips(), team);
   }
 
-  // The children's updates in the columns of some strips.
-  void add_children(const Open& open, int first, int end, Team& team) {
-    const auto children = fronts_.children(open.f);
-    if (children.empty()) return;
-    team.share_parts(end - first, 1, [&](int from, int to) {
-      for (const int child : children)
-        add_update(fronts_.all()[child], open, (first + from) * height, (first + to) * height);
-    });
+  void add_children(const Open& open, int first, int end) {
+    for (const int child : fronts_.children(open.f))
+      add_update(fronts_.all()[child], open, first, end);
   }
 
   // A child's update in the front's columns [first, end), all of pivots or none. Rows of one run in

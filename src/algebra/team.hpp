@@ -5,13 +5,42 @@
 
 namespace qddot {
 
+// What the threads of a team have in common.
+class Meeting {
+ public:
+  explicit Meeting(int threads) : threads_(threads) {}
+
+  int threads() const { return threads_; }
+  // 0, 1, 2, ..., each once.
+  int draw() { return next_.fetch_add(1, std::memory_order_relaxed); }
+
+  // Returns when all threads have come. Where others take the processor from one of them, waiting
+  // for it in a loop would keep it away for longer: after some microseconds the rest sleep.
+  void wait() {
+    const int round = round_.load();
+    if (come_.fetch_add(1) + 1 == threads_) {
+      come_.store(0);
+      round_.store(round + 1);
+      round_.notify_all();
+      return;
+    }
+    for (int i = 0; i < 2000 && round_.load() == round; ++i) __builtin_ia32_pause();
+    round_.wait(round);
+  }
+
+ private:
+  const int threads_;
+  alignas(64) std::atomic<int> next_ = 0;
+  alignas(64) std::atomic<int> come_ = 0;
+  alignas(64) std::atomic<int> round_ = 0;
+};
+
 // One of the threads that walk through the same code together and share its loops, as it sees the
 // team; or a thread by itself, for which all of this is plain loops.
 class Team {
  public:
   Team() = default;
-  // `tickets`: one for all of the team's threads, zero before they start.
-  Team(int threads, std::atomic<int>& tickets) : threads_(threads), tickets_(&tickets) {}
+  explicit Team(Meeting& meeting) : threads_(meeting.threads()), meeting_(&meeting) {}
 
   bool alone() const { return threads_ == 1; }
 
@@ -23,10 +52,9 @@ class Team {
       for (int i = 0; i < count; ++i) work(i);
       return;
     }
-    // Every thread draws one ticket too many.
-    for (int i; (i = tickets_->fetch_add(1, std::memory_order_relaxed) - first_) < count;) work(i);
-    first_ += count + threads_;
-#pragma omp barrier
+    for (int i; (i = meeting_->draw() - first_) < count;) work(i);
+    first_ += count + threads_;  // every thread has drawn one too many
+    meeting_->wait();
   }
 
   // work(from, end) for parts of [0, count) that begin at multiples of `part`; all at once for a
@@ -43,8 +71,8 @@ class Team {
 
  private:
   int threads_ = 1;
-  std::atomic<int>* tickets_ = nullptr;
-  int first_ = 0;  // the ticket of the next loop's first turn
+  Meeting* meeting_ = nullptr;
+  int first_ = 0;  // what is drawn for the next loop's first turn
 };
 
 }  // namespace qddot
