@@ -1,5 +1,7 @@
 #include "experiments/direct_solvers.hpp"
 
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 #include <Eigen/SparseCholesky>

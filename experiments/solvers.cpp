@@ -6,11 +6,13 @@
 //  1. K is the scene's at its start. Each solver analyses the pattern once (analysis_s), and is
 //     checked: |A x - b| of its solution must be rounding.
 //  2. Solvers run by turns, --repeats times, on as many threads as OMP_NUM_THREADS says;
-//     factorization_s and solve_s are medians, of samples of several calls where one is short.
+//     factorization_s and solve_s are those of the fastest sample, which neighbours disturb least;
+//     a sample is several calls where one is short.
 //  3. gflops: a solver's own operations over its time; gigabytes_per_second: its factors, read once
 //     forward and once back, over the time of a solve. The row `machine` has one thread's limits:
 //     a dense product's operations a second, and the rate of reading as many bytes as the
 //     multifrontal solver's factors have. solvers.csv holds a row for each solver.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <omp.h>
@@ -37,7 +39,7 @@ struct Arguments {
   std::vector<std::string> solvers;
   std::string out;
   double step_size = 1e-3;
-  int repeats = 5;
+  int repeats = 20;
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -94,8 +96,8 @@ class Contender {
   void report(Csv& csv, const std::string& scene) const {
     const double nothing = std::numeric_limits<double>::quiet_NaN();
     const auto known = [&](double x) { return x > 0 ? x : nothing; };
-    const double factorization = solved_ ? median(factorization_) : nothing;
-    const double solve = solved_ ? median(solve_) : nothing;
+    const double factorization = solved_ ? *std::ranges::min_element(factorization_) : nothing;
+    const double solve = solved_ ? *std::ranges::min_element(solve_) : nothing;
     const double gflops = known(1e-9 * solver_->flops / factorization);
     const double rate = known(2e-9 * solver_->bytes / solve);
     csv.row(scene, b_.size(), name_, analysis_, factorization, solve, gflops, rate,
@@ -113,10 +115,10 @@ class Contender {
   double bytes() const { return solver_->bytes; }
 
  private:
-  // As many calls as take about 5 ms.
+  // As many calls as take about a millisecond.
   template <class Call>
   static int calls_in_a_sample(const Call& call) {
-    return std::clamp(static_cast<int>(5e-3 / seconds_of(call)), 1, 1000);
+    return std::clamp(static_cast<int>(1e-3 / seconds_of(call)), 1, 1000);
   }
   template <class Call>
   static double time_of(int calls, const Call& call) {
