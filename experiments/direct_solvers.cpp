@@ -16,10 +16,20 @@ namespace {
 
 class OwnSolver final : public DirectSolver {
  public:
-  OwnSolver(const System& system, EffectiveMass::Solver solver) : factors_(system, solver) {
-    if (solver != EffectiveMass::Solver::multifrontal) return;
-    // A pivot with r rows below takes r divisions and r (r + 1) / 2 products and differences.
-    for (const Supernode& node : eliminate(system.stiffness_pattern()).supernodes) {
+  OwnSolver(const System& system, EffectiveMass::Solver solver)
+      : system_(system),
+        is_counted_(solver == EffectiveMass::Solver::multifrontal),
+        factors_(system, solver) {}
+  bool factorize(double s, const SymmetricMatrix& k) override {
+    if (is_counted_ && flops == 0) count();
+    return factors_.factorize(1, s, k) != EffectiveMass::Definiteness::singular;
+  }
+  void solve(const Vec& b, Vec& x) override { factors_.solve(b, x); }
+
+ private:
+  // A pivot with r rows below takes r divisions and r (r + 1) / 2 products and differences.
+  void count() {
+    for (const Supernode& node : eliminate(system_.stiffness_pattern()).supernodes) {
       for (int p = 0; p < node.pivots; ++p) {
         const double rows = static_cast<double>(node.pivots - p - 1 + std::ssize(node.rows));
         flops += rows * (rows + 2);
@@ -27,12 +37,9 @@ class OwnSolver final : public DirectSolver {
       }
     }
   }
-  bool factorize(double s, const SymmetricMatrix& k) override {
-    return factors_.factorize(1, s, k) != EffectiveMass::Definiteness::singular;
-  }
-  void solve(const Vec& b, Vec& x) override { factors_.solve(b, x); }
 
- private:
+  const System& system_;
+  bool is_counted_;
   EffectiveMass factors_;
 };
 

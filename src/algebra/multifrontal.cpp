@@ -139,7 +139,8 @@ class Multifrontal : public Factors {
     if (fronts_.children(open.f).empty()) return;
     const int pivot_height = open.f.pivot_height();
     team.share_parts(open.f.below_strips(), 1, [&](int from, int end) {
-      add_children(open, pivot_height + from * height, pivot_height + end * height);
+      for (const int child : fronts_.children(open.f))
+        add_update(child, open, pivot_height + from * height, pivot_height + end * height);
     });
   }
 
@@ -168,19 +169,14 @@ class Multifrontal : public Factors {
         columns[target] += task.a * diagonal_[source];
       // The columns that fill up the last strip are those of the identity.
       for (int j = std::max(f.pivots, from); j < end; ++j) columns[Index{j} * (f.height() + 1)] = 1;
-      add_children(open, from, end);
+      for (const int child : fronts_.children(f)) add_update(child, open, from, end);
     });
   }
 
-  void add_children(const Open& open, int first, int end) {
-    for (const int child : fronts_.children(open.f))
-      add_update(fronts_.all()[child], open, first, end);
-  }
-
-  // A child's update in the front's columns [first, end), all of pivots or none. Rows of one run in
-  // all columns, then the next: close together, a sum would wait for the one before it to be
-  // stored.
-  void add_update(const Front& child, const Open& open, int first, int end) {
+  // A child's update in the front's columns [first, end), all of pivots or none. All columns of one
+  // run of rows, then the next run: so no sum waits for a neighbour to be stored.
+  void add_update(int index, const Open& open, int first, int end) {
+    const Front& child = fronts_.all()[index];
     const Index x_ld = child.below_height();
     const Index y_ld = first < open.f.pivot_height() ? open.f.height() : open.f.below_height();
     const auto runs = fronts_.runs(child);
@@ -214,13 +210,11 @@ class Multifrontal : public Factors {
     });
     if (failed_) return;
     const int tiles = (f.strips() - after + tile_strips - 1) / tile_strips;
-    if (team.alone()) {
-      for (int i = after; i < f.strips(); i += tile_strips) {
-        divide(open, from, after, i, tile(i), scaled(open, 0));
-        subtract_from_rest(open, from, end, i, tile(i), scaled(open, 0));
-      }
-      return;
+    for (int i = after; team.alone() && i < f.strips(); i += tile_strips) {
+      divide(open, from, after, i, tile(i), scaled(open, 0));
+      subtract_from_rest(open, from, end, i, tile(i), scaled(open, 0));
     }
+    if (team.alone()) return;
     const auto row = [&](int t) { return after + t * tile_strips; };
     team.share(tiles,
                [&](int t) { divide(open, from, after, row(t), tile(row(t)), scaled(open, t)); });
@@ -279,13 +273,10 @@ class Multifrontal : public Factors {
       double* c = open.column(j * height) + (i + above) * height;
       const double* rows = ld + above * panel * height;
       const double* w = factor(f, j, from);
-      if (j < f.pivot_strips()) {
-        subtract<false>(c, f.height(), rows, panel * height, w, k, strips - above);
-      } else if (from == 0) {
-        subtract<true>(c, f.below_height(), rows, panel * height, w, k, strips - above);
-      } else {
-        subtract<false>(c, f.below_height(), rows, panel * height, w, k, strips - above);
-      }
+      const bool is_update = j >= f.pivot_strips();
+      const auto subtract_tile = is_update && from == 0 ? subtract<true> : subtract<false>;
+      subtract_tile(c, is_update ? f.below_height() : f.height(), rows, panel * height, w, k,
+                    strips - above);
     }
   }
 
