@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <Eigen/Dense>
+
 #include "experiments/timing.hpp"
 #include "src/model/system.hpp"
 
@@ -42,6 +44,31 @@ double peak_flops(double seconds) {
   });
   constexpr double lanes = sizeof(Lanes) / sizeof(double);
   return 2 * lanes * chains * rounds / least;
+}
+
+double product_flops(double seconds) {
+  constexpr Index n = 480;  // three of them lie in the second cache or close by
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Constant(n, n, 0.5), b = a;
+  Eigen::MatrixXd c(n, n);
+  return 2.0 * n * n * n / least_seconds(seconds, [&] { c.noalias() = a * b; });
+}
+
+double reading_rate(double bytes, double seconds) {
+  const Index size = static_cast<Index>(bytes / sizeof(double)) / 64 * 64;
+  if (size == 0) return 0;
+  const Vec numbers = Vec::Zero(size);
+  // A pass of at least a megabyte, so that the clock's own time does not count.
+  const Index passes = std::max<Index>(1, (1 << 17) / size);
+  Eigen::Array<double, 64, 1> sums = Eigen::Array<double, 64, 1>::Zero();
+  volatile double sink = 0;
+  const double least = least_seconds(seconds, [&] {
+    for (Index pass = 0; pass < passes; ++pass) {
+      for (Index i = 0; i < size; i += 64)
+        sums += Eigen::Map<const Eigen::Array<double, 64, 1>>(numbers.data() + i);
+    }
+    sink = sums.sum();
+  });
+  return static_cast<double>(passes * size) * sizeof(double) / least;
 }
 
 }  // namespace qddot

@@ -119,8 +119,10 @@ class CholmodFactors : public Factors {
     current_ = factor;
     // CHOLMOD asks for 4 threads whatever OMP_NUM_THREADS says; parts this small only wait for
     // each other in them.
+    const int levels = omp_get_max_active_levels();
     omp_set_max_active_levels(0);
     cholmod_factorize(&view_, factor, &common_);
+    omp_set_max_active_levels(levels);
     if (common_.status < CHOLMOD_OK) {
       throw std::runtime_error("CHOLMOD could not factorise: out of memory");
     }

@@ -1,6 +1,7 @@
 #include "src/algebra/elimination.hpp"
 
 #include <algorithm>
+#include <mutex>
 #include <stdexcept>
 
 #include <suitesparse/cholmod.h>
@@ -44,6 +45,12 @@ class Analysis {
     cholmod_start(&common_);
     common_.print = 0;  // failures are returned, not printed
     common_.supernodal = CHOLMOD_SUPERNODAL;
+    // CHOLMOD takes the order that leaves fewer entries in L. On grids of more than a thousand
+    // nodes that is nested dissection: a tenth to a fifth less time than minimum degree takes in
+    // the plane, down to a third in space.
+    common_.nmethods = 2;
+    common_.method[0].ordering = CHOLMOD_AMD;
+    common_.method[1].ordering = CHOLMOD_NESDIS;
     cholmod_sparse view{};
     view.nrow = view.ncol = graph.unknowns.size();
     view.nzmax = graph.rows.size();
@@ -86,6 +93,10 @@ Elimination eliminate(const SymmetricMatrix& pattern) {
   if (pattern.rows() == 0) return {};  // CHOLMOD does not take it
   Graph graph = block_graph(pattern);
   const int vertices = static_cast<int>(graph.unknowns.size());
+  // METIS, which cuts the graph, draws from the process' one rand(), after setting its seed: two at
+  // once would find an order that depends on chance.
+  static std::mutex one_at_a_time;
+  const std::unique_lock lock(one_at_a_time);
   const Analysis analysis(graph);
 
   Elimination result;

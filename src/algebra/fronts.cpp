@@ -32,12 +32,11 @@ Fronts::Fronts(const SymmetricMatrix& pattern, Elimination elimination) {
     f.row_end = append(rows_, node.rows);
     f.factor = factor_size;
     factor_size += Index{f.height()} * f.pivots;
-    pivot_columns_size = std::max(pivot_columns_size, Index{f.height()} * f.pivot_height());
-    largest_height = std::max(largest_height, f.height());
     std::fill_n(front_of.begin() + f.first, f.pivots, s);
     parents[s] = node.parent;
     if (node.parent >= 0) children[node.parent].push_back(s);
   }
+  divide(parents);
   place_updates(parents);
 
   std::vector<std::vector<Entry>> entries(count), diagonal(count);
@@ -53,6 +52,8 @@ Fronts::Fronts(const SymmetricMatrix& pattern, Elimination elimination) {
   }
   for (int s = 0; s < count; ++s) {
     Front& f = all_[s];
+    std::ranges::sort(entries[s], {}, &Entry::target);
+    std::ranges::sort(diagonal[s], {}, &Entry::target);
     f.entry_start = static_cast<int>(entries_.size());
     f.entry_end = append(entries_, entries[s]);
     f.diagonal_start = static_cast<int>(diagonal_.size());
@@ -79,29 +80,102 @@ int Fronts::position(const Front& f, int row) const {
   return f.pivot_height() + static_cast<int>(std::ranges::lower_bound(below, row) - below.begin());
 }
 
+// Branches are the largest subtrees of no more than a share of the work, and neighbours together
+// where they are smaller. A share is what a few threads divide well among them; work that takes no
+// longer than threads to meet is not divided.
+void Fronts::divide(const std::vector<int>& parents) {
+  constexpr double shares = 16, least_work = 1e7;  // operations
+  const int count = static_cast<int>(all_.size());
+  std::vector<double> work(count);
+  std::vector<int> start(count);  // the first front of each subtree
+  for (int s = 0; s < count; ++s) start[s] = s;
+  double whole = 0;
+  for (int s = 0; s < count; ++s) {
+    const Front& f = all_[s];
+    const double height = f.height(), below = f.below_height();
+    const double own = (height * height * height - below * below * below) / 3;
+    work[s] += own;
+    whole += own;
+    if (parents[s] < 0) continue;
+    work[parents[s]] += work[s];
+    start[parents[s]] = std::min(start[parents[s]], start[s]);
+  }
+  const double share = whole < least_work ? whole : whole / shares;
+  double last = share;  // the work of the last branch
+  for (int s = 0; s < count; ++s) {
+    if (work[s] > share) {
+      top_.push_back(s);
+      continue;
+    }
+    all_[s].kept = parents[s] >= 0 && work[parents[s]] > share;
+    if (parents[s] >= 0 && !all_[s].kept) continue;
+    const bool adjoins = !branches_.empty() && branches_.back().end == start[s];
+    if (adjoins && last + work[s] <= share) {
+      branches_.back().end = s + 1;
+      last += work[s];
+    } else {
+      branches_.push_back({start[s], s + 1});
+      last = work[s];
+    }
+  }
+}
+
 // Updates are made and used up as on a stack, but a front's own begins to grow before those of its
 // children are used up. Two stacks in turn, one for even and one for odd depths of the tree, leave
-// each update where it is made.
+// each update where it is made. Those that branches keep come first, as all are alive at once.
 void Fronts::place_updates(const std::vector<int>& parents) {
   const int count = static_cast<int>(all_.size());
-  std::vector<int> depth(count), first_child(count, -1);
+  std::vector<int> depth(count);
   for (int s = count; s-- > 0;) {
-    if (parents[s] < 0) continue;
-    depth[s] = depth[parents[s]] + 1;
-    first_child[parents[s]] = s;
+    if (parents[s] >= 0) depth[s] = depth[parents[s]] + 1;
   }
-  std::array<Index, 2> top{}, most{};
-  for (int s = 0; s < count; ++s) {
-    const int stack = depth[s] % 2;
-    all_[s].update = top[stack];
-    top[stack] += Index{all_[s].below_height()} * all_[s].below_height();
-    most[stack] = std::max(most[stack], top[stack]);
-    if (first_child[s] >= 0) top[1 - stack] = all_[first_child[s]].update;
+  const auto size = [&](int s) { return Index{all_[s].below_height()} * all_[s].below_height(); };
+  using Stacks = std::array<Index, 2>;
+  std::vector<int> first_child(count, -1);
+  const auto stack = [&](int s, Stacks& top, Stacks& most) {
+    Front& f = all_[s];
+    const int own = depth[s] % 2;
+    f.update = top[own];
+    top[own] += size(s);
+    most[own] = std::max(most[own], top[own]);
+    if (first_child[s] >= 0) top[1 - own] = all_[first_child[s]].update;
+    if (parents[s] >= 0 && first_child[parents[s]] < 0) first_child[parents[s]] = s;
+  };
+  const auto fit = [](Sizes& sizes, const Front& f) {
+    sizes.pivot_columns = std::max(sizes.pivot_columns, Index{f.height()} * f.pivot_height());
+    sizes.height = std::max(sizes.height, f.height());
+  };
+  Stacks most{};
+  for (const Branch& branch : branches_) {
+    Stacks top{};
+    for (int s = branch.start; s < branch.end; ++s) {
+      fit(branch_sizes, all_[s]);
+      if (!all_[s].kept) {
+        stack(s, top, most);
+        continue;
+      }
+      all_[s].update = top_sizes.updates;
+      top_sizes.updates += size(s);
+      if (first_child[s] >= 0) top[1 - depth[s] % 2] = all_[first_child[s]].update;
+    }
   }
-  for (int s = 0; s < count; ++s) {
-    if (depth[s] % 2 == 1) all_[s].update += most[0];
+  for (const Branch& branch : branches_) {
+    for (int s = branch.start; s < branch.end; ++s) {
+      if (!all_[s].kept && depth[s] % 2 == 1) all_[s].update += most[0];
+    }
   }
-  update_size = most[0] + most[1];
+  branch_sizes.updates = most[0] + most[1];
+
+  Stacks top{}, most_of_top{};
+  for (const int s : top_) {
+    fit(top_sizes, all_[s]);
+    stack(s, top, most_of_top);
+  }
+  for (const int s : top_) {
+    all_[s].kept = true;
+    all_[s].update += top_sizes.updates + (depth[s] % 2 == 1 ? most_of_top[0] : 0);
+  }
+  top_sizes.updates += most_of_top[0] + most_of_top[1];
 }
 
 }  // namespace qddot

@@ -19,6 +19,7 @@ struct Run {
 struct Front {
   int first, pivots, below;
   Index factor, update;  // where its part of L and its update begin, in doubles
+  bool kept;             // the update is for a front above the branches
   int row_start, row_end;
   int entry_start, entry_end;
   int diagonal_start, diagonal_end;
@@ -32,6 +33,12 @@ struct Front {
   int height() const { return 8 * strips(); }
   int pivot_height() const { return 8 * pivot_strips(); }
   int below_height() const { return 8 * below_strips(); }
+};
+
+// Fronts [start, end), subtrees that need none but their own. Branches are small against the whole,
+// so that each can be one thread's work; the tree is divided alike whatever the number of threads.
+struct Branch {
+  int start, end;
 };
 
 // All fronts of a matrix a D - s K and every index that its factorisation needs.
@@ -48,10 +55,14 @@ class Fronts {
   const std::vector<Front>& all() const { return all_; }
   const Front* begin() const { return all_.data(); }
   const Front* end() const { return all_.data() + all_.size(); }
+  const std::vector<Branch>& branches() const { return branches_; }
+  // Those above the branches, in the order of elimination: few, but the largest.
+  const std::vector<int>& top() const { return top_; }
   // place()[i]: where unknown i comes in the order of elimination.
   const std::vector<int>& place() const { return place_; }
 
   std::span<const int> rows(const Front& f) const { return part(rows_, f.row_start, f.row_end); }
+  // By ascending target.
   std::span<const Entry> entries(const Front& f) const {
     return part(entries_, f.entry_start, f.entry_end);
   }
@@ -64,10 +75,15 @@ class Fronts {
     return part(children_, f.child_start, f.child_end);
   }
 
-  // Doubles of L, of all updates that are alive at once, and the largest front's height and columns
-  // of pivots.
-  Index factor_size = 0, update_size = 0, pivot_columns_size = 0;
-  int largest_height = 0;
+  // What some fronts need one after the other: doubles of the updates that are alive at once and of
+  // the largest columns of pivots; rows of the highest front.
+  struct Sizes {
+    Index updates = 0, pivot_columns = 0;
+    int height = 0;
+  };
+  // Of any branch, without the updates that are kept; of the fronts above, with them.
+  Sizes branch_sizes, top_sizes;
+  Index factor_size = 0;  // doubles of L
 
  private:
   template <class T>
@@ -75,10 +91,12 @@ class Fronts {
     return std::span(all).subspan(start, end - start);
   }
   int position(const Front& f, int row) const;
+  void divide(const std::vector<int>& parents);
   void place_updates(const std::vector<int>& parents);
 
   std::vector<Front> all_;
-  std::vector<int> place_, rows_, children_;
+  std::vector<Branch> branches_;
+  std::vector<int> top_, place_, rows_, children_;
   std::vector<Entry> entries_, diagonal_;
   std::vector<Run> runs_;
 };

@@ -1,10 +1,16 @@
 #include "src/algebra/multifrontal.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <omp.h>
+#include <optional>
 
 #include "src/algebra/fronts.hpp"
 #include "src/algebra/large_array.hpp"
 #include "src/algebra/strips.hpp"
+#include "src/algebra/team.hpp"
+#include "src/algebra/triangular_solves.hpp"
 
 namespace qddot {
 
@@ -16,257 +22,281 @@ using namespace strips;
 // L in the first cache.
 constexpr int panel = 96;
 
+// Where fronts are worked on one after the other, by one thread or a team.
+struct Workspace {
+  Workspace(const Fronts::Sizes& sizes, bool for_team)
+      : updates(sizes.updates + height),  // see strips::add
+        columns(sizes.pivot_columns + height),
+        scaled(Index{panel} *
+               (for_team ? sizes.height + height * tile_strips : height * tile_strips)) {}
+
+  LargeArray updates;
+  LargeArray columns;  // of the pivots of the front at hand, until they are columns of L
+  LargeArray scaled;   // L D of a panel, strips as those of L: of a tile's rows or, for a team, all
+  std::array<Block, panel / height> blocks;  // the panel's, on the diagonal
+  Index negative = 0;                        // pivots
+};
+
+// L and the pivots are the same to the last bit for any number of threads: each entry is the same
+// sum in the same order, whoever computes it.
 class Multifrontal : public Factors {
  public:
   Multifrontal(const SymmetricMatrix& pattern, Vec diagonal, Elimination elimination)
       : diagonal_(std::move(diagonal)),
         fronts_(pattern, std::move(elimination)),
         l_(fronts_.factor_size),
-        updates_(fronts_.update_size),
-        columns_(fronts_.pivot_columns_size),
-        scaled_(panel * height * tile_strips),
         pivot_(pattern.rows()),
-        y_(quad * pattern.rows()),
-        gathered_(quad * fronts_.largest_height) {}
+        top_(fronts_.top_sizes, true),
+        solves_(fronts_, l_.get(), pivot_.get()) {
+    workspaces_.emplace_back(fronts_.branch_sizes, false);
+  }
 
   Definiteness factorize(double a, double s, const SymmetricMatrix& k) override {
-    if (!numeric(a, s, k, false)) return Definiteness::singular;
-    return negative_ > 0 ? Definiteness::indefinite : Definiteness::positive;
+    if (!numeric({a, s, k.valuePtr(), false})) return Definiteness::singular;
+    return negative_pivots() > 0 ? Definiteness::indefinite : Definiteness::positive;
   }
 
   bool factorize_positive(double a, double s, const SymmetricMatrix& k) override {
-    return numeric(a, s, k, true);
+    return numeric({a, s, k.valuePtr(), true});
   }
 
-  Index negative_pivots() const override { return negative_; }
+  Index negative_pivots() const override {
+    Index sum = top_.negative;
+    for (const Workspace& w : workspaces_) sum += w.negative;
+    return sum;
+  }
 
   Index bytes() const override {
     return static_cast<Index>(sizeof(double)) * (fronts_.factor_size + diagonal_.size());
   }
 
   SolveOutcome solve(const Vec& b, Vec& x) override {
-    const auto& place = fronts_.place();
-    for (Index i = 0; i < b.size(); ++i) y_.get()[place[i]] = b[i];
-    for (const Front& f : fronts_) forward(f);
-    for (Index i = 0; i < b.size(); ++i) y_.get()[i] /= pivot_.get()[i];
-    for (const Front* f = fronts_.end(); f != fronts_.begin();) backward(*--f);
-    x.resize(b.size());
-    for (Index i = 0; i < b.size(); ++i) x[i] = y_.get()[place[i]];
+    solves_.solve(b, x);
     return SolveOutcome::found;
   }
-
   SolveOutcome solve(const FourColumns& b, FourColumns& x) override {
-    const auto& place = fronts_.place();
-    for (Index i = 0; i < b.rows(); ++i) row(y_.get(), place[i]) = row(b.data(), i);
-    for (const Front& f : fronts_) forwards(f);
-    for (const Front* f = fronts_.end(); f != fronts_.begin();) backwards(*--f);
-    for (Index i = 0; i < b.rows(); ++i) row(x.data(), i) = row(y_.get(), place[i]);
+    solves_.solve(b, x);
     return SolveOutcome::found;
   }
 
  private:
+  // a D - s K, and whether to give up at the first pivot that is not positive.
+  struct Task {
+    double a, s;
+    const double* k;
+    bool only_positive;
+  };
+
   // Whether every pivot can be divided by and, where asked for, is positive.
-  bool numeric(double a, double s, const SymmetricMatrix& k, bool only_positive) {
-    negative_ = 0;
-    for (const Front& f : fronts_) {
-      assemble(f, a, s, k.valuePtr());
-      if (!eliminate_pivots(f, only_positive)) return false;
-    }
-    return true;
-  }
-
-  // The lower triangle of the front before its pivots are eliminated: the matrix' entries in its
-  // columns and its children's updates. A leaf's update is not set to zero but overwritten later.
-  void assemble(const Front& f, double a, double s, const double* k) {
-    const auto clear = [](double* matrix, int rows, int columns) {
-      for (int j = 0; j < columns; ++j, matrix += rows) {
-        const int above = j / height * height;
-        std::fill(matrix + above, matrix + rows, 0.0);
+  bool numeric(const Task& task) {
+    const bool divided = fronts_.branches().size() > 1 && !omp_in_parallel();
+    const int most = divided ? omp_get_max_threads() : 1;
+    while (std::ssize(workspaces_) < most) workspaces_.emplace_back(fronts_.branch_sizes, false);
+    for (Workspace& w : workspaces_) w.negative = 0;
+    top_.negative = 0;
+    failed_ = false;
+    if (most == 1) {
+      work(task, Team(), workspaces_[0]);
+    } else {
+      std::optional<Meeting> meeting;
+#pragma omp parallel num_threads(most)
+      {
+#pragma omp single
+        meeting.emplace(omp_get_num_threads());
+        work(task, Team(*meeting), workspaces_[omp_get_thread_num()]);
       }
-    };
-    double* columns = columns_.get();
-    clear(columns, f.height(), f.pivot_height());
-    for (const auto [source, target] : fronts_.entries(f)) columns[target] = -s * k[source];
-    for (const auto [source, target] : fronts_.diagonal(f))
-      columns[target] += a * diagonal_[source];
-    // The columns that fill up the last strip are those of the identity.
-    for (int j = f.pivots; j < f.pivot_height(); ++j) columns[Index{j} * (f.height() + 1)] = 1;
-    const auto children = fronts_.children(f);
-    if (!children.empty()) clear(updates_.get() + f.update, f.below_height(), f.below_height());
-    for (const int child : children) add_update(fronts_.all()[child], f);
+    }
+    return !failed_;
   }
 
-  void add_update(const Front& child, const Front& f) {
+  // One thread's part: some of the branches by itself, then every front above them with the others.
+  void work(const Task& task, Team team, Workspace& own) {
+    Team alone;
+    team.share(static_cast<int>(fronts_.branches().size()), [&](int b) {
+      const Branch& branch = fronts_.branches()[b];
+      for (int i = branch.start; i < branch.end && !failed_; ++i) {
+        const Front& f = fronts_.all()[i];
+        factorize(task, {f, own, update(f, own)}, alone);
+      }
+    });
+    for (const int i : fronts_.top()) {
+      const Front& f = fronts_.all()[i];
+      if (!failed_) factorize(task, {f, top_, update(f, top_)}, team);
+    }
+  }
+
+  double* update(const Front& f, Workspace& own) {
+    return (f.kept ? top_ : own).updates.get() + f.update;
+  }
+
+  // A front's dense matrix.
+  struct Open {
+    const Front& f;
+    Workspace& w;
+    double* update;
+
+    // Column j, as if its rows began with the pivots'.
+    double* column(int j) const {
+      if (j < f.pivot_height()) return w.columns.get() + Index{j} * f.height();
+      return update + Index{j - f.pivot_height()} * f.below_height() - f.pivot_height();
+    }
+  };
+
+  void factorize(const Task& task, const Open& open, Team& team) {
+    assemble_pivots(task, open, team);
+    for (int from = 0; from < open.f.pivots && !failed_; from += panel)
+      eliminate(open, from, std::min(from + panel, open.f.pivots), task.only_positive, team);
+    if (fronts_.children(open.f).empty()) return;
+    const int pivot_height = open.f.pivot_height();
+    team.share_parts(open.f.below_strips(), 1, [&](int from, int end) {
+      for (const int child : fronts_.children(open.f))
+        add_update(child, open, pivot_height + from * height, pivot_height + end * height);
+    });
+  }
+
+  // The lower triangle of the pivots' columns before they are eliminated: the matrix' entries and
+  // the children's updates.
+  void assemble_pivots(const Task& task, const Open& open, Team& team) {
+    const Front& f = open.f;
+    double* columns = open.w.columns.get();
+    team.share_parts(f.pivot_strips(), 1, [&](int from, int end) {
+      from *= height;
+      end *= height;
+      for (int j = from; j < end; ++j) {
+        double* column = columns + Index{j} * f.height();
+        std::fill(column + j / height * height, column + f.height(), 0.0);
+      }
+      const auto in_columns = [&](std::span<const Fronts::Entry> entries) {
+        const auto first =
+            std::ranges::lower_bound(entries, from * f.height(), {}, &Fronts::Entry::target);
+        return std::ranges::subrange(
+            first, std::ranges::lower_bound(first, entries.end(), end * f.height(), {},
+                                            &Fronts::Entry::target));
+      };
+      for (const auto [source, target] : in_columns(fronts_.entries(f)))
+        columns[target] = -task.s * task.k[source];
+      for (const auto [source, target] : in_columns(fronts_.diagonal(f)))
+        columns[target] += task.a * diagonal_[source];
+      // The columns that fill up the last strip are those of the identity.
+      for (int j = std::max(f.pivots, from); j < end; ++j) columns[Index{j} * (f.height() + 1)] = 1;
+      for (const int child : fronts_.children(f)) add_update(child, open, from, end);
+    });
+  }
+
+  // A child's update in the front's columns [first, end), all of pivots or none. All columns of one
+  // run of rows, then the next run: so no sum waits for a neighbour to be stored.
+  void add_update(int index, const Open& open, int first, int end) {
+    const Front& child = fronts_.all()[index];
+    const Index x_ld = child.below_height();
+    const Index y_ld = first < open.f.pivot_height() ? open.f.height() : open.f.below_height();
     const auto runs = fronts_.runs(child);
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-      for (int j = 0; j < runs[r].length; ++j) {
-        const double* from =
-            updates_.get() + child.update + Index{runs[r].from + j} * child.below_height();
-        double* to = column(f, runs[r].to + j);
-        for (int i = j; i < runs[r].length; ++i) to[runs[r].to + i] += from[runs[r].from + i];
-        for (const Run& run : runs.subspan(r + 1)) {
-          for (int i = 0; i < run.length; ++i) to[run.to + i] += from[run.from + i];
-        }
+    const auto start = std::ranges::lower_bound(
+        runs, first, {}, [](const Run& run) { return run.to + run.length - 1; });
+    for (auto rows = start; rows != runs.end(); ++rows) {
+      for (auto run = start; run <= rows && run->to < end; ++run) {
+        const int last = std::min(run->length, end - run->to);
+        int j = std::max(0, first - run->to);
+        const auto add_columns = [&](int count, int above) {
+          add(update(child, open.w) + (run->from + j) * x_ld + rows->from + above, x_ld,
+              rows->length - above, count, open.column(run->to + j) + rows->to + above, y_ld);
+          j += count;
+        };
+        if (run < rows) add_columns(last - j, 0);
+        while (j < last) add_columns(std::min(height, last - j), j);
       }
     }
   }
 
-  // The front's column j, as if its rows began with the pivots'.
-  double* column(const Front& f, int j) const {
-    if (j < f.pivot_height()) return columns_.get() + Index{j} * f.height();
-    return updates_.get() + f.update + Index{j - f.pivot_height()} * f.below_height() -
-           f.pivot_height();
+  // The pivots [from, end), and what they take off everything after them.
+  void eliminate(const Open& open, int from, int end, bool only_positive, Team& team) {
+    const Front& f = open.f;
+    const int first = from / height, after = strips::count(end);
+    const auto tile = [&](int i) { return std::min(tile_strips, f.strips() - i); };
+    team.share(1, [&](int) {
+      for (int i = first; i < after && !failed_; ++i) {
+        divide(open, from, i, i, 1, scaled(open, 0));
+        factorize_block(open, from, i, only_positive);
+      }
+    });
+    if (failed_) return;
+    const int tiles = (f.strips() - after + tile_strips - 1) / tile_strips;
+    for (int i = after; team.alone() && i < f.strips(); i += tile_strips) {
+      divide(open, from, after, i, tile(i), scaled(open, 0));
+      subtract_from_rest(open, from, end, i, tile(i), scaled(open, 0));
+    }
+    if (team.alone()) return;
+    const auto row = [&](int t) { return after + t * tile_strips; };
+    team.share(tiles,
+               [&](int t) { divide(open, from, after, row(t), tile(row(t)), scaled(open, t)); });
+    team.share(tiles, [&](int t) {
+      t = tiles - 1 - t;  // the longest first
+      subtract_from_rest(open, from, end, row(t), tile(row(t)), scaled(open, t));
+    });
   }
 
-  bool eliminate_pivots(const Front& f, bool only_positive) {
-    for (int from = 0; from < f.pivots; from += panel) {
-      const int end = std::min(from + panel, f.pivots);
-      for (int j = from / height; j < strips::count(end); ++j) {
-        if (j > from / height) subtract_from_strip(f, j, from);
-        if (!divide(f, j, only_positive)) return false;
-      }
-      subtract_from_rest(f, from, end);
-    }
-    return true;
+  // L D of a panel in the rows of tile t.
+  static double* scaled(const Open& open, int t) {
+    return open.w.scaled.get() + Index{t} * tile_strips * panel * height;
   }
 
   // L of the front: strip i from column k on.
   double* factor(const Front& f, int i, int k) const {
     return l_.get() + f.factor + (Index{i} * f.pivots + k) * height;
   }
-  static Index stride(const Front& f) { return Index{f.pivots} * height; }
 
-  // Columns of the pivots 8 j, ..., 8 j + 7, less what the pivots from `from` to them take off.
-  void subtract_from_strip(const Front& f, int j, int from) {
-    const int k = j * height - from;
-    scale(factor(f, j, from), pivot_.get() + f.first + from, k, scaled_.get());
-    for (int i = j; i < f.strips(); i += tile_strips) {
-      subtract<false>(column(f, j * height) + i * height, f.height(), factor(f, i, from), stride(f),
-                      scaled_.get(), k, std::min(tile_strips, f.strips() - i));
-    }
-  }
-
-  // Those columns of L.
-  bool divide(const Front& f, int j, bool only_positive) {
-    const int k = std::min(height, f.pivots - j * height), first = f.first + j * height;
-    const double* a = column(f, j * height);
-    const Block block(a + j * height, f.height());
-    if (!block.regular || (only_positive && block.negative > 0)) return false;
-    negative_ += block.negative;
-    std::copy_n(block.pivot, k, pivot_.get() + first);
-    std::copy_n(block.l, k * height, factor(f, j, j * height));
-    for (int i = j + 1; i < f.strips(); ++i)
-      divide_strip(a + i * height, f.height(), block, k, factor(f, i, j * height));
-    return true;
-  }
-
-  // What the pivots [from, end) take off everything after them, by rows of tiles.
-  void subtract_from_rest(const Front& f, int from, int end) {
-    const int k = end - from, first = strips::count(end);
-    const bool fresh = from == 0 && fronts_.children(f).empty();
-    for (int i = first; i < f.strips(); i += tile_strips) {
-      const int strips = std::min(tile_strips, f.strips() - i);
+  // Strips i, ... of L and L D in the panel's columns, up to those of strip `end`.
+  void divide(const Open& open, int from, int end, int i, int strips, double* ld) {
+    const Front& f = open.f;
+    for (int j = from / height; j < end; ++j) {
+      const int k = j * height - from, columns = std::min(height, f.pivots - j * height);
+      double* a = open.column(j * height) + i * height;
+      subtract<false>(a, f.height(), ld, panel * height, factor(f, j, from), k, strips);
       for (int t = 0; t < strips; ++t) {
-        scale(factor(f, i + t, from), pivot_.get() + f.first + from, k,
-              scaled_.get() + t * k * height);
-      }
-      for (int j = first; j < i + strips; ++j) {
-        const int above = std::max(j - i, 0);  // strips of the tile above the diagonal
-        double* c = column(f, j * height) + (i + above) * height;
-        const double* rows = scaled_.get() + above * k * height;
-        const double* w = factor(f, j, from);
-        if (j < f.pivot_strips()) {
-          subtract<false>(c, f.height(), rows, k * height, w, k, strips - above);
-        } else if (fresh) {
-          subtract<true>(c, f.below_height(), rows, k * height, w, k, strips - above);
-        } else {
-          subtract<false>(c, f.below_height(), rows, k * height, w, k, strips - above);
-        }
+        divide_strip(a + t * height, f.height(), open.w.blocks[j - from / height], columns,
+                     factor(f, i + t, j * height), ld + (t * panel + k) * height);
       }
     }
   }
 
-  // Of L z = b: the front's pivots of z, and what they take off the rows below.
-  void forward(const Front& f) {
-    double* z = gathered_.get();
-    std::copy_n(y_.get() + f.first, f.pivots, z);
-    std::fill(z + f.pivots, z + f.height(), 0.0);
-    for (int j = 0; j < f.pivot_strips(); ++j) {
-      const int k = std::min(height, f.pivots - j * height);
-      double* zj = z + j * height;
-      solve_lower(factor(f, j, j * height), k, zj);
-      subtract_product(factor(f, j + 1, j * height), stride(f), zj, k, f.strips() - j - 1,
-                       zj + height);
-    }
-    std::copy_n(z, f.pivots, y_.get() + f.first);
-    z += f.pivot_height();
-    for (const int row : fronts_.rows(f)) y_.get()[row] += *z++;
+  // The block of strip i on the diagonal.
+  void factorize_block(const Open& open, int from, int i, bool only_positive) {
+    const Front& f = open.f;
+    const int k = std::min(height, f.pivots - i * height), first = f.first + i * height;
+    double* a = open.column(i * height) + i * height;
+    subtract<false>(a, f.height(), scaled(open, 0), panel * height, factor(f, i, from),
+                    i * height - from, 1);
+    Block& block = open.w.blocks[i - from / height];
+    block = Block(a, f.height());
+    if (!block.regular || (only_positive && block.negative > 0)) failed_ = true;
+    open.w.negative += block.negative;
+    std::copy_n(block.pivot, k, pivot_.get() + first);
+    std::copy_n(block.l, k * height, factor(f, i, i * height));
   }
 
-  // Of L' x = y: the front's pivots of x.
-  void backward(const Front& f) {
-    double* x = gathered_.get();
-    std::copy_n(y_.get() + f.first, f.pivots, x);
-    std::fill(x + f.pivots, x + f.pivot_height(), 0.0);
-    double* below = x + f.pivot_height();
-    for (const int row : fronts_.rows(f)) *below++ = y_.get()[row];
-    std::fill(below, x + f.height(), 0.0);
-    for (int j = f.pivot_strips(); j-- > 0;) {
-      const int k = std::min(height, f.pivots - j * height);
-      double* xj = x + j * height;
-      subtract_transposed(factor(f, j + 1, j * height), stride(f), xj + height, k,
-                          f.strips() - j - 1, xj);
-      solve_upper(factor(f, j, j * height), k, xj);
+  // What the pivots [from, end) take off strips i, ... after them. The first ones begin the update.
+  void subtract_from_rest(const Open& open, int from, int end, int i, int strips,
+                          const double* ld) {
+    const Front& f = open.f;
+    const int k = end - from;
+    for (int j = strips::count(end); j < i + strips; ++j) {
+      const int above = std::max(j - i, 0);  // strips of the tile above the diagonal
+      double* c = open.column(j * height) + (i + above) * height;
+      const double* rows = ld + above * panel * height;
+      const double* w = factor(f, j, from);
+      const bool is_update = j >= f.pivot_strips();
+      const auto subtract_tile = is_update && from == 0 ? subtract<true> : subtract<false>;
+      subtract_tile(c, is_update ? f.below_height() : f.height(), rows, panel * height, w, k,
+                    strips - above);
     }
-    std::copy_n(x, f.pivots, y_.get() + f.first);
-  }
-
-  // Both for four right-hand sides; backwards() divides by the pivots, too.
-  void forwards(const Front& f) {
-    double* z = gathered_.get();
-    std::copy_n(y_.get() + quad * f.first, quad * f.pivots, z);
-    std::fill(z + quad * f.pivots, z + quad * f.pivot_height(), 0.0);
-    for (int j = 0; j < f.pivot_strips(); ++j) {
-      const int before = j * height, k = std::min(height, f.pivots - before);
-      subtract_products(factor(f, j, 0), z, before, z + quad * before);
-      solve_lowers(factor(f, j, before), k, z + quad * before);
-    }
-    std::copy_n(z, quad * f.pivots, y_.get() + quad * f.first);
-    const auto rows = fronts_.rows(f);
-    for (int i = 0; i < f.below_strips(); ++i) {
-      double sums[quad * height] = {};
-      subtract_products(factor(f, f.pivot_strips() + i, 0), z, f.pivots, sums);
-      const int count = std::min(height, f.below - i * height);
-      for (int r = 0; r < count; ++r) row(y_.get(), rows[i * height + r]) += row(sums, r);
-    }
-  }
-
-  void backwards(const Front& f) {
-    double* x = gathered_.get();
-    for (int p = 0; p < f.pivots; ++p) {
-      row(x, p) = row(y_.get(), f.first + p) / pivot_.get()[f.first + p];
-    }
-    std::fill(x + quad * f.pivots, x + quad * f.pivot_height(), 0.0);
-    int at = f.pivot_height();
-    for (const int i : fronts_.rows(f)) row(x, at++) = row(y_.get(), i);
-    std::fill(x + quad * at, x + quad * f.height(), 0.0);
-    for (int j = f.pivot_strips(); j-- > 0;) {
-      const int before = j * height, k = std::min(height, f.pivots - before);
-      double* xj = x + quad * before;
-      subtract_transposed_products(factor(f, j + 1, before), stride(f), xj + quad * height, k,
-                                   f.strips() - j - 1, xj);
-      solve_uppers(factor(f, j, before), k, xj);
-    }
-    std::copy_n(x, quad * f.pivots, y_.get() + quad * f.first);
   }
 
   Vec diagonal_;
   Fronts fronts_;
-  LargeArray l_, updates_;
-  LargeArray columns_;  // of the pivots of the front at hand, until they are columns of L
-  LargeArray scaled_;   // some of its strips times the pivots
-  LargeArray pivot_, y_, gathered_;
-  Index negative_ = 0;
+  LargeArray l_, pivot_;
+  std::vector<Workspace> workspaces_;  // of threads, for branches
+  Workspace top_;
+  TriangularSolves solves_;
+  std::atomic<bool> failed_ = false;
 };
 
 }  // namespace

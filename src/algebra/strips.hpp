@@ -32,19 +32,20 @@ constexpr Places first_places = []<std::size_t... i>(std::index_sequence<i...>) 
 inline Lanes load(const double* x) { return *reinterpret_cast<const Lanes*>(x); }
 inline void store(double* x, Lanes value) { *reinterpret_cast<Lanes*>(x) = value; }
 
-// S = A D: a strip of k columns times a diagonal.
-inline void scale(const double* a, const double* d, int k, double* s) {
-  for (int p = 0; p < k; ++p) {
-    for (int i = 0; i < height; ++i) s[p * height + i] = a[p * height + i] * d[p];
-  }
-}
-
 // C = C - A W', or C = -A W' where `fresh`. C: columns `ld` apart; A: strips `stride` apart, of k
 // columns; W: the first `tile_columns` rows of a strip of k columns.
 template <int strips, bool fresh>
 inline void subtract_tile(double* c, Index ld, const double* a, Index stride, const double* w,
                           int k) {
   constexpr int rows = strips * vectors;
+  // C may be in a farther cache than A and W: where there are many products, it is fetched before.
+  if (k >= 48) {
+#pragma GCC unroll 16
+    for (int j = 0; j < tile_columns; ++j) {
+#pragma GCC unroll 16
+      for (int i = 0; i < strips; ++i) __builtin_prefetch(c + j * ld + i * height, 1);
+    }
+  }
   Lanes sum[tile_columns][rows] = {};
   for (int p = 0; p < k; ++p, a += height, w += height) {
     Lanes x[rows];
@@ -88,6 +89,17 @@ inline Lanes splat(const Lanes* x, int i) {
 inline Lanes below(Lanes x, int v, int i) { return first_places + v * lanes > i ? x : Lanes{}; }
 inline Lanes above(Lanes x, int v, int i) { return first_places + v * lanes < i ? x : Lanes{}; }
 
+// Y = Y + X, n rows of columns x_ld and y_ld apart. A column's last vector is read and written
+// whole, beyond it unchanged.
+inline void add(const double* x, Index x_ld, int n, int columns, double* y, Index y_ld) {
+  const int whole = n / lanes * lanes;
+  const auto rest = first_places < n - whole;
+  for (int j = 0; j < columns; ++j, x += x_ld, y += y_ld) {
+    for (int i = 0; i < whole; i += lanes) store(y + i, load(y + i) + load(x + i));
+    if (whole < n) store(y + whole, load(y + whole) + (rest ? load(x + whole) : Lanes{}));
+  }
+}
+
 // A = L D L' of 8 pivots without pivoting.
 struct Block {
   double l[height * height];   // without the diagonal; L' above it
@@ -96,6 +108,7 @@ struct Block {
   int negative = 0;
   bool regular = true;  // every pivot is a number that can be divided by
 
+  Block() = default;
   // A: the lower triangle of columns `a_ld` apart.
   Block(const double* a, Index a_ld) {
     Lanes x[height][vectors], y[height][vectors];
@@ -130,9 +143,10 @@ struct Block {
   }
 };
 
-// A strip of L below a block: L = A (D L')^-1, A's 8 columns `ld` apart. Of L the first k columns
-// are kept.
-inline void divide_strip(const double* a, Index ld, const Block& block, int k, double* l) {
+// A strip of L below a block: L D = A L'^-1, A's 8 columns `ld` apart. Of L and L D the first k
+// columns are kept.
+inline void divide_strip(const double* a, Index ld, const Block& block, int k, double* l,
+                         double* scaled) {
 #pragma GCC unroll 4
   for (int v = 0; v < vectors; ++v) {
     Lanes x[height];
@@ -140,6 +154,7 @@ inline void divide_strip(const double* a, Index ld, const Block& block, int k, d
     for (int j = 0; j < height; ++j) x[j] = load(a + j * ld + v * lanes);
 #pragma GCC unroll 8
     for (int p = 0; p < height; ++p) {
+      if (p < k) store(scaled + p * height + v * lanes, x[p]);
       x[p] *= block.inverse[p];
 #pragma GCC unroll 8
       for (int j = p + 1; j < height; ++j) x[j] -= x[p] * block.ld[p * height + j];

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <omp.h>
 #include <random>
 #include <string>
 #include <vector>
@@ -116,8 +117,9 @@ std::vector<Matrix> patterns(double share_negative) {
 }
 
 // A scene's K away from its start, so that springs are compressed and stretched.
-Matrix displaced(const Generator& generator, const Reductions& reductions) {
-  const ReducedScene scene(generate(generator, {}, "test"), reductions);
+Matrix displaced(const Generator& generator, const Reductions& reductions,
+                 const GeneratorValues& values = {}) {
+  const ReducedScene scene(generate(generator, values, "test"), reductions);
   const System& system = scene.system();
   std::mt19937 random(13);
   Vec q = scene.initial().q;
@@ -127,9 +129,111 @@ Matrix displaced(const Generator& generator, const Reductions& reductions) {
   return {generator.name, system.mass(), stiffness_at(system, q)};
 }
 
+// Of a matrix factorised by so many threads: how many pivots are negative, or -1 where that was
+// given up, and the solutions of some right-hand side.
+struct Solved {
+  Index negative = -1;
+  Vec x;
+};
+
+Solved solve_with(int threads, Factors& factors, const Matrix& m, double s, bool only_positive) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(threads);
+  Solved solved;
+  if (!only_positive || factors.factorize_positive(1, s, m.k)) {
+    if (!only_positive) factors.factorize(1, s, m.k);
+    solved.negative = factors.negative_pivots();
+    factors.solve(Vec::LinSpaced(m.diagonal.size(), -1, 2), solved.x);
+  }
+  omp_set_num_threads(before);
+  return solved;
+}
+
+// Large enough for several threads to divide the work: with one separator or thousands of parts, in
+// the plane and in space, and a front at the top that takes several panels.
+std::vector<Matrix> large_cases() {
+  const auto pins = Reductions::only({Reduction::pins});
+  std::vector<Matrix> all = {
+      displaced(*find_generator("cloth"), pins, {{"nodes", 45}}),
+      displaced(*find_generator("lattice"), pins,
+                {{"nodes_x", 16}, {"nodes_y", 9}, {"nodes_z", 9}}),
+  };
+  std::vector<std::pair<int, int>> places;
+  const int n = 2400, block = 60;
+  for (int i = 0; i < n; ++i) {
+    for (int j = i / block * block; j < i; ++j) places.emplace_back(i, j);
+  }
+  all.push_back(dominated("dense islands", n, places, 0.4));
+  for (int i = n - 20; i < n; ++i) {
+    for (int j = 0; j < n - block; ++j) places.emplace_back(i, j);
+  }
+  all.push_back(dominated("islands with 20 in common", n, places, 0.4));
+  return all;
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(multifrontal)
+
+BOOST_AUTO_TEST_CASE(any_number_of_threads_makes_the_same_factors) {
+  int indefinite = 0, given_up = 0;
+  std::vector<Matrix> all = large_cases();
+  for (const Generator& generator : generators()) all.push_back(displaced(generator, {}));
+  for (const Matrix& m : all) {
+    const auto factors = make_multifrontal(m.k, m.diagonal);
+    for (const double s : {1e-8, 1e-4, 1.0}) {
+      for (const bool only_positive : {false, true}) {
+        const Solved alone = solve_with(1, *factors, m, s, only_positive);
+        indefinite += alone.negative > 0;
+        given_up += alone.negative < 0;
+        for (const int threads : {2, 3, 2, 1}) {
+          BOOST_TEST_CONTEXT(m.name << " of " << m.diagonal.size() << " unknowns, s = " << s << ", "
+                                    << threads << " threads") {
+            const Solved together = solve_with(threads, *factors, m, s, only_positive);
+            BOOST_TEST(together.negative == alone.negative);
+            BOOST_TEST_REQUIRE(together.x.size() == alone.x.size());
+            BOOST_TEST((together.x.array() == alone.x.array()).all());
+          }
+        }
+      }
+    }
+  }
+  BOOST_TEST(indefinite >= 4);
+  BOOST_TEST(given_up >= 4);
+}
+
+BOOST_AUTO_TEST_CASE(large_matrices_are_solved_by_several_threads_as_by_cholmod) {
+  for (const Matrix& m : large_cases()) {
+    const auto factors = make_multifrontal(m.k, m.diagonal);
+    const auto reference = make_cholmod_factors(m.k, m.diagonal);
+    for (const double s : {1e-8, 1e-4, 1.0}) {
+      BOOST_TEST_CONTEXT(m.name << " of " << m.diagonal.size() << " unknowns, s = " << s) {
+        BOOST_TEST(factors->factorize(1, s, m.k) == reference->factorize(1, s, m.k));
+        const SymmetricMatrix a = m.whole(1, s);
+        const Solved solved = solve_with(2, *factors, m, s, false);
+        BOOST_TEST(solved.negative == reference->negative_pivots());
+        BOOST_TEST(backward_error(*factors, a) < (solved.negative == 0 ? tolerance(a) : 1e-10));
+      }
+    }
+  }
+}
+
+// Experiments run scenes side by side, each in one of their own threads.
+BOOST_AUTO_TEST_CASE(inside_other_threads_each_works_by_itself) {
+  const Matrix m = large_cases().front();
+  const auto factors = make_multifrontal(m.k, m.diagonal);
+  const Solved alone = solve_with(1, *factors, m, 1e-4, false);
+  std::vector<Solved> inside(3);
+#pragma omp parallel for num_threads(3)
+  for (int i = 0; i < 3; ++i) {
+    const auto own = make_multifrontal(m.k, m.diagonal);
+    inside[i] = solve_with(2, *own, m, 1e-4, false);
+  }
+  for (const Solved& solved : inside) {
+    BOOST_TEST_REQUIRE(solved.x.size() == alone.x.size());
+    BOOST_TEST((solved.x.array() == alone.x.array()).all());
+  }
+}
 
 BOOST_AUTO_TEST_CASE(solves_every_pattern_to_round_off) {
   for (const Matrix& m : patterns(0)) {
