@@ -61,7 +61,7 @@ class SpringsByNode {
     std::array<double, D> signs;
   };
   // Fewer slots than these are done before a second thread has begun.
-  static constexpr Index slots_worth_threads = 5000;
+  static constexpr Index slots_worth_threads = 8000;
 
   void place(const Vec& q, int slice, const Positions& positions) const;
   // What is no node; after all slices.
