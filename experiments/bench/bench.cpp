@@ -14,6 +14,7 @@
 //     of at most the error that this run has. Where the peer's runs were over budget before, it is
 //     at least that of the budget, over our fastest of that accuracy.
 //  4. bench.csv holds every point, ratios.csv the ratios with the runs they are of.
+#include <charconv>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +23,7 @@
 
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/ratio_table.hpp"
+#include "experiments/catalogue.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
@@ -72,7 +74,9 @@ Entry entry_of(const std::string& word) {
   const Scene drawn = load(choice);
   if (at == word.npos) return {choice, drawn, horizon(0, false, drawn)};
   double until = 0;
-  if (!CLI::detail::lexical_cast(word.substr(at + 1), until)) {
+  const char *first = word.data() + at + 1, *last = word.data() + word.size();
+  if (const auto [end, error] = std::from_chars(first, last, until);
+      error != std::errc() || end != last) {
     throw InvalidInput(fmt::format("{}: behind @ stands the time to run to in s, a number", word));
   }
   return {choice, drawn, horizon(until, true, drawn)};

@@ -45,7 +45,7 @@ class Folder {
 };
 
 // One word of a shell's command.
-std::string quoted(const std::string& word) {
+std::string shell_word(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
@@ -135,13 +135,13 @@ class SciPy final : public Peer {
 
   Run run(const Problem& problem, ForceKind force, double rtol, double limit) override {
     const Folder folder;
-    std::string command = fmt::format("timeout {:.0f} {} {} {} {} {:.17g} {:.17g}",
-                                      2 * limit + start_limit, python, quoted(SCIPY_SCRIPT),
-                                      quoted(folder.write("problem.json", as_json(problem).dump())),
-                                      method_, rtol, limit);
+    std::string command = fmt::format(
+        "timeout {:.0f} {} {} {} {} {:.17g} {:.17g}", 2 * limit + start_limit, python,
+        shell_word(SCIPY_SCRIPT), shell_word(folder.write("problem.json", as_json(problem).dump())),
+        method_, rtol, limit);
     if (force == ForceKind::ours) {
-      command += fmt::format(" {} {}", quoted(force_library_),
-                             quoted(folder.write("scene.toml", to_toml(problem.start))));
+      command += fmt::format(" {} {}", shell_word(force_library_),
+                             shell_word(folder.write("scene.toml", to_toml(problem.start))));
     }
     const auto [text, status] = output_of(command + " 2>/dev/null");
     constexpr int timed_out = 124;
