@@ -3,8 +3,8 @@
 #include <arkode/arkode_erkstep.h>
 
 #include "experiments/bench/peers.hpp"
+#include "experiments/bench/processor_time.hpp"
 #include "experiments/deadline.hpp"
-#include "experiments/timing.hpp"
 #include "integrators/sundials/support.hpp"
 #include "integrators/sundials/vector.hpp"
 
@@ -57,7 +57,7 @@ class Erk4 final : public Peer {
     Run run;
     int flag = 0;
     double t = 0;
-    run.seconds = seconds_of(
+    run.seconds = processor_seconds_of(
         [&] { flag = ERKStepEvolve(memory.get(), problem.until, y.get(), &t, ARK_NORMAL); });
     const bool has_ended = flag >= 0 && t == problem.until;
     run.outcome = has_ended                ? Outcome::reached_end

@@ -133,7 +133,13 @@ std::vector<Sweep> sweeps_of(const Problem& problem,
   own.enough = accuracies.back() / 30;  // a peer's run may be better than it need be
   for (const bool smallest : {true, false}) {
     for (const std::string& method : a.methods) {
-      sweeps.push_back(sweep(*find_method(method), smallest, problem, own, report));
+      const auto solver = our_method(method, smallest);
+      sweeps.push_back(sweep(*solver, ForceKind::ours, problem, own, report));
+      sweeps.back().is_ours = true;
+      sweeps.back().is_smallest = smallest;
+      if (smallest) {
+        for (Measured& p : sweeps.back().points) p.unknowns = problem.smallest.system().size();
+      }
     }
   }
   Pace theirs = a.pace;

@@ -4,6 +4,7 @@
 // l) that the spring would, so that the motion converges with order 1; Bullet takes (l0^2 -
 // l^2)/(l0^2 + l^2) l for l0 - l, which is true to first order in the strain, and floats.
 #include "experiments/bench/peers.hpp"
+#include "experiments/bench/processor_time.hpp"
 
 #ifdef QDDOT_BULLET
 
@@ -12,7 +13,6 @@
 #include <cmath>
 
 #include "experiments/deadline.hpp"
-#include "experiments/timing.hpp"
 
 namespace qddot::bench {
 namespace {
@@ -37,6 +37,7 @@ class Bullet final : public Peer {
     world.air_density = world.water_density = 0;
     world.m_maxDisplacement = static_cast<btScalar>(1e9);
     btSoftBody body(&world);
+    body.appendMaterial();  // which nodes take as theirs
     for (const Node& node : scene.nodes) {
       body.appendNode(bullet_vector(node.position),
                       node.pinned ? 0 : static_cast<btScalar>(node.mass));
@@ -49,7 +50,7 @@ class Bullet final : public Peer {
     Run run;
     run.steps = std::llround(problem.until / h);
     const Deadline deadline(limit);
-    run.seconds = seconds_of([&] {
+    run.seconds = processor_seconds_of([&] {
       for (std::int64_t i = 0; i < run.steps && !deadline.passed(); ++i) {
         body.predictMotion(static_cast<btScalar>(h));
         body.solveConstraints();

@@ -5,8 +5,8 @@
 #include <boost/numeric/odeint.hpp>
 
 #include "experiments/bench/peers.hpp"
+#include "experiments/bench/processor_time.hpp"
 #include "experiments/deadline.hpp"
-#include "experiments/timing.hpp"
 
 namespace qddot::bench {
 namespace {
@@ -20,7 +20,7 @@ struct TimeIsUp {};
 template <class Work>
 void guarded(Run& run, const Work& work) {
   try {
-    run.seconds = seconds_of(work);
+    run.seconds = processor_seconds_of(work);
     const bool is_finite = run.end.q.allFinite() && run.end.v.allFinite();
     run.outcome = is_finite ? Outcome::reached_end : Outcome::not_finite;
   } catch (const TimeIsUp&) {

@@ -14,7 +14,7 @@ namespace qddot::bench {
 struct Run {
   Outcome outcome = Outcome::solver_failed;
   State end{};
-  double seconds = 0;  // wall time of a run, set-up left out: the median of `timed` runs
+  double seconds = 0;  // processor time of a run, set-up left out: the median of `timed` runs
   int timed = 1;
   std::int64_t steps = 0, force_evaluations = 0;
 };
@@ -47,7 +47,7 @@ class Peer {
 
 // 1e-2 to 1e-13, so many in a factor of ten.
 std::vector<double> tolerances(int in_a_decade);
-// From h w = 2 of the fastest vibration at the start downwards, so many in a factor of ten; each
+// From h w = 4 of the fastest vibration at the start downwards, so many in a factor of ten; each
 // divides the horizon. [s]
 std::vector<double> step_sizes(const Problem& problem, int in_a_decade, int decades);
 

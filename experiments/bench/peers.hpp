@@ -10,7 +10,9 @@ std::unique_ptr<Peer> odeint_dopri5();
 std::unique_ptr<Peer> odeint_mclachlan();
 // SUNDIALS' ERKStep of order 4.
 std::unique_ptr<Peer> arkode_erk4();
-// An implicit solver of SUNDIALS the stock way: a method of ours that ends on _klu.
+// One of our own methods, on the scene's smallest system or on the one with pins alone left out.
+std::unique_ptr<Peer> our_method(const std::string& method, bool smallest);
+// An implicit solver of SUNDIALS the stock way: a method of our registry that ends on _klu.
 std::unique_ptr<Peer> stock_implicit(const std::string& method);
 // A method of SciPy's solve_ivp: DOP853, Radau or BDF, in a process of its own. `force_library`:
 // the path of force_library.cpp's library, through which Python calls our f; empty where there is

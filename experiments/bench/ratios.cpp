@@ -12,7 +12,9 @@ Ratio ratio_of(const std::vector<Sweep>& sweeps, bool smallest, double accuracy,
   const bool was_cut = std::ranges::any_of(sweeps, [&](const Sweep& s) {
     return theirs(s) && s.points.back().outcome == Outcome::over_budget;
   });
-  Ratio ratio{.accuracy = accuracy, .theirs = fastest(sweeps, accuracy, theirs)};
+  Ratio ratio{};
+  ratio.accuracy = accuracy;
+  ratio.theirs = fastest(sweeps, accuracy, theirs);
   if (ratio.theirs) {
     ratio.ours = fastest(sweeps, ratio.theirs->error, ours);
     if (ratio.ours) ratio.ratio = ratio.theirs->seconds / ratio.ours->seconds;

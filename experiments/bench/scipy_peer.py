@@ -124,7 +124,7 @@ def solved(problem, acceleration, data, method, rtol, limit):
 
     options = {"jac": lambda _, y: problem.jacobian(y[:n])} if method != "DOP853" else {}
     atol = rtol * np.concatenate([np.full(n, data["length"]), np.full(n, data["speed"])])
-    start = time.perf_counter()
+    start = time.process_time()
     solution = solve_ivp(
         rate,
         (0.0, data["until"]),
@@ -135,7 +135,7 @@ def solved(problem, acceleration, data, method, rtol, limit):
         t_eval=[data["until"]],
         **options,
     )
-    return solution, time.perf_counter() - start
+    return solution, time.process_time() - start
 
 
 def report(**words):

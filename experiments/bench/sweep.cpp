@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "experiments/ladder.hpp"
 #include "experiments/timing.hpp"
 
 namespace qddot::bench {
@@ -61,30 +60,6 @@ Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pac
     const bool is_idle = idle >= most_idle && best < converging;
     if (point.outcome == Outcome::over_budget || best <= pace.enough || is_idle) break;
   }
-  return all;
-}
-
-Sweep sweep(const Method& method, bool smallest, const Problem& problem, const Pace& pace,
-            const std::function<void(const Measured&)>& report) {
-  const ReducedScene& scene = smallest ? problem.smallest : problem.scene;
-  Sweep all{.is_ours = true, .is_smallest = smallest};
-  const auto note = [&](const Point& p) {
-    all.points.push_back({.solver = method.name,
-                          .force = force_name(ForceKind::ours),
-                          .unknowns = scene.system().size(),
-                          .knob = method.knob,
-                          .value = p.value,
-                          .outcome = p.outcome,
-                          .error = p.errors.position,
-                          .seconds = p.time,
-                          .timed = p.timed_runs,
-                          .steps = p.counts.steps,
-                          .force_evaluations = p.counts.force_evaluations});
-    report(all.points.back());
-  };
-  climb(method, scene, problem.until, smallest ? problem.reference : problem.own,
-        {.seconds = pace.limit, .repeats = pace.repeats}, note,
-        [&](const Point& p) { return p.errors.position <= pace.enough; });
   return all;
 }
 

@@ -40,8 +40,4 @@ struct Pace {
 Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
             const std::function<void(const Measured&)>& report);
 
-// Our own method likewise; of the scene with all reductions (`smallest`) or with pins alone.
-Sweep sweep(const Method& method, bool smallest, const Problem& problem, const Pace& pace,
-            const std::function<void(const Measured&)>& report);
-
 }  // namespace qddot::bench
