@@ -57,8 +57,10 @@ class Erk4 final : public Peer {
     Run run;
     int flag = 0;
     double t = 0;
-    run.seconds = processor_seconds_of(
-        [&] { flag = ERKStepEvolve(memory.get(), problem.until, y.get(), &t, ARK_NORMAL); });
+    {
+      const ProcessorTime watch(run.seconds);
+      flag = ERKStepEvolve(memory.get(), problem.until, y.get(), &t, ARK_NORMAL);
+    }
     const bool has_ended = flag >= 0 && t == problem.until;
     run.outcome = has_ended                ? Outcome::reached_end
                   : task.deadline.passed() ? Outcome::over_budget

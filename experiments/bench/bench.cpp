@@ -11,8 +11,9 @@
 //  2. Our explicit methods run on the smallest system of the scene (reduced: all), and on the one
 //     that the peers get (pins).
 //  3. A ratio is that of a peer's fastest run of at most the accuracy asked for, over our fastest
-//     of at most the error that this run has. Where the peer's runs were over budget before, it is
-//     at least that of the budget, over our fastest of that accuracy.
+//     of at most the error that this run has. Where the peer was over budget before, the ratio is
+//     at least that of what it had spent, over our fastest of that accuracy. Times are the
+//     processor's.
 //  4. bench.csv holds every point, ratios.csv the ratios with the runs they are of.
 #include <charconv>
 #include <filesystem>
@@ -167,7 +168,7 @@ void compare(const Entry& entry, const std::vector<std::unique_ptr<Peer>>& peers
     }
   }
   for (const bool smallest : {true, false}) {
-    const auto all = ratios(sweeps, smallest, accuracies, a.pace.limit);
+    const auto all = ratios(sweeps, smallest, accuracies);
     for (const Ratio& ratio : all) {
       ratio_row(table, entry.drawn.name, entry.until, smallest, ratio);
     }

@@ -50,12 +50,13 @@ class Bullet final : public Peer {
     Run run;
     run.steps = std::llround(problem.until / h);
     const Deadline deadline(limit);
-    run.seconds = processor_seconds_of([&] {
+    {
+      const ProcessorTime watch(run.seconds);
       for (std::int64_t i = 0; i < run.steps && !deadline.passed(); ++i) {
         body.predictMotion(static_cast<btScalar>(h));
         body.solveConstraints();
       }
-    });
+    }
     run.end = end_of(scene, body, problem.until);
     const bool is_finite = run.end.q.allFinite() && run.end.v.allFinite();
     run.outcome = deadline.passed() ? Outcome::over_budget

@@ -20,7 +20,8 @@ struct TimeIsUp {};
 template <class Work>
 void guarded(Run& run, const Work& work) {
   try {
-    run.seconds = processor_seconds_of(work);
+    const ProcessorTime watch(run.seconds);
+    work();
     const bool is_finite = run.end.q.allFinite() && run.end.v.allFinite();
     run.outcome = is_finite ? Outcome::reached_end : Outcome::not_finite;
   } catch (const TimeIsUp&) {

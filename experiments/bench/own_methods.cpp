@@ -18,8 +18,10 @@ Run run_of(const Method& method, const System& system, const ReducedScene& scene
   const Deadline deadline(limit);
   Summary summary;
   Run run;
-  run.seconds = processor_seconds_of(
-      [&] { summary = integrator->advance(state, problem.until, {}, deadline.token()); });
+  {
+    const ProcessorTime watch(run.seconds);
+    summary = integrator->advance(state, problem.until, {}, deadline.token());
+  }
   run.outcome = summary.outcome;
   run.end = state_of(scene.expand(state), problem.start.dimension, state.t);
   run.steps = summary.counts.steps;

@@ -10,11 +10,11 @@
 
 namespace qddot::bench {
 
-// How runs of a peer ended. All but the outcome mean something only where they reached the end.
+// How runs of a peer ended. The end and the counts mean something only where they reached it.
 struct Run {
   Outcome outcome = Outcome::solver_failed;
   State end{};
-  double seconds = 0;  // processor time of a run, set-up left out: the median of `timed` runs
+  double seconds = 0;  // processor time of a run, set-up left out: median of `timed` runs
   int timed = 1;
   std::int64_t steps = 0, force_evaluations = 0;
 };

@@ -24,8 +24,7 @@ void point_row(Csv& csv, const std::string& scene, double until, const Sweep& sw
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   csv.row(scene, until, sweep.is_ours ? "ours" : "peer", p.solver, p.force,
           reduced_name(sweep.is_smallest), p.unknowns, knob_name(p.knob), p.value, name(p.outcome),
-          p.is_good() ? p.error : nothing, p.is_good() ? p.seconds : nothing, p.timed, p.steps,
-          p.force_evaluations);
+          p.is_good() ? p.error : nothing, p.seconds, p.timed, p.steps, p.force_evaluations);
 }
 
 std::vector<std::string> ratio_columns() {

@@ -28,8 +28,8 @@ const Measured* fastest(const std::vector<Sweep>& sweeps, double error,
 
 // A ratio for each sweep of a peer at each accuracy, ours with all reductions (`smallest`) or with
 // pins alone; and, for each f, one of the fastest of the stock implicit peers. Points stay borrowed
-// from the sweeps. `limit`: the seconds a run was allowed.
+// from the sweeps.
 std::vector<Ratio> ratios(const std::vector<Sweep>& sweeps, bool smallest,
-                          const std::vector<double>& accuracies, double limit);
+                          const std::vector<double>& accuracies);
 
 }  // namespace qddot::bench

@@ -107,7 +107,8 @@ Vec vector_of(const nlohmann::json& json) {
 
 Run run_of(const nlohmann::json& answer, double until) {
   const std::string outcome = answer.at("outcome");
-  if (outcome == name(Outcome::over_budget)) return {.outcome = Outcome::over_budget};
+  if (outcome == name(Outcome::over_budget))
+    return {.outcome = Outcome::over_budget, .seconds = answer.at("seconds")};
   if (outcome == name(Outcome::not_finite)) return {.outcome = Outcome::not_finite};
   if (outcome != name(Outcome::reached_end)) return {};
   return {.outcome = Outcome::reached_end,

@@ -46,11 +46,11 @@ Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pac
                    .knob = peer.knob(),
                    .value = value,
                    .outcome = run.outcome,
+                   .seconds = run.seconds,
                    .steps = run.steps,
                    .force_evaluations = run.force_evaluations};
     if (point.is_good()) {
       point.error = problem.error(run.end);
-      point.seconds = run.seconds;
       point.timed = run.timed;
       idle = point.error > 0.8 * best ? idle + 1 : 0;
       best = std::min(best, point.error);

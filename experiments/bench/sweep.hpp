@@ -15,7 +15,8 @@ struct Measured {
   Knob knob{};
   double value = 0;
   Outcome outcome{};
-  double error = 0, seconds = 0;  // where it reached the end; the median of the timed runs
+  double error = 0;    // where it reached the end
+  double seconds = 0;  // the median of the timed runs, or what was spent without reaching the end
   int timed = 0;
   std::int64_t steps = 0, force_evaluations = 0;
 
