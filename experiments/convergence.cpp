@@ -115,6 +115,7 @@ int main(int argc, char** argv) {
   CLI::App app("Measures the order of convergence of every fixed-step integrator.", "convergence");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_threads_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::convergence(app, arguments, {argv, argv + argc});
   });

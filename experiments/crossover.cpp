@@ -310,6 +310,7 @@ int main(int argc, char** argv) {
   CLI::App app("Measures from which stiffness on an implicit method is the fastest.", "crossover");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_threads_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::crossover(app, arguments, {argv, argv + argc});
   });

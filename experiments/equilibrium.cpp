@@ -86,6 +86,7 @@ int main(int argc, char** argv) {
                "equilibrium");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_threads_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::equilibrium(app, arguments, {argv, argv + argc});
   });

@@ -280,6 +280,7 @@ int main(int argc, char** argv) {
                "local_global");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_threads_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::local_global_program(arguments, {argv, argv + argc});
   });

@@ -180,6 +180,7 @@ int main(int argc, char** argv) {
                "modes");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_threads_option(app);
   return qddot::run_program(app, argc, argv, [&]() -> int {
     try {
       return qddot::modes(arguments, {argv, argv + argc});

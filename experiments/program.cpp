@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <omp.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -41,6 +42,18 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   } catch (const std::exception& error) {
     return complain(app, error.what(), failed);
   }
+}
+
+void add_threads_option(CLI::App& app) {
+  omp_set_num_threads(1);
+  app.add_option_function<int>(
+         "--threads",
+         [](int threads) {
+           require_within(threads, 1, 256, "--threads");
+           omp_set_num_threads(threads);
+         },
+         "how many cores a run of a large scene may use (default: 1)")
+      ->take_last();
 }
 
 void require_positive(double value, const std::string& option, const std::string& meaning) {

@@ -19,6 +19,10 @@ enum ExitStatus { done = 0, failed = 1, bad_input = 2, end_not_reached = 3 };
 // other exception prints one and returns failed.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
 
+// Adds --threads: the cores that forces, stiffness and factorisations of one run may use, 1 unless
+// more are asked for, so that times of methods compare. Results do not depend on it.
+void add_threads_option(CLI::App& app);
+
 // Throws InvalidInput unless `value` is finite and greater than zero.
 void require_positive(double value, const std::string& option, const std::string& meaning);
 

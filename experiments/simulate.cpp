@@ -348,6 +348,7 @@ int main(int argc, char** argv) {
   CLI::App app("Runs one integrator on one scene.", "simulate");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_threads_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::simulate(app, arguments, {argv, argv + argc});
   });

@@ -250,6 +250,7 @@ int main(int argc, char** argv) {
       "stock_sundials");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_threads_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::stock_sundials(app, arguments, {argv, argv + argc});
   });

@@ -117,6 +117,7 @@ int main(int argc, char** argv) {
                "work_precision");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_threads_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::work_precision(app, arguments, {argv, argv + argc});
   });
