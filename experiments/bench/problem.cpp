@@ -45,10 +45,10 @@ State state_of(const std::vector<Node>& nodes, int dimension, double t) {
   return state;
 }
 
-Problem::Problem(const Scene& drawn, const Scene& start, double until, const std::string& folder,
-                 const nlohmann::json& origin)
-    : start(start),
-      until(until),
+Problem::Problem(const Scene& drawn, const Scene& started, double horizon,
+                 const std::string& folder, const nlohmann::json& origin)
+    : start(started),
+      until(horizon),
       smallest(start),
       reference(reference_of(drawn, smallest, until, folder, origin)),
       scene(start, Reductions::only({Reduction::pins})),
