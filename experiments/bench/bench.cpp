@@ -130,7 +130,7 @@ std::vector<Sweep> sweeps_of(const Problem& problem,
   };
   std::vector<Sweep> sweeps;
   Pace own = a.pace;
-  own.limit = a.pace.limit / 10;        // what takes longer is far from the fastest
+  own.limit = a.pace.limit / 4;         // what takes longer is far from the fastest
   own.enough = accuracies.back() / 30;  // a peer's run may be better than it need be
   for (const bool smallest : {true, false}) {
     for (const std::string& method : a.methods) {

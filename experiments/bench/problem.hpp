@@ -12,7 +12,6 @@ struct Problem {
   // is kept in `folder`, is written of, with `origin`. Throws InvalidInput where a free node has no
   // mass, and where the positions at the end are beyond the horizon of a chaotic motion, since
   // nobody knows them; and NoReference.
-  //
   Problem(const Scene& drawn, const Scene& started, double horizon, const std::string& folder,
           const nlohmann::json& origin);
 
