@@ -77,6 +77,8 @@ class Bullet final : public Peer {
       body.appendLink(a, b, material);
       body.m_links[body.m_links.size() - 1].m_rl = static_cast<btScalar>(spring.law.rest_length);
     }
+    // Else the first step would take the lengths as drawn for the rest lengths.
+    body.m_bUpdateRtCst = false;
     body.updateLinkConstants();
   }
 
