@@ -27,7 +27,7 @@ class Bullet final : public Peer {
 
   std::vector<ForceKind> forces() const override { return {ForceKind::its_own}; }
   std::vector<double> ladder(const Problem& problem) const override {
-    return step_sizes(problem, 2, 3);
+    return step_sizes(problem, 3, 4);
   }
 
   Run run(const Problem& problem, ForceKind, double h, double limit) override {

@@ -68,7 +68,7 @@ class McLachlan final : public Peer {
   McLachlan() : Peer("odeint McLachlan", Knob::step_size) {}
 
   std::vector<double> ladder(const Problem& problem) const override {
-    return step_sizes(problem, 6, 3);
+    return step_sizes(problem, 10, 4);
   }
 
   Run run(const Problem& problem, ForceKind force, double h, double limit) override {

@@ -36,7 +36,7 @@ class OurMethod final : public Peer {
 
   std::vector<ForceKind> forces() const override { return {ForceKind::ours}; }
   std::vector<double> ladder(const Problem& problem) const override {
-    return method_.knob == Knob::rtol ? tolerances(4) : step_sizes(problem, 10, 3);
+    return method_.knob == Knob::rtol ? tolerances(4) : step_sizes(problem, 10, 4);
   }
 
   Run run(const Problem& problem, ForceKind, double value, double limit) override {

@@ -16,7 +16,7 @@ std::vector<double> tolerances(int in_a_decade) {
 
 std::vector<double> step_sizes(const Problem& problem, int in_a_decade, int decades) {
   const double w = frequency_bound(problem.scene.system(), problem.scene.initial().q);
-  const double fewest = std::max(1.0, problem.until * w / 4);
+  const double fewest = std::max(1.0, problem.until * w / 16);
   std::vector<double> values;
   for (int i = 0; i <= decades * in_a_decade; ++i) {
     const double steps = std::ceil(fewest * std::pow(10.0, static_cast<double>(i) / in_a_decade));

@@ -47,8 +47,8 @@ class Peer {
 
 // 1e-2 to 1e-13, so many in a factor of ten.
 std::vector<double> tolerances(int in_a_decade);
-// From h w = 4 of the fastest vibration at the start downwards, so many in a factor of ten; each
-// divides the horizon. [s]
+// From h w = 16 of the fastest vibration at the start, beyond what methods of a dozen stages are
+// stable to, downwards, so many in a factor of ten; each divides the horizon. [s]
 std::vector<double> step_sizes(const Problem& problem, int in_a_decade, int decades);
 
 }  // namespace qddot::bench

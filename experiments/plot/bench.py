@@ -13,7 +13,7 @@ from matplotlib import ticker
 from matplotlib.lines import Line2D
 
 from sheet import Sheet
-from style import COOL, FAINT, FRONT, INK, WARM, power_of_ten, seconds, use_style
+from style import COOL, FAINT, FRONT, INK, WARM, power_of_ten, seconds, use_style, widened
 
 WIDTH, PANEL_WIDTH, PANEL_HEIGHT = 11.6, 4.95, 3.6
 LEFT, TOP, ACROSS, DOWN = 0.85, 1.75, 0.75, 0.95
@@ -95,6 +95,7 @@ def style_axes(axes, title, left, bottom):
         axis.set_minor_locator(ticker.NullLocator())
         axis.set_major_formatter(ticker.FuncFormatter(lambda v, _, words=words: words(v)))
     axes.set_xlim(LEAST_ERROR, MOST_ERROR)
+    axes.set_ylim(*widened(*axes.get_ylim(), 2))
     axes.grid(True)
     axes.set_title(title, loc="left", size=11, weight="bold")
     if left:
@@ -130,13 +131,14 @@ def main(folder):
     scenes = read(Path(folder) / "bench.csv")
     rows = (len(scenes) + 1) // 2
     sheet = Sheet(WIDTH, TOP + rows * (PANEL_HEIGHT + DOWN))
-    sheet.text(LEFT, 0.15, "What else one could take", size=15, weight="bold")
+    sheet.text(LEFT, 0.15, "What else one could take", size=15, weight="bold", va="top")
     sheet.text(
         LEFT,
         0.46,
         "filled marks: f as a user writes it; open marks, dashed: the same solver with our f",
         size=10,
         color=FAINT,
+        va="top",
     )
     present = {p["solver"] for points in scenes.values() for p in points}
     key(sheet, [name for name in LOOKS if name in present])
