@@ -1,5 +1,8 @@
 #include "experiments/bench/ratio_table.hpp"
 
+#include <cstdio>
+#include <limits>
+
 namespace qddot::bench {
 namespace {
 
@@ -51,6 +54,7 @@ void print_ratios(const std::vector<Ratio>& ratios, const std::vector<double>& a
     fmt::print(" {:>9}", in_words(ratios[i]));
   }
   fmt::print("\n\n");
+  std::fflush(stdout);  // the next scene takes minutes
 }
 
 }  // namespace qddot::bench
