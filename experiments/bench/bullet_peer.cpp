@@ -75,7 +75,9 @@ class Bullet final : public Peer {
       material->m_kLST =
           static_cast<btScalar>(std::min(1.0, spring.law.stiffness * h * h * per_mass));
       body.appendLink(a, b, material);
-      body.m_links[body.m_links.size() - 1].m_rl = static_cast<btScalar>(spring.law.rest_length);
+      auto& link = body.m_links[body.m_links.size() - 1];
+      link.m_rl = static_cast<btScalar>(spring.law.rest_length);
+      link.m_c1 = link.m_rl * link.m_rl;
     }
     // Else the first step would take the lengths as drawn for the rest lengths.
     body.m_bUpdateRtCst = false;

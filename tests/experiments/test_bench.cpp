@@ -88,6 +88,20 @@ BOOST_FIXTURE_TEST_CASE(bullet_converges_with_order_1, Given) {
   BOOST_TEST(coarse / fine == 4, boost::test_tools::tolerance(0.25));
 }
 
+// Along a spring of 1 m stretched by a hundredth of that, x = 1 + 0.01 cos(w t); Bullet's own law
+// of the spring differs by the strain, a hundredth, and steps of h w = 0.01 by as much.
+BOOST_AUTO_TEST_CASE(bullet_keeps_rest_lengths) {
+  const auto peer = bullet();
+  if (!peer) return;
+  Scene scene{.name = "stretched", .until = until};
+  scene.nodes = {{.pinned = true}, {.position = {1.01, 0, 0}, .mass = 0.25}};
+  scene.springs = {{{0, 1}, {.stiffness = 0.25 * w * w, .rest_length = 1}}};
+  const Folder folder;
+  const Problem problem(scene, scene, until, folder.path(), nlohmann::json::object());
+  const Run run = peer->run(problem, ForceKind::its_own, 0.001, 60);
+  BOOST_TEST(std::abs(run.end.q[0] - (1 + 0.01 * std::cos(w * until))) < 0.05 * 0.01);
+}
+
 BOOST_FIXTURE_TEST_CASE(our_methods_run_on_either_system, Given) {
   for (const bool smallest : {true, false}) {
     const auto own = our_method("kahan_li8", smallest);
