@@ -1,0 +1,81 @@
+// SUNDIALS' ERKStep as its users have it: y = (q, v) in the stock serial vector, its default method
+// of order 4 and step control, absolute tolerances by the size of positions and velocities.
+#include <arkode/arkode_erkstep.h>
+
+#include "experiments/bench/peers.hpp"
+#include "experiments/bench/processor_time.hpp"
+#include "experiments/deadline.hpp"
+#include "integrators/sundials/support.hpp"
+#include "integrators/sundials/vector.hpp"
+
+namespace qddot::bench {
+namespace {
+
+using namespace sundials;
+
+struct Task {
+  Acceleration acceleration;
+  Deadline deadline;
+};
+
+int rate(double, N_Vector y, N_Vector dy, void* user) {
+  auto& task = *static_cast<Task*>(user);
+  if (task.deadline.passed()) return -1;
+  const Halves state(y);
+  Halves derivative(dy);
+  derivative.q = state.v;
+  task.acceleration(state.q.data(), derivative.v.data());
+  return 0;
+}
+
+class Erk4 final : public Peer {
+ public:
+  Erk4() : Peer("ARKODE ERK4", Knob::rtol) {}
+
+  std::vector<double> ladder(const Problem&) const override { return tolerances(2); }
+
+  Run run(const Problem& problem, ForceKind force, double rtol, double limit) override {
+    const State& initial = problem.scene.initial();
+    const Index n = initial.q.size();
+    const Context context = make_context();
+    const Vector y = make_stock_vector(n, context.get()), atol = clone(y.get());
+    Halves(y.get()).q = initial.q;
+    Halves(y.get()).v = initial.v;
+    Halves(atol.get()).q.setConstant(rtol * problem.length);
+    Halves(atol.get()).v.setConstant(rtol * problem.speed);
+
+    Task task{{problem.start, problem.scene.system(), force}, Deadline(limit)};
+    const std::unique_ptr<void, FreeMemoryBy<ERKStepFree>> memory(
+        check(ERKStepCreate(rate, 0, y.get(), context.get())));
+    check(ERKStepSetErrFile(memory.get(), nullptr), "ERKStepSetErrFile");
+    check(ERKStepSetUserData(memory.get(), &task), "ERKStepSetUserData");
+    check(ERKStepSetOrder(memory.get(), 4), "ERKStepSetOrder");
+    check(ERKStepSVtolerances(memory.get(), rtol, atol.get()), "ERKStepSVtolerances");
+    check(ERKStepSetMaxNumSteps(memory.get(), -1), "ERKStepSetMaxNumSteps");
+    check(ERKStepSetStopTime(memory.get(), problem.until), "ERKStepSetStopTime");
+
+    Run run;
+    int flag = 0;
+    double t = 0;
+    {
+      const ProcessorTime watch(run.seconds);
+      flag = ERKStepEvolve(memory.get(), problem.until, y.get(), &t, ARK_NORMAL);
+    }
+    const bool has_ended = flag >= 0 && t == problem.until;
+    run.outcome = has_ended                ? Outcome::reached_end
+                  : task.deadline.passed() ? Outcome::over_budget
+                                           : Outcome::solver_failed;
+    run.end = {t, Halves(y.get()).q, Halves(y.get()).v};
+    long steps = 0;
+    check(ERKStepGetNumSteps(memory.get(), &steps), "ERKStepGetNumSteps");
+    run.steps = steps;
+    run.force_evaluations = task.acceleration.evaluations();
+    return run;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Peer> arkode_erk4() { return std::make_unique<Erk4>(); }
+
+}  // namespace qddot::bench

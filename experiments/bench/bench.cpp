@@ -1,0 +1,229 @@
+// Side by side with what one would take instead: how many times as long as ours other solvers take
+// to the same accuracy, on the same scenes, in one run, on one thread.
+//
+//   bench --out results/bench
+//   bench cloth@0.5 my.toml --point-limit 5 --out results/mine
+//
+//  1. Each peer is set up as its users would, compiled with the same flags, and goes down its
+//     ladder of tolerances or step sizes: once with f as a user writes it, a loop over springs (in
+//     Python NumPy with a sparse matrix), and once with ours, where it can take one. It is given
+//     the scene as it is: pinned nodes are no unknowns, nothing else is left out.
+//  2. Our explicit methods run on the smallest system of the scene (reduced: all), and on the one
+//     that the peers get (pins).
+//  3. A ratio is that of a peer's fastest run of at most the accuracy asked for, over our fastest
+//     of at most the error that this run has. Where the peer was over budget before, the ratio is
+//     at least that of what it had spent, over our fastest of that accuracy. Times are the
+//     processor's.
+//  4. bench.csv holds every point, ratios.csv the ratios with the runs they are of.
+#include <charconv>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/bench/peers.hpp"
+#include "experiments/bench/ratio_table.hpp"
+#include "experiments/catalogue.hpp"
+#include "experiments/program.hpp"
+#include "experiments/progress.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/scene_choice.hpp"
+#include "integrators/registry.hpp"
+#include "src/scene/invalid_input.hpp"
+
+namespace qddot::bench {
+namespace {
+
+const std::vector<double> accuracies = {1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+
+struct Arguments {
+  std::vector<std::string> scenes = {"cloth@0.1", "cloth@0.5", "chain", "lattice"};
+  std::vector<std::string> methods = {"dprkn12",      "dprkn8",       "dprkn6", "kahan_li8",
+                                      "blanes_moan6", "blanes_moan4", "verlet"};
+  std::vector<std::string> peers;
+  std::string out;
+  Pace pace;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("scenes", a.scenes,
+                 "generators' names or scene files, each with @T behind it to run to T s")
+      ->capture_default_str();
+  app.add_option("--methods", a.methods, "a,b,... of ours; the most accurate first saves time")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--peers", a.peers, "a,b,... what their names begin with (default: all)")
+      ->delimiter(',');
+  app.add_option("--repeats", a.pace.repeats, "timed runs of a point that takes under a second")
+      ->take_last()
+      ->capture_default_str();
+  app.add_option("--point-limit", a.pace.limit, "seconds that one run may take")
+      ->take_last()
+      ->capture_default_str();
+  app.add_option("--out", a.out, "the folder for bench.csv and ratios.csv");
+}
+
+// A scene and its horizon [s].
+struct Entry {
+  SceneChoice choice;
+  Scene drawn;
+  double until;
+};
+
+Entry entry_of(const std::string& word) {
+  const auto at = word.rfind('@');
+  SceneChoice choice{.name = word.substr(0, at), .no_reduce = {}};
+  const Scene drawn = load(choice);
+  if (at == word.npos) return {choice, drawn, horizon(0, false, drawn)};
+  double until = 0;
+  const char *first = word.data() + at + 1, *last = word.data() + word.size();
+  if (const auto [end, error] = std::from_chars(first, last, until);
+      error != std::errc() || end != last) {
+    throw InvalidInput(fmt::format("{}: behind @ stands the time to run to in s, a number", word));
+  }
+  return {choice, drawn, horizon(until, true, drawn)};
+}
+
+// The library through which Python calls our f, where it was built.
+std::string force_library() {
+  std::error_code error;
+  return std::filesystem::exists(FORCE_LIBRARY, error) ? FORCE_LIBRARY : "";
+}
+
+std::vector<std::unique_ptr<Peer>> all_peers() {
+  std::vector<std::unique_ptr<Peer>> peers;
+  peers.push_back(odeint_dopri5());
+  peers.push_back(odeint_mclachlan());
+  peers.push_back(arkode_erk4());
+  for (const char* method : {"arkode_dirk4_klu", "arkode_dirk5_klu", "cvode_bdf_klu"}) {
+    peers.push_back(stock_implicit(method));
+  }
+  if (has_scipy()) {
+    for (const char* method : {"DOP853", "Radau", "BDF"}) {
+      peers.push_back(scipy(method, force_library()));
+    }
+  } else {
+    fmt::print("SciPy is not there: apt-get install python3-scipy\n");
+  }
+  if (auto peer = bullet()) {
+    peers.push_back(std::move(peer));
+  } else {
+    fmt::print("Bullet was not there: apt-get install libbullet-dev, then build again\n");
+  }
+  return peers;
+}
+
+std::vector<std::unique_ptr<Peer>> selected_peers(const std::vector<std::string>& beginnings) {
+  auto peers = all_peers();
+  if (beginnings.empty()) return peers;
+  std::erase_if(peers, [&](const auto& peer) {
+    return std::ranges::none_of(beginnings,
+                                [&](const auto& word) { return peer->name().starts_with(word); });
+  });
+  return peers;
+}
+
+std::vector<Sweep> sweeps_of(const Problem& problem,
+                             const std::vector<std::unique_ptr<Peer>>& peers, const Arguments& a) {
+  const auto report = [](const Measured& p) {
+    show_progress(fmt::format("{} ({}) {:.1e}: {} {:.1e} in {:.3g} s", p.solver, p.force, p.value,
+                              name(p.outcome), p.error, p.seconds));
+  };
+  std::vector<Sweep> sweeps;
+  for (const bool smallest : {true, false}) {
+    Pace own = a.pace;
+    own.enough = accuracies.back() / 30;  // a peer's run may be better than it need be
+    for (const std::string& method : a.methods) {
+      const auto solver = our_method(method, smallest);
+      sweeps.push_back(sweep(*solver, ForceKind::ours, problem, own, report));
+      Sweep& last = sweeps.back();
+      last.is_ours = true;
+      last.is_smallest = smallest;
+      for (Measured& point : last.points) {
+        if (smallest) point.unknowns = problem.smallest.system().size();
+        // What takes several times as long as the most accurate run is nowhere the fastest.
+        if (point.is_good() && point.error <= own.enough) {
+          own.limit = std::min(own.limit, 4 * point.seconds);
+        }
+      }
+    }
+  }
+  Pace theirs = a.pace;
+  theirs.enough = accuracies.back();
+  for (const auto& peer : peers) {
+    for (const ForceKind force : peer->forces()) {
+      sweeps.push_back(sweep(*peer, force, problem, theirs, report));
+    }
+  }
+  show_progress("");
+  return sweeps;
+}
+
+void compare(const Entry& entry, const std::vector<std::unique_ptr<Peer>>& peers,
+             const Arguments& a, nlohmann::json origin, CsvFile& points, CsvFile& table) {
+  const Scene start = started(entry.drawn, entry.choice);
+  const std::string folder = fmt::format("{}/{}_{:g}", a.out, entry.drawn.name, entry.until);
+  require_folder(folder);
+  show_progress("making the reference ...");
+  const Problem problem(entry.drawn, start, entry.until, folder, origin);
+  const auto sweeps = sweeps_of(problem, peers, a);
+  for (const Sweep& sweep : sweeps) {
+    for (const Measured& point : sweep.points) {
+      point_row(points, entry.drawn.name, entry.until, sweep, point);
+    }
+  }
+  for (const bool smallest : {true, false}) {
+    const auto all = ratios(sweeps, smallest, accuracies);
+    for (const Ratio& ratio : all) {
+      ratio_row(table, entry.drawn.name, entry.until, smallest, ratio);
+    }
+    const Index n = (smallest ? problem.smallest : problem.scene).system().size();
+    print_ratios(all, accuracies,
+                 fmt::format("{}, {:g} s: time of a peer ({} unknowns) over ours ({} unknowns)",
+                             entry.drawn.name, entry.until, problem.scene.system().size(), n));
+  }
+}
+
+int bench(const Arguments& a, const std::vector<std::string>& command_line) {
+  require_given(a.out, "--out", "the folder for the results");
+  require_positive(a.pace.limit, "--point-limit", "the seconds a run may take");
+  require_repeats(a.pace.repeats);
+  for (const std::string& method : a.methods) {
+    if (find_method(method)) continue;
+    throw InvalidInput(
+        fmt::format("--methods: {} is not a method; allowed are {}", method, method_names()));
+  }
+  std::vector<Entry> entries;
+  for (const std::string& word : a.scenes) entries.push_back(entry_of(word));
+  require_folder(a.out);
+  CsvFile points(a.out + "/bench.csv", point_columns());
+  CsvFile table(a.out + "/ratios.csv", ratio_columns());
+  const auto peers = selected_peers(a.peers);
+
+  nlohmann::json origin = provenance(command_line, entries.front().drawn);
+  origin.erase("scene");
+  origin["scenes"] = nlohmann::json::array();
+  for (const Entry& entry : entries) {
+    nlohmann::json own = provenance(command_line, entry.drawn);
+    own["until"] = entry.until;
+    origin["scenes"].push_back({{"scene", own.at("scene")}, {"until", entry.until}});
+    compare(entry, peers, a, own, points, table);
+  }
+  points.commit(origin);
+  table.commit(origin);
+  return done;
+}
+
+}  // namespace
+}  // namespace qddot::bench
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures how many times as long as ours other solvers take to the same accuracy.",
+               "bench");
+  qddot::bench::Arguments arguments;
+  qddot::bench::declare(app, arguments);
+  return qddot::run_program(app, argc, argv, [&] {
+    return qddot::bench::bench(arguments, {argv, argv + argc});
+  });
+}

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/bench/acceleration.hpp"
+#include "experiments/bench/problem.hpp"
+#include "integrators/method.hpp"
+
+namespace qddot::bench {
+
+// How runs of a peer ended. The end and the counts mean something only where they reached it.
+struct Run {
+  Outcome outcome = Outcome::solver_failed;
+  State end{};
+  double seconds = 0;  // processor time of a run, set-up left out: median of `timed` runs
+  int timed = 1;
+  std::int64_t steps = 0, force_evaluations = 0;
+};
+
+// Somebody else's solver, set up as its users would, whose accuracy is set by one knob.
+class Peer {
+ public:
+  Peer(std::string name, Knob knob) : name_(std::move(name)), knob_(knob) {}
+  virtual ~Peer() = default;
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  const std::string& name() const { return name_; }
+  Knob knob() const { return knob_; }
+
+  // One run with the knob at `value` [s, or relative], over budget after `limit` seconds; a peer
+  // that is slow to start may make and time several. Never throws what the solver throws.
+  virtual Run run(const Problem& problem, ForceKind force, double value, double limit) = 0;
+  // Values of the knob from coarse to fine.
+  virtual std::vector<double> ladder(const Problem& problem) const = 0;
+  // Whose f it can be given.
+  virtual std::vector<ForceKind> forces() const { return {ForceKind::plain, ForceKind::ours}; }
+  // Whether it is one of SUNDIALS' implicit methods.
+  virtual bool is_stock_implicit() const { return false; }
+
+ private:
+  std::string name_;
+  Knob knob_;
+};
+
+// 1e-2 to 1e-13, so many in a factor of ten.
+std::vector<double> tolerances(int in_a_decade);
+// From h w = 16 of the fastest vibration at the start, beyond what methods of a dozen stages are
+// stable to, downwards, so many in a factor of ten; each divides the horizon. [s]
+std::vector<double> step_sizes(const Problem& problem, int in_a_decade, int decades);
+
+}  // namespace qddot::bench

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "experiments/reference.hpp"
+#include "src/scene/reduce.hpp"
+
+namespace qddot::bench {
+
+// A scene as its user hands it to somebody else's solver: M q'' = f(q) over the coordinates of the
+// free nodes, in the order of the scene, and nothing else left out.
+struct Problem {
+  // `started`: the scene as its motion starts, `horizon` [s]; `drawn` is what the reference, which
+  // is kept in `folder`, is written of, with `origin`. Throws InvalidInput where a free node has no
+  // mass, and where the positions at the end are beyond the horizon of a chaotic motion, since
+  // nobody knows them; and NoReference.
+  Problem(const Scene& drawn, const Scene& started, double horizon, const std::string& folder,
+          const nlohmann::json& origin);
+
+  // The position error of an end state (see Errors); infinite where it is no number.
+  double error(const State& end) const;
+
+  Scene start;
+  double until;           // [s]
+  ReducedScene smallest;  // with all reductions,
+  Reference reference;    // made of that, in its unknowns
+  ReducedScene scene;     // pins alone left out
+  Reference own;          // the same reference in these unknowns
+  double length, speed;   // what positions [m] and velocities [m/s] are large or small by
+};
+
+// The state of all free nodes, in the unknowns of a scene of which pins alone are left out.
+State state_of(const std::vector<Node>& nodes, int dimension, double t);
+
+}  // namespace qddot::bench

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/bench/sweep.hpp"
+
+namespace qddot::bench {
+
+// How many times as long as ours a peer takes to an accuracy.
+struct Ratio {
+  double accuracy = 0;
+  std::string peer, force;
+  // The peer's fastest point of at most that error; where its runs were over budget before, none,
+  // and `ratio` is what it is at least.
+  const Measured* theirs = nullptr;
+  const Measured* ours = nullptr;  // our fastest of no larger error than theirs (or than accuracy)
+  bool is_bound = false;
+  double ratio = 0;  // of the times
+
+  bool is_known() const { return ours != nullptr; }
+};
+
+// The fastest good point of at most that error, of the sweeps that `counts`; nullptr if none.
+const Measured* fastest(const std::vector<Sweep>& sweeps, double error,
+                        const std::function<bool(const Sweep&)>& counts);
+
+// A ratio for each sweep of a peer at each accuracy, ours with all reductions (`smallest`) or with
+// pins alone; and, for each f, one of the fastest of the stock implicit peers. Points stay borrowed
+// from the sweeps.
+std::vector<Ratio> ratios(const std::vector<Sweep>& sweeps, bool smallest,
+                          const std::vector<double>& accuracies);
+
+}  // namespace qddot::bench

@@ -1,0 +1,70 @@
+#include "experiments/bench/sweep.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "experiments/timing.hpp"
+
+namespace qddot::bench {
+namespace {
+
+// A run of so many seconds is long enough to be timed once.
+constexpr double long_enough = 1;
+// So many points without a smaller error end a sweep, once one was this good.
+constexpr int most_idle = 3;
+constexpr double converging = 0.1;
+
+// Once untimed where it is short, then up to `repeats` times in all of `long_enough`.
+Run timed(Peer& peer, ForceKind force, const Problem& problem, double value, const Pace& pace) {
+  Run run = peer.run(problem, force, value, pace.limit);
+  // Others kept the processor busy.
+  if (run.outcome == Outcome::over_budget && run.seconds < pace.limit / 2) {
+    run = peer.run(problem, force, value, pace.limit);
+  }
+  if (run.outcome != Outcome::reached_end || run.timed > 1) return run;
+  std::vector<double> seconds{run.seconds};
+  double spent = run.seconds;
+  while (std::ssize(seconds) < pace.repeats && spent < long_enough) {
+    const Run again = peer.run(problem, force, value, pace.limit);
+    if (again.outcome != Outcome::reached_end) return again;
+    seconds.push_back(again.seconds);
+    spent += again.seconds;
+  }
+  run.seconds = median(seconds);
+  run.timed = static_cast<int>(seconds.size());
+  return run;
+}
+
+}  // namespace
+
+Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
+            const std::function<void(const Measured&)>& report) {
+  Sweep all{.is_stock_implicit = peer.is_stock_implicit()};
+  double best = std::numeric_limits<double>::infinity();
+  int idle = 0;
+  for (const double value : peer.ladder(problem)) {
+    const Run run = timed(peer, force, problem, value, pace);
+    Measured point{.solver = peer.name(),
+                   .force = force_name(force),
+                   .unknowns = problem.scene.system().size(),
+                   .knob = peer.knob(),
+                   .value = value,
+                   .outcome = run.outcome,
+                   .seconds = run.seconds,
+                   .steps = run.steps,
+                   .force_evaluations = run.force_evaluations};
+    if (point.is_good()) {
+      point.error = problem.error(run.end);
+      point.timed = run.timed;
+      idle = point.error > 0.8 * best ? idle + 1 : 0;
+      best = std::min(best, point.error);
+    }
+    all.points.push_back(point);
+    report(point);
+    const bool is_idle = idle >= most_idle && best < converging;
+    if (point.outcome == Outcome::over_budget || best <= pace.enough || is_idle) break;
+  }
+  return all;
+}
+
+}  // namespace qddot::bench

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiments/bench/peer.hpp"
+
+namespace qddot::bench {
+
+// One measured point: a solver at one value of its knob.
+struct Measured {
+  std::string solver, force;
+  Index unknowns = 0;
+  Knob knob{};
+  double value = 0;
+  Outcome outcome{};
+  double error = 0;    // where it reached the end
+  double seconds = 0;  // the median of the timed runs, or what was spent without reaching the end
+  int timed = 0;
+  std::int64_t steps = 0, force_evaluations = 0;
+
+  bool is_good() const { return outcome == Outcome::reached_end; }
+};
+
+// All points of one solver with one f, from coarse to fine.
+struct Sweep {
+  bool is_ours = false, is_stock_implicit = false, is_smallest = false;
+  std::vector<Measured> points{};
+};
+
+// How long a run may take [s], how often a short one is timed, and the error that is small enough.
+struct Pace {
+  double limit = 20;
+  int repeats = 5;
+  double enough = 1e-8;
+};
+
+// A peer down its ladder, until its error is small enough or no longer falls, or a run is over
+// budget. `report` sees each point as it comes.
+Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
+            const std::function<void(const Measured&)>& report);
+
+}  // namespace qddot::bench

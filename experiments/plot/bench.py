@@ -1,0 +1,160 @@
+"""Draws how our explicit methods and other people's solvers compare: time over error, by scene.
+
+Call: bench.py DIR, the folder with bench.csv of the program bench; writes DIR/bench.png and
+DIR/bench.svg, a panel for each scene. Solid lines are peers with the f that their users write,
+dashed ones the same peers with ours; the wide stroke is the fastest of our methods.
+"""
+
+import csv
+import sys
+from pathlib import Path
+
+from matplotlib import ticker
+from matplotlib.lines import Line2D
+
+from sheet import Sheet
+from style import COOL, FAINT, FRONT, INK, WARM, power_of_ten, seconds, use_style, widened
+
+WIDTH, PANEL_WIDTH, PANEL_HEIGHT = 11.6, 4.95, 3.6
+LEFT, TOP, ACROSS, DOWN = 0.85, 1.75, 0.75, 0.95
+MOST_ERROR, LEAST_ERROR = 1.0, 1e-10
+LOOKS = {
+    "odeint dopri5": (WARM[0], "o"),
+    "odeint McLachlan": (WARM[2], "s"),
+    "ARKODE ERK4": (COOL[0], "^"),
+    "arkode_dirk4_klu": (COOL[1], "D"),
+    "arkode_dirk5_klu": (COOL[2], "v"),
+    "cvode_bdf_klu": (COOL[3], "P"),
+    "SciPy DOP853": (WARM[3], "X"),
+    "SciPy Radau": (WARM[4], "o"),
+    "SciPy BDF": (WARM[5], "s"),
+    "Bullet soft body": (INK, "D"),
+}
+FORCES = {"plain": "-", "its own": "-", "ours": (0, (4, 1.8))}
+
+
+def read(path):
+    """The good points by scene, in the order of the table."""
+    scenes = {}
+    with open(path, newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            points = scenes.setdefault((row["scene"], float(row["until"])), [])
+            if row["outcome"] != "reached_end":
+                continue
+            row["error"], row["time"] = float(row["error_position"]), float(row["time_s"])
+            if LEAST_ERROR <= row["error"] <= MOST_ERROR:
+                points.append(row)
+    return scenes
+
+
+def front(points):
+    """The corners of the staircase of the shortest time for each error or a smaller one."""
+    corners, best = [], float("inf")
+    for error, time in sorted((p["error"], p["time"]) for p in points):
+        if time < best:
+            corners += [(error, best)] if corners else []
+            corners.append((error, time))
+            best = time
+    return corners + [(MOST_ERROR, best)] if corners else []
+
+
+def draw_scene(axes, points):
+    """The lines of one scene."""
+    ours = [p for p in points if p["side"] == "ours"]
+    for reduced, style in (
+        ("all", {"color": FRONT, "linewidth": 7, "solid_capstyle": "round"}),
+        ("pins", {"color": FAINT, "linewidth": 1.2}),
+    ):
+        corners = front([p for p in ours if p["reduced"] == reduced])
+        if corners:
+            axes.plot(*zip(*corners), zorder=1.5, **style)
+    for name, (color, marker) in LOOKS.items():
+        for force, line in FORCES.items():
+            own = [p for p in points if p["solver"] == name and p["force"] == force]
+            if not own:
+                continue
+            axes.plot(
+                [p["error"] for p in own],
+                [p["time"] for p in own],
+                color=color,
+                linestyle=line,
+                linewidth=1.3,
+                marker=marker,
+                markersize=3.6,
+                markerfacecolor="white" if force == "ours" else color,
+                markeredgewidth=0.9,
+            )
+
+
+def style_axes(axes, title, left, bottom):
+    """Scales, grid and words of a panel."""
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    for axis, words in ((axes.xaxis, power_of_ten), (axes.yaxis, seconds)):
+        axis.set_major_locator(ticker.LogLocator(numticks=12))
+        axis.set_minor_locator(ticker.NullLocator())
+        axis.set_major_formatter(ticker.FuncFormatter(lambda v, _, words=words: words(v)))
+    axes.set_xlim(LEAST_ERROR, MOST_ERROR)
+    axes.set_ylim(*widened(*axes.get_ylim(), 2))
+    axes.grid(True)
+    axes.set_title(title, loc="left", size=11, weight="bold")
+    if left:
+        axes.set_ylabel("processor time of a run")
+    if bottom:
+        axes.set_xlabel("error of the positions at the end")
+
+
+def key(sheet, names):
+    """Which line is which, above the panels."""
+    lines = [
+        Line2D([], [], color=FRONT, linewidth=7, label="fastest of ours"),
+        Line2D([], [], color=FAINT, linewidth=1.2, label="… with all unknowns"),
+    ]
+    for name in names:
+        color, marker = LOOKS[name]
+        lines.append(
+            Line2D([], [], color=color, marker=marker, markersize=4, linewidth=1.3, label=name)
+        )
+    sheet.figure.legend(
+        handles=lines,
+        loc="upper left",
+        bbox_to_anchor=(LEFT / WIDTH - 0.005, 1 - 0.75 / sheet.height),
+        ncols=5,
+        frameon=False,
+        fontsize=9.5,
+    )
+
+
+def main(folder):
+    """Draws bench.csv."""
+    use_style()
+    scenes = read(Path(folder) / "bench.csv")
+    rows = (len(scenes) + 1) // 2
+    sheet = Sheet(WIDTH, TOP + rows * (PANEL_HEIGHT + DOWN))
+    sheet.text(LEFT, 0.15, "What else one could take", size=15, weight="bold", va="top")
+    sheet.text(
+        LEFT,
+        0.46,
+        "filled marks: f as a user writes it; open marks, dashed: the same solver with our f",
+        size=10,
+        color=FAINT,
+        va="top",
+    )
+    present = {p["solver"] for points in scenes.values() for p in points}
+    key(sheet, [name for name in LOOKS if name in present])
+    for i, ((scene, until), points) in enumerate(scenes.items()):
+        row, column = divmod(i, 2)
+        axes = sheet.axes(
+            LEFT + column * (PANEL_WIDTH + ACROSS),
+            TOP + row * (PANEL_HEIGHT + DOWN),
+            PANEL_WIDTH,
+            PANEL_HEIGHT,
+        )
+        draw_scene(axes, points)
+        style_axes(axes, f"{scene}, {until:g} s", column == 0, row == rows - 1)
+    for ending in ("png", "svg"):
+        sheet.save(Path(folder) / f"bench.{ending}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
