@@ -7,7 +7,7 @@
 namespace qddot {
 namespace {
 
-const std::string factors = "factorization";
+const std::string factors = "factorization", iterations = "iterations";
 constexpr double fitted_range = 31.7;  // one and a half decades, and a little for rounded sizes
 
 auto key(const PhaseCost& cost) { return std::tie(cost.scene, cost.method, cost.phase); }
@@ -42,7 +42,8 @@ void add_exponent(std::vector<Exponent>& exponents, const std::vector<PhaseCost>
 }  // namespace
 
 double growth_of_seconds(const SizedScenes& scenes, const std::string& phase, double nodes) {
-  if (phase == "factorization") return scenes.factorization(nodes);
+  if (phase == factors) return scenes.factorization(nodes);
+  if (phase == iterations) return scenes.iterations(nodes);
   return phase == "solve" ? scenes.fill(nodes) : nodes;
 }
 
@@ -82,10 +83,13 @@ std::vector<Exponent> exponents_of(const std::vector<PhaseCost>& all) {
   for (const auto& costs : groups) {
     const std::string& phase = costs.front().phase;
     // A whole step grows as the steepest of its phases.
-    const bool is_step_with_factors =
-        phase == "step" && last_of(all, costs.front().scene, costs.front().method, factors);
-    add_exponent(exponents, costs, phase, &PhaseCost::seconds, growth_of_seconds,
-                 is_step_with_factors ? factors : phase);
+    std::string steepest = phase;
+    for (const std::string& part : {factors, iterations}) {
+      if (phase == "step" && last_of(all, costs.front().scene, costs.front().method, part)) {
+        steepest = part;
+      }
+    }
+    add_exponent(exponents, costs, phase, &PhaseCost::seconds, growth_of_seconds, steepest);
     if (phase == factors) {
       add_exponent(exponents, costs, "fill", &PhaseCost::bytes, growth_of_bytes, phase);
     }

@@ -15,6 +15,8 @@
 //                 force, stiffness, factorization, solve, rest, and their sum step
 //                                      of a step, on the mean; bytes of K, of the factors alone,
 //                                      and of all that the method allocates
+//                 preconditioner, iterations
+//                                      of conjugate gradients, in place of factorization and solve
 //  exponents.csv  p of seconds = c nodes^p over the last one and a half decades, with its interval
 //                 of 95 % and what theory gives at the same sizes; `fill` is of the factors' bytes
 //  roofline.csv   evaluations of f alone; the triad's bandwidth over arrays of the same size, and
@@ -51,6 +53,7 @@ constexpr double taken_of_free = 0.8;
 struct Arguments {
   std::vector<std::string> scenes = {"chain", "cloth", "lattice"};
   std::vector<std::string> methods = {"verlet", "semi_implicit_euler"};
+  std::vector<std::string> solvers = {"multifrontal", "conjugate_gradients"};
   SceneChoice choice{.name = {}, .no_reduce = {"dimension", "mirror"}};
   double least_nodes = 1e2, most_nodes = 1e6, point_limit = 30, memory_limit = 0, step_size = 1e-3;
   int sizes = 3;
@@ -62,6 +65,12 @@ void declare(CLI::App& app, Arguments& a) {
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--methods", a.methods, "a,b,... of fixed step")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option(
+         "--solvers", a.solvers,
+         "a,b,... of multifrontal, cholmod, conjugate_gradients and automatic, for implicit "
+         "methods")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--least-nodes", a.least_nodes, "how many nodes the smallest scene has, about")
@@ -107,16 +116,38 @@ void require_options(const CLI::App& app, const Arguments& a) {
   }
 }
 
-// The methods, all of which step by an h and can be used on the scene.
-std::vector<const Method*> select(const std::vector<std::string>& names, const SizedScenes& scenes,
-                                  const Arguments& a) {
+std::vector<Solver> select_solvers(const std::vector<std::string>& names) {
+  std::vector<Solver> solvers;
+  for (const std::string& name : names) {
+    const auto solver = find_solver(name);
+    if (!solver) {
+      throw InvalidInput(fmt::format(
+          "--solvers: {} is not a solver; allowed are multifrontal, cholmod, conjugate_gradients "
+          "and automatic",
+          name));
+    }
+    solvers.push_back(*solver);
+  }
+  return solvers;
+}
+
+// The methods, all of which step by an h and can be used on the scene, with each solver where they
+// have use for one.
+std::vector<SolvedMethod> select(const SizedScenes& scenes, const Arguments& a) {
   const ReducedScene smallest(scenes.draw(a.least_nodes), reductions_of(a.choice));
-  const auto selected = select_methods(names, smallest, scenes.name);
-  for (const Method* method : selected) {
-    if (method->knob == Knob::step_size) continue;
-    throw InvalidInput(
-        fmt::format("--methods: {} chooses its steps by itself; allowed are methods of fixed step",
-                    method->name));
+  const auto solvers = select_solvers(a.solvers);
+  std::vector<SolvedMethod> selected;
+  for (const Method* method : select_methods(a.methods, smallest, scenes.name)) {
+    if (method->knob != Knob::step_size) {
+      throw InvalidInput(fmt::format(
+          "--methods: {} chooses its steps by itself; allowed are methods of fixed step",
+          method->name));
+    }
+    if (!method->takes_solver) {
+      selected.push_back({method, Solver::multifrontal});
+      continue;
+    }
+    for (const Solver solver : solvers) selected.push_back({method, solver});
   }
   return selected;
 }
@@ -187,9 +218,8 @@ nlohmann::json origin_of(const std::vector<std::string>& command_line, const Arg
 
 int scaling(const CLI::App& app, const Arguments& a, const std::vector<std::string>& command_line) {
   require_options(app, a);
-  std::vector<std::vector<const Method*>> methods;
-  for (const std::string& name : a.scenes)
-    methods.push_back(select(a.methods, find_sized_scenes(name), a));
+  std::vector<std::vector<SolvedMethod>> methods;
+  for (const std::string& name : a.scenes) methods.push_back(select(find_sized_scenes(name), a));
   require_folder(a.out);
   CsvFile costs(a.out + "/scaling.csv",
                 {"scene", "nodes", "springs", "method", "phase", "seconds", "bytes"});
@@ -228,6 +258,7 @@ int main(int argc, char** argv) {
   CLI::App app("Measures how the cost of a step grows with the number of nodes.", "scaling");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_threads_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::scaling(app, arguments, {argv, argv + argc});
   });

@@ -26,7 +26,8 @@ constexpr double look = 0.05;
 
 const std::vector<std::string> phases_before = {"scene", "reduce"};
 const std::vector<std::string> phases_of_method = {"symbolic",      "force", "stiffness",
-                                                   "factorization", "solve", "rest"};
+                                                   "factorization", "solve", "preconditioner",
+                                                   "iterations",    "rest"};
 
 // What making something takes.
 struct Making {
@@ -57,8 +58,14 @@ double bytes_of(const SymmetricMatrix& k) {
 
 }  // namespace
 
+std::string SolvedMethod::name() const {
+  if (solver == Solver::multifrontal) return method->name;
+  const auto found = std::ranges::find(solver_names, solver, [](const auto& n) { return n.first; });
+  return fmt::format("{}:{}", method->name, found->second);
+}
+
 void ScalingRun::measure(const SizedScenes& scenes, const std::vector<double>& sizes,
-                         std::vector<const Method*> methods) {
+                         std::vector<SolvedMethod> methods) {
   for (const double size : sizes) {
     if (methods.empty() || !fits(scenes, "", phases_before, size, passing_memory)) return;
     show_progress(at(scenes.name, std::round(size)));
@@ -82,53 +89,60 @@ void ScalingRun::measure(const SizedScenes& scenes, const std::vector<double>& s
 }
 
 void ScalingRun::measure_size(const SizedScenes& scenes, const ReducedScene& scene,
-                              std::vector<const Method*>& methods) {
+                              std::vector<SolvedMethod>& methods) {
   const double nodes = sizes_.back().nodes;
   double stable = 0;  // half of what is certainly stable [s]; zero until an explicit method asks
-  std::erase_if(methods, [&](const Method* method) {
-    if (!fits(scenes, method->name, phases_of_method, nodes, 1)) return true;
-    if (!method->implicit && stable == 0) {
+  std::erase_if(methods, [&](const SolvedMethod& solved) {
+    if (!fits(scenes, solved.name(), phases_of_method, nodes, 1)) return true;
+    const bool implicit = solved.method->implicit;
+    if (!implicit && stable == 0) {
       stable = 1 / frequency_bound(scene.system(), scene.initial().q);
     }
-    show_progress(at(fmt::format("{}, {}", scenes.name, method->name), nodes));
+    show_progress(at(fmt::format("{}, {}", scenes.name, solved.name()), nodes));
     try {
-      measure_method(*method, scene, method->implicit ? limits_.step_size : stable);
+      measure_method(solved, scene, implicit ? limits_.step_size : stable);
     } catch (const std::exception& error) {  // out of memory
-      leave_out(method->name, nodes, error.what());
+      leave_out(solved.name(), nodes, error.what());
       return true;
     }
     return false;
   });
 }
 
-void ScalingRun::measure_method(const Method& method, const ReducedScene& scene, double step_size) {
+void ScalingRun::measure_method(const SolvedMethod& solved, const ReducedScene& scene,
+                                double step_size) {
+  const Method& method = *solved.method;
+  const std::string name = solved.name();
   const System& system = scene.system();
   double stiffness_bytes = nothing, factor_bytes = nothing;
   if (method.needs_stiffness) {
     std::optional<EffectiveMass> matrix;
-    const Making analysis = make(matrix, [&] { return EffectiveMass(system); });
-    add(method.name, "symbolic", analysis.seconds, analysis.bytes);
+    const Making analysis = make(matrix, [&] { return EffectiveMass(system, solved.solver); });
+    add(name, "symbolic", analysis.seconds, analysis.bytes);
     stiffness_bytes = bytes_of(system.stiffness_pattern());
     factor_bytes = static_cast<double>(matrix->bytes());
   }
   std::optional<std::unique_ptr<Integrator>> integrator;
   const Making all = make(integrator, [&] {
-    return make_integrator(method, system, {.step_size = step_size, .timed = true});
+    return make_integrator(method, system,
+                           {.step_size = step_size, .timed = true, .solver = solved.solver});
   });
   const StepCost cost = step_cost(**integrator, step_size, scene);
   if (cost.outcome != Outcome::reached_end) {
     has_failed_ = true;
-    leave_out(method.name, sizes_.back().nodes,
-              fmt::format("{}: {}", name(cost.outcome), cost.message));
+    leave_out(name, sizes_.back().nodes,
+              fmt::format("{}: {}", qddot::name(cost.outcome), cost.message));
     return;
   }
   const auto& [force, stiffness, factorization, solve] = cost.parts;
-  add(method.name, "force", force, nothing);
-  if (stiffness > 0) add(method.name, "stiffness", stiffness, stiffness_bytes);
-  if (factorization > 0) add(method.name, "factorization", factorization, factor_bytes);
-  if (solve > 0) add(method.name, "solve", solve, nothing);
-  add(method.name, "rest", cost.rest(), nothing);
-  add(method.name, "step", cost.total, all.bytes);
+  add(name, "force", force, nothing);
+  if (stiffness > 0) add(name, "stiffness", stiffness, stiffness_bytes);
+  const bool iterates = solved.solver == Solver::conjugate_gradients;
+  const char* making = iterates ? "preconditioner" : "factorization";
+  if (factorization > 0) add(name, making, factorization, factor_bytes);
+  if (solve > 0) add(name, iterates ? "iterations" : "solve", solve, nothing);
+  add(name, "rest", cost.rest(), nothing);
+  add(name, "step", cost.total, all.bytes);
 }
 
 // Whether these phases of a method, or those before any, may be expected to stay within the limits;

@@ -6,6 +6,7 @@
 #include "experiments/force_rate.hpp"
 #include "experiments/phase_table.hpp"
 #include "integrators/method.hpp"
+#include "src/algebra/solver.hpp"
 #include "src/scene/reduce.hpp"
 
 namespace qddot {
@@ -16,6 +17,16 @@ struct ScalingLimits {
   double bytes;      // that the process may allocate
   double step_size;  // h of implicit methods [s]
   Reductions reductions;
+};
+
+// A method and who solves its implicit steps.
+struct SolvedMethod {
+  const Method* method;
+  Solver solver;
+
+  // As tables name it: the method's name, and behind a colon the solver's if that is not the
+  // multifrontal one.
+  std::string name() const;
 };
 
 // One scene at one size: where its numbers come from, and how fast its f is.
@@ -42,7 +53,7 @@ class ScalingRun {
 
   // The scene at about each of these numbers of nodes, ascending, with the methods.
   void measure(const SizedScenes& scenes, const std::vector<double>& sizes,
-               std::vector<const Method*> methods);
+               std::vector<SolvedMethod> methods);
 
   const std::vector<PhaseCost>& costs() const { return costs_; }
   const std::vector<ScalingSize>& sizes() const { return sizes_; }
@@ -52,8 +63,8 @@ class ScalingRun {
 
  private:
   void measure_size(const SizedScenes& scenes, const ReducedScene& scene,
-                    std::vector<const Method*>& methods);
-  void measure_method(const Method& method, const ReducedScene& scene, double step_size);
+                    std::vector<SolvedMethod>& methods);
+  void measure_method(const SolvedMethod& solved, const ReducedScene& scene, double step_size);
   bool fits(const SizedScenes& scenes, const std::string& method,
             const std::vector<std::string>& phases, double nodes, double memory);
   void leave_out(const std::string& method, double nodes, std::string why);

@@ -32,11 +32,11 @@ double linear(double n) { return n; }
 
 const std::vector<SizedScenes>& sized_scenes() {
   static const std::vector<SizedScenes> all = {
-      {"chain", chain, linear, linear},
+      {"chain", chain, linear, linear, [](double n) { return n * n; }},
       {"cloth", cloth, [](double n) { return n * std::sqrt(n); },
-       [](double n) { return n * std::log(n); }},
+       [](double n) { return n * std::log(n); }, [](double n) { return n * std::sqrt(n); }},
       {"lattice", lattice, [](double n) { return n * n; },
-       [](double n) { return n * std::cbrt(n); }}};
+       [](double n) { return n * std::cbrt(n); }, [](double n) { return n * std::cbrt(n); }}};
   return all;
 }
 

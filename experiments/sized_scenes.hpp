@@ -17,6 +17,9 @@ struct SizedScenes {
   // Rose and Tarjan, SIAM J. Numer. Anal. 16:2, 1979, in space).
   double (*factorization)(double nodes);
   double (*fill)(double nodes);
+  // What conjugate gradients take while more nodes make the matrix worse conditioned: iterations in
+  // proportion to the nodes along a side, each in proportion to all nodes.
+  double (*iterations)(double nodes);
 };
 
 // The chain, the cloth and the lattice.

@@ -40,6 +40,7 @@ PHASES = {
     "symbolic": ("analysis, once", Look("#7F6A1F", "P", ONCE)),
 }
 EXPLICIT_STEP = ("{}, whole step", Look("#56B4E9", "o", EXPLICIT))
+ITERATED_STEP = ("with conjugate gradients", Look("#555555", "x", EXPLICIT))
 SCENES = {
     "chain": Look("#882255", "^", IMPLICIT),
     "cloth": Look("#D55E00", "s", IMPLICIT),
@@ -140,6 +141,11 @@ def draw_scene(axes, scene, lines, implicit, explicit):
         if phase in ("factorization", "solve", "force"):
             words = f"{words} {draw_law(axes, points, law_of(scene, phase), look.color)}"
         drawn.append((points, words, look))
+    points = lines.get((scene, f"{implicit}:conjugate_gradients", "step"))
+    if points is not None:
+        words, look = ITERATED_STEP
+        draw_series(axes, points, look)
+        drawn.append((points, words, look))
     points = lines.get((scene, explicit, "step"))
     if points is not None:
         words, look = EXPLICIT_STEP
@@ -158,7 +164,8 @@ def draw_scenes(sheet, rows, origin):
     lines = series(rows)
     scenes = [scene for scene in SCENES if any(key[0] == scene for key in lines)]
     implicit = next((key[1] for key in lines if key[2] == "factorization"), None)
-    explicit = next((key[1] for key in lines if key[2] == "step" and key[1] != implicit), None)
+    explicit = next((key[1] for key in lines if key[2] == "step" and ":" not in key[1]
+                     and key[1] != implicit), None)
     panels = []
     for i, scene in enumerate(scenes):
         left = LEFT + i * (PANEL_WIDTH + ACROSS)
