@@ -17,9 +17,7 @@ namespace {
 class OwnSolver final : public DirectSolver {
  public:
   OwnSolver(const System& system, Solver solver)
-      : system_(system),
-        is_counted_(solver == Solver::multifrontal),
-        factors_(system, solver) {}
+      : system_(system), is_counted_(solver == Solver::multifrontal), factors_(system, solver) {}
   bool factorize(double s, const SymmetricMatrix& k) override {
     if (is_counted_ && flops == 0) count();
     return factors_.factorize(1, s, k) != EffectiveMass::Definiteness::singular;
