@@ -113,6 +113,9 @@ BOOST_AUTO_TEST_CASE(what_is_expected_grows_as_theory_has_it_from_the_last_size)
   const double bytes = expected_bytes(costs, cloth, "m", "factorization", 1e8);
   BOOST_TEST(std::abs(bytes / 1e9 - 2e4) < 1e-10);  // n log n: 10^4 times 2
   BOOST_TEST(expected_seconds(costs, cloth, "m", "solve", 4e4) == 0);
+  const std::vector<PhaseCost> iterated = {{"cloth", 1e4, 5e4, "m", "iterations", 2, 0}};
+  const double iterations = expected_seconds(iterated, cloth, "m", "iterations", 4e4);
+  BOOST_TEST(std::abs(iterations - 2 * 8) < 1e-13);  // four times the nodes, twice the side
 }
 
 BOOST_AUTO_TEST_CASE(phases_of_every_scene_and_size_add_up_to_the_step) {
@@ -133,7 +136,8 @@ BOOST_AUTO_TEST_CASE(phases_of_every_scene_and_size_add_up_to_the_step) {
   }
   BOOST_TEST((chains == std::set<double>{30, 95, 300}));
   BOOST_TEST((cloths == std::set<double>{25, 100, 289}));
-  BOOST_TEST(steps.size() == 6u * 3);
+  // What comes before any method, an explicit one, and an implicit one with each of two solvers.
+  BOOST_TEST(steps.size() == 6u * 4);
   for (const auto& [key, phases] : steps) {
     const std::string& method = std::get<2>(key);
     double sum = 0;
@@ -146,6 +150,9 @@ BOOST_AUTO_TEST_CASE(phases_of_every_scene_and_size_add_up_to_the_step) {
     if (method == "semi_implicit_euler")
       BOOST_TEST((names == Words{"factorization", "force", "rest", "solve", "step", "stiffness",
                                  "symbolic"}));
+    if (method == "semi_implicit_euler:conjugate_gradients")
+      BOOST_TEST((names == Words{"force", "iterations", "preconditioner", "rest", "step",
+                                 "stiffness", "symbolic"}));
     if (method.empty()) {
       BOOST_TEST((names == Words{"reduce", "scene"}));
     } else {
