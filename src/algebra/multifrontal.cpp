@@ -119,9 +119,10 @@ class Multifrontal : public Factors {
         factorize(task, {f, own, update(f, own)}, alone);
       }
     });
+    if (failed_) return;
     for (const int i : fronts_.top()) {
       const Front& f = fronts_.all()[i];
-      if (!failed_) factorize(task, {f, top_, update(f, top_)}, team);
+      if (!factorize(task, {f, top_, update(f, top_)}, team)) return;
     }
   }
 
@@ -142,16 +143,21 @@ class Multifrontal : public Factors {
     }
   };
 
-  void factorize(const Task& task, const Open& open, Team& team) {
+  // Whether to go on. All threads of a team must answer alike: they ask failed_ only where the team
+  // has met since it may have been set, and will meet again before it may be.
+  bool factorize(const Task& task, const Open& open, Team& team) {
     assemble_pivots(task, open, team);
-    for (int from = 0; from < open.f.pivots && !failed_; from += panel)
-      eliminate(open, from, std::min(from + panel, open.f.pivots), task.only_positive, team);
-    if (fronts_.children(open.f).empty()) return;
+    for (int from = 0; from < open.f.pivots; from += panel) {
+      const int end = std::min(from + panel, open.f.pivots);
+      if (!eliminate(open, from, end, task.only_positive, team)) return false;
+    }
+    if (fronts_.children(open.f).empty()) return true;
     const int pivot_height = open.f.pivot_height();
     team.share_parts(open.f.below_strips(), 1, [&](int from, int end) {
       for (const int child : fronts_.children(open.f))
         add_update(child, open, pivot_height + from * height, pivot_height + end * height);
     });
+    return true;
   }
 
   // The lower triangle of the pivots' columns before they are eliminated: the matrix' entries and
@@ -207,8 +213,8 @@ class Multifrontal : public Factors {
     }
   }
 
-  // The pivots [from, end), and what they take off everything after them.
-  void eliminate(const Open& open, int from, int end, bool only_positive, Team& team) {
+  // The pivots [from, end), and what they take off everything after them. Whether to go on.
+  bool eliminate(const Open& open, int from, int end, bool only_positive, Team& team) {
     const Front& f = open.f;
     const int first = from / height, after = strips::count(end);
     const auto tile = [&](int i) { return std::min(tile_strips, f.strips() - i); };
@@ -218,13 +224,13 @@ class Multifrontal : public Factors {
         factorize_block(open, from, i, only_positive);
       }
     });
-    if (failed_) return;
+    if (failed_) return false;
     const int tiles = (f.strips() - after + tile_strips - 1) / tile_strips;
     for (int i = after; team.alone() && i < f.strips(); i += tile_strips) {
       divide(open, from, after, i, tile(i), scaled(open, 0));
       subtract_from_rest(open, from, end, i, tile(i), scaled(open, 0));
     }
-    if (team.alone()) return;
+    if (team.alone()) return true;
     const auto row = [&](int t) { return after + t * tile_strips; };
     team.share(tiles,
                [&](int t) { divide(open, from, after, row(t), tile(row(t)), scaled(open, t)); });
@@ -232,6 +238,7 @@ class Multifrontal : public Factors {
       t = tiles - 1 - t;  // the longest first
       subtract_from_rest(open, from, end, row(t), tile(row(t)), scaled(open, t));
     });
+    return true;
   }
 
   // L D of a panel in the rows of tile t.
