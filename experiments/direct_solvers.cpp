@@ -25,15 +25,10 @@ class OwnSolver final : public DirectSolver {
   void solve(const Vec& b, Vec& x) override { factors_.solve(b, x); }
 
  private:
-  // A pivot with r rows below takes r divisions and r (r + 1) / 2 products and differences.
   void count() {
-    for (const Supernode& node : eliminate(system_.stiffness_pattern()).supernodes) {
-      for (int p = 0; p < node.pivots; ++p) {
-        const double rows = static_cast<double>(node.pivots - p - 1 + std::ssize(node.rows));
-        flops += rows * (rows + 2);
-        bytes += sizeof(double) * (rows + 1);
-      }
-    }
+    const Elimination elimination = eliminate(system_.stiffness_pattern());
+    flops = elimination.operations();
+    bytes = sizeof(double) * elimination.entries();
   }
 
   const System& system_;

@@ -218,20 +218,19 @@ void write_course(CsvFile& csv, const std::string& method, double h, double h_om
 
 // Methods of fixed step among those named; of the others it is said that they are left out.
 std::vector<const Method*> select_fixed_step(const Arguments& a, const ReducedScene& scene) {
-  std::vector<const Method*> selected;
+  std::vector<const Method*> selected, others;
   for (const Method* method : select_methods(a.methods, scene, a.scene.name)) {
-    if (method->knob == Knob::step_size) {
-      selected.push_back(method);
-    } else {
-      fmt::print("{} is left out: it chooses its steps by itself, so that it has no h w\n",
-                 method->name);
-    }
+    (method->knob == Knob::step_size ? selected : others).push_back(method);
   }
   if (selected.empty()) {
     throw InvalidInput(
         fmt::format("--methods: none of {} has a fixed step; allowed are methods "
                     "whose knob is step_size in simulate --list-methods --csv",
                     fmt::join(a.methods, ", ")));
+  }
+  for (const Method* method : others) {
+    fmt::print("{} is left out: it chooses its steps by itself, so that it has no h w\n",
+               method->name);
   }
   return selected;
 }

@@ -6,12 +6,12 @@
 #include <Eigen/Dense>
 
 #include "experiments/timing.hpp"
+#include "src/model/lanes.hpp"
 #include "src/model/system.hpp"
 
 namespace qddot {
 namespace {
 
-using Lanes = double __attribute__((vector_size(__BIGGEST_ALIGNMENT__)));
 // More chains of dependent operations than two units of latency 4 need.
 constexpr int chains = 12, rounds = 10000;
 
@@ -42,8 +42,7 @@ double peak_flops(double seconds) {
     x = y;
     asm volatile("" : "+m"(x));
   });
-  constexpr double lanes = sizeof(Lanes) / sizeof(double);
-  return 2 * lanes * chains * rounds / least;
+  return 2.0 * lanes * chains * rounds / least;
 }
 
 double product_flops(double seconds) {

@@ -9,11 +9,10 @@ import csv
 import sys
 from pathlib import Path
 
-from matplotlib import ticker
 from matplotlib.lines import Line2D
 
 from sheet import Sheet
-from style import COOL, FAINT, FRONT, INK, WARM, power_of_ten, seconds, use_style, widened
+from style import COOL, FAINT, FRONT, INK, WARM, decades, power_of_ten, seconds, use_style, widened
 
 WIDTH, PANEL_WIDTH, PANEL_HEIGHT = 11.6, 4.95, 3.6
 LEFT, TOP, ACROSS, DOWN = 0.85, 1.75, 0.75, 0.95
@@ -88,15 +87,9 @@ def draw_scene(axes, points):
 
 def style_axes(axes, title, left, bottom):
     """Scales, grid and words of a panel."""
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    for axis, words in ((axes.xaxis, power_of_ten), (axes.yaxis, seconds)):
-        axis.set_major_locator(ticker.LogLocator(numticks=12))
-        axis.set_minor_locator(ticker.NullLocator())
-        axis.set_major_formatter(ticker.FuncFormatter(lambda v, _, words=words: words(v)))
+    decades(axes, power_of_ten, seconds, 10)
     axes.set_xlim(LEAST_ERROR, MOST_ERROR)
     axes.set_ylim(*widened(*axes.get_ylim(), 2))
-    axes.grid(True)
     axes.set_title(title, loc="left", size=11, weight="bold")
     if left:
         axes.set_ylabel("processor time of a run")

@@ -8,7 +8,6 @@ over their tolerance; on the right the verdict on every method. One colour a fat
 
 import csv
 import json
-import math
 import sys
 from pathlib import Path
 

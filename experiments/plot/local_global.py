@@ -13,13 +13,12 @@ import sys
 from itertools import groupby
 from pathlib import Path
 
-from matplotlib import ticker
 from matplotlib.text import Text
 
 from chart import move_label
 from labels import Ink, line_label, place_labels
 from sheet import Sheet
-from style import COOL, FAINT, FRONT, GRID, INK, WARM, Family, Look, power_of_ten, seconds
+from style import COOL, FAINT, FRONT, INK, WARM, Family, Look, decades, power_of_ten, seconds
 from style import use_style
 
 WIDTH, HEIGHT = 11.6, 8.6
@@ -70,18 +69,6 @@ def curves(table, across, up, least):
                 break
         lines[name] = points
     return lines
-
-
-def style_axes(axes, words):
-    """Logarithmic axes with a light grid."""
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    for axis, name in ((axes.xaxis, words), (axes.yaxis, power_of_ten)):
-        axis.set_major_locator(ticker.LogLocator(numticks=12))
-        axis.set_minor_locator(ticker.NullLocator())
-        axis.set_major_formatter(ticker.FuncFormatter(lambda v, _, name=name: name(v)))
-    axes.grid(True, color=GRID)
-    axes.tick_params(length=3, color=FAINT, labelsize=FONT_SIZE)
 
 
 def draw_lines(axes, lines):
@@ -135,7 +122,7 @@ def draw_row(sheet, top, table, up, words, limits, own=None):
     for i, (across, name) in enumerate((("iteration", "iterations"), ("seconds", "time"))):
         left = LEFT + i * (PANEL_WIDTH + ACROSS)
         axes = sheet.axes(left, top, PANEL_WIDTH, PANEL_HEIGHT)
-        style_axes(axes, seconds if i else lambda v: f"{v:g}")
+        decades(axes, seconds if i else lambda v: f"{v:g}", power_of_ten, FONT_SIZE)
         lines = curves(table, across, up, least)
         draw_lines(axes, lines)
         axes.set_ylim(bottom=least)

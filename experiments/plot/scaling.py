@@ -18,7 +18,7 @@ from matplotlib.text import Text
 from chart import move_label
 from labels import Ink, line_label, place_labels
 from sheet import Sheet
-from style import FAINT, GRID, INK, Family, Look, power_of_ten, seconds, use_style
+from style import FAINT, GRID, INK, Family, Look, decades, power_of_ten, seconds, use_style
 
 WIDTH, HEIGHT = 13.2, 9.3
 LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.95, 1.5, 3.9, 3.4
@@ -75,18 +75,6 @@ def series(rows, number="seconds"):
             key = (row["scene"], row["method"], row["phase"])
             lines.setdefault(key, []).append((row["nodes"], row[number]))
     return {key: np.array(points).T for key, points in lines.items()}
-
-
-def style_axes(axes, across, up):
-    """Logarithmic axes with a light grid; the words for numbers on them."""
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    for axis, words in ((axes.xaxis, across), (axes.yaxis, up)):
-        axis.set_major_locator(ticker.LogLocator(numticks=14))
-        axis.set_minor_locator(ticker.NullLocator())
-        axis.set_major_formatter(ticker.FuncFormatter(lambda v, _, words=words: words(v)))
-    axes.grid(True, color=GRID)
-    axes.tick_params(length=3, color=FAINT, labelsize=FONT_SIZE)
 
 
 def draw_series(axes, points, look, **style):
@@ -170,7 +158,7 @@ def draw_scenes(sheet, rows, origin):
     for i, scene in enumerate(scenes):
         left = LEFT + i * (PANEL_WIDTH + ACROSS)
         axes = sheet.axes(left, TOP, PANEL_WIDTH, PANEL_HEIGHT)
-        style_axes(axes, nodes_words, seconds)
+        decades(axes, nodes_words, seconds, FONT_SIZE)
         panels.append((axes, draw_scene(axes, scene, lines, implicit, explicit)))
         sheet.text(left, TOP - 0.12, scene, size=11, weight="bold", color=INK)
         cut = [c for c in origin["left_out"] if c["scene"] == scene]
@@ -198,7 +186,7 @@ def springs_words(value):
 def draw_roofline(sheet, rows):
     """Springs a second over the memory that f reads and writes, and what the machine allows."""
     axes = sheet.axes(LEFT, BELOW, ROOF_WIDTH, LOWER_HEIGHT)
-    style_axes(axes, memory_words, springs_words)
+    decades(axes, memory_words, springs_words, FONT_SIZE)
     axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
     sheet.text(LEFT, BELOW - 0.15, "f against the machine", size=11, weight="bold", color=INK)
     drawn = []
@@ -238,7 +226,7 @@ def memory_words(value):
 def draw_memory(sheet, rows):
     """The bytes of the factors over the nodes, with theory's growth."""
     axes = sheet.axes(MEMORY_LEFT, BELOW, MEMORY_WIDTH, LOWER_HEIGHT)
-    style_axes(axes, nodes_words, memory_words)
+    decades(axes, nodes_words, memory_words, FONT_SIZE)
     words = "Memory of the factors"
     sheet.text(MEMORY_LEFT, BELOW - 0.15, words, size=11, weight="bold", color=INK)
     drawn = []

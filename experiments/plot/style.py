@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import matplotlib
+from matplotlib import ticker
 from matplotlib.colors import to_hex, to_rgb
 
 # Warm against cool: the two families differ in hue as well as in line and marker, and inside
@@ -128,6 +129,18 @@ def use_style():
     """Sets matplotlib up for a picture written to a file."""
     matplotlib.use("Agg")
     matplotlib.rcParams.update(SETTINGS)
+
+
+def decades(axes, across, up, font_size):
+    """Logarithmic axes with a light grid; across and up make words of the numbers on them."""
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    for axis, words in ((axes.xaxis, across), (axes.yaxis, up)):
+        axis.set_major_locator(ticker.LogLocator(numticks=14))
+        axis.set_minor_locator(ticker.NullLocator())
+        axis.set_major_formatter(ticker.FuncFormatter(lambda v, _, words=words: words(v)))
+    axes.grid(True, color=GRID)
+    axes.tick_params(length=3, color=FAINT, labelsize=font_size)
 
 
 def number(value):

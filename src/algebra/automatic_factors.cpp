@@ -26,13 +26,9 @@ struct Work {
   double entries = 0;                       // of L
 
   Work(const Elimination& elimination, const SymmetricMatrix& pattern)
-      : iteration(per_matrix_entry * static_cast<double>(pattern.nonZeros())) {
-    for (const Supernode& node : elimination.supernodes) {
-      const double below = static_cast<double>(node.rows.size()), height = node.pivots + below;
-      factorization += (height * height * height - below * below * below) / 3;
-      entries += (height * height - below * below) / 2;
-    }
-  }
+      : factorization(elimination.operations()),
+        iteration(per_matrix_entry * static_cast<double>(pattern.nonZeros())),
+        entries(elimination.entries()) {}
 };
 
 double memory() {

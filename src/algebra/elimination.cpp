@@ -87,7 +87,27 @@ class Analysis {
   cholmod_factor* factor_ = nullptr;
 };
 
+// The sum of of_pivot(r) over all pivots, r the rows below each.
+template <class OfPivot>
+double over_pivots(const Elimination& elimination, const OfPivot& of_pivot) {
+  double sum = 0;
+  for (const Supernode& node : elimination.supernodes) {
+    for (int p = 0; p < node.pivots; ++p) {
+      sum += of_pivot(static_cast<double>(node.pivots - p - 1 + std::ssize(node.rows)));
+    }
+  }
+  return sum;
+}
+
 }  // namespace
+
+double Elimination::entries() const {
+  return over_pivots(*this, [](double rows) { return rows + 1; });
+}
+
+double Elimination::operations() const {
+  return over_pivots(*this, [](double rows) { return rows * (rows + 2); });
+}
 
 Elimination eliminate(const SymmetricMatrix& pattern) {
   if (pattern.rows() == 0) return {};  // CHOLMOD does not take it

@@ -17,6 +17,11 @@ struct Supernode {
 struct Elimination {
   std::vector<int> place;             // place[i]: where unknown i comes in the order
   std::vector<Supernode> supernodes;  // in postorder: a subtree's lie together, its root last
+
+  // What L holds with its diagonal, and what it takes to compute: a pivot with r rows below takes r
+  // divisions and r (r + 1) / 2 products and as many differences.
+  double entries() const;
+  double operations() const;
 };
 
 // Analyses an n x n pattern by CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM TOMS 35:3, 2008), on

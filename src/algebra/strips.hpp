@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
-#include <utility>
 
+#include "src/model/lanes.hpp"
 #include "src/model/system.hpp"
 
 namespace qddot::strips {
@@ -15,22 +15,12 @@ constexpr int height = 8;
 // Strips that hold so many rows.
 constexpr int count(int rows) { return (rows + height - 1) / height; }
 
-// Vectors as wide as the processor's; tiles of as many as its registers hold: 32 with AVX-512, else
-// 16.
-constexpr int lanes = __BIGGEST_ALIGNMENT__ / sizeof(double);
+// Tiles of as many vectors as the processor's registers hold: 32 with AVX-512, else 16.
 constexpr int vectors = height / lanes;  // in a column of a strip
 constexpr int tile_strips = lanes == 8 ? 3 : 1;
 constexpr int tile_columns = lanes;
-using Lanes = double __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
 
-using Places = long __attribute__((vector_size(lanes * sizeof(long))));
-constexpr Places first_places = []<std::size_t... i>(std::index_sequence<i...>) {
-  return Places{i...};
-}
-(std::make_index_sequence<lanes>());
-
-inline Lanes load(const double* x) { return *reinterpret_cast<const Lanes*>(x); }
-inline void store(double* x, Lanes value) { *reinterpret_cast<Lanes*>(x) = value; }
+constexpr LaneNumbers first_places = lane_numbers([](int t) { return t; });
 
 // C = C - A W', or C = -A W' where `fresh`. C: columns `ld` apart; A: strips `stride` apart, of k
 // columns; W: the first `tile_columns` rows of a strip of k columns.
@@ -82,7 +72,7 @@ inline void subtract(double* c, Index ld, const double* a, Index stride, const d
 
 // Entry i of a strip's column, in every lane.
 inline Lanes splat(const Lanes* x, int i) {
-  return __builtin_shuffle(x[i / lanes], Places{} + i % lanes);
+  return __builtin_shuffle(x[i / lanes], LaneNumbers{} + i % lanes);
 }
 
 // Which entries of a column stand below (above) entry i, the others 0.
@@ -187,8 +177,8 @@ inline void subtract_product(const double* a, Index stride, const double* x, int
 template <int size, int width = 1>
 inline void add_lanes(Lanes* x) {
   if constexpr (width < lanes) {
-    const Places block = first_places / width, within = first_places % width;
-    const Places first = within + (block - block % 2) * width + block % 2 * lanes;
+    const LaneNumbers block = first_places / width, within = first_places % width;
+    const LaneNumbers first = within + (block - block % 2) * width + block % 2 * lanes;
 #pragma GCC unroll 8
     for (int i = 0; i < size / 2; ++i) {
       x[i] = __builtin_shuffle(x[2 * i], x[2 * i + 1], first) +

@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <vector>
 
+#include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
 
 #include "tests/folder.hpp"
@@ -72,6 +73,20 @@ inline std::string in_words(const Exit& run, const std::vector<std::string>& arg
   std::string text;
   for (const std::string& argument : arguments) text += argument + ' ';
   return fmt::format("{}gives {}: {}", text, run.status, run.err);
+}
+
+// Checks that a program refuses its arguments, in one line with the fragments and status 2, and
+// leaves nothing behind; words that start with OUT are taken as in an empty folder.
+inline void check_refused(const std::string& program, std::vector<std::string> words,
+                          const std::vector<std::string>& fragments) {
+  const Folder folder;
+  for (std::string& word : words) {
+    if (word.starts_with("OUT")) word = folder / word;
+  }
+  const Exit result = run(program, words);
+  BOOST_TEST(complains(result, 2, program, fragments), in_words(result, words));
+  BOOST_TEST(result.out == "");
+  BOOST_TEST(folder.listing() == "", in_words(result, words));
 }
 
 // The number that is all of the text; throws where it is none.

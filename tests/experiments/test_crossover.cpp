@@ -57,15 +57,7 @@ std::map<std::string, double> times(const Table& points, double ratio, double ac
 }
 
 void check_refused(const Words& words, const Words& fragments) {
-  const Folder folder;
-  Words all = words;
-  for (std::string& word : all) {
-    if (word == "OUT") word = folder / "out";
-  }
-  const Exit result = run("crossover", all);
-  BOOST_TEST(complains(result, 2, "crossover", fragments), in_words(result, all));
-  BOOST_TEST(result.out == "");
-  BOOST_TEST(folder.listing() == "", in_words(result, all));
+  qddot::check_refused("crossover", words, fragments);
 }
 
 }  // namespace

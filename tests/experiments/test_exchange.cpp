@@ -37,14 +37,7 @@ std::size_t row_of(const Table& table, const std::string& method, double h_omega
 }
 
 void check_refused(const Words& words, const Words& fragments) {
-  const Folder folder;
-  Words all = words;
-  for (std::string& word : all) {
-    if (word == "OUT") word = folder / "out";
-  }
-  const Exit result = run("exchange", all);
-  BOOST_TEST(complains(result, 2, "exchange", fragments), in_words(result, all));
-  BOOST_TEST(folder.listing() == "");
+  qddot::check_refused("exchange", words, fragments);
 }
 
 }  // namespace

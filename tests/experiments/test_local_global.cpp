@@ -32,14 +32,7 @@ const Small& small() {
 }
 
 void check_refused(const Words& words, const Words& fragments) {
-  const Folder folder;
-  Words all = words;
-  for (std::string& word : all) {
-    if (word == "OUT") word = folder / "out";
-  }
-  const Exit result = run("local_global", all);
-  BOOST_TEST(complains(result, 2, "local_global", fragments), in_words(result, all));
-  BOOST_TEST(folder.listing() == "");
+  qddot::check_refused("local_global", words, fragments);
 }
 
 }  // namespace

@@ -61,15 +61,7 @@ const Compared& all_pairs() {
 }
 
 void check_refused(const Words& words, const Words& fragments) {
-  const Folder folder;
-  Words all = words;
-  for (std::string& word : all) {
-    if (word == "OUT") word = folder / "out";
-  }
-  const Exit result = run("stock_sundials", all);
-  BOOST_TEST(complains(result, 2, "stock_sundials", fragments), in_words(result, all));
-  BOOST_TEST(result.out == "");
-  BOOST_TEST(folder.listing() == "", in_words(result, all));
+  qddot::check_refused("stock_sundials", words, fragments);
 }
 
 }  // namespace

@@ -18,15 +18,7 @@ Exit measure(const std::string& out, const Words& more) {
 }
 
 void check_refused(const Words& words, const Words& fragments) {
-  const Folder folder;
-  Words all = words;
-  for (std::string& word : all) {
-    if (word.starts_with("OUT")) word = folder / word;
-  }
-  const Exit result = run("work_precision", all);
-  BOOST_TEST(complains(result, 2, "work_precision", fragments), in_words(result, all));
-  BOOST_TEST(result.out == "");
-  BOOST_TEST(folder.listing() == "");
+  qddot::check_refused("work_precision", words, fragments);
 }
 
 const std::string pinned =
