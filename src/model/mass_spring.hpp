@@ -57,7 +57,7 @@ enum class Forces { spring_by_spring, by_vectors, whichever_is_faster };
 
 // The network as a System with an unknown for each of the D N coordinates that may move, in order:
 //   V(q) = constant + sum over springs of V_spring - sum over nodes of (m g + load).x,
-// f and K summed spring by spring (see spring.hpp). K's pattern is made once: a block for each node
+// f and K sums over springs (see spring.hpp). K's pattern is made once: a block for each node
 // and for each pair of nodes that a link joins. K is constant where every law is linear.
 std::unique_ptr<System> make_mass_spring(const Network& network,
                                          Forces forces = Forces::whichever_is_faster);
