@@ -1,7 +1,6 @@
 #include "experiments/machine_limits.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include <Eigen/Dense>
 
@@ -29,15 +28,17 @@ double triad_bandwidth(double bytes, double seconds) {
 }
 
 double peak_flops(double seconds) {
-  std::array<Lanes, chains> x{};
+  struct Chains {
+    Lanes each[chains];
+  } x{};
   Lanes factor = 0.5 + Lanes{}, term = 1 + Lanes{};
   const double least = least_seconds(seconds, [&] {
     asm volatile("" : "+m"(factor), "+m"(term));
     const Lanes m = factor, t = term;
-    std::array<Lanes, chains> y = x;
+    Chains y = x;
     for (int i = 0; i < rounds; ++i) {
 #pragma GCC unroll 16
-      for (Lanes& chain : y) chain = chain * m + t;
+      for (Lanes& chain : y.each) chain = chain * m + t;
     }
     x = y;
     asm volatile("" : "+m"(x));

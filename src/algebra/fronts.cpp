@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace qddot {
 
@@ -39,45 +40,64 @@ Fronts::Fronts(const SymmetricMatrix& pattern, Elimination elimination) {
   divide(parents);
   place_updates(parents);
 
-  std::vector<std::vector<Entry>> entries(count), diagonal(count);
-  for (int j = 0; j < n; ++j) {
-    for (int e = pattern.outerIndexPtr()[j]; e < pattern.outerIndexPtr()[j + 1]; ++e) {
-      const int i = pattern.innerIndexPtr()[e];
-      const auto [column, row] = std::minmax(place_[i], place_[j]);
-      const Front& f = all_[front_of[column]];
-      const int target = position(f, row) + (column - f.first) * f.height();
-      entries[front_of[column]].push_back({e, target});
-      if (i == j) diagonal[front_of[column]].push_back({j, target});
-    }
-  }
+  std::vector<int> position(n);  // of the rows of the front at hand
+  const std::vector<Placed> placed = in_order_of_elimination(pattern);
+  auto entry = placed.begin();
   for (int s = 0; s < count; ++s) {
     Front& f = all_[s];
-    std::ranges::sort(entries[s], {}, &Entry::target);
-    std::ranges::sort(diagonal[s], {}, &Entry::target);
+    for (int p = 0; p < f.pivots; ++p) position[f.first + p] = p;
+    int next = f.pivot_height();
+    for (const int row : rows(f)) position[row] = next++;
+
     f.entry_start = static_cast<int>(entries_.size());
-    f.entry_end = append(entries_, entries[s]);
     f.diagonal_start = static_cast<int>(diagonal_.size());
-    f.diagonal_end = append(diagonal_, diagonal[s]);
+    for (; entry != placed.end() && entry->column < f.first + f.pivots; ++entry) {
+      const int target = position[entry->row] + (entry->column - f.first) * f.height();
+      entries_.push_back({entry->source, target});
+      if (entry->row == entry->column) diagonal_.push_back({entry->unknown, target});
+    }
+    f.entry_end = static_cast<int>(entries_.size());
+    f.diagonal_end = static_cast<int>(diagonal_.size());
+
     f.child_start = static_cast<int>(children_.size());
     f.child_end = append(children_, children[s]);
-    f.run_start = static_cast<int>(runs_.size());
-    for (int i = 0; i < f.below; ++i) {
-      const Front& parent = all_[parents[s]];
-      const int to = position(parent, rows_[f.row_start + i]);
-      if (i > 0 && to == runs_.back().to + runs_.back().length) {
-        ++runs_.back().length;
-      } else {
-        runs_.push_back({i, to, 1});
-      }
-    }
-    f.run_end = static_cast<int>(runs_.size());
+    for (const int c : children[s]) add_runs(all_[c], position);
   }
 }
 
-int Fronts::position(const Front& f, int row) const {
-  if (row < f.first + f.pivots) return row - f.first;
-  const auto below = rows(f);
-  return f.pivot_height() + static_cast<int>(std::ranges::lower_bound(below, row) - below.begin());
+// The entries of a matrix by columns and in these by rows, as they come in the order of
+// elimination.
+std::vector<Fronts::Placed> Fronts::in_order_of_elimination(const SymmetricMatrix& pattern) const {
+  std::vector<Placed> placed;
+  placed.reserve(pattern.nonZeros());
+  for (int j = 0; j < pattern.cols(); ++j) {
+    for (int e = pattern.outerIndexPtr()[j]; e < pattern.outerIndexPtr()[j + 1]; ++e) {
+      const auto [column, row] = std::minmax(place_[pattern.innerIndexPtr()[e]], place_[j]);
+      placed.push_back({e, j, column, row});
+    }
+  }
+  for (const auto key : {&Placed::row, &Placed::column}) {
+    std::vector<int> start(pattern.cols() + 1);
+    for (const Placed& p : placed) ++start[p.*key + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<Placed> sorted(placed.size());
+    for (const Placed& p : placed) sorted[start[p.*key]++] = p;
+    placed = std::move(sorted);
+  }
+  return placed;
+}
+
+void Fronts::add_runs(Front& child, const std::vector<int>& position) {
+  child.run_start = static_cast<int>(runs_.size());
+  for (int i = 0; i < child.below; ++i) {
+    const int to = position[rows_[child.row_start + i]];
+    if (i > 0 && to == runs_.back().to + runs_.back().length) {
+      ++runs_.back().length;
+    } else {
+      runs_.push_back({i, to, 1});
+    }
+  }
+  child.run_end = static_cast<int>(runs_.size());
 }
 
 // Branches are the largest subtrees of no more than a share of the work, and neighbours together

@@ -90,7 +90,13 @@ class Fronts {
   static std::span<const T> part(const std::vector<T>& all, int start, int end) {
     return std::span(all).subspan(start, end - start);
   }
-  int position(const Front& f, int row) const;
+  // An entry of K, which stands in the column of `unknown`, in the order of elimination.
+  struct Placed {
+    int source, unknown, column, row;
+  };
+  std::vector<Placed> in_order_of_elimination(const SymmetricMatrix& pattern) const;
+  // position: of its parent's rows.
+  void add_runs(Front& child, const std::vector<int>& position);
   void divide(const std::vector<int>& parents);
   void place_updates(const std::vector<int>& parents);
 

@@ -54,9 +54,8 @@ Grid grid(int dimension, int side, std::vector<int> place) {
   };
   for (int i = 0; i < side; ++i) {
     for (int j = 0; j < side; ++j) {
-      const Eigen::Vector3d x(i + 0.1 * std::sin(j), j + 0.1 * std::cos(3 * i),
-                              0.2 * std::sin(i * j));
-      g.q.segment(dimension * place[i * side + j], dimension) = x.head(dimension);
+      const double x[] = {i + 0.1 * std::sin(j), j + 0.1 * std::cos(3 * i), 0.2 * std::sin(i * j)};
+      std::copy_n(x, dimension, g.q.data() + dimension * place[i * side + j]);
       join(i, j, i + 1, j);
       join(i, j, i, j + 1);
       join(i, j, i + 1, j + 1);
