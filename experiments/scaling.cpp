@@ -23,6 +23,7 @@
 //                 the peak of multiplications and additions
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <set>
 
 #include <CLI/CLI.hpp>
@@ -60,6 +61,10 @@ struct Arguments {
   std::string out;
 };
 
+std::string all_solvers() {
+  return fmt::format("{}", fmt::join(solver_names | std::views::values, ", "));
+}
+
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("--scenes", a.scenes, "a,b,... of chain, cloth and lattice")
       ->delimiter(',')
@@ -67,10 +72,8 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--methods", a.methods, "a,b,... of fixed step")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option(
-         "--solvers", a.solvers,
-         "a,b,... of multifrontal, cholmod, conjugate_gradients and automatic, for implicit "
-         "methods")
+  app.add_option("--solvers", a.solvers,
+                 fmt::format("a,b,... of {}, for implicit methods", all_solvers()))
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--least-nodes", a.least_nodes, "how many nodes the smallest scene has, about")
@@ -121,11 +124,11 @@ std::vector<Solver> select_solvers(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const auto solver = find_solver(name);
     if (!solver) {
-      throw InvalidInput(fmt::format(
-          "--solvers: {} is not a solver; allowed are multifrontal, cholmod, conjugate_gradients "
-          "and automatic",
-          name));
+      throw InvalidInput(
+          fmt::format("--solvers: {} is not a solver; allowed are {}", name, all_solvers()));
     }
+    if (std::ranges::count(solvers, *solver) > 0)
+      throw InvalidInput(fmt::format("--solvers: {} is named twice; allowed is once", name));
     solvers.push_back(*solver);
   }
   return solvers;

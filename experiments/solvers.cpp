@@ -66,6 +66,8 @@ std::vector<DirectSolverKind> select_solvers(const std::vector<std::string>& nam
       throw InvalidInput(
           fmt::format("--solvers: {} is not a solver; allowed are {}", name, fmt::join(all, ", ")));
     }
+    if (std::ranges::count(chosen, name, &DirectSolverKind::name) > 0)
+      throw InvalidInput(fmt::format("--solvers: {} is named twice; allowed is once", name));
     chosen.push_back(*found);
   }
   return chosen;

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include <suitesparse/cholmod.h>
 
@@ -54,8 +55,6 @@ class Analysis {
     common_.print = 0;  // failures are returned, not printed
     common_.supernodal = CHOLMOD_SUPERNODAL;
     common_.nmethods = 1;
-    common_.method[0].ordering = CHOLMOD_AMD;
-    common_.method[1].ordering = CHOLMOD_NESDIS;
     cholmod_sparse view{};
     view.nrow = view.ncol = graph.unknowns.size();
     view.nzmax = graph.rows.size();
@@ -66,13 +65,17 @@ class Analysis {
     view.xtype = CHOLMOD_PATTERN;
     view.dtype = CHOLMOD_DOUBLE;
     view.sorted = view.packed = 1;
-    factor_ = cholmod_analyze(&view, &common_);
-    const double vertices = static_cast<double>(view.nrow);
+    const auto analyze = [&](int ordering) {
+      common_.method[0].ordering = ordering;
+      return cholmod_analyze(&view, &common_);
+    };
+    factor_ = analyze(CHOLMOD_AMD);
+    const double entries = common_.lnz, vertices = static_cast<double>(view.nrow);
     const double unknowns = std::accumulate(graph.unknowns.begin(), graph.unknowns.end(), 0.0);
     if (factor_ && common_.fl * std::pow(unknowns / vertices, 3) > worth_dissection * vertices) {
-      cholmod_free_factor(&factor_, &common_);
-      common_.nmethods = 2;
-      factor_ = cholmod_analyze(&view, &common_);
+      cholmod_factor* dissected = analyze(CHOLMOD_NESDIS);
+      if (dissected && common_.lnz < entries) std::swap(factor_, dissected);
+      cholmod_free_factor(&dissected, &common_);
     }
     if (!factor_) {
       cholmod_finish(&common_);

@@ -21,7 +21,7 @@ Fronts::Fronts(const SymmetricMatrix& pattern, Elimination elimination) {
   const int n = static_cast<int>(pattern.rows());
   const int count = static_cast<int>(elimination.supernodes.size());
 
-  std::vector<int> front_of(n), parents(count);
+  std::vector<int> parents(count);
   std::vector<std::vector<int>> children(count);
   for (int s = 0; s < count; ++s) {
     const Supernode& node = elimination.supernodes[s];
@@ -33,7 +33,6 @@ Fronts::Fronts(const SymmetricMatrix& pattern, Elimination elimination) {
     f.row_end = append(rows_, node.rows);
     f.factor = factor_size;
     factor_size += Index{f.height()} * f.pivots;
-    std::fill_n(front_of.begin() + f.first, f.pivots, s);
     parents[s] = node.parent;
     if (node.parent >= 0) children[node.parent].push_back(s);
   }

@@ -195,6 +195,8 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
   check_refused({"--scenes", "chain,rope", "--out", "OUT"}, {"rope", "chain, cloth, lattice"});
   check_refused({"--scenes", "chain,chain", "--out", "OUT"}, {"chain", "twice"});
   check_refused({"--methods", "verlett", "--out", "OUT"}, {"verlett", "verlet"});
+  check_refused({"--solvers", "lu", "--out", "OUT"}, {"--solvers: lu", "conjugate_gradients"});
+  check_refused({"--solvers", "cholmod,cholmod", "--out", "OUT"}, {"cholmod", "twice"});
   check_refused({"--methods", "dprkn8", "--out", "OUT"}, {"dprkn8", "fixed step"});
   check_refused({"--most-nodes", "1e8", "--out", "OUT"}, {"--most-nodes", "1e+07"});
   check_refused({"--least-nodes", "2000", "--most-nodes", "1000", "--out", "OUT"},
