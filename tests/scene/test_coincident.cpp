@@ -69,6 +69,13 @@ class RandomSymmetry {
     for (int e = 0; e < 14; ++e) add_springs();
   }
 
+  // Moves every node by what rounding may, so that nodes in one place are so only nearly.
+  void jitter() {
+    for (Node& node : scene_.nodes) {
+      for (int d = 0; d < scene_.dimension; ++d) node.position[d] += number(-4, 4) * eps;
+    }
+  }
+
   Scene shuffled() {
     std::vector<std::size_t> order(scene_.nodes.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -248,7 +255,9 @@ BOOST_AUTO_TEST_CASE(whatever_coincides_moves_as_drawn) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     const int dimension = 1 + static_cast<int>(seed % 3);
     const int mirrors = 1 + static_cast<int>(seed / 3) % dimension;
-    Scene scene = RandomSymmetry(seed, dimension, mirrors).shuffled();
+    RandomSymmetry symmetry(seed, dimension, mirrors);
+    if (seed % 4 == 0) symmetry.jitter();
+    Scene scene = symmetry.shuffled();
     if (seed % 2 == 1 && dimension == 3) scene = turned(scene, some_rotation(), {0.3, -0.2, 0.4});
     BOOST_TEST_CONTEXT("seed " << seed) {
       check_all(scene);
@@ -258,6 +267,46 @@ BOOST_AUTO_TEST_CASE(whatever_coincides_moves_as_drawn) {
   }
   // A hundred scenes for each number of mirrors; some fall into parts that are not their own image.
   BOOST_TEST(found > 200);
+}
+
+BOOST_AUTO_TEST_CASE(twins_that_nothing_tells_apart_are_swapped_by_mirrors_that_commute) {
+  // Two nodes at each corner of a rectangle, each on springs to both of either side: any of two may
+  // be the image. In one place but for rounding, so that no order decides.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> rounding_of(-4 * eps, 4 * eps);
+  for (int draw = 0; draw < 20; ++draw) {
+    Scene scene{.dimension = 2};
+    for (const auto& [x, y] : {std::pair(1., 2.), {-1., 2.}, {-1., -2.}, {1., -2.}}) {
+      for (int twin = 0; twin < 2; ++twin) {
+        scene.nodes.push_back(
+            {.position = {x + rounding_of(random), y + rounding_of(random), 0}, .mass = 1});
+      }
+    }
+    for (std::size_t i = 0; i < 8; ++i) {
+      const std::size_t next = (i / 2 + 1) % 4 * 2;
+      for (const std::size_t j : {next, next + 1}) scene.springs.push_back({{i, j}, {30, 1.5}});
+    }
+    check_all(scene);
+    const ReducedScene reduced(scene);
+    BOOST_TEST(reduced.parts().front().mirrors().count == 2);
+    BOOST_TEST(reduced.system().size() == 4);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_ring_that_winds_twice_has_one_mirror) {
+  // Node i at corner i mod 4, springs from i to i + 1 mod 8. The images under one mirror are 1 - i
+  // or 5 - i, under the other 3 - i or 7 - i: one after the other they are i - 2 or i + 2, and
+  // i + 2 or i - 2 in the other order.
+  Scene scene{.dimension = 2};
+  const std::array corners = {std::pair(1., 2.), {-1., 2.}, {-1., -2.}, {1., -2.}};
+  for (std::size_t i = 0; i < 8; ++i) {
+    const auto [x, y] = corners[i % 4];
+    scene.nodes.push_back({.position = {x, y, 0}, .mass = 1});
+    scene.springs.push_back({{i, (i + 1) % 8}, {30, 1.5}});
+  }
+  check_all(scene);
+  const ReducedScene reduced(scene);
+  BOOST_TEST(reduced.parts().front().mirrors().count == 1);
 }
 
 BOOST_AUTO_TEST_CASE(a_spring_as_short_as_rounding_has_no_mirror) {
