@@ -298,7 +298,7 @@ BOOST_AUTO_TEST_CASE(a_ring_that_winds_twice_has_one_mirror) {
   // or 5 - i, under the other 3 - i or 7 - i: one after the other they are i - 2 or i + 2, and
   // i + 2 or i - 2 in the other order.
   Scene scene{.dimension = 2};
-  const std::array corners = {std::pair(1., 2.), {-1., 2.}, {-1., -2.}, {1., -2.}};
+  const std::vector<std::pair<double, double>> corners = {{1, 2}, {-1, 2}, {-1, -2}, {1, -2}};
   for (std::size_t i = 0; i < 8; ++i) {
     const auto [x, y] = corners[i % 4];
     scene.nodes.push_back({.position = {x, y, 0}, .mass = 1});
