@@ -8,6 +8,8 @@
 #include "src/model/force_kernel.hpp"
 #include "src/model/layout.hpp"
 #include "src/model/network_halves.hpp"
+#include "src/model/nodal_loads.hpp"
+#include "src/model/offsets.hpp"
 #include "src/model/springs_by_node.hpp"
 #include "src/model/stiffness_kernel.hpp"
 
@@ -52,12 +54,15 @@ class MassSpring final : public System {
 
   double potential(const Vec& q) const override {
     double v = constant_energy_ - weight_.dot(q);
-    for_all(q, [&](const SpringLaw& law, const Point& d) { v += spring_energy(law, d); });
+    const double* offset = offsets_.empty() ? nullptr : offsets_.data();
+    for_all(q, [&](const SpringLaw& law, const Point& d) {
+      v += offset ? law.energy(d[0] - *offset++) : spring_energy(law, d);
+    });
     return v;
   }
 
   void force(const Vec& q, Vec& f) const override {
-    if (by_node_) return qddot::sum_forces(*by_node_, q, weight_, f);
+    if (by_node_) return qddot::sum_forces(*by_node_, q, constant_force_, f);
     sum_forces(
         [&](const auto& spring) { return spring_force(spring.law, between(q, spring)); },
         [&](const auto& spring) { return spring_force(spring.law, edge_between(q, spring)); }, f);
@@ -123,21 +128,24 @@ class MassSpring final : public System {
       : System(masses(network, layout)),
         layout_(layout),
         weight_(weights(network, layout)),
+        constant_force_(weight_),
         constant_energy_(network.constant_energy) {
     BlockPattern<D> pattern(layout_);
     for (const auto& link : network.links) pattern.join(link.i, link.j);
     for (const auto& link : network.image_links) pattern.join(link.i, link.j);
     pattern_ = pattern.make();
-    for (const auto& [i, j, law, holds, stiff] : network.links) {
+    for (const auto& [i, j, law, holds, stiff, offset] : network.links) {
       take_link({i, j, pattern.place(i, j), Point::Ones(), law}, holds, true);
     }
-    for (const auto& [i, j, mirror, law, holds, stiff] : network.image_links) {
+    for (const auto& [i, j, mirror, law, holds, stiff, offset] : network.image_links) {
       const Point signs = Eigen::Map<const Point>(mirror.data());
       take_link({i, j, pattern.place(i, j), signs, law}, holds, false);
     }
-    for (const auto& [i, place, law, holds, stiff] : network.anchors) {
+    for (const auto& [i, place, law, holds, stiff, offset] : network.anchors) {
       take_anchor({i, Eigen::Map<const Point>(place.data()), law}, holds);
     }
+    offsets_ = offsets(network, layout_);
+    if constexpr (D == 1) add_pulls(network, layout_, constant_force_);
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
       by_node_.emplace(network, layout_);
@@ -164,26 +172,6 @@ class MassSpring final : public System {
     }
   }
 
-  static Vec masses(const Network& network, const Layout<D>& layout) {
-    Vec mass(layout.first(static_cast<int>(layout.nodes())));
-    for (int i = 0; i < layout.nodes(); ++i) {
-      mass.segment(layout.first(i), layout.count(i)).setConstant(network.node_mass[i]);
-    }
-    return mass;
-  }
-  // M g + load.
-  static Vec weights(const Network& network, const Layout<D>& layout) {
-    Vec weight = masses(network, layout);
-    for (int i = 0; i < layout.nodes(); ++i) {
-      for (int a = 0; a < layout.count(i); ++a) {
-        const int d = layout.axis(i, a);
-        weight[layout.first(i) + a] *= network.gravity[d];
-        if (network.load.size() > 0) weight[layout.first(i) + a] += network.load[D * i + d];
-      }
-    }
-    return weight;
-  }
-
   void take_link(const EdgeLink& link, Holds holds, bool is_plain) {
     if (holds == Holds::in_tension) links_in_tension_.push_back(link);
     if (!layout_.is_full(link.i) || !layout_.is_full(link.j)) {
@@ -205,11 +193,11 @@ class MassSpring final : public System {
     }
   }
 
-  // f = weight and, of every spring, on_i(spring) on its node i and the opposite on j; of springs
-  // that go through the layout, edge_on_i(spring).
+  // f = constant force and, of every spring, on_i(spring) on its node i and the opposite on j; of
+  // springs that go through the layout, edge_on_i(spring).
   template <class OnI, class EdgeOnI>
   [[gnu::always_inline]] void sum_forces(const OnI& on_i, const EdgeOnI& edge_on_i, Vec& f) const {
-    f = weight_;
+    f = constant_force_;
     for (const Link& link : links_) {
       const Point force = on_i(link);
       f.segment<D>(link.i) += force;
@@ -372,7 +360,9 @@ class MassSpring final : public System {
   std::vector<Anchor> edge_anchors_;             // likewise, by nodes
   std::vector<EdgeLink> links_in_tension_;       // once more, those that hold in tension only
   std::vector<Anchor> anchors_in_tension_;
-  Vec weight_;  // M g + load [N]
+  Vec weight_;                   // M g + load [N]
+  Vec constant_force_;           // and what offsets pull
+  std::vector<double> offsets_;  // [m], of all springs in the order of for_all; empty where none
   double constant_energy_;
   bool linear_ = false;
   HasLaplacian has_laplacian_ = HasLaplacian::as_bound;

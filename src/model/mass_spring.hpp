@@ -9,6 +9,10 @@
 namespace qddot {
 
 // A network over the free nodes alone, numbered 0 ... N-1; what is pinned enters as points.
+//
+// In one dimension a spring of rest length zero and without quartic term may have an offset r [m]:
+// V = 1/2 k (d - r)^2 with d the difference of its ends, signed. So a spring of rest length |r|
+// acts for as long as its ends do not pass through each other.
 struct Network {
   // A spring between two different free nodes.
   struct Link {
@@ -16,6 +20,7 @@ struct Network {
     SpringLaw law;
     Holds holds = Holds::always;
     bool stiff = false;
+    double offset = 0;
   };
   // A spring between node i and the mirror image of node j, diag(mirror) x_j with entries 1 and -1;
   // i = j is a spring that crosses the mirror at a right angle.
@@ -25,6 +30,7 @@ struct Network {
     SpringLaw law;
     Holds holds = Holds::always;
     bool stiff = false;
+    double offset = 0;
   };
   // A spring between a free node and a fixed point [m].
   struct Anchor {
@@ -33,6 +39,7 @@ struct Network {
     SpringLaw law;
     Holds holds = Holds::always;
     bool stiff = false;
+    double offset = 0;
   };
 
   int dimension = 3;                                  // D = 1, 2 or 3
@@ -48,7 +55,6 @@ struct Network {
   Vec load{};                           // constant forces beside the weight [N], D N; empty = none
   bool uses_constant_stiffness = true;  // false: K counts as varying even where it is constant
   bool offers_split = false;            // whether the system is to have a split() by `stiff`
-  Vec stiff_load{};                     // what of the load is stiff, as the load; empty = none
 };
 
 // How forces are summed: spring by spring as the formula says, by vectors as force_kernel.hpp says,
@@ -59,6 +65,9 @@ enum class Forces { spring_by_spring, by_vectors, whichever_is_faster };
 //   V(q) = constant + sum over springs of V_spring - sum over nodes of (m g + load).x,
 // f and K sums over springs (see spring.hpp). K's pattern is made once: a block for each node
 // and for each pair of nodes that a link joins. K is constant where every law is linear.
+// Forces add up k d and the constant -k r, energies the squares of d - r: the former lose no more
+// than rounding a position does, the latter would lose all digits where strains are small. Throws
+// std::invalid_argument on an offset in two dimensions or three, or beside a rest length.
 std::unique_ptr<System> make_mass_spring(const Network& network,
                                          Forces forces = Forces::whichever_is_faster);
 

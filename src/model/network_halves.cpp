@@ -9,10 +9,8 @@ Network only(Network network, bool stiff) {
   std::erase_if(network.anchors, is_other);
   if (stiff) {
     network.gravity.setZero();
-    network.load = network.stiff_load;
+    network.load.resize(0);
     network.constant_energy = 0;
-  } else if (network.stiff_load.size() > 0) {
-    network.load -= network.stiff_load;
   }
   network.offers_split = false;
   return network;
@@ -23,9 +21,6 @@ std::vector<int> pulled_nodes(const Network& network) {
   for (const auto& link : network.links) is_pulled[link.i] = is_pulled[link.j] = 1;
   for (const auto& link : network.image_links) is_pulled[link.i] = is_pulled[link.j] = 1;
   for (const auto& anchor : network.anchors) is_pulled[anchor.i] = 1;
-  for (Index x = 0; x < network.load.size(); ++x) {
-    if (network.load[x] != 0) is_pulled[x / network.dimension] = 1;
-  }
   std::vector<int> nodes;
   for (int i = 0; i < std::ssize(is_pulled); ++i) {
     if (is_pulled[i]) nodes.push_back(i);
@@ -34,15 +29,12 @@ std::vector<int> pulled_nodes(const Network& network) {
 }
 
 Network among(const std::vector<int>& nodes, const Network& network) {
-  const int D = network.dimension;
   Network core = network;
   core.node_mass = network.node_mass(nodes);
   std::vector<int> place(static_cast<std::size_t>(network.node_mass.size()), -1);
-  core.load.resize(network.load.size() > 0 ? D * std::ssize(nodes) : 0);
   core.zero_coordinates.clear();
   for (int i = 0; i < std::ssize(nodes); ++i) {
     place[nodes[i]] = i;
-    if (core.load.size() > 0) core.load.segment(D * i, D) = network.load.segment(D * nodes[i], D);
     if (!network.zero_coordinates.empty()) {
       core.zero_coordinates.push_back(network.zero_coordinates[nodes[i]]);
     }

@@ -9,10 +9,10 @@ namespace qddot {
 // The network with its stiff springs alone, or with all but these: the halves of a Split.
 Network only(Network network, bool stiff);
 
-// The nodes that springs or loads of the network pull at, ascending.
+// The nodes that springs of the network pull at, ascending.
 std::vector<int> pulled_nodes(const Network& network);
 
-// The network of these nodes alone, to which all of its springs and loads must belong.
+// The network of these nodes alone, to which all of its springs must belong; it has no loads.
 Network among(const std::vector<int>& nodes, const Network& network);
 
 }  // namespace qddot

@@ -94,11 +94,11 @@ StiffnessKernel<D>::StiffnessKernel(const Network& network, const Layout<D>& lay
   // How many links each block has.
   std::vector<int> count(pattern.nonZeros());
   const auto is_full = [&](int i, int j) { return layout.is_full(i) && layout.is_full(j); };
-  for (const auto& [i, j, law, holds, stiff] : network.links) {
+  for (const auto& [i, j, law, holds, stiff, offset] : network.links) {
     if (is_full(i, j)) ++count[block_of(pattern, layout, i, j)];
   }
   int full = 0;
-  for (const auto& [i, j, law, holds, stiff] : network.links) {
+  for (const auto& [i, j, law, holds, stiff, offset] : network.links) {
     if (!is_full(i, j)) continue;
     if (count[block_of(pattern, layout, i, j)] > 1) links_left_out_.push_back(full);
     ++full;

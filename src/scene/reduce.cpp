@@ -1,14 +1,43 @@
 #include "src/scene/reduce.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "src/model/divided.hpp"
+#include "src/scene/reduce/as_drawn.hpp"
 #include "src/scene/reduce/springs.hpp"
 #include "src/scene/reduce/words.hpp"
 
 namespace qddot {
+namespace {
+
+std::logic_error defect(const std::string& difference) {
+  return std::logic_error(fmt::format(
+      "a defect of qddot, please report the scene: with its reductions {} (--no-reduce leaves them "
+      "out)",
+      difference));
+}
+
+std::string energy_instead_of(double reduced, double drawn) {
+  return fmt::format("the energy at the start would be {:.10g} J instead of {:.10g}", reduced,
+                     drawn);
+}
+
+// Of all nodes, whether the part of the scene that springs join them to never leaves a line.
+std::vector<bool> on_lines(const std::vector<Node>& nodes, const std::vector<Spring>& springs,
+                           const Eigen::Vector3d& gravity, int dimension) {
+  std::vector<bool> is_on_line(nodes.size(), dimension == 1);
+  if (dimension == 1) return is_on_line;
+  for (const Component& component : components_of(nodes, springs)) {
+    if (frame_of(make_body(component, nodes, springs, gravity), dimension).dimension > 1) continue;
+    for (const std::size_t node : component.nodes) is_on_line[node] = true;
+  }
+  return is_on_line;
+}
+
+}  // namespace
 
 ReducedScene::ReducedScene(const Scene& scene, const Reductions& reductions)
     : nodes_(scene.nodes),
@@ -25,6 +54,7 @@ ReducedScene::ReducedScene(const Scene& scene, const Reductions& reductions)
   if (reductions.has(Reduction::massless)) condense(springs);
   leave_out_static_springs(springs);
   build(divide(springs, reductions), springs, reductions);
+  check(scene);
 }
 
 void ReducedScene::leave_out_pins() {
@@ -41,7 +71,9 @@ void ReducedScene::merge(std::vector<Spring>& springs) {
 }
 
 void ReducedScene::condense(std::vector<Spring>& springs) {
-  series_ = condense_series(nodes_, springs, stiff_above_);
+  if (std::ranges::none_of(nodes_, [](const Node& n) { return !n.pinned && n.mass == 0; })) return;
+  series_ = condense_series(nodes_, springs, stiff_above_,
+                            on_lines(nodes_, springs, gravity_, dimension_));
   if (series_.empty()) return;
   std::vector<std::size_t> condensed;
   for (const Series& series : series_) {
@@ -87,8 +119,9 @@ void ReducedScene::build(const std::vector<Component>& components,
   for (const Component& component : components) {
     Body body = make_body(component, nodes_, springs, gravity_);
     body.offers_split = stiff_above_.has_value();
-    Part& part = parts_.emplace_back(body, dimension_, reductions);
+    Part& part = parts_.emplace_back(faithful_part(body, reductions));
     systems.push_back(part.take_system());
+    static_energy_ += part.energy_of_origin();
     n += part.initial().q.size();
   }
   initial_ = {0, Vec(n), Vec(n)};
@@ -109,6 +142,49 @@ void ReducedScene::build(const std::vector<Component>& components,
   } else {
     system_ = std::make_unique<Divided>(std::move(systems));
   }
+}
+
+Part ReducedScene::faithful_part(const Body& body, Reductions reductions) {
+  Part part(body, dimension_, reductions);
+  for (const Reduction suspect :
+       {Reduction::mirror, Reduction::dimension, Reduction::constant_stiffness}) {
+    if (!reductions.has(suspect)) continue;
+    const auto difference = part.difference_from(body);
+    if (!difference) return part;
+    report(suspect, mistaken_sentence(*difference));
+    reductions = reductions.without(suspect);
+    part = Part(body, dimension_, reductions);
+  }
+  if (const auto difference = part.difference_from(body)) throw defect(*difference);
+  return part;
+}
+
+void ReducedScene::check(const Scene& scene) const {
+  std::vector<int> places(nodes_.size(), 0);
+  for (const Part& part : parts_) {
+    for (const std::size_t node : part.nodes()) ++places[node];
+  }
+  for (const std::size_t node : flying_) ++places[node];
+  for (const Series& series : series_) {
+    for (const auto& joint : series.joints) ++places[joint.node];
+  }
+  const std::vector<Node> nodes = expand(initial_);
+  std::vector<Eigen::Vector3d> x, v;
+  std::vector<double> mass;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (places[i] != (nodes[i].pinned ? 0 : 1)) {
+      throw defect(fmt::format("node {} has {} places", i, places[i]));
+    }
+    x.push_back(nodes[i].position);
+    v.push_back(nodes[i].velocity);
+    mass.push_back(nodes[i].pinned ? 0 : nodes[i].mass);
+  }
+  const Tolerances tolerances = tolerances_of(x, v);
+  const BoundedEnergy t = kinetic_of(v, mass, tolerances);
+  const BoundedEnergy p = potential_of(scene.springs, x, mass, gravity_, tolerances);
+  if (differs(t, kinetic(initial_))) throw defect(energy_instead_of(kinetic(initial_), t.value));
+  if (differs(p, potential(initial_)))
+    throw defect(energy_instead_of(potential(initial_), p.value));
 }
 
 Node ReducedScene::flying(std::size_t node, double t) const {

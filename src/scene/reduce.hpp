@@ -27,9 +27,15 @@ namespace qddot {
 //   reduce/straight.hpp
 // Dimension, mirror and constant stiffness are found for each part by itself. Where the scene names
 // stiff springs, each part's system offers a split() by them; everything else is as without.
+//
+// That the start is the drawn one is not taken on trust: every part is compared with its nodes and
+// springs (Part::difference_from), and a reduction that fails is left out of that part and said to
+// be, in findings(). Then all nodes, T and V are compared with the scene.
 class ReducedScene {
  public:
   // The scene must be valid (see validate); it is taken as drawn, wherever it says it starts.
+  // Throws std::logic_error, in a sentence, where the start is not that of the scene whatever is
+  // left out: a defect of this class.
   explicit ReducedScene(const Scene& scene, const Reductions& reductions = {});
 
   // May consist of parts (see System::parts).
@@ -65,6 +71,11 @@ class ReducedScene {
   void leave_out_static_springs(const std::vector<Spring>& springs);
   void build(const std::vector<Component>& components, const std::vector<Spring>& springs,
              const Reductions& reductions);
+  // Reduced as far as it starts as the body does.
+  Part faithful_part(const Body& body, Reductions reductions);
+  // That each free node has one place, and that energies are the scene's. Positions and velocities
+  // of nodes on springs are compared part by part, those of joints are placed by their series.
+  void check(const Scene& scene) const;
   void report(Reduction reduction, std::string what) {
     findings_.push_back({reduction, std::move(what)});
   }
@@ -77,7 +88,7 @@ class ReducedScene {
   std::vector<std::size_t> flying_;
   std::vector<Part> parts_;
   std::unique_ptr<System> system_;
-  double static_energy_ = 0;  // of springs between pinned nodes
+  double static_energy_ = 0;  // of springs between pinned nodes, and of the parts' origins
   State initial_;
   std::vector<Finding> findings_;
 };

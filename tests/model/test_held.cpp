@@ -92,14 +92,14 @@ BOOST_AUTO_TEST_CASE(what_is_free_feels_held_nodes_as_points) {
     rest.node_mass = p.network.node_mass.tail(5);
     rest.links.clear();
     rest.anchors.clear();
-    for (const auto& [i, j, law, holds, stiff] : p.network.links) {
+    for (const auto& [i, j, law, holds, stiff, offset] : p.network.links) {
       if (std::min(i, j) > 0) {
         rest.links.push_back({i - 1, j - 1, law, holds});
       } else {
         rest.anchors.push_back({std::max(i, j) - 1, point, law, holds});
       }
     }
-    for (const auto& [i, place, law, holds, stiff] : p.network.anchors) {
+    for (const auto& [i, place, law, holds, stiff, offset] : p.network.anchors) {
       if (i > 0) rest.anchors.push_back({i - 1, place, law, holds});
     }
     std::vector<bool> is_held(p.initial.q.size(), false);

@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(an_image_in_no_mirror_is_a_link) {
   for (const int dimension : {1, 2, 3}) {
     const Problem p = random_network(random, dimension, 6, 1.3);
     Network images = p.network;
-    for (const auto& [i, j, law, holds, stiff] : images.links) {
+    for (const auto& [i, j, law, holds, stiff, offset] : images.links) {
       images.image_links.push_back({i, j, Eigen::Vector3d::Ones(), law, holds});
     }
     images.links.clear();

@@ -193,19 +193,22 @@ BOOST_AUTO_TEST_CASE(either_may_be_without_springs) {
   });
 }
 
-BOOST_AUTO_TEST_CASE(loads_that_stand_for_stiff_springs_are_theirs) {
+BOOST_AUTO_TEST_CASE(what_an_offset_pulls_is_its_springs_and_loads_are_soft) {
   Network network{.dimension = 1, .gravity = {3, 0, 0}, .node_mass = Vec::Ones(2)};
-  network.links = {{0, 1, {.stiffness = 100}, Holds::always, true}, {0, 1, {.stiffness = 7}}};
+  network.links = {{0, 1, {.stiffness = 100}, Holds::always, true, 0.5},
+                   {0, 1, {.stiffness = 8}, Holds::always, false, -1}};
   network.offers_split = true;
   network.load = Vec{{-50, 70}};
-  network.stiff_load = Vec{{-60, 60}};
   const auto whole = make_mass_spring(network);
+  const Split& split = *whole->split();
   const Vec q{{1, 3}};
-  // On the first: weight 3, load -50, springs 107 (3 - 1), all in numbers without rounding.
-  BOOST_TEST((force_at(*whole, q) == Vec{{3 - 50 + 214, 3 + 70 - 214}}));
-  BOOST_TEST((force_at(*whole->split()->stiff, q) == Vec{{-60 + 200, 60 - 200}}));
-  BOOST_TEST((force_at(*whole->split()->soft, q) == Vec{{3 + 10 + 14, 3 + 10 - 14}}));
-  BOOST_TEST(adds_up(*whole, *whole->split()->stiff, *whole->split()->soft, q));
+  // On the first: weight 3, load -50, springs 100 (2 - 0.5) and 8 (2 + 1), without any rounding.
+  BOOST_TEST((force_at(*whole, q) == Vec{{3 - 50 + 150 + 24, 3 + 70 - 150 - 24}}));
+  BOOST_TEST((force_at(*split.stiff, q) == Vec{{150, -150}}));
+  BOOST_TEST((force_at(*split.soft, q) == Vec{{3 - 50 + 24, 3 + 70 - 24}}));
+  BOOST_TEST(split.stiff->potential(q) == 50 * 1.5 * 1.5);
+  BOOST_TEST(split.soft->potential(q) == 4 * 3. * 3 - (3 - 50) * 1 - (3 + 70) * 3);
+  BOOST_TEST(adds_up(*whole, *split.stiff, *split.soft, q));
 }
 
 BOOST_AUTO_TEST_CASE(each_says_of_its_own_springs_whether_k_is_constant_and_the_system_holds) {

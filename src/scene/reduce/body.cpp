@@ -1,8 +1,30 @@
 #include "src/scene/reduce/body.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace qddot {
+namespace {
+
+// Coordinate by coordinate zero, or that of the first point where all are far from zero for the
+// size of the whole. There no two of a coordinate differ by more than a quarter, so that their
+// differences are exact (Sterbenz).
+Eigen::Vector3d local_origin(const std::vector<Eigen::Vector3d>& x) {
+  constexpr double far = 4;
+  Eigen::Vector3d low = x.front(), high = x.front();
+  for (const Eigen::Vector3d& point : x) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  const double size = (high - low).maxCoeff();
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  for (int d = 0; d < 3; ++d) {
+    if (std::max(std::abs(low[d]), std::abs(high[d])) > far * size) origin[d] = x.front()[d];
+  }
+  return origin;
+}
+
+}  // namespace
 
 Body make_body(const Component& component, const std::vector<Node>& nodes,
                const std::vector<Spring>& springs, const Eigen::Vector3d& gravity) {
@@ -27,6 +49,8 @@ Body make_body(const Component& component, const std::vector<Node>& nodes,
     total_mass += body.mass.back();
   }
   if (total_mass == 0) body.gravity.setZero();
+  body.origin = local_origin(body.x);
+  for (Eigen::Vector3d& x : body.x) x -= body.origin;
 
   // Both runs of the node list are ascending.
   const auto free_end = body.nodes.begin() + static_cast<std::ptrdiff_t>(body.free);

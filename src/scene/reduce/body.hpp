@@ -12,8 +12,12 @@ namespace qddot {
 // One component with all that acts on it: its nodes, the pinned nodes that its springs hold it to,
 // and gravity; numbered anew.
 struct Body {
-  std::vector<std::size_t> nodes{};       // the scene's numbers: free nodes, then pinned ones
-  std::size_t free = 0;                   // how many are free
+  std::vector<std::size_t> nodes{};  // the scene's numbers: free nodes, then pinned ones
+  std::size_t free = 0;              // how many are free
+  // Where x = 0 is in the scene: at zero, or, where the body is far from it for its size, at a node
+  // of the body. Positions are then exact differences, and rounding and tolerances go with the
+  // body's size instead of its distance from the scene's origin.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> x{}, v{};  // of all of them; v = 0 where pinned
   std::vector<double> mass{};             // of all of them; 0 where pinned
   std::vector<Spring> springs{};          // between numbers of this body

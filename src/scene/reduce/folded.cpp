@@ -4,23 +4,44 @@
 #include <numeric>
 #include <tuple>
 
+#include "src/scene/reduce/orbits.hpp"
+
 namespace qddot {
 namespace {
 
 using Eigen::Vector3d;
 
-// The image of node i on the positive side of each mirror; of two on the same side, the first.
-ImageOf image_of(std::size_t i, const Mirrors& mirrors, const std::vector<Vector3d>& y) {
-  ImageOf image{i, Vector3d::Ones()};
-  for (int d = 0; d < mirrors.count; ++d) {
-    const std::size_t here = image.original;
-    const auto there = static_cast<std::size_t>(mirrors.images[d][here]);
-    if (std::pair(-y[there][d], there) < std::pair(-y[here][d], here)) {
-      image = {there, image.signs};
-      image.signs[d] = -1;
+// The node of i's orbit that stands for all of it.
+int original_of(int i, const Orbits& orbits, int mirrors, const std::vector<Vector3d>& y) {
+  const auto rank = [&](int node) {
+    const Vector3d& at = y[static_cast<std::size_t>(node)];
+    unsigned behind = 0;  // the first mirror counts most
+    for (int d = 0; d < mirrors; ++d) behind = 2 * behind + (at[d] < 0 ? 1 : 0);
+    return std::pair(behind, node);
+  };
+  int best = i;
+  for (unsigned g = 1; g < orbits.elements(); ++g) {
+    const int other = orbits.image(g, i);
+    if (rank(other) < rank(best)) best = other;
+  }
+  return best;
+}
+
+std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const Folded& half) {
+  std::vector<ImageOf> images(half.y.size());
+  for (int i = 0; i < std::ssize(images); ++i) {
+    if (original_of(i, orbits, mirrors, half.y) != i) continue;
+    const unsigned zero = half.on_planes[static_cast<std::size_t>(i)];
+    for (unsigned g = 0; g < orbits.elements(); ++g) {
+      // The image of what is zero is that.
+      Vector3d signs = Vector3d::Ones();
+      for (int d = 0; d < mirrors; ++d) {
+        if ((g & ~zero) >> d & 1) signs[d] = -1;
+      }
+      images[static_cast<std::size_t>(orbits.image(g, i))] = {static_cast<std::size_t>(i), signs};
     }
   }
-  return image;
+  return images;
 }
 
 // Which springs may be added: those between the same ends in the same way, of the same length.
@@ -61,30 +82,29 @@ std::vector<Folded::Spring> summed(const std::vector<Folded::Spring>& springs, d
 
 Folded folded(const Body& body, const Mirrors& mirrors) {
   Folded result;
+  const Orbits orbits(mirrors.images);
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {
     result.y.push_back(mirrors.frame.point(body.x[i]));
     result.w.push_back(mirrors.frame.direction(body.v[i]));
-    unsigned planes = 0;
+    const unsigned zero = orbits.zero_coordinates(static_cast<int>(i));
     for (int d = 0; d < mirrors.count; ++d) {
-      if (mirrors.images[d][i] != static_cast<int>(i)) continue;
-      planes |= 1u << d;
-      result.y[i][d] = result.w[i][d] = 0;
+      if (zero >> d & 1) result.y[i][d] = result.w[i][d] = 0;
     }
-    result.on_planes.push_back(planes);
+    result.on_planes.push_back(zero);
   }
-  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
-    result.images.push_back(image_of(i, mirrors, result.y));
-  }
+  result.images = images_of(orbits, mirrors.count, result);
   result.springs.reserve(body.springs.size());
   for (const qddot::Spring& spring : body.springs) {
     const ImageOf &a = result.images[spring.nodes[0]], &b = result.images[spring.nodes[1]];
     Folded::Spring image{a.original, b.original,   a.signs.cwiseProduct(b.signs),
                          spring.law, spring.holds, spring.stiff};
-    // The image of a node on a plane is that node.
-    const unsigned planes = result.on_planes[a.original] | result.on_planes[b.original];
+    // A sign of a coordinate that is zero at one end changes no length.
+    const unsigned zero = result.on_planes[a.original] | result.on_planes[b.original];
     for (int d = 0; d < mirrors.count; ++d) {
-      if (planes >> d & 1) image.mirror[d] = 1;
+      if (zero >> d & 1) image.mirror[d] = 1;
     }
+    // Both ends are one node for ever; without rest length (see mirrors_of) it does nothing.
+    if (image.a == image.b && image.mirror == Vector3d::Ones()) continue;
     result.springs.push_back(image);
   }
   if (mirrors.count > 0) {

@@ -10,8 +10,9 @@
 
 namespace qddot {
 
-// A node of a body as the image diag(signs) y of an original one, which lies on the side of each
-// mirror where its coordinate is not negative.
+// A node of a body as the image diag(signs) y of an original one, its own or another of its orbit
+// under the group of all mirrors (see orbits.hpp). The original lies on the side of each mirror
+// where its coordinate is not negative; where nodes coincide, it is the first of those.
 struct ImageOf {
   std::size_t original;
   Eigen::Vector3d signs;
@@ -21,7 +22,7 @@ struct ImageOf {
 struct Folded {
   std::vector<Eigen::Vector3d> y, w;  // positions and velocities of all nodes in the mirrors' frame
   std::vector<ImageOf> images;        // of all nodes
-  std::vector<unsigned> on_planes;    // of all nodes, a bit for each mirror that it lies on
+  std::vector<unsigned> on_planes;    // of all nodes, a bit for each coordinate that stays zero
   struct Spring {
     std::size_t a, b;        // originals
     Eigen::Vector3d mirror;  // the spring ends at y_a and at diag(mirror) y_b

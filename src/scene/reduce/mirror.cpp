@@ -9,6 +9,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "src/scene/reduce/orbits.hpp"
+
 namespace qddot {
 namespace {
 
@@ -29,7 +31,15 @@ class Places {
  public:
   explicit Places(const std::vector<Vector3d>& x) : x_(x), order_(x.size()) {
     std::iota(order_.begin(), order_.end(), 0);
-    std::ranges::sort(order_, {}, [&](int i) { return key(x[i]); });
+    std::ranges::stable_sort(order_, {}, [&](int i) { return key(x[i]); });
+  }
+
+  // Whether some place holds two nodes.
+  bool any_shared(double tolerance) const {
+    for (int i = 0; i < std::ssize(x_); ++i) {
+      if (find(x_[i], tolerance, [&](int j) { return j != i; }) >= 0) return true;
+    }
+    return false;
   }
 
   // The first node within `tolerance` of a place that `fits`, or -1.
@@ -63,10 +73,10 @@ class Ends {
   }
 
   // The springs between the same two nodes, shortest rest length first; as indices.
-  std::span<const std::size_t> between(std::size_t a, std::size_t b) const {
+  std::span<const std::size_t> between(int a, int b) const {
     const auto same = [&](std::size_t e) { return pair(e); };
-    const auto range =
-        std::ranges::equal_range(order_, std::pair(std::min(a, b), std::max(a, b)), {}, same);
+    const std::pair<std::size_t, std::size_t> ends = std::minmax(a, b);
+    const auto range = std::ranges::equal_range(order_, ends, {}, same);
     return {range.begin(), range.end()};
   }
 
@@ -86,6 +96,24 @@ class Ends {
 
 bool nearly(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
 
+// Nodes in an order in which each comes after a neighbour where it has one before it at all.
+std::vector<int> along_springs(const Body& body, const std::vector<std::vector<int>>& neighbours) {
+  std::vector<int> order;
+  std::vector<bool> is_seen(body.x.size(), false);
+  for (int first = 0; first < std::ssize(body.x); ++first) {
+    if (is_seen[first]) continue;
+    is_seen[first] = true;
+    order.push_back(first);
+    for (std::size_t at = order.size() - 1; at < order.size(); ++at) {
+      for (const int next : neighbours[order[at]]) {
+        if (!is_seen[next]) order.push_back(next);
+        is_seen[next] = true;
+      }
+    }
+  }
+  return order;
+}
+
 class Search {
  public:
   explicit Search(const Body& body)
@@ -93,10 +121,33 @@ class Search {
         tolerance_(rounding * largest_coordinate(body.x)),
         speed_tolerance_(rounding * largest_coordinate(body.v)),
         places_(body.x),
-        ends_(body.springs) {}
+        ends_(body.springs),
+        neighbours_(body.x.size()),
+        order_(body.x.size()) {
+    std::iota(order_.begin(), order_.end(), 0);
+    if (!places_.any_shared(tolerance_)) return;
+    for (const Spring& spring : body.springs) {
+      const auto [a, b] = spring.nodes;
+      neighbours_[a].push_back(static_cast<int>(b));
+      neighbours_[b].push_back(static_cast<int>(a));
+    }
+    order_ = along_springs(body, neighbours_);
+  }
 
-  // A plane normal to `direction` that mirrors the body, with the images of the nodes.
-  std::optional<std::pair<Plane, Images>> mirror(const Vector3d& direction) const {
+  // Whether a spring with a direction is too short to say which: rounding could put its ends into
+  // one place, and what it does there is not known.
+  bool has_unclear_spring() const {
+    constexpr double clear = 1024;
+    return std::ranges::any_of(body_.springs, [&](const Spring& spring) {
+      const auto [a, b] = spring.nodes;
+      return spring.law.rest_length > 0 && !((body_.x[b] - body_.x[a]).norm() > clear * tolerance_);
+    });
+  }
+
+  // A plane normal to `direction` that mirrors the body, with the images of the nodes; these
+  // commute with those under `earlier` planes at right angles to it.
+  std::optional<std::pair<Plane, Images>> mirror(const Vector3d& direction,
+                                                 const std::vector<Images>& earlier) const {
     Plane plane{direction};
     if (std::abs(direction.dot(body_.gravity)) > rounding * body_.gravity.norm()) return {};
     center(plane);
@@ -105,14 +156,21 @@ class Search {
     const bool is_exact = (plane.normal.array() == 0).count() == 2;
     if (!is_exact) {
       const double extent = largest_coordinate(body_.x);
-      const auto roughly = images(plane, std::max(tolerance_, coarse * extent), coarse * extent);
+      const auto roughly =
+          images(plane, std::max(tolerance_, coarse * extent), coarse * extent, {}, {});
       if (!roughly || !refine(plane, *roughly)) return {};
       center(plane);
       if (std::abs(plane.normal.dot(body_.gravity)) > rounding * body_.gravity.norm()) return {};
     }
-    const auto exactly = images(plane, tolerance_, speed_tolerance_);
-    if (!exactly || !moves_any(*exactly) || !maps_springs(*exactly)) return {};
-    return std::pair(plane, *exactly);
+    // The image of the first node decides those of its neighbours; of several in one place, any may
+    // be it.
+    for (const int first : candidates(plane, order_.front())) {
+      const auto exactly = images(plane, tolerance_, speed_tolerance_, earlier, first);
+      if (exactly && moves_any(*exactly) && maps_springs(*exactly)) {
+        return std::pair(plane, *exactly);
+      }
+    }
+    return {};
   }
 
  private:
@@ -126,21 +184,50 @@ class Search {
     plane.offset = low + (high - low) / 2;
   }
 
-  std::optional<Images> images(const Plane& plane, double tolerance, double speed_tolerance) const {
-    Images all(body_.x.size(), -1);
+  bool are_alike(const Plane& plane, int i, int j, double speed_tolerance) const {
     const int free = static_cast<int>(body_.free);
-    for (int i = 0; i < std::ssize(all); ++i) {
+    return (j < free) == (i < free) &&
+           nearly(body_.mass[i], body_.mass[j], rounding * body_.mass[i]) &&
+           (plane.turned(body_.v[i]) - body_.v[j]).norm() <= speed_tolerance;
+  }
+
+  std::vector<int> candidates(const Plane& plane, int i) const {
+    std::vector<int> all;
+    places_.find(plane.image(body_.x[i]), tolerance_, [&](int j) {
+      if (are_alike(plane, i, j, speed_tolerance_)) all.push_back(j);
+      return false;
+    });
+    return all;
+  }
+
+  // With S the reflection and G the group of the earlier ones, S must commute with all g in G: if i
+  // has the image j, then g i has g j. That is possible where the same g leave i and j in place.
+  std::optional<Images> images(const Plane& plane, double tolerance, double speed_tolerance,
+                               const std::vector<Images>& earlier, std::optional<int> first) const {
+    Images all(body_.x.size(), -1);
+    const Orbits orbits(earlier);
+    for (const int i : order_) {
       if (all[i] >= 0) continue;
-      const Vector3d velocity = plane.turned(body_.v[i]);
-      all[i] = places_.find(plane.image(body_.x[i]), tolerance, [&](int j) {
-        return (all[j] < 0 || all[j] == i) && (j < free) == (i < free) &&
-               nearly(body_.mass[i], body_.mass[j], rounding * body_.mass[i]) &&
-               (velocity - body_.v[j]).norm() <= speed_tolerance;
+      const int image = places_.find(plane.image(body_.x[i]), tolerance, [&](int j) {
+        return (i != order_.front() || !first || j == *first) && all[j] < 0 &&
+               are_alike(plane, i, j, speed_tolerance) && orbits.are_fixed_alike(i, j) &&
+               neighbours_agree(i, j, all);
       });
-      if (all[i] < 0) return {};
-      all[all[i]] = i;
+      if (image < 0) return {};
+      for (unsigned g = 0; g < orbits.elements(); ++g) {
+        const int a = orbits.image(g, i), b = orbits.image(g, image);
+        all[a] = b;
+        all[b] = a;
+      }
     }
     return all;
+  }
+
+  // Whether springs between i and nodes whose images are known are those of j and these.
+  bool neighbours_agree(int i, int j, const Images& images) const {
+    return std::ranges::all_of(neighbours_[i], [&](int next) {
+      return images[next] < 0 || are_springs_alike(i, next, j, images[next]);
+    });
   }
 
   // The direction in which most images differ from their nodes, or false where none does.
@@ -167,30 +254,30 @@ class Search {
   }
 
   bool maps_springs(const Images& images) const {
-    for (const Spring& spring : body_.springs) {
+    return std::ranges::all_of(body_.springs, [&](const Spring& spring) {
       const auto [a, b] = spring.nodes;
-      const auto own = ends_.between(a, b);
-      const auto other =
-          ends_.between(static_cast<std::size_t>(images[a]), static_cast<std::size_t>(images[b]));
-      if (own.size() != other.size()) return false;
-      for (std::size_t e = 0; e < own.size(); ++e) {
-        const Spring &drawn = body_.springs[own[e]], &image = body_.springs[other[e]];
-        const SpringLaw &one = drawn.law, &two = image.law;
-        if (!nearly(one.rest_length, two.rest_length, tolerance_) ||
-            !nearly(one.stiffness, two.stiffness, rounding * one.stiffness) ||
-            !nearly(one.quartic, two.quartic, rounding * one.quartic) ||
-            drawn.holds != image.holds) {
-          return false;
-        }
-      }
-    }
-    return true;
+      return are_springs_alike(static_cast<int>(a), static_cast<int>(b), images[a], images[b]);
+    });
+  }
+
+  // Of all springs between a and b and all between c and d.
+  bool are_springs_alike(int a, int b, int c, int d) const {
+    const auto own = ends_.between(a, b), other = ends_.between(c, d);
+    return std::ranges::equal(own, other, [&](std::size_t e, std::size_t f) {
+      const Spring &drawn = body_.springs[e], &image = body_.springs[f];
+      const SpringLaw &one = drawn.law, &two = image.law;
+      return nearly(one.rest_length, two.rest_length, tolerance_) &&
+             nearly(one.stiffness, two.stiffness, rounding * one.stiffness) &&
+             nearly(one.quartic, two.quartic, rounding * one.quartic) && drawn.holds == image.holds;
+    });
   }
 
   const Body& body_;
   double tolerance_, speed_tolerance_;
   Places places_;
   Ends ends_;
+  std::vector<std::vector<int>> neighbours_;  // of each node; empty where no two nodes coincide
+  std::vector<int> order_;                    // in which nodes find their images
 };
 
 // Directions worth trying, in space, within the frame.
@@ -238,11 +325,12 @@ Mirrors mirrors_of(const Body& body, const Frame& frame) {
   const Search search(body);
   std::vector<Plane> planes;
   Mirrors mirrors{.frame = frame};
+  if (search.has_unclear_spring()) return mirrors;
   for (const Vector3d& direction : candidates(body, frame)) {
     const bool is_apart = std::ranges::all_of(
         planes, [&](const Plane& plane) { return std::abs(plane.normal.dot(direction)) < 1e-7; });
     if (!is_apart || std::ssize(planes) == frame.dimension) continue;
-    const auto found = search.mirror(direction);
+    const auto found = search.mirror(direction, mirrors.images);
     if (!found) continue;
     planes.push_back(found->first);
     mirrors.images.push_back(found->second);

@@ -18,6 +18,11 @@ namespace qddot {
 // other, and a node on the plane stays on it. With several such planes the same holds for the group
 // that they generate; being at right angles they commute, and each node's images are
 // diag(+-1, ...) of it.
+//
+// Where nodes coincide, several permutations of them belong to one reflection. Any will do that
+// maps springs to springs, as long as those of all reflections commute as these do: only then does
+// the group act on the nodes, and an orbit has one original. A plane without such a permutation is
+// none.
 struct Mirrors {
   Frame frame;                             // the body's, turned so that the planes are y_d = 0
   int count = 0;                           // of planes
@@ -26,8 +31,9 @@ struct Mirrors {
 
 // Looks for such planes among those through the body's middle that are normal to an axis of
 // `frame`, to the diagonal of two of them (which swaps the two coordinates), or to a principal axis
-// of its free nodes or of its pins. Everything has to agree within rounding (see body.hpp). n log n
-// operations for n nodes and springs.
+// of its free nodes or of its pins. Everything has to agree within rounding (see body.hpp), and no
+// spring of some rest length may be as short as that. n log n operations for n nodes and springs,
+// of which few coincide.
 Mirrors mirrors_of(const Body& body, const Frame& frame);
 
 }  // namespace qddot

@@ -36,7 +36,7 @@ void add_spring(const Folded::Spring& spring, const Folded& half, const std::vec
 
 }  // namespace
 
-Part::Part(const Body& body, int dimension, const Reductions& reductions) {
+Part::Part(const Body& body, int dimension, const Reductions& reductions) : origin_(body.origin) {
   Frame frame{.dimension = dimension};
   if (reductions.has(Reduction::dimension)) frame = frame_of(body, dimension);
   mirrors_.frame = frame;
@@ -78,6 +78,7 @@ Part::Part(const Body& body, int dimension, const Reductions& reductions) {
     network.node_mass[number] += i < body.free ? body.mass[i] : 1;
     for (int d = 0; d < axes; ++d) network.load[axes * number + d] += body.mass[i] * g[d];
     network.constant_energy -= body.mass[i] * body.gravity.dot(mirrors_.frame.origin);
+    energy_of_origin_ -= body.mass[i] * body.gravity.dot(origin_);
     if (i >= body.free) continue;
     nodes_.push_back(body.nodes[i]);
     images_.push_back({number, half.images[i].signs});
@@ -95,19 +96,25 @@ Part::Part(const Body& body, int dimension, const Reductions& reductions) {
   if (with_pins) system_ = std::make_unique<Held>(std::move(system_), is_held);
 }
 
+Part::Motion Part::motion(std::size_t i, const Eigen::Ref<const Vec>& q,
+                          const Eigen::Ref<const Vec>& v) const {
+  const Image& image = images_[i];
+  const Unknowns& unknowns = layout_[static_cast<std::size_t>(image.original)];
+  Eigen::Vector3d y = Eigen::Vector3d::Zero(), w = Eigen::Vector3d::Zero();
+  for (int a = 0; a < unknowns.count; ++a) {
+    const int d = unknowns.axis[static_cast<std::size_t>(a)];
+    y[d] = image.signs[d] * q[unknowns.first + a];
+    w[d] = image.signs[d] * v[unknowns.first + a];
+  }
+  return {mirrors_.frame.from_point(y), mirrors_.frame.from_direction(w)};
+}
+
 void Part::expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v,
                   std::vector<Node>& nodes) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const Image& image = images_[i];
-    const Unknowns& unknowns = layout_[static_cast<std::size_t>(image.original)];
-    Eigen::Vector3d y = Eigen::Vector3d::Zero(), w = Eigen::Vector3d::Zero();
-    for (int a = 0; a < unknowns.count; ++a) {
-      const int d = unknowns.axis[static_cast<std::size_t>(a)];
-      y[d] = image.signs[d] * q[unknowns.first + a];
-      w[d] = image.signs[d] * v[unknowns.first + a];
-    }
-    nodes[nodes_[i]].position = mirrors_.frame.from_point(y);
-    nodes[nodes_[i]].velocity = mirrors_.frame.from_direction(w);
+    const Motion now = motion(i, q, v);
+    nodes[nodes_[i]].position = origin_ + now.x;
+    nodes[nodes_[i]].velocity = now.v;
   }
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "src/model/mass_spring.hpp"
@@ -12,11 +15,12 @@
 namespace qddot {
 
 // A body's motion in the fewest unknowns. Every node's position is an affine function of them,
-//   x_i = origin + axes diag(signs_i) y_original(i),   in short x = P q + c,
+//   x_i = origin + frame.origin + axes diag(signs_i) y_original(i),   in short x = P q + c,
 // where the originals are the nodes on one side of each mirror. With the energy of all springs
 // written in q the equations of motion are those of M = P'M_full P, f = P'f_full, K = P'K_full P.
 // Springs that are images of each other have the same energy: one stands for all, stiffer by their
-// number, and nothing is multiplied by P.
+// number, and nothing is multiplied by P. The origin is the body's own (see Body): what is small in
+// the body keeps its digits wherever the body lies.
 class Part {
  public:
   Part(const Body& body, int dimension, const Reductions& reductions);
@@ -27,7 +31,11 @@ class Part {
   // Gives away the system; the rest remains.
   std::unique_ptr<System> take_system() { return std::move(system_); }
 
+  // In coordinates from the body's origin.
   const Mirrors& mirrors() const { return mirrors_; }
+  const Eigen::Vector3d& origin() const { return origin_; }
+  // What the potential energy has beside that of the system [J]: -M g.origin.
+  double energy_of_origin() const { return energy_of_origin_; }
   // The scene's numbers of its nodes.
   const std::vector<std::size_t>& nodes() const { return nodes_; }
   std::size_t originals() const { return layout_.size(); }
@@ -37,6 +45,12 @@ class Part {
   // Sets positions and velocities of its nodes among those of the scene from its unknowns.
   void expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v,
               std::vector<Node>& nodes) const;
+
+  // In which way, with both numbers, it is not `body` at the start: nodes, masses, positions,
+  // velocities and energies are compared, up to what rounding and the tolerances of its reductions
+  // make of them. Momenta and angular momenta follow from the first four. Nothing where all agree,
+  // as they do by construction: a defect of a reduction shows here. Before take_system().
+  std::optional<std::string> difference_from(const Body& body) const;
 
  private:
   // A node as the image of an original, by the signs of its coordinates.
@@ -51,7 +65,19 @@ class Part {
     std::array<int, 3> axis;
   };
 
+  struct Motion {
+    Eigen::Vector3d x, v;
+  };
+  // Of its node number i, from the body's origin.
+  Motion motion(std::size_t i, const Eigen::Ref<const Vec>& q,
+                const Eigen::Ref<const Vec>& v) const;
+  std::optional<std::string> places_differ(const Body& body, double tolerance,
+                                           double speed_tolerance) const;
+  std::optional<std::string> masses_differ(const Body& body) const;
+
   Mirrors mirrors_;
+  Eigen::Vector3d origin_;
+  double energy_of_origin_ = 0;
   std::vector<std::size_t> nodes_;
   std::vector<Image> images_;     // of the nodes
   std::vector<Unknowns> layout_;  // of the originals

@@ -10,10 +10,11 @@ constexpr std::size_t none = static_cast<std::size_t>(-1);
 class Condenser {
  public:
   Condenser(const std::vector<Node>& nodes, std::vector<Spring>& springs,
-            std::optional<double> stiff_above)
+            std::optional<double> stiff_above, const std::vector<bool>& is_on_line)
       : nodes_(nodes),
         springs_(springs),
         stiff_above_(stiff_above),
+        is_on_line_(is_on_line),
         touching_(nodes.size()),
         is_seen_(nodes.size(), false) {
     for (std::size_t e = 0; e < springs.size(); ++e) {
@@ -103,6 +104,7 @@ class Condenser {
     // A series drawn at its rest length may be shorter by what rounding makes of it.
     if (length < (1 - 1e-12) * rest_length) return {};
     const SpringLaw law{.stiffness = 1 / compliance, .rest_length = rest_length};
+    if (is_on_line_[joints.front()] && stays_folded(ends, joints, law.stiffness)) return {};
     const Holds holds = rest_length > 0 ? Holds::in_tension : Holds::always;
     Series series{ends, law, holds, is_stiff(law, stiff_above_), {}};
     double shift = 0, share = 0;
@@ -117,9 +119,39 @@ class Condenser {
     return series;
   }
 
+  // On a line, as the header says.
+  bool stays_folded(std::array<std::size_t, 2> ends, const std::vector<std::size_t>& joints,
+                    double stiffness) const {
+    const Eigen::Vector3d along = nodes_[ends[1]].position - nodes_[ends[0]].position;
+    std::vector<double> signs;
+    double signed_rest_length = 0;
+    bool is_folded = false;
+    std::size_t from = ends[0];
+    for (std::size_t e = 0; e < chain_.size(); ++e) {
+      const std::size_t to = e < joints.size() ? joints[e] : ends[1];
+      const double rest_length = springs_[chain_[e]].law.rest_length;
+      const bool is_back = along.dot(nodes_[to].position - nodes_[from].position) < 0;
+      signs.push_back(is_back ? -1 : 1);
+      signed_rest_length += signs.back() * rest_length;
+      is_folded |= is_back && rest_length > 0;
+      from = to;
+    }
+    if (!is_folded) return false;
+    if (joints.size() > 1) return true;
+    const double tension = stiffness * (along.norm() - signed_rest_length);
+    for (std::size_t e = 0; e < chain_.size(); ++e) {
+      const SpringLaw& law = springs_[chain_[e]].law;
+      if (law.rest_length > 0 && !(law.stiffness * law.rest_length + signs[e] * tension > 0)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   const std::vector<Node>& nodes_;
   std::vector<Spring>& springs_;
   std::optional<double> stiff_above_;
+  const std::vector<bool>& is_on_line_;
   std::vector<std::vector<std::size_t>> touching_;  // the springs of each massless node
   std::vector<bool> is_seen_;
   std::vector<std::size_t> chain_;
@@ -142,8 +174,9 @@ void Series::place(std::vector<Node>& nodes) const {
 }
 
 std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<Spring>& springs,
-                                    std::optional<double> stiff_above) {
-  return Condenser(nodes, springs, stiff_above).condense();
+                                    std::optional<double> stiff_above,
+                                    const std::vector<bool>& is_on_line) {
+  return Condenser(nodes, springs, stiff_above, is_on_line).condense();
 }
 
 }  // namespace qddot

@@ -16,6 +16,16 @@ namespace qddot {
 // That is exact while tau >= 0. In compression the line is an unstable equilibrium and the springs
 // fold up; the one spring pushes back instead, so its law says that it holds in tension only.
 // (Where l0 = 0 there is no compression.)
+//
+// Joints that were drawn folded, beyond an end or in another order, unfold in a plane or in space:
+// with all springs on a line, L_e signed, moves d_e across it (of sum 0) change the energy by
+//   1/2 tau sum d_e^2 / L_e,
+// which is negative for some as soon as one L_e is, since sum L_e = l > 0. What never leaves a line
+// cannot: there each choice of signs s_e has a minimum of its own,
+//   tau = k (l - sum s_e l_e),  L_e = s_e l_e + tau/k_e,  wherever s_e L_e > 0 for all e with l_e >
+//   0,
+// and a joint goes to that of the signs it was drawn with. One joint whose signs have no minimum is
+// pulled over the end that it lies beyond, to the straight one. Of several, this is not decided.
 struct Series {
   std::array<std::size_t, 2> ends{};
   SpringLaw law;  // of the one spring
@@ -35,11 +45,14 @@ struct Series {
 };
 
 // All series of the scene that are exact at its start: through massless nodes on two springs
-// without quartic term, between two ends no closer than l0 apart. What becomes of the springs:
-// `springs` loses those in series and gains the one for each. Massless nodes that are left are
-// those which cannot be condensed. Like a drawn one, the one spring is stiff where it has more
-// stiffness than `stiff_above`: the ends of a long series feel a soft spring, however stiff each.
+// without quartic term, between two ends no closer than l0 apart, where the joints end up between
+// these in their order. `is_on_line`: of all nodes, whether they stay on a line with all that
+// springs join them to. What becomes of the springs: `springs` loses those in series and gains the
+// one for each. Massless nodes that are left are those which cannot be condensed. Like a drawn one,
+// the one spring is stiff where it has more stiffness than `stiff_above`: the ends of a long series
+// feel a soft spring, however stiff each.
 std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<Spring>& springs,
-                                    std::optional<double> stiff_above);
+                                    std::optional<double> stiff_above,
+                                    const std::vector<bool>& is_on_line);
 
 }  // namespace qddot

@@ -13,7 +13,6 @@ struct LineSpring {
   double s, c;
   SpringLaw law;
   Holds holds;
-  bool stiff;
 
   double difference(const std::vector<double>& x) const {
     return c - x[i] + (j < 0 ? 0 : s * x[j]);
@@ -22,14 +21,14 @@ struct LineSpring {
 
 std::vector<LineSpring> springs_of(const Network& network) {
   std::vector<LineSpring> all;
-  for (const auto& [i, j, law, holds, stiff] : network.links) {
-    all.push_back({i, j, 1, 0, law, holds, stiff});
+  for (const auto& link : network.links) {
+    all.push_back({link.i, link.j, 1, 0, link.law, link.holds});
   }
   for (const auto& image : network.image_links) {
-    all.push_back({image.i, image.j, image.mirror[0], 0, image.law, image.holds, image.stiff});
+    all.push_back({image.i, image.j, image.mirror[0], 0, image.law, image.holds});
   }
   for (const auto& anchor : network.anchors) {
-    all.push_back({anchor.i, -1, 0, anchor.point[0], anchor.law, anchor.holds, anchor.stiff});
+    all.push_back({anchor.i, -1, 0, anchor.point[0], anchor.law, anchor.holds});
   }
   return all;
 }
@@ -54,25 +53,21 @@ std::vector<double> coordinates(const Network& network, const Vec& q) {
   return x;
 }
 
-Network with_loads(Network network, const std::vector<LineSpring>& springs,
-                   const std::vector<double>& x) {
-  if (network.load.size() == 0) network.load = Vec::Zero(network.node_mass.size());
-  if (network.offers_split) network.stiff_load = Vec::Zero(network.node_mass.size());
-  for (const LineSpring& spring : springs) {
-    const double direction = spring.difference(x) < 0 ? -1 : 1;
-    const double k = spring.law.stiffness, l0 = spring.law.rest_length;
-    const double pull = k * direction * l0;  // V = 1/2 k d^2 - pull d + 1/2 k l0^2
-    const auto pull_in = [&](Vec& load) {
-      load[spring.i] -= pull;
-      if (spring.j >= 0) load[spring.j] += spring.s * pull;
-    };
-    pull_in(network.load);
-    if (spring.stiff) pull_in(network.stiff_load);
-    network.constant_energy += 0.5 * k * l0 * l0 - pull * spring.c;
-  }
-  for (auto& link : network.links) link.law.rest_length = 0;
-  for (auto& image : network.image_links) image.law.rest_length = 0;
-  for (auto& anchor : network.anchors) anchor.law.rest_length = 0;
+// The network in which each spring keeps the direction in which it lies at `x`. `springs` are all
+// of its springs, in their order.
+Network with_offsets(Network network, const std::vector<LineSpring>& springs,
+                     const std::vector<double>& x) {
+  auto spring = springs.begin();
+  const auto keep_direction = [&](auto& drawn) {
+    for (auto& one : drawn) {
+      const double l0 = one.law.rest_length;
+      one.offset = spring++->difference(x) < 0 ? -l0 : l0;
+      one.law.rest_length = 0;
+    }
+  };
+  keep_direction(network.links);
+  keep_direction(network.image_links);
+  keep_direction(network.anchors);
   return network;
 }
 
@@ -94,7 +89,7 @@ std::optional<Network> straightened(const Network& network, const Vec& q, const 
   const auto springs = springs_of(network);
   if (!may_be_straightened(springs)) return {};
   const auto x = coordinates(network, q);
-  Network straight = with_loads(network, springs, x);
+  Network straight = with_offsets(network, springs, x);
   const auto system = make_mass_spring(straight);
   SymmetricMatrix k = system->stiffness_pattern();
   system->stiffness(q, k);

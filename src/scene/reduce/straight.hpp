@@ -7,10 +7,10 @@
 namespace qddot {
 
 // On a line, a spring whose ends never pass through each other pulls with k (s d - l0) s, s = +-1
-// being its direction and d the difference of its ends: linear in d, 1/2 k d^2 - k s l0 d +
-// constant. So K is constant for as long as no spring turns over, d = 0.
+// being its direction and d the difference of its ends: linear in d, V = 1/2 k (d - s l0)^2. So K
+// is constant for as long as no spring turns over, d = 0.
 //
-// The same network with springs of rest length zero and constant loads, if none ever turns over
+// The same network with springs of rest length zero and offset s l0, if none ever turns over
 // from the start (q, v); nothing where that is not certain, or the dimension is not one, or a law
 // is not of this kind. The proof is by energy, for all times. Let q* be the equilibrium of the
 // linear system, -K (q* - q) = f. Its energy is that of the motion, as long as no spring has

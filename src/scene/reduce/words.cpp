@@ -40,14 +40,17 @@ std::string plane(const Eigen::Vector3d& normal, const Eigen::Vector3d& point, i
                      vector(point, dimension));
 }
 
-std::string subspace(const Frame& frame, int dimension) {
-  const int left_out = dimension - frame.dimension;
-  if (left_out == 1 && dimension > 1) {
-    // Of a 2D scene the third axis is that of the page.
-    return plane(frame.axes.col(frame.dimension), frame.origin, dimension);
+std::string subspace(const Part& part, int dimension) {
+  const Frame& frame = part.mirrors().frame;
+  const Eigen::Vector3d point = part.origin() + frame.origin, normal = frame.axes.col(2);
+  if (dimension == 3 && frame.dimension == 2) return plane(normal, point, dimension);
+  const Eigen::Vector3d along = frame.axes.col(0);
+  const Eigen::Vector3d across(-along.y(), along.x(), 0);
+  if (dimension == 2 && across.lpNorm<Eigen::Infinity>() == 1) {
+    return plane(across, point, dimension);
   }
-  return fmt::format("line along {} through {}", vector(frame.axes.col(0), dimension),
-                     vector(frame.origin, dimension));
+  return fmt::format("line along {} through {}", vector(along, dimension),
+                     vector(point, dimension));
 }
 
 }  // namespace
@@ -78,6 +81,13 @@ std::string parts_sentence(std::size_t parts) {
   return fmt::format("{} that no spring joins, each integrated by itself", counted(parts, "part"));
 }
 
+std::string mistaken_sentence(const std::string& difference) {
+  return fmt::format(
+      "left out of a part, where {}: a defect of qddot that changes no result, please report the "
+      "scene",
+      difference);
+}
+
 std::vector<Finding> findings_of(const std::vector<Part>& parts,
                                  const std::vector<std::unique_ptr<System>>& systems,
                                  int dimension) {
@@ -97,7 +107,7 @@ std::vector<Finding> findings_of(const std::vector<Part>& parts,
         const Frame& frame = part.mirrors().frame;
         return fmt::format(
             "positions, velocities and gravity lie in the {}: {} coordinate{} a node",
-            subspace(frame, dimension), frame.dimension, frame.dimension == 1 ? "" : "s");
+            subspace(part, dimension), frame.dimension, frame.dimension == 1 ? "" : "s");
       });
   add(
       Reduction::mirror, [](const Part& part) { return part.mirrors().count > 0; },
@@ -105,7 +115,8 @@ std::vector<Finding> findings_of(const std::vector<Part>& parts,
         const Mirrors& mirrors = part.mirrors();
         std::vector<std::string> planes;
         for (int d = 0; d < mirrors.count; ++d) {
-          planes.push_back(plane(mirrors.frame.axes.col(d), mirrors.frame.origin, dimension));
+          planes.push_back(
+              plane(mirrors.frame.axes.col(d), part.origin() + mirrors.frame.origin, dimension));
         }
         return fmt::format("the scene is its own mirror image in the {}: {} of {} move freely",
                            fmt::join(planes, " and the "), part.originals(),

@@ -16,6 +16,8 @@ std::string merged_sentence(std::size_t gone, std::size_t left);
 std::string condensed_sentence(const std::vector<std::size_t>& nodes, std::size_t series);
 std::string flying_sentence(const std::vector<std::size_t>& nodes);
 std::string parts_sentence(std::size_t parts);
+// Of a reduction that was left out of a part since it made it another one, and how.
+std::string mistaken_sentence(const std::string& difference);
 
 // What was found in the parts, each with its system: their subspaces, mirrors and constant K, parts
 // of one kind together. `dimension`: of the scene.

@@ -1,0 +1,74 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "src/scene/reduce/as_drawn.hpp"
+#include "src/scene/reduce/part.hpp"
+
+namespace qddot {
+namespace {
+
+std::string instead_of(const char* what, double reduced, double drawn, const char* unit) {
+  return fmt::format("{} would be {:.10g} {} instead of {:.10g}", what, reduced, unit, drawn);
+}
+
+}  // namespace
+
+std::optional<std::string> Part::difference_from(const Body& body) const {
+  const Tolerances tolerances = tolerances_of(body.x, body.v);
+  if (const auto where = places_differ(body, tolerances.place, tolerances.speed)) return where;
+  if (const auto mass = masses_differ(body)) return mass;
+  const BoundedEnergy t = kinetic_of(body.v, body.mass, tolerances);
+  if (const double own = system_->kinetic(initial_.v); differs(t, own)) {
+    return instead_of("the kinetic energy at the start", own, t.value, "J");
+  }
+  const BoundedEnergy v = potential_of(body.springs, body.x, body.mass, body.gravity, tolerances);
+  if (const double own = system_->potential(initial_.q); differs(v, own)) {
+    return instead_of("the potential energy at the start", own, v.value, "J");
+  }
+  return {};
+}
+
+std::optional<std::string> Part::places_differ(const Body& body, double tolerance,
+                                               double speed_tolerance) const {
+  if (nodes_.size() != body.free) {
+    return fmt::format("{} of {} nodes would move", nodes_.size(), body.free);
+  }
+  for (std::size_t i = 0; i < body.free; ++i) {
+    if (nodes_[i] != body.nodes[i]) return fmt::format("node {} would not move", body.nodes[i]);
+    const Motion start = motion(i, initial_.q, initial_.v);
+    const double off = (start.x - body.x[i]).norm();
+    if (off > tolerance) {
+      return fmt::format("node {} would start {:.3g} m from its place", body.nodes[i], off);
+    }
+    const double speed_off = (start.v - body.v[i]).norm();
+    if (speed_off > speed_tolerance) {
+      return fmt::format("node {} would start with a velocity off by {:.3g} m/s", body.nodes[i],
+                         speed_off);
+    }
+  }
+  return {};
+}
+
+// P'M_full P is diagonal: the masses of all images of each original.
+std::optional<std::string> Part::masses_differ(const Body& body) const {
+  Vec mass = Vec::Zero(initial_.q.size());
+  std::vector<bool> moves(static_cast<std::size_t>(mass.size()), false);
+  for (std::size_t i = 0; i < body.free; ++i) {
+    const Unknowns& unknowns = layout_[static_cast<std::size_t>(images_[i].original)];
+    for (int a = 0; a < unknowns.count; ++a) {
+      mass[unknowns.first + a] += body.mass[i];
+      moves[static_cast<std::size_t>(unknowns.first + a)] = true;
+    }
+  }
+  for (Index k = 0; k < mass.size(); ++k) {
+    if (!moves[static_cast<std::size_t>(k)]) continue;  // of a pinned node
+    const double own = system_->mass()[k];
+    if (std::abs(own - mass[k]) > rounding * mass[k]) {
+      return instead_of("a mass", own, mass[k], "kg");
+    }
+  }
+  return {};
+}
+
+}  // namespace qddot

@@ -1,0 +1,102 @@
+// Springs on a line that keep their direction: V = 1/2 k (d - r)^2.
+#include <stdexcept>
+
+#include <boost/test/unit_test.hpp>
+
+#include "src/model/mass_spring.hpp"
+#include "tests/measure.hpp"
+
+using namespace qddot;
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+// Each kind of spring on `count` nodes, some of which stay at zero; all lengths are off by `strain`
+// at the state `q`.
+struct Line {
+  Network network;
+  Vec q;
+};
+Line line(int count, double strain, bool has_mirror) {
+  Line line{{.dimension = 1, .node_mass = Vec::Ones(count)}, {}};
+  std::vector<double> x;
+  for (int i = 0; i < count; ++i) x.push_back(1 + i * 0.75);
+  if (has_mirror) {
+    line.network.zero_coordinates.assign(static_cast<std::size_t>(count), 0);
+    line.network.zero_coordinates[0] = 1;
+    x[0] = 0;
+  }
+  const auto k = [](int i) { return 100. + 10 * i; };
+  for (int i = 0; i + 1 < count; ++i) {
+    line.network.links.push_back(
+        {i, i + 1, {.stiffness = k(i)}, Holds::always, false, x[i + 1] - x[i] - strain});
+    line.network.image_links.push_back({i + 1,
+                                        i,
+                                        {-1, 1, 1},
+                                        {.stiffness = k(i)},
+                                        Holds::always,
+                                        false,
+                                        -x[i] - x[i + 1] - strain});
+    line.network.anchors.push_back(
+        {i, {-2, 0, 0}, {.stiffness = k(i)}, Holds::always, false, -2 - x[i] - strain});
+  }
+  line.q = Vec::Map(x.data() + (has_mirror ? 1 : 0), count - (has_mirror ? 1 : 0));
+  return line;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(offsets)
+
+BOOST_AUTO_TEST_CASE(energies_of_small_strains_keep_their_digits) {
+  // 20 nodes are summed by vectors, 4 spring by spring.
+  for (const int count : {4, 20}) {
+    for (const bool has_mirror : {false, true}) {
+      const double strain = 0x1p-30;  // positions and offsets are without rounding
+      const auto [network, q] = line(count, strain, has_mirror);
+      const auto system = make_mass_spring(network);
+      BOOST_TEST(system->stiffness_is_constant());
+      double v = 0;
+      for (int i = 0; i + 1 < count; ++i) v += 3 * 0.5 * (100. + 10 * i) * strain * strain;
+      BOOST_TEST(system->potential(q) == v, boost::test_tools::tolerance(200 * eps));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(force_and_stiffness_are_its_derivatives) {
+  for (const int count : {4, 20}) {
+    for (const bool has_mirror : {false, true}) {
+      const auto [network, q] = line(count, 0.3, has_mirror);
+      const auto system = make_mass_spring(network);
+      const auto v = [&](const Vec& x) { return Vec::Constant(1, system->potential(x)); };
+      const auto f = [&](const Vec& x) { return force_at(*system, x); };
+      const Vec slope = finite_difference_jacobian(v, q, 0.01).transpose();
+      // Differences of a quadratic are exact but for the rounding of V, eps V / h.
+      const double scale = system->potential(q) * eps / 0.01;
+      BOOST_TEST((slope + f(q)).cwiseAbs().maxCoeff() < 100 * scale);
+      BOOST_TEST((finite_difference_jacobian(f, q, 0.01) - dense(stiffness_at(*system, q)))
+                     .cwiseAbs()
+                     .maxCoeff() < 1e-9 * 300);
+      // The mean force does the work, V(a) - V(b).
+      Vec other = q, mean(q.size());
+      for (Index i = 0; i < q.size(); ++i) other[i] += 0.1 * std::sin(3. * static_cast<double>(i));
+      system->mean_force(q, other, mean);
+      BOOST_TEST(std::abs(mean.dot(other - q) - (system->potential(q) - system->potential(other))) <
+                 100 * eps * (1 + system->potential(other)) * count);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_have_an_offset_is_refused) {
+  Network plane{.dimension = 2, .node_mass = Vec::Ones(2)};
+  plane.links = {{0, 1, {.stiffness = 1}, Holds::always, false, 0.5}};
+  BOOST_CHECK_THROW(make_mass_spring(plane), std::invalid_argument);
+  Network line{.dimension = 1, .node_mass = Vec::Ones(2)};
+  line.links = {{0, 1, {.stiffness = 1, .rest_length = 1}, Holds::always, false, 0.5}};
+  BOOST_CHECK_THROW(make_mass_spring(line), std::invalid_argument);
+  line.links = {{0, 1, {.stiffness = 1, .quartic = 1}, Holds::always, false, 0.5}};
+  BOOST_CHECK_THROW(make_mass_spring(line), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

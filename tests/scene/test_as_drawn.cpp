@@ -1,0 +1,92 @@
+// A part of another body is told from its own: what every reduction is checked by.
+#include <boost/test/unit_test.hpp>
+
+#include "src/scene/reduce/part.hpp"
+#include "tests/scene/drawn.hpp"
+
+using namespace qddot;
+
+namespace {
+
+Body body_of(const Scene& scene) {
+  return make_body(joined(components_of(scene.nodes, scene.springs)).front(), scene.nodes,
+                   scene.springs, scene.gravity);
+}
+
+template <class Change>
+std::string difference(const Scene& scene, const Change& change) {
+  const Part part(body_of(scene), scene.dimension, Reductions());
+  Scene other = scene;
+  change(other);
+  return part.difference_from(body_of(other)).value_or("");
+}
+
+bool says(const std::string& sentence, const std::string& words) {
+  return sentence.find(words) != std::string::npos;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(as_drawn)
+
+BOOST_AUTO_TEST_CASE(a_part_is_the_body_that_it_was_made_of) {
+  for (const Generator& generator : generators()) {
+    const Scene scene = draw(generator.name);
+    BOOST_TEST(difference(scene, [](Scene&) {}) == "", generator.name);
+    if (scene.dimension > 1) {
+      const Scene tilted = turned(scene, some_rotation(), {3, -2, 1});
+      BOOST_TEST(difference(tilted, [](Scene&) {}) == "", generator.name);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(whatever_is_lost_or_changed_is_found) {
+  const Scene cloth = draw("cloth", {{"nodes", 5}});
+  const auto of = [&](const auto& change) { return difference(cloth, change); };
+  BOOST_TEST(says(of([](Scene& s) { s.nodes[7].mass *= 1 + 1e-12; }), "a mass would be"));
+  BOOST_TEST(says(of([](Scene& s) { s.nodes[7].pinned = true; }), "nodes would move"));
+  BOOST_TEST(says(of([](Scene& s) { s.nodes[7].position.y() += 1e-11; }), "from its place"));
+  BOOST_TEST(says(of([](Scene& s) { s.nodes[7].velocity.y() += 1e-11; }), "velocity off by"));
+  BOOST_TEST(says(of([](Scene& s) { s.springs[3].law.rest_length *= 0.9; }), "potential energy"));
+  BOOST_TEST(says(of([](Scene& s) {
+                    s.springs.push_back({{0, 24}, {1, 0}});
+                  }),
+                  "potential energy"));
+  BOOST_TEST(says(
+      difference(turned(cloth, some_rotation(), {0, 0, 1}), [](Scene& s) { s.gravity *= 1.001; }),
+      "potential energy"));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_no_number_is_no_difference) {
+  Scene far = draw("cloth", {{"nodes", 3}});
+  for (Node& node : far.nodes) node.position *= 1e200;
+  BOOST_TEST(difference(far, [](Scene&) {}) == "");
+  const ReducedScene reduced(far);
+  BOOST_TEST(!std::isfinite(reduced.energy(reduced.initial())));
+}
+
+BOOST_AUTO_TEST_CASE(lines_and_planes_are_named_by_what_they_are) {
+  const auto sentence = [](const Scene& scene) {
+    const ReducedScene reduced(scene);
+    for (const Finding& finding : reduced.findings()) {
+      if (finding.reduction == Reduction::dimension) return finding.what;
+    }
+    return std::string();
+  };
+  // A pair that swings along the line from (1, 2) to (4, 6).
+  Scene pair{.dimension = 2};
+  pair.nodes = {{.position = {1, 2, 0}, .mass = 1}, {.position = {4, 6, 0}, .mass = 2}};
+  pair.springs = {{{0, 1}, {10, 4}}};
+  BOOST_TEST(says(sentence(pair), "line along (0.6, 0.8) through (1, 2)"), sentence(pair));
+  // Far away the place is still the scene's.
+  for (Node& node : pair.nodes) node.position += Eigen::Vector3d(1000, 2000, 0);
+  BOOST_TEST(says(sentence(pair), "through (1001, 2002)"), sentence(pair));
+  for (Node& node : pair.nodes) node.position.y() = 2000;
+  BOOST_TEST(says(sentence(pair), "in the line y = 2000:"), sentence(pair));
+  for (Node& node : pair.nodes) std::swap(node.position.x(), node.position.y());
+  BOOST_TEST(says(sentence(pair), "in the line x = 2000:"), sentence(pair));
+  BOOST_TEST(
+      says(sentence(turned(draw("chain"), Eigen::Matrix3d::Identity(), {0, 0, 0.5})), "plane "));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
