@@ -95,8 +95,8 @@ class System {
 
 // A system divided by its springs: f = stiff->force + soft->force, and V and K are sums likewise.
 // Both have all of its unknowns and masses, and it holds where both do; the pattern of each one's K
-// is that of its own springs alone. Weight, loads and constants are the soft one's, but for the
-// loads that stand for stiff springs. Either may be without springs.
+// is that of its own springs alone. Weight, loads and constants are the soft one's. Either may be
+// without springs.
 struct Split {
   std::shared_ptr<const System> stiff, soft;
   // The stiff one once more, over the unknowns alone that its springs or loads act on: unknown a of
