@@ -16,7 +16,8 @@ constexpr double until = 0.1;
 // The reference of a scene that the folder keeps or gets.
 Reference kept(const std::string& name, double horizon, const Folder& folder) {
   const Scene drawn = load_scene(name);
-  return reference_for(drawn, ReducedScene(drawn), horizon, folder.path(), {{"made", "here"}});
+  return reference_for(drawn, drawn, ReducedScene(drawn), horizon, folder.path(),
+                       {{"made", "here"}});
 }
 
 }  // namespace
