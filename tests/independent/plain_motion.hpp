@@ -1,0 +1,133 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <type_traits>
+
+#include "tests/independent/plain_model.hpp"
+
+namespace qddot {
+
+// Positions [m] and velocities [m/s] of all nodes at the time t [s].
+template <class Real>
+struct PlainState {
+  Real t = 0;
+  std::vector<Real> x, v;
+};
+
+// The motion of a scene's drawn nodes by extrapolation: Verlet's method over a long step H in
+// n = 1, 2, ... short ones has an error in even powers of 1/n, which Aitken and Neville's scheme
+// takes away up to order 24 (16 in long double) (Hairer, Norsett, Wanner, Solving Ordinary
+// Differential Equations I, II.14). H is chosen so that the last two orders agree to `tolerance` of
+// the motion's size.
+template <class Real>
+class PlainMotion {
+ public:
+  PlainMotion(const Scene& scene, Real tolerance) : model_(scene), tolerance_(tolerance) {
+    now_ = {0, model_.positions(), model_.velocities()};
+    stands_ = model_.place_massless(now_.x);
+    // Velocities of massless nodes follow from the others' and are left at zero.
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+      if (scene.nodes[i].mass > 0 || scene.nodes[i].pinned) continue;
+      for (std::size_t c = 0; c < 3; ++c) now_.v[3 * i + c] = 0;
+    }
+  }
+
+  const PlainModel<Real>& model() const { return model_; }
+  const PlainState<Real>& state() const { return now_; }
+  void displace(std::size_t coordinate, Real by) { now_.x[coordinate] += by; }
+  // Where a kink of f (a spring of length zero) held the steps to the shortest, its error is of
+  // that size: this many such steps were taken.
+  int forced_steps() const { return forced_; }
+
+  // Steps to `until` [s]; false where a massless node finds no place or `most_steps` are not
+  // enough.
+  bool advance(Real until, int most_steps = 100000) {
+    if (!stands_) return false;
+    const Real shortest = until * Real(1e-15);
+    if (step_ == 0) step_ = until / 16;
+    for (int i = 0; i < most_steps; ++i) {
+      const Real left = until - now_.t;
+      if (!(left > 0)) return true;
+      const bool is_last = step_ >= left;
+      const Real h = is_last ? left : step_;
+      const std::optional<Real> error = extrapolate(h);
+      const bool is_forced = h <= shortest;
+      if (!error && is_forced) return false;
+      const double ratio = error ? static_cast<double>(*error / tolerance_) : 1e30;
+      if (ratio <= 1 || is_forced) {
+        forced_ += ratio > 1;
+        now_.x = x_[0], now_.v = v_[0];
+        now_.t = is_last ? until : now_.t + h;
+        if (!model_.place_massless(now_.x)) return false;
+      }
+      const double factor = 0.9 * std::pow(std::max(ratio, 1e-30), -1.0 / (2 * levels - 1));
+      const Real next = std::max(h * Real(std::clamp(factor, 0.1, 4.0)), shortest);
+      if (!is_last || ratio > 1) step_ = next;
+    }
+    return false;
+  }
+
+ private:
+  // Each level of the scheme magnifies rounding: more than 8 are for quadruple precision.
+  static constexpr int levels =
+      sizeof(Real) == sizeof(Quadruple) && !std::is_same_v<Real, long double> ? 12 : 8;
+  using Vector = std::vector<Real>;
+
+  // Leaves the state after h in x_[0], v_[0]; returns how far the last two orders differ, in parts
+  // of the largest motion so far, or nothing where a massless node found no place.
+  std::optional<Real> extrapolate(Real h) {
+    const std::size_t n = now_.x.size();
+    Vector a0(n), a(n), last_x(n), last_v(n);
+    model_.acceleration(now_.x, a0);
+    Real largest_step = 0, fastest = 0;
+    for (int j = 0; j < levels; ++j) {
+      const int count = j + 1;
+      const Real s = h / Real(count);
+      Vector x = now_.x, v = now_.v;
+      for (std::size_t c = 0; c < n; ++c) v[c] += s / 2 * a0[c];
+      for (int k = 1; k <= count; ++k) {
+        for (std::size_t c = 0; c < n; ++c) x[c] += s * v[c];
+        if (!model_.place_massless(x)) return {};
+        model_.acceleration(x, a);
+        const Real part = k < count ? s : s / 2;
+        for (std::size_t c = 0; c < n; ++c) v[c] += part * a[c];
+      }
+      x_[j] = x, v_[j] = v;
+      // x_[k] becomes the entry of order 2 (j - k + 1) of row j, from right to left.
+      for (int k = j - 1; k >= 0; --k) {
+        if (k == 0) last_x = x_[1], last_v = v_[1];
+        const Real weight = Real((j + 1) * (j + 1)) / Real((k + 1) * (k + 1)) - 1;
+        for (std::size_t c = 0; c < n; ++c) {
+          x_[k][c] = x_[k + 1][c] + (x_[k + 1][c] - x_[k][c]) / weight;
+          v_[k][c] = v_[k + 1][c] + (v_[k + 1][c] - v_[k][c]) / weight;
+        }
+      }
+    }
+    Real error_x = 0, error_v = 0;
+    for (std::size_t c = 0; c < n; ++c) {
+      largest_step = std::max(largest_step, magnitude(x_[0][c] - now_.x[c]));
+      fastest = std::max({fastest, magnitude(v_[0][c]), magnitude(a0[c]) * h});
+      error_x = std::max(error_x, magnitude(x_[0][c] - last_x[c]));
+      error_v = std::max(error_v, magnitude(v_[0][c] - last_v[c]));
+    }
+    // A displacement is as large as the motion has ever been in the time of a step.
+    travelled_ = std::max({travelled_, largest_step, fastest * h});
+    speed_ = std::max(speed_, fastest);
+    if (!(travelled_ > 0)) return Real(0);
+    const Real error = std::max(error_x / travelled_, error_v / speed_);
+    return error >= 0 ? error : Real(1e30);  // no number
+  }
+
+  static Real magnitude(Real x) { return x < 0 ? -x : x; }
+
+  PlainModel<Real> model_;
+  Real tolerance_, step_ = 0, travelled_ = 0, speed_ = 0;
+  PlainState<Real> now_;
+  bool stands_ = false;
+  int forced_ = 0;
+  Vector x_[levels], v_[levels];
+};
+
+}  // namespace qddot

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "src/scene/scene.hpp"
+
+namespace qddot {
+
+// A small scene made by chance, valid, with a horizon of a few of its fastest vibrations, and what
+// is special about it. The same seed gives the same scene everywhere.
+struct RandomScene {
+  Scene scene;
+  std::string kind;
+};
+
+// Of every kind that reductions look for and of those that they have to tell from them: networks;
+// mirror images, with coincident nodes too; lines, planes and chains, along the axes and askew; a
+// hair out of those; grids at rest in two layers; several parts with free nodes, double and slack
+// springs; springs of rest length zero; massless joints; and all of it far from the origin.
+RandomScene random_scene(std::uint64_t seed);
+
+}  // namespace qddot
