@@ -30,9 +30,8 @@ struct Reference {
   Scales scales;
   Errors certified;
   // What one rounding of the start (a random displacement of up to 2^-52 of the scene's extent)
-  // does to the positions at the end, as a position error; and by what factor it has grown. Where
-  // that is far above `certified` the motion is chaotic: it is known, but to no one who rounds
-  // differently.
+  // does to the positions at the end, as a position error; and by what factor it has grown. What
+  // grows exponentially is chaotic.
   double rounding_effect = 0, perturbation_growth = 0;
   // From which time on [s] that motion and the reference are `apart`, found or, after the end,
   // extrapolated; and how fast they part [1/s]. Infinite and zero for regular motions.
@@ -58,10 +57,7 @@ struct Reference {
   }
   // Whether the end is so late that nobody knows the positions: their errors mean nothing.
   bool is_beyond_horizon() const { return end.t >= horizon; }
-  bool is_chaotic() const {
-    return perturbation_growth > exponential_growth &&
-           (rounding_effect > 10 * certified.position || is_beyond_horizon());
-  }
+  bool is_chaotic() const { return perturbation_growth > exponential_growth; }
 };
 
 // The high-accuracy methods did not reach the end.

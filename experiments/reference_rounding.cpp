@@ -47,7 +47,9 @@ RoundingRun::RoundingRun(const ReducedScene& scene, const Solution& composed, do
       knob_(composed.knob),
       steps_(until / composed.knob),
       start_(displaced_start(scene, scales_, epsilon)) {
-  moved_ = composition(scene, start_, until, knob_, seconds);
+  // Masses and stiffnesses are rounded too. If all frequencies are off by one rounding, each state
+  // comes early or late by one of the time.
+  moved_ = composition(scene, start_, until * (1 + epsilon), knob_, seconds);
   if (!moved_) return;
   effect_ = errors_between(scene, moved_->end, composed.end, 0, scales_);
   const State& initial = scene.initial();

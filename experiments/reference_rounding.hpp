@@ -9,8 +9,8 @@ namespace qddot {
 // machine's epsilon, that is one rounding.
 State displaced_start(const ReducedScene& scene, const Scales& scales, double part);
 
-// A composition and the same from a start that is one rounding away, and so what that does to the
-// end.
+// A composition and the same from a start that is one rounding away and until one rounding later,
+// and so what that does to the end.
 class RoundingRun {
  public:
   // In `seconds` at most; there is no effect to tell where that is not enough.
