@@ -11,7 +11,7 @@
 //     a run takes longer than ten seconds.
 //  3. order.csv holds the errors and log2 of the ratio of successive position errors, which tends
 //     to the order of the method as h -> 0. It is left empty where it would say something else: of
-//     errors above a tenth or within a hundred times of what the reference certifies or the method
+//     errors above a tenth or within twenty times of what the reference certifies or the method
 //     rounds, and where the next order observed (or the one before) is more than a half away.
 #include <cmath>
 #include <limits>
@@ -35,6 +35,9 @@ namespace {
 
 constexpr int most_halvings = 12;
 constexpr double longest_run = 10;  // [s]
+// Errors are this many times what the reference may be off by where they count for an order, which
+// then is off by 1 / (20 ln 2) = 0.07 at most.
+constexpr double well_above = 20;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 struct Arguments {
@@ -90,7 +93,7 @@ std::vector<Point> halvings(const Method& method, const ReducedScene& scene, dou
       break;
     }
     if (points.back().outcome == Outcome::reached_end &&
-        points.back().errors.position < 100 * reference.certified.position)
+        points.back().errors.position < well_above * reference.certified.position)
       break;
   }
   return points;
@@ -102,8 +105,8 @@ void tabulate(Csv& csv, const Method& method, double until, const Reference& ref
   std::vector<double> floors;
   for (const Point& p : points) {
     errors.push_back(p.outcome == Outcome::reached_end ? p.errors.position : nothing);
-    floors.push_back(100 * std::max(reference.certified.position,
-                                    rounding_of_steps(reference, until / p.value)));
+    floors.push_back(well_above * std::max(reference.certified.position,
+                                           rounding_of_steps(reference, until / p.value)));
   }
   const std::vector<double> orders = observed_orders(errors, floors);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -150,9 +153,10 @@ int convergence(const CLI::App& app, const Arguments& a,
   for (const Method* method : selected)
     tabulate(csv, *method, until, reference, halvings(*method, scene, until, reference));
   fmt::print(
-      "\n-: no order, since one of the errors is above {:g} or within 100 times of the reference's "
+      "\n-: no order, since one of the errors is above {:g} or within {:g} times of the "
+      "reference's "
       "own or of rounding,\n   or the orders observed beside it are more than {:g} away\n",
-      largest_asymptotic, agreeing);
+      largest_asymptotic, well_above, agreeing);
   csv.commit(origin);
   return done;
 }

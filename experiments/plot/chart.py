@@ -84,6 +84,10 @@ class Chart:
     def draw(self):
         """Draws everything; the labels come last, when all they must not hide is known."""
         self.draw_floor()
+        if self.floor_visible and any(run.is_uncertain for run in self.good):
+            words = "bars: error ± what the reference may be off by"
+            style = {"size": 9.5, "color": FAINT, "ha": "right", "va": "center"}
+            self.note(words, 1, (0, BELOW_TICKS), **style)
         self.draw_chaos()
         self.draw_front()
         for sweep in self.sweeps:

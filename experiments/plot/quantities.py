@@ -83,8 +83,6 @@ def view(directory, quantity, reference):
     if quantity is POSITION:
         front = measurements.read_front(os.path.join(directory, "front.csv"), runs)
         words = reference.certified and f"reference certified to {number(reference.certified)}"
-        if any(run.is_uncertain and not run.failure for run in runs):
-            words += ", bars: what that leaves open"
         quantity = replace(quantity, subtitle=quantity.subtitle + lengths(reference.displacements))
         # Where the floor counts rounding in, nothing is left to say of it.
         chaotic = reference.chaotic_below
