@@ -36,7 +36,11 @@ class PlainMotion {
 
   const PlainModel<Real>& model() const { return model_; }
   const PlainState<Real>& state() const { return now_; }
-  void displace(std::size_t coordinate, Real by) { now_.x[coordinate] += by; }
+  // Moves where it is now [m] and how fast [m/s], along one coordinate of a node.
+  void displace(std::size_t coordinate, Real by, Real faster) {
+    now_.x[coordinate] += by;
+    now_.v[coordinate] += faster;
+  }
   // Where a kink of f (a spring of length zero) held the steps to the shortest, its error is of
   // that size: this many such steps were taken.
   int forced_steps() const { return forced_; }
@@ -47,6 +51,7 @@ class PlainMotion {
     if (!stands_) return false;
     const Real shortest = until * Real(1e-15);
     if (step_ == 0) step_ = until / 16;
+    int forced_in_a_row = 0;
     for (int i = 0; i < most_steps; ++i) {
       const Real left = until - now_.t;
       if (!(left > 0)) return true;
@@ -57,6 +62,8 @@ class PlainMotion {
       if (!error && is_forced) return false;
       const double ratio = error ? static_cast<double>(*error / tolerance_) : 1e30;
       if (ratio <= 1 || is_forced) {
+        forced_in_a_row = ratio > 1 ? forced_in_a_row + 1 : 0;
+        if (forced_in_a_row > most_forced_in_a_row) return false;
         forced_ += ratio > 1;
         now_.x = x_[0], now_.v = v_[0];
         now_.t = is_last ? until : now_.t + h;
@@ -73,6 +80,9 @@ class PlainMotion {
   // Each level of the scheme magnifies rounding: more than 8 are for quadruple precision.
   static constexpr int levels =
       sizeof(Real) == sizeof(Quadruple) && !std::is_same_v<Real, long double> ? 12 : 8;
+  static constexpr Real magnified_rounding = levels == 12 ? Real(1e-31) : Real(1e-17);
+  // A kink is crossed in one or two; where a massless node loses its place there is no end of them.
+  static constexpr int most_forced_in_a_row = 20;
   using Vector = std::vector<Real>;
 
   // Leaves the state after h in x_[0], v_[0]; returns how far the last two orders differ, in parts
@@ -81,7 +91,6 @@ class PlainMotion {
     const std::size_t n = now_.x.size();
     Vector a0(n), a(n), last_x(n), last_v(n);
     model_.acceleration(now_.x, a0);
-    Real largest_step = 0, fastest = 0;
     for (int j = 0; j < levels; ++j) {
       const int count = j + 1;
       const Real s = h / Real(count);
@@ -105,21 +114,32 @@ class PlainMotion {
         }
       }
     }
-    Real error_x = 0, error_v = 0;
+    Real error_x = 0, error_v = 0, farthest = 0, travelled = travelled_, speed = speed_;
     for (std::size_t c = 0; c < n; ++c) {
-      largest_step = std::max(largest_step, magnitude(x_[0][c] - now_.x[c]));
-      fastest = std::max({fastest, magnitude(v_[0][c]), magnitude(a0[c]) * h});
-      error_x = std::max(error_x, magnitude(x_[0][c] - last_x[c]));
-      error_v = std::max(error_v, magnitude(v_[0][c] - last_v[c]));
+      farthest = std::max(farthest, magnitude(now_.x[c]));
+      travelled = std::max(travelled, magnitude(x_[0][c] - now_.x[c]));
+      speed = std::max({speed, magnitude(v_[0][c]), magnitude(a0[c]) * h});
+      take_larger(error_x, magnitude(x_[0][c] - last_x[c]));
+      take_larger(error_v, magnitude(v_[0][c] - last_v[c]));
     }
     // A displacement is as large as the motion has ever been in the time of a step.
-    travelled_ = std::max({travelled_, largest_step, fastest * h});
-    speed_ = std::max(speed_, fastest);
-    if (!(travelled_ > 0)) return Real(0);
-    const Real error = std::max(error_x / travelled_, error_v / speed_);
-    return error >= 0 ? error : Real(1e30);  // no number
+    travelled = std::max(travelled, speed * h);
+    if (travelled == 0) return Real(0);
+    // What rounding makes of positions no shorter step can mend: of velocities, their share of
+    // that.
+    const Real noise = magnified_rounding * farthest / (travelled * tolerance_);
+    Real error = error_x / travelled;
+    take_larger(error, error_v / speed);
+    error /= std::max(noise, Real(1));
+    if (!(error >= 0)) return Real(1e30);  // no number
+    if (error <= tolerance_) travelled_ = travelled, speed_ = speed;
+    return error;
   }
 
+  // So that what is no number is not lost.
+  static void take_larger(Real& largest, Real value) {
+    if (!(value <= largest)) largest = value;
+  }
   static Real magnitude(Real x) { return x < 0 ? -x : x; }
 
   PlainModel<Real> model_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -93,17 +94,19 @@ void pull(Scene& scene, Chance& chance) {
   if (chance.is(0.5)) scene.gravity = chance.vector(scene.dimension, 3);
 }
 
-// The scene with its mirror images in `planes` coordinate planes, joined across them; nodes on a
-// plane stand twice at their place where `twice`, else are their own images.
-Scene mirrored(const Scene& half, Chance& chance, int planes, bool twice) {
+// The scene with its mirror images in `planes` coordinate planes, joined across them. Nodes on a
+// plane are their own images or, where they `part_there`, one of two that start at one place.
+Scene mirrored(const Scene& half, Chance& chance, int planes, bool part_there) {
   Scene scene = half;
   for (int d = 0; d < planes; ++d) {
     scene.gravity[d] = 0;
     for (Node& node : scene.nodes) {
-      if (chance.is(0.25)) node.position[d] = node.velocity[d] = 0;
+      if (!chance.is(0.4)) continue;
+      node.position[d] = 0;
+      // Else it and its image start at one place and part.
+      if (!part_there) node.velocity[d] = 0;
     }
   }
-  // Images that fall together have to be told apart: only the order of the nodes does it.
   for (int d = 0; d < planes; ++d) {
     const std::size_t count = scene.nodes.size(), springs = scene.springs.size();
     std::vector<std::size_t> image(count);
@@ -111,7 +114,7 @@ Scene mirrored(const Scene& half, Chance& chance, int planes, bool twice) {
       Node other = scene.nodes[i];
       const bool is_on_plane = other.position[d] == 0 && other.velocity[d] == 0;
       other.position[d] *= -1, other.velocity[d] *= -1;
-      image[i] = is_on_plane && !twice ? i : scene.nodes.size();
+      image[i] = is_on_plane ? i : scene.nodes.size();
       if (image[i] != i) scene.nodes.push_back(other);
     }
     for (std::size_t e = 0; e < springs; ++e) {
@@ -119,13 +122,12 @@ Scene mirrored(const Scene& half, Chance& chance, int planes, bool twice) {
       for (std::size_t& node : other.nodes) node = image[node];
       if (other.nodes != scene.springs[e].nodes) scene.springs.push_back(other);
     }
-    for (int k = 0; k < 2; ++k) {
-      const std::size_t i = chance.below(count), j = chance.below(count);
-      if (i == j || coincide(scene, i, image[j])) continue;
-      join(scene, chance, i, image[j]);
-      Spring other = scene.springs.back();
-      other.nodes = {image[i], j};
-      if (image[i] != i || image[j] != j) scene.springs.push_back(other);
+    // Every node to its own image alike, so that the mirrors before this one stay.
+    const double stiffness = chance.decades(1, 3), strain = chance.uniform(0.8, 1.2);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (image[i] == i) continue;
+      const double length = (scene.nodes[i].position - scene.nodes[image[i]].position).norm();
+      scene.springs.push_back({{i, image[i]}, {stiffness, strain * length}});
     }
   }
   return scene;
@@ -216,6 +218,18 @@ void move(Scene& scene, const Eigen::Matrix3d& rotation, const Vector3d& shift) 
   scene.gravity = rotation * scene.gravity;
 }
 
+// The same scene with its nodes in another order.
+void shuffle(Scene& scene, Chance& chance) {
+  std::vector<std::size_t> place(scene.nodes.size());
+  std::iota(place.begin(), place.end(), 0);
+  for (std::size_t i = place.size(); i > 1; --i) std::swap(place[i - 1], place[chance.below(i)]);
+  std::vector<Node> nodes = scene.nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) scene.nodes[place[i]] = nodes[i];
+  for (Spring& spring : scene.springs) {
+    for (std::size_t& node : spring.nodes) node = place[node];
+  }
+}
+
 // Some vibrations of the stiffest spring between the lightest nodes.
 double some_vibrations(const Scene& scene, Chance& chance) {
   double fastest = 1;
@@ -303,9 +317,10 @@ RandomScene random_scene(std::uint64_t seed) {
       "network", "mirrored",     "coincident", "straight", "nearly straight", "planar",
       "parts",   "zero lengths", "massless",   "far",      "network"};
   Chance chance(seed);
-  RandomScene random{.kind = kinds[seed % kinds.size()]};
+  RandomScene random{{}, kinds[seed % kinds.size()]};
   random.scene = of_kind(random.kind, chance);
   drop_impossible(random.scene);
+  if (chance.is(0.5)) shuffle(random.scene, chance);
   random.scene.name = "random";
   random.scene.until = some_vibrations(random.scene, chance);
   for (Node& node : random.scene.nodes) {

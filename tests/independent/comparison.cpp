@@ -1,0 +1,334 @@
+#include "tests/independent/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "experiments/deadline.hpp"
+#include "experiments/tolerance_scales.hpp"
+#include "integrators/registry.hpp"
+#include "src/analysis/frequency_bound.hpp"
+
+namespace qddot {
+namespace {
+
+using Plain = PlainMotion<long double>;
+
+constexpr long double plain_tolerance = 1e-15L;
+constexpr double epsilon = 0x1p-52;
+constexpr double longest_run = 20;  // [s], so that nothing hangs
+
+bool has_velocity(const Node& node) { return node.pinned || node.mass > 0; }
+
+struct NamedReductions {
+  std::string name;
+  Reductions set;
+};
+
+std::vector<NamedReductions> sets_of_reductions() {
+  std::vector<NamedReductions> sets = {{"all reductions", {}},
+                                       {"no reduction", Reductions::only({})}};
+  for (std::size_t i = 0; i < reduction_names.size(); ++i) {
+    const auto reduction = static_cast<Reduction>(i);
+    sets.push_back({fmt::format("{} alone", name(reduction)), Reductions::only({reduction})});
+    sets.push_back({fmt::format("all but {}", name(reduction)), Reductions().without(reduction)});
+  }
+  return sets;
+}
+
+// Of the nodes where they are and as fast, by the independent model.
+struct PlainEnergies {
+  long double kinetic = 0, potential = 0;  // [J]
+  // What rounding of the nodes' coordinates is multiplied by in the potential and in a force.
+  long double potential_size = 0, force_size = 0;
+  std::vector<long double> force{};  // on free nodes, weights included
+};
+
+PlainEnergies plain_energies(const PlainModel<long double>& model, const std::vector<Node>& nodes) {
+  std::vector<long double> x, v;
+  for (const Node& node : nodes) {
+    x.insert(x.end(), node.position.begin(), node.position.end());
+    v.insert(v.end(), node.velocity.begin(), node.velocity.end());
+  }
+  PlainEnergies plain;
+  model.spring_forces(x, plain.force);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Node& node = model.scene().nodes[i];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const long double weight =
+          node.pinned ? 0 : node.mass * model.scene().gravity[static_cast<Eigen::Index>(c)];
+      if (node.pinned) plain.force[3 * i + c] = 0;
+      if (!node.pinned) plain.kinetic += 0.5L * node.mass * v[3 * i + c] * v[3 * i + c];
+      plain.potential_size += std::abs(weight * x[3 * i + c]);
+      plain.force[3 * i + c] += weight;
+      plain.force_size += std::abs(weight);
+    }
+  }
+  plain.potential = model.energy(x, std::vector<long double>(v.size(), 0));
+  for (const Spring& spring : model.scene().springs) {
+    long double l2 = 0, far = spring.law.rest_length;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const long double a = x[3 * spring.nodes[0] + c], b = x[3 * spring.nodes[1] + c];
+      l2 += (a - b) * (a - b);
+      far = std::max({far, std::abs(a), std::abs(b)});
+    }
+    // dV = tau dl and dtau = tau' dl, of lengths that are known to eps of a coordinate.
+    const long double s = std::sqrt(l2) - spring.law.rest_length;
+    const long double k = spring.law.stiffness, c = spring.law.quartic, rounding = epsilon * far;
+    plain.potential_size += std::abs(s) * (k + c * s * s) * far + k * rounding * far;
+    plain.force_size += (k + 3 * c * s * s) * far;
+  }
+  return plain;
+}
+
+// By how much the reduced scene's energies and force at a state differ from those of all nodes.
+void compare_state(const ReducedScene& reduced, const PlainModel<long double>& model,
+                   const State& state, std::mt19937_64& random, const std::string& where,
+                   Comparisons& all) {
+  ++all.states;
+  const auto nodes = reduced.expand(state);
+  const PlainEnergies plain = plain_energies(model, nodes);
+  const auto agree = [&](const char* what, double value, long double expected, long double size) {
+    // Sums over some tens of nodes and springs.
+    if (std::abs(value - expected) <= 64 * epsilon * size) return;
+    all.disagreements.push_back(fmt::format("{}: {} is {:.17g}, of the drawn nodes {:.17g}", where,
+                                            what, value, static_cast<double>(expected)));
+  };
+  agree("the kinetic energy", reduced.kinetic(state), plain.kinetic, plain.kinetic);
+  agree("the potential energy", reduced.potential(state), plain.potential, plain.potential_size);
+
+  // With x = P q + c, f_reduced . w = f . P w for every w; and P w is a difference of velocities.
+  const Index n = reduced.system().size();
+  Vec w(n), f(n);
+  std::normal_distribution<double> normal;
+  for (double& component : w) component = normal(random);
+  reduced.system().force(state.q, f);
+  const auto fast = reduced.expand({state.t, state.q, w});
+  const auto still = reduced.expand({state.t, state.q, Vec::Zero(n)});
+  long double power = 0, fastest = w.norm();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const long double own = fast[i].velocity[c] - still[i].velocity[c];
+      power += plain.force[3 * i + static_cast<std::size_t>(c)] * own;
+      fastest = std::max(fastest, std::abs(own));
+    }
+  }
+  agree("the power of the force", f.dot(w), power, plain.force_size * fastest);
+}
+
+// The end of a run with samples nowhere, or why there is none.
+struct End {
+  Summary summary;
+  std::vector<Node> nodes;
+};
+
+End run(const ReducedScene& reduced, const Method& method, double knob, double until) {
+  Knobs knobs;
+  (method.knob == Knob::step_size ? knobs.step_size : knobs.rtol) = knob;
+  State state = reduced.initial();
+  const Deadline deadline(longest_run);
+  const Summary summary =
+      make_integrator(method, reduced.system(), with_tolerance_scales(knobs, reduced))
+          ->advance(state, until, {}, deadline.token());
+  return {summary, reduced.expand(state)};
+}
+
+// A step that resolves the fastest frequency of all springs, lest a spring turn over in one.
+double resolving_step(const ReducedScene& reduced, double until) {
+  const double w = frequency_bound(reduced.system(), reduced.initial().q);
+  return until / std::max(32.0, std::ceil(until * w / 0.2));
+}
+
+bool can_take(const Method& method, const ReducedScene& reduced) {
+  return applies_to(method, reduced.system()) &&
+         (method.accepts_massless || !reduced.system().has_massless());
+}
+
+// Three runs at smaller and smaller knobs. What a method still changes by is about what is wrong
+// with it. Springs that pass length zero closely make that irregular; a wrong model or formula is
+// off by what no knob changes.
+void compare_runs(const DrawnMotion& motion, const ReducedScene& reduced, const Method& method,
+                  std::array<double, 3> knobs, const std::string& where, Comparisons& all) {
+  constexpr double irregular = 30;
+  std::array<End, 3> ends;
+  for (std::size_t i = 0; i < 3; ++i) {
+    ++all.runs;
+    ends[i] = run(reduced, method, knobs[i], motion.until());
+    const auto& [outcome, t, counts, seconds, message] = ends[i].summary;
+    if (outcome == Outcome::over_budget) return;
+    if (method.implicit &&
+        (outcome == Outcome::newton_failed || outcome == Outcome::indefinite_matrix)) {
+      ++all.given_up;  // beside such a spring K changes within any step
+      return;
+    }
+    const std::string run_name = fmt::format("{}, {} at {:.3g}", where, method.name, knobs[i]);
+    if (outcome != Outcome::reached_end && motion.is_known()) {
+      all.disagreements.push_back(fmt::format("{}: ends with {} at {:.6g} of {:.6g} s: {}",
+                                              run_name, name(outcome), t, motion.until(), message));
+      return;
+    }
+    // When exactly, a run knows no better than where the nodes are.
+    const double latest = motion.known_until() + 1e-3 * motion.until();
+    if (!motion.is_known() && !(t <= latest)) {
+      all.disagreements.push_back(
+          fmt::format("{}: goes on to {:.6g} s, where a massless node lost its place at {:.6g} s",
+                      run_name, t, motion.known_until()));
+      return;
+    }
+  }
+  if (!motion.is_known()) return;
+  const double error = motion.error(ends[2].nodes);
+  const double change = std::max(motion.difference(ends[0].nodes, ends[1].nodes),
+                                 motion.difference(ends[1].nodes, ends[2].nodes));
+  if (!(error <= irregular * change + motion.floor())) {
+    all.disagreements.push_back(fmt::format(
+        "{}, {} at {:.3g}: {:.3g} off, where it changed by {:.3g} and rounding by {:.3g}", where,
+        method.name, knobs[2], error, change, motion.floor()));
+  }
+}
+
+}  // namespace
+
+DrawnMotion::DrawnMotion(const Scene& scene) : scene_(scene), end_(scene, plain_tolerance) {
+  const bool is_known = end_.advance(until());
+  known_until_ = is_known ? until() : static_cast<double>(end_.state().t);
+  if (!is_known) return;
+  const auto start = end_.model().positions();
+  std::vector<Node> nodes = end_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    displacement_ = std::max(displacement_, (nodes[i].position - scene.nodes[i].position).norm());
+    if (!has_velocity(scene.nodes[i])) continue;
+    speed_ = std::max({speed_, nodes[i].velocity.norm(), scene.nodes[i].velocity.norm()});
+  }
+  displacement_ = std::max(displacement_, speed_ * until());
+  if (speed_ == 0) displacement_ = speed_ = 1;
+
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> part(-1, 1);
+  Plain moved(scene, plain_tolerance);
+  double far = 0;
+  for (const Node& node : scene.nodes) far = std::max(far, node.position.lpNorm<Eigen::Infinity>());
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    if (scene.nodes[i].pinned) continue;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(scene.dimension); ++c)
+      moved.displace(3 * i + c, epsilon * far * part(random), epsilon * speed_ * part(random));
+  }
+  if (!moved.advance(until())) {
+    floor_ = 1;
+    return;
+  }
+  std::vector<Node> other = nodes;
+  for (std::size_t i = 0; i < other.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto axis = static_cast<Eigen::Index>(c);
+      other[i].position[axis] = static_cast<double>(moved.state().x[3 * i + c]);
+      other[i].velocity[axis] = static_cast<double>(moved.state().v[3 * i + c]);
+    }
+  }
+  floor_ = 1000 * (difference(nodes, other) + epsilon * (far / displacement_ + 1));
+}
+
+std::vector<Node> DrawnMotion::end_nodes() const {
+  std::vector<Node> nodes = scene_.nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto axis = static_cast<Eigen::Index>(c);
+      nodes[i].position[axis] = static_cast<double>(end_.state().x[3 * i + c]);
+      nodes[i].velocity[axis] = static_cast<double>(end_.state().v[3 * i + c]);
+    }
+  }
+  return nodes;
+}
+
+double DrawnMotion::difference(const std::vector<Node>& a, const std::vector<Node>& b) const {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double apart = (a[i].position - b[i].position).norm() / displacement_;
+    if (has_velocity(scene_.nodes[i]))
+      apart = std::max(apart, (a[i].velocity - b[i].velocity).norm() / speed_);
+    if (!(apart <= largest)) largest = apart;
+  }
+  return largest;
+}
+
+double DrawnMotion::error(const std::vector<Node>& nodes) const {
+  return difference(nodes, end_nodes());
+}
+
+Comparisons& Comparisons::operator+=(const Comparisons& more) {
+  states += more.states;
+  motions += more.motions;
+  runs += more.runs;
+  given_up += more.given_up;
+  disagreements.insert(disagreements.end(), more.disagreements.begin(), more.disagreements.end());
+  return *this;
+}
+
+Comparisons compare_states(const Scene& scene, std::uint64_t seed) {
+  Comparisons all;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const PlainModel<long double> model(scene);
+  for (const auto& [name, set] : sets_of_reductions()) {
+    const ReducedScene reduced(scene, set);
+    State state = reduced.initial();
+    compare_state(reduced, model, state, random, name + ", at the start", all);
+    double drawn = 0;
+    for (const Node& node : scene.nodes) {
+      if (!node.pinned) drawn += 0.5 * node.mass * node.velocity.squaredNorm();
+    }
+    if (!(std::abs(reduced.kinetic(state) - drawn) <= 64 * epsilon * drawn)) {
+      all.disagreements.push_back(fmt::format("{}: the kinetic energy at the start is {}, drawn {}",
+                                              name, reduced.kinetic(state), drawn));
+    }
+    // Unknowns of pins stay where they are.
+    const bool holds_pins =
+        !set.has(Reduction::pins) && std::ranges::any_of(scene.nodes, &Node::pinned);
+    for (int near = 0; near < 2 && !holds_pins; ++near) {
+      // So near that no spring turns over and none in series goes slack.
+      for (double& x : state.q) x += 1e-4 * normal(random);
+      for (double& w : state.v) w = normal(random);
+      if (!reduced.system().holds_at(state.q)) break;
+      compare_state(reduced, model, state, random, name + ", near the start", all);
+    }
+  }
+  return all;
+}
+
+Comparisons compare_reductions(const DrawnMotion& motion) {
+  Comparisons all;
+  if (motion.known_until() == 0) return all;
+  ++all.motions;
+  for (const auto& [name, set] : sets_of_reductions()) {
+    const ReducedScene reduced(motion.scene(), set);
+    if (reduced.system().has_massless()) {
+      compare_runs(motion, reduced, *find_method("ida"), {1e-6, 1e-7, 1e-8}, name, all);
+    } else {
+      const double h = resolving_step(reduced, motion.until());
+      compare_runs(motion, reduced, *find_method("kahan_li8"), {h, h / 2, h / 4}, name, all);
+    }
+  }
+  return all;
+}
+
+Comparisons compare_methods(const DrawnMotion& motion) {
+  Comparisons all;
+  if (motion.known_until() == 0) return all;
+  ++all.motions;
+  const ReducedScene reduced(motion.scene());
+  const double h = resolving_step(reduced, motion.until());
+  for (const Method& method : methods()) {
+    if (!can_take(method, reduced)) continue;
+    // A method of order 1 gains or loses a part of h w^2 T / 2 of the motion.
+    const double own = method.order == 1 ? h / 16 : h;
+    const bool is_fixed = method.knob == Knob::step_size;
+    const std::array<double, 3> knobs =
+        is_fixed ? std::array{own, own / 2, own / 4} : std::array{1e-5, 1e-6, 1e-7};
+    compare_runs(motion, reduced, method, knobs, "all reductions", all);
+  }
+  return all;
+}
+
+}  // namespace qddot

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "src/scene/reduce.hpp"
+#include "tests/independent/plain_motion.hpp"
+
+namespace qddot {
+
+// A drawn scene's motion to its horizon by the independent model, and how well any code that rounds
+// to double precision can know it.
+class DrawnMotion {
+ public:
+  explicit DrawnMotion(const Scene& scene);
+
+  const Scene& scene() const { return scene_; }
+  double until() const { return *scene_.until; }
+  // Up to when the motion is known [s]: `until`, or when a massless node lost its place. Zero where
+  // it has none from the start.
+  double known_until() const { return known_until_; }
+  bool is_known() const { return known_until_ == until(); }
+
+  // The largest difference of a node's position from the motion at the end, in parts of the largest
+  // displacement, and of its velocity, in parts of the largest speed; the larger of both.
+  double error(const std::vector<Node>& nodes) const;
+  // What a code has to be forgiven: a thousand times what one rounding of the drawn positions and
+  // velocities does to the end. Some thousand steps make no more of theirs.
+  double floor() const { return floor_; }
+  // The same difference between two ends.
+  double difference(const std::vector<Node>& a, const std::vector<Node>& b) const;
+
+ private:
+  std::vector<Node> end_nodes() const;
+
+  Scene scene_;
+  PlainMotion<long double> end_;
+  double known_until_ = 0, displacement_ = 0, speed_ = 0, floor_ = 0;
+};
+
+// What is held against the drawn scene, and how often.
+struct Comparisons {
+  std::int64_t states = 0, motions = 0, runs = 0;
+  std::int64_t given_up = 0;  // runs whose nonlinear or linear solves failed, and said so
+  std::vector<std::string> disagreements;  // a sentence each
+
+  Comparisons& operator+=(const Comparisons& more);
+};
+
+// The energies and the force of the reduced scene at its start and at states near it, by each
+// reduction alone, without each, with all and with none: those of all drawn nodes at the same
+// place.
+Comparisons compare_states(const Scene& scene, std::uint64_t seed);
+
+// The motion with the same sets of reductions, by one method of high order.
+Comparisons compare_reductions(const DrawnMotion& motion);
+
+// The motion by every method that can take the reduced scene, at three values of its knob: as these
+// differ by less and less, so must they from the motion.
+Comparisons compare_methods(const DrawnMotion& motion);
+
+}  // namespace qddot
