@@ -9,7 +9,7 @@
 //
 // A motion that symmetry reduced is the drawn one only as far as the rounding of the start, which
 // is off the symmetry, does not grow. Where that is known to move the end farther than is
-// certified, the error may be as large as that, and the scene counts as out of symmetry.
+// certified, the error may be ten times that, and the scene counts as out of symmetry.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -105,6 +105,7 @@ void try_one(std::uint64_t seed, double seconds, bool shows_all, Tally& tally) {
   const auto& out = reference.out_of_symmetry;
   const bool is_out = out && out->effect > certified.position;
   if (is_out) {
+    // One push by chance stands for all of them.
     ++tally.out_of_symmetry;
     certified.position = std::max(certified.position, 10 * out->effect);
     certified.velocity = std::max(certified.velocity, 10 * out->effect);
