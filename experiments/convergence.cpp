@@ -4,12 +4,17 @@
 //   convergence --scene cloth --methods verlet,implicit_euler --out results/cloth
 //
 //  1. The reference is work_precision's (reference.json, shared with it).
+//     Beyond the horizon of a chaotic motion nobody knows the positions, and nothing is run: each
+//     method has one row of empty fields.
 //  2. h starts where it resolves the fastest frequency at the start (h w = 1; a 16th of the horizon
 //     for implicit methods) and is halved until the error nears what the reference certifies, or
 //     a run takes longer than ten seconds.
 //  3. order.csv holds the errors and log2 of the ratio of successive position errors, which tends
-//     to the order of the method as h -> 0.
+//     to the order of the method as h -> 0. It is left empty where it would say something else: of
+//     errors above a tenth or within twenty times of what the reference certifies or the method
+//     rounds, and where the next order observed (or the one before) is more than a half away.
 #include <cmath>
+#include <limits>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -17,8 +22,10 @@
 
 #include "experiments/csv.hpp"
 #include "experiments/measurement.hpp"
+#include "experiments/observed_orders.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/reference_words.hpp"
 #include "experiments/resolved_frequency.hpp"
 #include "experiments/scene_choice.hpp"
 #include "src/scene/invalid_input.hpp"
@@ -28,6 +35,10 @@ namespace {
 
 constexpr int most_halvings = 12;
 constexpr double longest_run = 10;  // [s]
+// Errors are this many times what the reference may be off by where they count for an order, which
+// then is off by 1 / (20 ln 2) = 0.07 at most.
+constexpr double well_above = 20;
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 struct Arguments {
   SceneChoice scene;
@@ -61,26 +72,51 @@ std::vector<const Method*> select_fixed_step(const std::vector<std::string>& lis
   return selected;
 }
 
-// One method down its halvings, a row each; what failed or was not comparable is left empty.
-void tabulate(Csv& csv, const Method& method, const ReducedScene& scene, double until,
-              const Reference& reference) {
+// What rounding makes of a run: each step adds one, by chance to either side. It is from 2^-54 to
+// 2^-53 of a coordinate, a quarter to a half of what the reference's start was displaced by.
+double rounding_of_steps(const Reference& reference, double steps) {
+  return reference.rounding_effect * std::sqrt(steps) / 4;
+}
+
+// Runs of a method at h, h/2, h/4, ... [s] that reached the end or failed; a run over the budget
+// ends the series.
+std::vector<Point> halvings(const Method& method, const ReducedScene& scene, double until,
+                            const Reference& reference) {
   const double w = resolved_frequency(method, scene.system(), scene.initial().q);
   const double coarsest = method.implicit ? 16 : std::max(16.0, std::ceil(until * w));
-  double last_error = 0;
+  std::vector<Point> points;
   for (int halving = 0; halving <= most_halvings; ++halving) {
     const double h = until / (coarsest * std::exp2(halving));
-    const Point point =
-        measure(method, h, scene, until, reference, {.seconds = longest_run, .repeats = 1});
-    if (point.outcome == Outcome::over_budget) return;
-    const bool reached = point.outcome == Outcome::reached_end;
-    const double nothing = std::numeric_limits<double>::quiet_NaN();
-    const double error = reached ? point.errors.position : nothing;
-    const double order = reached && last_error > 0 ? std::log2(last_error / error) : nothing;
-    csv.row(method.name, h, error, reached ? point.errors.velocity : nothing, order);
-    fmt::print("{:<20} {:>5}  {:>10.3e}  {:>10.3e}  {:>8.3f}\n", method.name, method.order, h,
-               error, order);
-    if (reached && error < 100 * reference.certified.position) return;
-    last_error = reached ? error : 0;
+    points.push_back(
+        measure(method, h, scene, until, reference, {.seconds = longest_run, .repeats = 1}));
+    if (points.back().outcome == Outcome::over_budget) {
+      points.pop_back();
+      break;
+    }
+    if (points.back().outcome == Outcome::reached_end &&
+        points.back().errors.position < well_above * reference.certified.position)
+      break;
+  }
+  return points;
+}
+
+void tabulate(Csv& csv, const Method& method, double until, const Reference& reference,
+              const std::vector<Point>& points) {
+  std::vector<double> errors;
+  std::vector<double> floors;
+  for (const Point& p : points) {
+    errors.push_back(p.outcome == Outcome::reached_end ? p.errors.position : nothing);
+    floors.push_back(well_above * std::max(reference.certified.position,
+                                           rounding_of_steps(reference, until / p.value)));
+  }
+  const std::vector<double> orders = observed_orders(errors, floors);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& p = points[i];
+    const bool reached = p.outcome == Outcome::reached_end;
+    csv.row(method.name, p.value, errors[i], reached ? p.errors.velocity : nothing, orders[i]);
+    fmt::print("{:<20} {:>5}  {:>10.3e}  {:>10}  {:>8}\n", method.name, method.order, p.value,
+               reached ? fmt::format("{:.3e}", errors[i]) : name(p.outcome),
+               std::isnan(orders[i]) ? "-" : fmt::format("{:.3f}", orders[i]));
   }
 }
 
@@ -98,12 +134,30 @@ int convergence(const CLI::App& app, const Arguments& a,
   const nlohmann::json origin = provenance(command_line, drawn, start, scene);
   CsvFile csv(a.out + "/order.csv",
               {"method", "h", "error_position", "error_velocity", "observed_order"});
-  const Reference reference = reference_for(drawn, scene, until, a.out, origin);
-  fmt::print("{} to t = {:g} s; reference certified to {:.1e}\n\n", drawn.name, until,
-             reference.certified.position);
+  const Reference reference = reference_for(drawn, start, scene, until, a.out, origin);
+  fmt::print("{} to t = {:g} s; reference certified to {:.1e}\n{}\n\n", drawn.name, until,
+             reference.certified.position, what_divides(reference));
+  const std::string symmetry = symmetry_in_words(reference);
+  if (!symmetry.empty()) fmt::print("{}\n\n", symmetry);
+  if (reference.is_beyond_horizon()) {
+    fmt::print(
+        "The motion is chaotic: from t = {:.3g} s on nobody knows the positions, so that their "
+        "errors at\nt = {:g} s mean nothing and no order can be observed. An earlier --until "
+        "shows it.\n",
+        reference.horizon, until);
+    for (const Method* method : selected) csv.row(method->name, nothing, nothing, nothing, nothing);
+    csv.commit(origin);
+    return done;
+  }
   fmt::print("{:<20} {:>5}  {:>10}  {:>10}  {:>8}\n", "method", "order", "h in s", "error",
              "observed");
-  for (const Method* method : selected) tabulate(csv, *method, scene, until, reference);
+  for (const Method* method : selected)
+    tabulate(csv, *method, until, reference, halvings(*method, scene, until, reference));
+  fmt::print(
+      "\n-: no order, since one of the errors is above {:g} or within {:g} times of the "
+      "reference's "
+      "own or of rounding,\n   or the orders observed beside it are more than {:g} away\n",
+      largest_asymptotic, well_above, agreeing);
   csv.commit(origin);
   return done;
 }

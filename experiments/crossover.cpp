@@ -208,7 +208,7 @@ void tabulate(Csv& winners, Csv& of_kinds, Csv& points, const Rung& rung,
   }
   for (const Point& point : rung.points) {
     points.field(rung.ratio);
-    point_row(points, rung.drawn.name, point);
+    point_row(points, rung.drawn.name, point, rung.reference->certified.position);
   }
 }
 
@@ -280,7 +280,8 @@ int crossover(const CLI::App& app, Arguments a, const std::vector<std::string>& 
     show_progress(fmt::format("ratio {:g}: making the reference ...", rung.ratio));
     const auto origin = provenance(command_line, rung.drawn, rung.drawn, *rung.scene);
     try {
-      rung.reference = reference_for(rung.drawn, *rung.scene, until, folder, origin, needed);
+      rung.reference =
+          reference_for(rung.drawn, rung.drawn, *rung.scene, until, folder, origin, needed);
       climbers.measure(rung, until);
     } catch (const NoReference& error) {
       show_progress("");

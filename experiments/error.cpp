@@ -2,40 +2,109 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace qddot {
 namespace {
 
+constexpr double fewest_roundings = 1e4;
+
 double divided(double error, double scale) { return scale > 0 ? error / scale : error; }
 
-// The largest |a_i - b_i| of the nodes' positions or velocities.
-double largest_difference(const std::vector<Node>& a, const std::vector<Node>& b,
-                          Eigen::Vector3d Node::*vector) {
+// Keeps the larger; one that is no number is not lost.
+void raise(double& largest, double x) {
+  if (!(x <= largest)) largest = x;
+}
+
+// The largest |a_i - b_i| of the positions or velocities of some nodes.
+double largest_difference(const std::vector<std::size_t>& some, const std::vector<Node>& a,
+                          const std::vector<Node>& b, Eigen::Vector3d Node::*vector) {
   double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double difference = (a[i].*vector - b[i].*vector).norm();
-    // So that one that is no number is not lost.
-    if (!(difference <= largest)) largest = difference;
+  for (const std::size_t i : some) raise(largest, (a[i].*vector - b[i].*vector).norm());
+  return largest;
+}
+
+std::vector<std::size_t> all_of(const std::vector<Node>& nodes) {
+  std::vector<std::size_t> all(nodes.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+std::vector<PartScale> parts_of(const ReducedScene& scene, const std::vector<Node>& start) {
+  std::vector<PartScale> parts;
+  for (auto& nodes : scene.nodes_by_part()) {
+    PartScale& part = parts.emplace_back(PartScale{.nodes = std::move(nodes)});
+    for (const std::size_t i : part.nodes) {
+      part.extent = std::max(part.extent, start[i].position.lpNorm<Eigen::Infinity>());
+    }
+  }
+  // Where there are none, whatever moves is in free flight.
+  if (parts.empty()) parts.push_back({.nodes = all_of(start)});
+  return parts;
+}
+
+// The largest error of a part over the part's scale.
+double largest_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,
+                     Eigen::Vector3d Node::*vector, const Scales& scales, double whole,
+                     double (Scales::*scale_of)(const PartScale&) const) {
+  if (scales.parts.empty())
+    return divided(largest_difference(all_of(nodes), nodes, reference, vector), whole);
+  double largest = 0;
+  for (const PartScale& part : scales.parts) {
+    raise(largest, divided(largest_difference(part.nodes, nodes, reference, vector),
+                           (scales.*scale_of)(part)));
   }
   return largest;
 }
 
 }  // namespace
 
+bool PartScale::is_at_rest() const {
+  return displacement <= fewest_roundings * std::numeric_limits<double>::epsilon() * extent;
+}
+
+double Scales::displacement_of(const PartScale& part) const {
+  return part.is_at_rest() ? displacement : part.displacement;
+}
+
+double Scales::speed_of(const PartScale& part) const {
+  return part.is_at_rest() ? speed : part.speed;
+}
+
 void extend(Scales& scales, const ReducedScene& scene, const State& state) {
   const auto start = scene.expand(scene.initial()), now = scene.expand(state);
-  scales.displacement =
-      std::max(scales.displacement, largest_difference(now, start, &Node::position));
-  for (const Node& node : now) scales.speed = std::max(scales.speed, node.velocity.norm());
+  if (scales.parts.empty()) scales.parts = parts_of(scene, start);
+  for (PartScale& part : scales.parts) {
+    part.displacement =
+        std::max(part.displacement, largest_difference(part.nodes, now, start, &Node::position));
+    for (const std::size_t i : part.nodes)
+      part.speed = std::max(part.speed, now[i].velocity.norm());
+    scales.displacement = std::max(scales.displacement, part.displacement);
+    scales.speed = std::max(scales.speed, part.speed);
+  }
   scales.kinetic = std::max(scales.kinetic, scene.kinetic(state));
+}
+
+double position_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,
+                      const Scales& scales) {
+  return largest_error(nodes, reference, &Node::position, scales, scales.displacement,
+                       &Scales::displacement_of);
 }
 
 Errors errors_between(const ReducedScene& scene, const State& state, const State& reference,
                       double energy, const Scales& scales) {
   const auto nodes = scene.expand(state), expected = scene.expand(reference);
-  return {divided(largest_difference(nodes, expected, &Node::position), scales.displacement),
-          divided(largest_difference(nodes, expected, &Node::velocity), scales.speed),
+  return {position_error(nodes, expected, scales),
+          largest_error(nodes, expected, &Node::velocity, scales, scales.speed, &Scales::speed_of),
           divided(std::abs(scene.energy(state) - energy), scales.kinetic)};
+}
+
+double worse(const Errors& errors) { return std::max(errors.position, errors.velocity); }
+
+Errors larger(const Errors& one, const Errors& other) {
+  return {std::max(one.position, other.position), std::max(one.velocity, other.velocity),
+          std::max(one.energy, other.energy)};
 }
 
 }  // namespace qddot

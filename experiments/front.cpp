@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "experiments/judgement.hpp"
+#include "experiments/reference_words.hpp"
 
 namespace qddot {
 namespace {
@@ -25,6 +26,15 @@ std::string knob_in_words(const Point& point) {
                                                : fmt::format("rtol = {:.0e}", point.value);
 }
 
+const char* why_empty(const FrontRow& row, const Reference& reference) {
+  if (certified(reference) > row.accuracy) return "beyond what the reference certifies";
+  return row.may_be_reached ? "no method is known to have reached it" : "no method reached it";
+}
+
+std::string error_in_words(double error, const Reference& reference) {
+  return fmt::format("{:.1e}{}", error, is_uncertain(error, certified(reference)) ? '?' : ' ');
+}
+
 // The other family's best, and how many times slower it is.
 std::string rival(const FrontRow& row) {
   const Point* other =
@@ -42,10 +52,10 @@ std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
   for (int digit = 1; digit <= 9; ++digit) {
     FrontRow row{.accuracy = std::pow(10.0, -digit)};
     for (const Point& point : points) {
-      const bool reached = point.outcome == Outcome::reached_end &&
-                           judged_error(point, reference) <= row.accuracy &&
-                           certified(reference) <= row.accuracy;
-      if (!reached) continue;
+      if (point.outcome != Outcome::reached_end) continue;
+      const Known error = known(judged_error(point, reference), certified(reference));
+      row.may_be_reached |= error.at_least <= row.accuracy;
+      if (!(error.at_most <= row.accuracy)) continue;
       keep_faster(row.fastest, point);
       keep_faster(point.method->family == Family::sundials ? row.fastest_sundials
                                                            : row.fastest_hand_written,
@@ -58,8 +68,9 @@ std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
 
 void print_front(const std::string& scene, double until, const std::vector<FrontRow>& front,
                  const Reference& reference) {
-  fmt::print("{} to t = {:g} s; reference certified to {:.1e} ({})\n\n", scene, until,
+  fmt::print("{} to t = {:g} s; reference certified to {:.1e} ({})\n", scene, until,
              reference.certified.position, reference.made_by);
+  fmt::print("{}\n\n", what_divides(reference));
   if (reference.is_beyond_horizon()) {
     fmt::print(
         "The motion is chaotic (Lyapunov exponent {:.3g}/s): two runs that start one rounding "
@@ -72,18 +83,25 @@ void print_front(const std::string& scene, double until, const std::vector<Front
         "by {:.0e};\nerrors below that depend on how a method rounds.\n\n",
         reference.perturbation_growth, reference.rounding_effect);
   }
-  fmt::print("{:<9} {:<20} {:<16} {:>8}  {:>9}   {}\n", "accuracy", "fastest method", "knob",
-             "error", "time", "fastest of the other family");
+  const std::string symmetry = symmetry_in_words(reference);
+  if (!symmetry.empty()) fmt::print("{}\n\n", symmetry);
+  fmt::print("{:<9} {:<20} {:<16} {:>9}  {:>9}   {}\n", "accuracy", "fastest method", "knob",
+             "error ", "time", "fastest of the other family");
+  bool has_doubts = false;
   for (const FrontRow& row : front) {
     if (const Point* p = row.fastest) {
-      fmt::print("{:<9.0e} {:<20} {:<16} {:>8.1e}  {:>9}   {}\n", row.accuracy, p->method->name,
-                 knob_in_words(*p), judged_error(*p, reference), in_words(p->time), rival(row));
+      const double error = judged_error(*p, reference);
+      has_doubts |= is_uncertain(error, certified(reference));
+      fmt::print("{:<9.0e} {:<20} {:<16} {:>9}  {:>9}   {}\n", row.accuracy, p->method->name,
+                 knob_in_words(*p), error_in_words(error, reference), in_words(p->time),
+                 rival(row));
     } else {
-      fmt::print("{:<9.0e} {}\n", row.accuracy,
-                 certified(reference) > row.accuracy ? "beyond what the reference certifies"
-                                                     : "no method reached it");
+      fmt::print("{:<9.0e} {}\n", row.accuracy, why_empty(row, reference));
     }
   }
+  if (has_doubts)
+    fmt::print("? known to within {:.1e} alone, which the reference itself may be off\n",
+               certified(reference));
 }
 
 }  // namespace qddot

@@ -7,11 +7,12 @@
 
 namespace qddot {
 
-// The answer at one accuracy: the fastest point whose error (see judgement.hpp) is at most that,
-// and the fastest of each family; nullptr where there is none, or where the reference is not that
-// certain.
+// The answer at one accuracy: the fastest point whose error (see judgement.hpp) is known to be at
+// most that, whatever the reference's own error is: the measured one and what is certified
+// together; and the fastest of each family. nullptr where there is none.
 struct FrontRow {
   double accuracy = 0;
+  bool may_be_reached = false;  // by a point of which it is not known
   const Point* fastest = nullptr;
   const Point* fastest_hand_written = nullptr;
   const Point* fastest_sundials = nullptr;

@@ -1,5 +1,6 @@
 #include "experiments/judgement.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace qddot {
@@ -16,6 +17,12 @@ double certified(const Reference& reference) {
   return reference.is_beyond_horizon() ? std::numeric_limits<double>::epsilon()
                                        : reference.certified.position;
 }
+
+Known known(double error, double certified) {
+  return {std::max(error - certified, 0.0), error + certified};
+}
+
+bool is_uncertain(double error, double certified) { return certified > 0.1 * error; }
 
 const char* judged_by(const Reference& reference) {
   return reference.is_beyond_horizon() ? "energy" : "position";

@@ -16,6 +16,16 @@ double judged_error(const Point& point, const Reference& reference);
 // The least that such an error can be told from zero.
 double certified(const Reference& reference);
 
+// What is known of an error e that was measured against a reference which itself is off by up to c:
+// it is at least e - c, or 0, and at most e + c.
+struct Known {
+  double at_least = 0, at_most = 0;
+};
+Known known(double error, double certified);
+
+// Whether what is not known of an error is a tenth of it or more.
+bool is_uncertain(double error, double certified);
+
 // "position" or "energy".
 const char* judged_by(const Reference& reference);
 

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "experiments/judgement.hpp"
+
 namespace qddot {
 
 const std::vector<std::string>& point_columns() {
@@ -33,14 +35,17 @@ const std::vector<std::string>& point_columns() {
                                                    "order",
                                                    "error_energy_max",
                                                    "error_momentum_max",
-                                                   "error_modal_shares"};
+                                                   "error_modal_shares",
+                                                   "error_position_at_least",
+                                                   "error_position_at_most"};
   return columns;
 }
 
-void point_row(Csv& csv, const std::string& scene, const Point& p) {
+void point_row(Csv& csv, const std::string& scene, const Point& p, double certified) {
   const auto measured = [&](double x) {
     return p.outcome == Outcome::reached_end ? x : std::numeric_limits<double>::quiet_NaN();
   };
+  const Known position = known(p.errors.position, certified);
   const Counts& c = p.counts;
   csv.row(scene, p.method->name, knob_name(p.method->knob), p.value, name(p.outcome), p.t_reached,
           measured(p.errors.position), measured(p.errors.velocity), measured(p.errors.energy),
@@ -49,7 +54,8 @@ void point_row(Csv& csv, const std::string& scene, const Point& p) {
           c.newton_iterations, c.indefinite_factorizations, order_mean(c), c.order_reductions,
           c.stability_limited_steps, p.timed_runs, family_name(p.method->family), p.method->order,
           measured(p.on_the_way.energy), measured(p.on_the_way.momentum),
-          measured(p.on_the_way.modal_shares));
+          measured(p.on_the_way.modal_shares), measured(position.at_least),
+          measured(position.at_most));
 }
 
 }  // namespace qddot

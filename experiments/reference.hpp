@@ -12,22 +12,33 @@
 
 namespace qddot {
 
+// What a push of one rounding does to a motion that stays in a plane, on a line or its own mirror
+// image, and was computed there: all nodes pushed to all sides that were drawn.
+struct OutOfSymmetry {
+  double effect = 0;  // on the end, as a position error
+  // From which time on [s] the pushed motion and the symmetric one are `apart`, found or
+  // extrapolated, and how fast they part [1/s]; infinite and zero where they do not.
+  double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
+};
+
 // The motion that errors are measured against, at time `until`, and how far it can be trusted:
-// `certified` is by how much two unlike ways of computing it differ, in the units of Errors. No
-// error below that means anything.
+// `certified` bounds its error, in the units of Errors (see joined in reference_ways.hpp; the
+// program fuzz_references shows how often that holds). No error below that means anything.
 struct Reference {
   State end;
   double energy = 0;  // E(0) [J], which the exact motion keeps
   Scales scales;
   Errors certified;
   // What one rounding of the start (a random displacement of up to 2^-52 of the scene's extent)
-  // does to the positions at the end, as a position error; and by what factor it has grown. Where
-  // that is far above `certified` the motion is chaotic: it is known, but to no one who rounds
-  // differently.
+  // does to the positions at the end, as a position error; and by what factor it has grown. What
+  // grows exponentially is chaotic.
   double rounding_effect = 0, perturbation_growth = 0;
   // From which time on [s] that motion and the reference are `apart`, found or, after the end,
   // extrapolated; and how fast they part [1/s]. Infinite and zero for regular motions.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
+  // Of a motion that symmetry reduced; missing where nothing did or where it took too long.
+  bool is_reduced_by_symmetry = false;
+  std::optional<OutOfSymmetry> out_of_symmetry{};
   // Beyond the horizon, what part of the kinetic energy is in each mode (see ModalShares), and by
   // how much that of another motion with nearly the same start differs by chance; empty where it
   // was not measured.
@@ -36,12 +47,17 @@ struct Reference {
   std::string made_by;  // the two ways, with their knobs
   double seconds = 0;   // what it took
 
+  // Whether the motion at the end exists in exact symmetry alone: computed there it is known, but
+  // any push out of it has parted the nodes long before (in less than 0.8 of the motion's own
+  // horizon). Errors against it are those of computing the symmetric motion, which is what all
+  // methods do on the same reduced system, so that they still compare.
+  bool is_only_symmetric() const {
+    return out_of_symmetry && out_of_symmetry->horizon <= end.t &&
+           out_of_symmetry->horizon < 0.8 * horizon;
+  }
   // Whether the end is so late that nobody knows the positions: their errors mean nothing.
   bool is_beyond_horizon() const { return end.t >= horizon; }
-  bool is_chaotic() const {
-    return perturbation_growth > exponential_growth &&
-           (rounding_effect > 10 * certified.position || is_beyond_horizon());
-  }
+  bool is_chaotic() const { return perturbation_growth > exponential_growth; }
 };
 
 // The high-accuracy methods did not reach the end.
@@ -54,19 +70,22 @@ class NoReference : public std::runtime_error {
 //   linear motion (constant K):  modal, exact  -  Kahan and Li's order-8 composition;
 //   else:  Kahan and Li's composition (symplectic, fixed step)  -  Fehlberg's 7(8) pair of
 //          Boost.odeint (adaptive).
-// Each is refined until refining it changes nothing more, or time is up. Throws NoReference
-// if either never reaches the end.
-Reference make_reference(const ReducedScene& scene, double until, double seconds);
+// Each is refined until only rounding changes it any more, or time is up. Where `start` is given,
+// of which `scene` is the reduction, and its dimension or a mirror was reduced, another run of all
+// that was drawn shows what a push does to it, in at most as long again. Throws NoReference if
+// either way never reaches the end.
+Reference make_reference(const ReducedScene& scene, double until, double seconds,
+                         const Scene* start = nullptr);
 
 // Makes a reference that is good to the position error `needed` and no better than that takes, in
 // some `seconds` at most: where springs are so stiff that methods of high order would resolve their
 // vibrations for hours. Ways of two kinds are refined by turns, the cheapest next,
 //   explicit and symplectic, with steps that resolve every vibration:  Verlet, Kahan-Li;
 //   by error control, explicit and implicit:  Fehlberg's 7(8) pair, IDA;
-// until one of either kind agree to it, or time is up: `certified` then is by how much the nearest
-// two differ. Two of one kind prove nothing: implicit methods may agree on having damped what
-// vibrates. Of the rounding nothing is measured. Throws NoReference if a kind never reaches the
-// end.
+// until one of either kind agree to half of it, or time is up: `certified` then is twice by how
+// much the nearest two differ. Two of one kind prove nothing: implicit methods may agree on having
+// damped what vibrates. Of the rounding nothing is measured. Throws NoReference if a kind never
+// reaches the end.
 Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds);
 
 // As JSON, numbers exact, with `certified_position`, `certified_velocity`, `certified_energy` and
@@ -79,9 +98,10 @@ void require_reference_exists(const ReducedScene& scene, const std::string& sour
 
 // The reference of the scene at `until` that `folder`/reference.json holds, if it was made of the
 // same scene content by the same code; else a new one, which is written there with `origin`. It is
-// as good as can be, or good to the position error `needed` where that is given.
-Reference reference_for(const Scene& drawn, const ReducedScene& scene, double until,
-                        const std::string& folder, const nlohmann::json& origin,
+// as good as can be, or good to the position error `needed` where that is given. `start` is the
+// drawn scene as its motion starts, and `scene` the reduction of that.
+Reference reference_for(const Scene& drawn, const Scene& start, const ReducedScene& scene,
+                        double until, const std::string& folder, const nlohmann::json& origin,
                         std::optional<double> needed = {});
 
 }  // namespace qddot

@@ -14,6 +14,50 @@ namespace qddot {
 namespace {
 
 constexpr std::int64_t longest_path = 100;
+constexpr double safety = 2;
+
+// Moves q and v on by `until` [s], in units of `length` [m] and `speed` [m/s]; false where the
+// deadline passes before.
+bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<Vec> v, double until,
+                           double tolerance, double length, double speed,
+                           const Deadline& deadline) {
+  namespace odeint = boost::numeric::odeint;
+  using Stacked = std::vector<double>;
+  const Index n = system.size();
+  const Vec start = q, per_mass = system.mass().cwiseInverse();
+  Vec now(n), f(n);
+
+  const auto rate = [&](const Stacked& y, Stacked& dy, double) {
+    const Eigen::Map<const Vec> u(y.data(), n), w(y.data() + n, n);
+    now = start + length * u;
+    system.force(now, f);
+    Eigen::Map<Vec>(dy.data(), n) = (speed / length) * w;
+    Eigen::Map<Vec>(dy.data() + n, n) = per_mass.cwiseProduct(f) / speed;
+  };
+  Stacked y(2 * n, 0.0);
+  Eigen::Map<Vec>(y.data() + n, n) = v / speed;
+
+  auto stepper =
+      odeint::make_controlled<odeint::runge_kutta_fehlberg78<Stacked>>(tolerance, tolerance);
+  // t and the rest of it that rounding left over: thousands of steps must add up to the end.
+  double t = 0, rest = 0, dt = until / 1000;
+  for (bool is_over = until == 0; !is_over;) {
+    if (deadline.passed() || t + dt == t) return false;
+    const double left = (until - t) - rest;
+    const bool is_last = dt >= left;
+    if (is_last) dt = left;
+    const double taken = dt;
+    double unused = t;
+    if (stepper.try_step(rate, y, unused, dt) != odeint::success) continue;
+    const double more = taken + rest, next = t + more;
+    rest = more - (next - t);
+    t = next;
+    is_over = is_last;
+  }
+  q = start + length * Eigen::Map<const Vec>(y.data(), n);
+  v = speed * Eigen::Map<const Vec>(y.data() + n, n);
+  return true;
+}
 
 }  // namespace
 
@@ -52,51 +96,38 @@ std::optional<Solution> composition(const ReducedScene& scene, const State& init
 
 std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double tolerance,
                                  const Scales& scales, double seconds) {
-  namespace odeint = boost::numeric::odeint;
-  using Stacked = std::vector<double>;
   const System& system = scene.system();
-  const State& initial = scene.initial();
-  const Index n = system.size();
-  const double length = scales.displacement > 0 ? scales.displacement : 1;
-  const double speed = scales.speed > 0 ? scales.speed : 1;
-  const Vec per_mass = system.mass().cwiseInverse();
-  Vec q(n), f(n);
-
-  const auto rate = [&](const Stacked& y, Stacked& dy, double) {
-    const Eigen::Map<const Vec> u(y.data(), n), w(y.data() + n, n);
-    q = initial.q + length * u;
-    system.force(q, f);
-    Eigen::Map<Vec>(dy.data(), n) = (speed / length) * w;
-    Eigen::Map<Vec>(dy.data() + n, n) = per_mass.cwiseProduct(f) / speed;
-  };
-  Stacked y(2 * n, 0.0);
-  Eigen::Map<Vec>(y.data() + n, n) = initial.v / speed;
-
-  auto stepper =
-      odeint::make_controlled<odeint::runge_kutta_fehlberg78<Stacked>>(tolerance, tolerance);
+  const auto parts = system.parts();
+  Solution solution{.end = scene.initial(), .scales = scales, .knob = tolerance};
+  solution.end.t = until;
   const Deadline deadline(seconds);
-  double t = 0, dt = until / 1000;
-  while (t < until) {
-    if (deadline.passed() || t + dt == t) return {};
-    if (t + dt > until) dt = until - t;
-    const bool is_last = t + dt >= until;
-    if (stepper.try_step(rate, y, t, dt) == odeint::success && is_last) break;
+  const bool has_scales = scales.parts.size() == std::max<std::size_t>(parts.size(), 1);
+  Index at = 0;
+  for (std::size_t i = 0; i < std::max<std::size_t>(parts.size(), 1); ++i) {
+    const System& part = parts.empty() ? system : *parts[i];
+    auto q = solution.end.q.segment(at, part.size()), v = solution.end.v.segment(at, part.size());
+    const double length =
+                     has_scales ? scales.displacement_of(scales.parts[i]) : scales.displacement,
+                 speed = has_scales ? scales.speed_of(scales.parts[i]) : scales.speed;
+    if (!fehlberg_step_by_step(part, q, v, until, tolerance, length > 0 ? length : 1,
+                               speed > 0 ? speed : 1, deadline))
+      return {};
+    at += part.size();
   }
-  return Solution{{until, initial.q + length * Eigen::Map<const Vec>(y.data(), n),
-                   speed * Eigen::Map<const Vec>(y.data() + n, n)},
-                  scales,
-                  tolerance,
-                  fmt::format("Boost.odeint Fehlberg 7(8) at tolerance {:.0e}", tolerance)};
+  solution.made_by = fmt::format("Boost.odeint Fehlberg 7(8) at tolerance {:.0e}", tolerance);
+  return solution;
 }
 
-Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other) {
+Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other,
+                 const Errors& rounding_effect) {
   const double energy = scene.energy(scene.initial());
   Errors certified = errors_between(scene, one.end, other.end, scene.energy(other.end), one.scales);
+  certified = larger(certified, larger(rounding_effect, larger(one.change, other.change)));
   const Errors drift = errors_between(scene, one.end, one.end, energy, one.scales);
   certified.energy = std::max(certified.energy, drift.energy);
-  // Two roundings of the same number may agree by chance.
   for (double* part : {&certified.position, &certified.velocity, &certified.energy}) {
-    *part = std::max(*part, std::numeric_limits<double>::epsilon());
+    // Two roundings of the same number may agree by chance.
+    *part = std::max(safety * *part, std::numeric_limits<double>::epsilon());
   }
   Reference reference{.end = one.end,
                       .energy = energy,

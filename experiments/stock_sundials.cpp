@@ -226,7 +226,7 @@ int stock_sundials(const CLI::App& app, const Arguments& a,
   CsvFile csv(a.out + "/structure.csv", columns);
   nlohmann::json origin = provenance(command_line, drawn, start, scene);
   origin["until"] = until;
-  const Reference reference = reference_for(drawn, scene, until, a.out, origin);
+  const Reference reference = reference_for(drawn, start, scene, until, a.out, origin);
 
   fmt::print("{}, {} unknowns, until {:g} s; shares in %: force K factorisation solve rest\n",
              drawn.name, scene.system().size(), until);

@@ -4,13 +4,16 @@
 //   work_precision --scene my.toml --methods verlet,ida --repeats 9 --out results/my
 //
 //  1. A reference is made by two unlike methods of high order, or exactly where the motion is
-//     linear; what they agree to is the certified floor (reference.json, kept for the next time).
-//     A third run that starts one rounding away shows from which time on the motion is chaotic.
+//     linear. What bounds its error, by how far they and their last refinements differ, is the
+//     certified floor (reference.json, kept for the next time). A third run that starts one
+//     rounding away shows from which time on the motion is chaotic; where the motion has a plane, a
+//     line or mirrors to itself, a fourth one shows what a push out of these does.
 //  2. Each method runs from coarse to fine: once untimed unless that takes long, then timed several
 //     times, one thread; and once more, watched on its way: its largest energy error, its momenta.
 //  3. points.csv holds every point, the failed ones with the reason; front.csv, for each accuracy
-//     from 1e-1 to 1e-9, the fastest method that reached it: of the positions at the end or, where
-//     that is beyond the chaotic motion's horizon and nobody knows them, of the energy on the way.
+//     from 1e-1 to 1e-9, the fastest method known to have reached it: of the positions at the end
+//     or, where that is beyond the chaotic motion's horizon and nobody knows them, of the energy on
+//     the way.
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -87,7 +90,7 @@ int work_precision(const CLI::App& app, const Arguments& a,
   nlohmann::json origin = provenance(command_line, drawn, start, scene);
   origin["until"] = until;
   show_progress("making the reference ...");
-  const Reference reference = reference_for(drawn, scene, until, a.out, origin);
+  const Reference reference = reference_for(drawn, start, scene, until, a.out, origin);
 
   const Watch watch(start, scene, until, reference);
   Effort effort = a.effort;
@@ -101,7 +104,8 @@ int work_precision(const CLI::App& app, const Arguments& a,
   show_progress("");
 
   const auto front = fastest_at_each_accuracy(points, reference);
-  for (const Point& point : points) point_row(points_csv, drawn.name, point);
+  for (const Point& point : points)
+    point_row(points_csv, drawn.name, point, reference.certified.position);
   tabulate(front_csv, drawn.name, front, judged_by(reference));
   points_csv.commit(origin);
   front_csv.commit(origin);

@@ -12,10 +12,10 @@
 namespace qddot::bench {
 namespace {
 
-Reference reference_of(const Scene& drawn, const ReducedScene& scene, double until,
-                       const std::string& folder, const nlohmann::json& origin) {
+Reference reference_of(const Scene& drawn, const Scene& start, const ReducedScene& scene,
+                       double until, const std::string& folder, const nlohmann::json& origin) {
   require_reference_exists(scene, drawn.name);
-  Reference reference = reference_for(drawn, scene, until, folder, origin);
+  Reference reference = reference_for(drawn, start, scene, until, folder, origin);
   if (reference.is_beyond_horizon()) {
     throw InvalidInput(
         fmt::format("{}: beyond t = {:.2g} s the motion is chaotic and nobody knows the positions; "
@@ -50,7 +50,7 @@ Problem::Problem(const Scene& drawn, const Scene& started, double horizon,
     : start(started),
       until(horizon),
       smallest(start),
-      reference(reference_of(drawn, smallest, until, folder, origin)),
+      reference(reference_of(drawn, start, smallest, until, folder, origin)),
       scene(start, Reductions::only({Reduction::pins})),
       own(in_all_unknowns(reference, smallest, start.dimension)) {
   const Knobs scales = with_tolerance_scales({}, scene);

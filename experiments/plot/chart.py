@@ -84,6 +84,10 @@ class Chart:
     def draw(self):
         """Draws everything; the labels come last, when all they must not hide is known."""
         self.draw_floor()
+        if self.floor_visible and any(run.is_uncertain for run in self.good):
+            words = "bars: error ± what the reference may be off by"
+            style = {"size": 9.5, "color": FAINT, "ha": "right", "va": "center"}
+            self.note(words, 1, (0, BELOW_TICKS), **style)
         self.draw_chaos()
         self.draw_front()
         for sweep in self.sweeps:
@@ -149,7 +153,9 @@ class Chart:
         """The staircase of the shortest time that reaches each error or a smaller one."""
         corners = []
         counting = [run for run in self.good if run.counts]
-        for error, time in sorted(map(self.position, counting)):
+        # Known to be reached is what the error is at most.
+        bounds = [(max(run.bound, self.smallest), run.time) for run in counting]
+        for error, time in sorted(bounds):
             if not corners or time < corners[-1][1]:
                 corners += [(error, corners[-1][1])] if corners else []
                 corners.append((error, time))
@@ -206,6 +212,15 @@ class Chart:
             )
         for before, after in zip(pieces, pieces[1:]):
             self.axes.plot(*zip(before[-1], after[0]), linewidth=0.6, zorder=2, **style)
+        self.draw_doubts(sweep, style)
+
+    def draw_doubts(self, sweep, style):
+        """From what the error of a run is at least to what it is at most, where these are apart."""
+        for run in sweep:
+            if run.failure or not run.is_uncertain:
+                continue
+            left, right = max(run.known[0], self.axes.get_xlim()[0]), run.known[1]
+            self.axes.plot([left, right], [run.time] * 2, linewidth=0.9, zorder=2.2, **style)
 
     def pixels(self, position):
         """A point of the axes in pixels."""

@@ -27,6 +27,8 @@ class Run:
     time: float
     # Whether it may be on the front.
     counts: bool = True
+    # What the error is at least and at most, where the reference has an error of its own.
+    known: tuple | None = None
 
     @property
     def is_measured(self):
@@ -43,6 +45,16 @@ class Run:
         if self.error > WORST_ERROR:
             return f"error above {WORST_ERROR:g}"
         return "" if 0 < self.time < math.inf else "not timed"
+
+    @property
+    def bound(self):
+        """What the error is at most."""
+        return self.known[1] if self.known else self.error
+
+    @property
+    def is_uncertain(self):
+        """Whether what is not known of the error is a tenth of it or more."""
+        return self.bound > 1.1 * self.error
 
 
 @dataclass(frozen=True)
@@ -71,6 +83,11 @@ class Reference:
     lyapunov: float | None = None
     # What chance makes of the distance of two distributions of energy.
     modal_floor: float | None = None
+    # Where the motion exists in exact symmetry alone: from which time on a push out of it has parted
+    # the nodes.
+    symmetric_until: float | None = None
+    # What position errors are divided by in m: the least and the largest of the scene's parts.
+    displacements: tuple | None = None
 
 
 def read_header(path):
@@ -112,6 +129,8 @@ def parse(path, line, row, column, required):
 def read_runs(path, column="error_position"):
     """All runs in the order of the file, with the error of one column."""
     texts = ("scene", "method", "family", "knob", "outcome")
+    bounds = (f"{column}_at_least", f"{column}_at_most")
+    has_bounds = set(bounds) <= set(read_header(path))
     runs = []
     for line, row in read_rows(path, (*texts, "value", column, "time_s")):
         if not all(row[name] for name in ("method", "knob", "outcome")):
@@ -122,6 +141,9 @@ def read_runs(path, column="error_position"):
                 value=parse(path, line, row, "value", True),
                 error=parse(path, line, row, column, False),
                 time=parse(path, line, row, "time_s", False),
+                known=tuple(parse(path, line, row, name, False) for name in bounds)
+                if has_bounds
+                else None,
             )
         )
     return runs
@@ -150,12 +172,21 @@ def fastest_at_each_accuracy(runs):
     points = []
     for accuracy in (10.0**-digit for digit in range(1, 10)):
         good = [
-            run for run in runs if run.counts and not run.failure and run.error <= accuracy
+            run for run in runs if run.counts and not run.failure and run.bound <= accuracy
         ]
         if good:
             best = min(good, key=lambda run: run.time)
             points.append(FrontPoint(accuracy, best.method, best.error, best.time))
     return points
+
+
+def displacements(scales):
+    """The least and the largest length that position errors of the scene's parts are divided by:
+    a part at rest has that of the whole scene."""
+    whole = float(scales["displacement"])
+    parts = scales.get("parts") or []
+    lengths = [whole if part["at_rest"] else float(part["displacement"]) for part in parts]
+    return (min(lengths, default=whole), max(lengths, default=whole))
 
 
 def read_reference(path):
@@ -173,6 +204,8 @@ def read_reference(path):
             float(content["horizon"]) if beyond else None,
             float(content["lyapunov"]) if beyond else None,
             float(content["modal_shares_floor"]) if beyond else None,
+            float(content["out_of_symmetry"]["horizon"]) if content.get("only_symmetric") else None,
+            displacements(content["scales"]) if "scales" in content else None,
         )
     except FileNotFoundError:
         return Reference(None, None, None, None)

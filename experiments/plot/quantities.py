@@ -62,6 +62,16 @@ class View:
     chaotic_below: float | None = None
 
 
+def lengths(displacements):
+    """The numbers that belong to the subtitle of the position error."""
+    if not displacements:
+        return ""
+    least, largest = displacements
+    if least == largest:
+        return f", {number(largest)} m"
+    return f" in the node's own part, {number(least)} to {number(largest)} m"
+
+
 def view(directory, quantity, reference):
     """The view of what a directory holds, or None where no run has such an error: not
     measured, or zero as the turning of what only swings in a plane."""
@@ -73,7 +83,12 @@ def view(directory, quantity, reference):
     if quantity is POSITION:
         front = measurements.read_front(os.path.join(directory, "front.csv"), runs)
         words = reference.certified and f"reference certified to {number(reference.certified)}"
-        return View(quantity, runs, front, reference.certified, words, reference.chaotic_below)
+        quantity = replace(quantity, subtitle=quantity.subtitle + lengths(reference.displacements))
+        # Where the floor counts rounding in, nothing is left to say of it.
+        chaotic = reference.chaotic_below
+        if chaotic and reference.certified and chaotic <= reference.certified:
+            chaotic = None
+        return View(quantity, runs, front, reference.certified, words, chaotic)
     if not any(run.error > 0 for run in runs):
         return None
     if quantity is MOMENTUM:

@@ -42,13 +42,31 @@ def axes_height(runs):
 
 
 def draw_header(sheet, scene, quantity, reference):
-    """Title and subtitle; and the horizon where the end is beyond that."""
+    """Title and subtitle; and what the motion itself leaves unknown."""
     end = "T" if reference.until is None else f"T = {number(reference.until)} s"
     title = f"{scene}: time of a run against {quantity.title} {end}"
     sheet.text(MARGIN, 0.25, title, size=14, weight="bold", va="center")
     sheet.text(MARGIN, 0.54, quantity.subtitle, size=10, color=FAINT, va="center")
-    if reference.horizon:
-        sheet.text(MARGIN, 0.83, horizon_in_words(reference), size=10, color=WARNING, va="center")
+    for line, words in enumerate(warnings(reference)):
+        top = 0.83 + HORIZON * line
+        sheet.text(MARGIN, top, words, size=10, color=WARNING, va="center")
+
+
+def warnings(reference):
+    """What a reader must know of the motion before its errors; two lines each."""
+    return [
+        *([horizon_in_words(reference)] if reference.horizon else []),
+        *([symmetry_in_words(reference)] if reference.symmetric_until is not None else []),
+    ]
+
+
+def symmetry_in_words(reference):
+    """That the motion exists in exact symmetry alone, and what its errors are then."""
+    return (
+        "this motion exists only in exact symmetry: a push of one rounding out of it moves the"
+        f" nodes apart from t = {number(reference.symmetric_until)} s on.\n"
+        "Errors are those of computing the symmetric motion, which no thing that is pushed makes."
+    )
 
 
 def horizon_in_words(reference):
@@ -129,7 +147,7 @@ def draw(views, reference, fallback_scene):
     main, *more = views
     looks = assign_looks({run.method: run.family for run in main.runs})
     failed = failures.failing(measurements.sweeps(main.runs))
-    header = HEADER + (HORIZON if reference.horizon else 0)
+    header = HEADER + HORIZON * len(warnings(reference))
     strip_top = header + sum(map(panel_height, views)) + HEADING * len(more)
     sheet = Sheet(WIDTH, strip_top + failures.strip_height(failed))
     scene = reference.scene or (main.runs[0].scene if main.runs else "") or fallback_scene

@@ -208,6 +208,21 @@ std::vector<Node> ReducedScene::expand(const State& state) const {
   return nodes;
 }
 
+std::vector<std::vector<std::size_t>> ReducedScene::nodes_by_part() const {
+  std::vector<std::vector<std::size_t>> nodes;
+  std::vector<std::size_t> part_of(nodes_.size(), parts_.size());
+  for (const Part& part : parts_) {
+    for (const std::size_t node : part.nodes()) part_of[node] = nodes.size();
+    nodes.push_back(part.nodes());
+  }
+  for (const Series& series : series_) {
+    const std::size_t part = std::min(part_of[series.ends[0]], part_of[series.ends[1]]);
+    if (part == parts_.size()) continue;  // between two pinned nodes
+    for (const auto& joint : series.joints) nodes[part].push_back(joint.node);
+  }
+  return nodes;
+}
+
 std::vector<std::size_t> ReducedScene::massless_nodes() const {
   std::vector<std::size_t> massless;
   for (const Part& part : parts_) {

@@ -58,6 +58,9 @@ class ReducedScene {
   // What was done, in order; a reduction that found nothing says nothing.
   const std::vector<Finding>& findings() const { return findings_; }
   const std::vector<Part>& parts() const { return parts_; }
+  // The scene's numbers of the nodes that each part moves, in the order of the parts: its own, and
+  // the condensed ones between them.
+  std::vector<std::vector<std::size_t>> nodes_by_part() const;
 
  private:
   // Where a node in free flight is at time t [s].

@@ -78,6 +78,84 @@ BOOST_AUTO_TEST_CASE(scales_keep_the_largest_of_all_states) {
   BOOST_TEST(scales.kinetic == 1.5);
 }
 
+BOOST_AUTO_TEST_CASE(each_part_is_measured_by_its_own_motion) {
+  // Two oscillators that no spring joins, one of amplitude 1 m and one of 1e-10 m.
+  Scene scene{.name = "two", .dimension = 1};
+  scene.nodes = {{.pinned = true},
+                 {.position = {2, 0, 0}, .mass = 1},
+                 {.position = {5, 0, 0}, .pinned = true},
+                 {.position = {6 + 1e-10, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 1, .rest_length = 1}},
+                   {{2, 3}, {.stiffness = 1, .rest_length = 1}}};
+  const ReducedScene two(scene);
+  BOOST_TEST_REQUIRE(two.parts().size() == 2u);
+  const State start = two.initial();
+  State swung = start;
+  swung.q -= Vec{{2, 2e-10}};
+  swung.v = Vec{{-1, -1e-10}};
+  Scales scales;
+  extend(scales, two, start);
+  extend(scales, two, swung);
+  BOOST_TEST(scales.displacement == 2);
+  BOOST_TEST(scales.speed == 1);
+  // A rounding of the coordinate 6 is 4e-6 of 2e-10.
+  const auto off = [&](double large, double small) {
+    State state = start;
+    state.q += Vec{{large, small}};
+    return errors_between(two, state, start, 0, scales).position;
+  };
+  BOOST_TEST(off(2e-3, 0) == 1e-3, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(off(0, 2e-11) == 0.1, boost::test_tools::tolerance(1e-4));
+  BOOST_TEST(off(2e-3, 2e-11) == 0.1, boost::test_tools::tolerance(1e-4));
+  State fast = start;
+  fast.v = Vec{{0, 1e-11}};
+  BOOST_TEST(errors_between(two, fast, start, 0, scales).velocity == 0.1,
+             boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(a_part_that_only_rounds_is_measured_by_the_others) {
+  Scene scene{.name = "two", .dimension = 1};
+  scene.nodes = {{.pinned = true},
+                 {.position = {2, 0, 0}, .mass = 1},
+                 {.position = {5, 0, 0}, .pinned = true},
+                 {.position = {6, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 1, .rest_length = 1}},
+                   {{2, 3}, {.stiffness = 1, .rest_length = 1}}};
+  const ReducedScene two(scene);
+  State state = two.initial();
+  state.q += Vec{{1, 1e-15}};
+  Scales scales;
+  extend(scales, two, two.initial());
+  extend(scales, two, state);
+  BOOST_TEST((!scales.parts[0].is_at_rest() && scales.parts[1].is_at_rest()));
+  State rounded = two.initial();
+  rounded.q[1] = std::nextafter(rounded.q[1], 7);
+  const double error = errors_between(two, rounded, two.initial(), 0, scales).position;
+  BOOST_TEST((error > 0 && error < 1e-14));
+}
+
+BOOST_AUTO_TEST_CASE(free_flight_is_no_scale_of_what_swings) {
+  Scene scene{.name = "thrown", .dimension = 1};
+  scene.nodes = {
+      {.pinned = true}, {.position = {2, 0, 0}, .mass = 1}, {.velocity = {1e6, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 1, .rest_length = 1}}};
+  const ReducedScene thrown(scene);
+  State later = thrown.initial();
+  later.t = 1;
+  later.q[0] -= 0.5;
+  Scales scales;
+  extend(scales, thrown, later);
+  BOOST_TEST(scales.displacement == 0.5);
+  // But where nothing else moves.
+  scene.springs.clear();
+  const ReducedScene alone(scene);
+  State flown = alone.initial();
+  flown.t = 1;
+  Scales of_flight;
+  extend(of_flight, alone, flown);
+  BOOST_TEST(of_flight.displacement == 1e6);
+}
+
 BOOST_AUTO_TEST_CASE(where_all_is_pinned_there_is_no_error) {
   Scene pinned = three_nodes();
   for (Node& node : pinned.nodes) node.pinned = true;

@@ -4,6 +4,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/front.hpp"
+#include "experiments/judgement.hpp"
 #include "integrators/registry.hpp"
 
 using namespace qddot;
@@ -96,10 +97,29 @@ BOOST_AUTO_TEST_CASE(each_family_has_its_own_fastest) {
 BOOST_AUTO_TEST_CASE(an_error_equal_to_the_accuracy_has_reached_it) {
   const double accuracy = front_of({})[4].accuracy;
   const std::vector<Point> points = {point("verlet", accuracy, 1)};
-  BOOST_TEST(front_of(points)[4].fastest == points.data());
-  BOOST_TEST(!front_of(points)[5].fastest);
+  BOOST_TEST(front_of(points, 0)[4].fastest == points.data());
+  BOOST_TEST(!front_of(points, 0)[5].fastest);
   const std::vector<Point> beyond = {point("verlet", std::nextafter(accuracy, 1.0), 1)};
-  BOOST_TEST(!front_of(beyond)[4].fastest);
+  BOOST_TEST(!front_of(beyond, 0)[4].fastest);
+}
+
+BOOST_AUTO_TEST_CASE(a_row_is_for_those_that_reached_it_whatever_the_reference_is_off_by) {
+  // The faster one's error is 1.2e-9 if the reference is off to its side by all it may be.
+  const std::vector<Point> points = {point("verlet", 7e-10, 1), point("ida", 3e-10, 2)};
+  const FrontRow row = front_of(points, 5e-10)[8];
+  BOOST_TEST(row.fastest == &points[1]);
+  BOOST_TEST(row.fastest_hand_written == nullptr);
+  const FrontRow open = front_of({points[0]}, 5e-10)[8];
+  BOOST_TEST((!open.fastest && open.may_be_reached));
+  const std::vector<Point> off = {point("verlet", 1.6e-9, 1)};
+  BOOST_TEST(!front_of(off, 5e-10)[8].may_be_reached);
+}
+
+BOOST_AUTO_TEST_CASE(an_error_is_known_to_within_what_the_reference_is_off_by) {
+  BOOST_TEST(known(3e-9, 1e-9).at_least == 2e-9, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(known(3e-9, 1e-9).at_most == 4e-9, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(known(1e-10, 1e-9).at_least == 0);
+  BOOST_TEST((is_uncertain(3e-9, 1e-9) && !is_uncertain(1e-6, 1e-9)));
 }
 
 BOOST_AUTO_TEST_CASE(no_row_claims_more_than_the_reference_certifies) {
@@ -123,7 +143,7 @@ BOOST_AUTO_TEST_CASE(points_that_failed_do_not_count) {
 }
 
 BOOST_AUTO_TEST_CASE(negative_control_a_faster_point_displaces_the_row) {
-  std::vector<Point> points = {point("verlet", 1e-3, 2), point("ida", 1e-3, 3)};
+  std::vector<Point> points = {point("verlet", 9e-4, 2), point("ida", 9e-4, 3)};
   BOOST_TEST(front_of(points)[2].fastest->method->name == "verlet");
   points[1].time = 1;
   BOOST_TEST(front_of(points)[2].fastest->method->name == "ida");

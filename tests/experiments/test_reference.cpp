@@ -4,6 +4,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/reference.hpp"
+#include "experiments/reference_ways.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/generators.hpp"
 #include "src/scene/invalid_input.hpp"
@@ -59,6 +60,22 @@ struct Row {
   };
   std::array<Mode, 2> modes = {{{1, 0.3L, 0.2L}, {7, 0.05L, -1}}};
 };
+
+// Seven masses on a line in a plane, ends pinned, the springs compressed by a tenth, each pushed
+// along the line.
+Scene compressed_strut() {
+  Scene scene{.name = "strut", .dimension = 2};
+  for (int i = 0; i < 7; ++i) {
+    scene.nodes.push_back({.position = {0.9 * i, 0, 0},
+                           .velocity = {i % 2 == 0 ? 0.1 : -0.2, 0, 0},
+                           .mass = 0.1,
+                           .pinned = i == 0 || i == 6});
+    if (i == 0) continue;
+    const auto own = static_cast<std::size_t>(i);
+    scene.springs.push_back({{own - 1, own}, {.stiffness = 1000, .rest_length = 1}});
+  }
+  return scene;
+}
 
 double length(const Eigen::Vector3d& x) { return x.norm(); }
 
@@ -237,6 +254,79 @@ BOOST_AUTO_TEST_CASE(a_chaotic_motion_has_one_before_and_after_it_is_reached) {
   const double soon = 0.8 * late.horizon;
   BOOST_TEST(errors_between(scene, end(far, soon), end(near, soon), 0, late.scales).position >
              apart);
+}
+
+BOOST_AUTO_TEST_CASE(refinement_goes_on_while_steps_are_too_coarse_for_its_order) {
+  // A rosette that comes near the spring's other end: the first changes do not shrink at all.
+  const ReducedScene scene(
+      generate(*find_generator("orbit"), {{"rest_length", 0.3}, {"speed", 1}}, "here"));
+  const Reference made = make_reference(scene, 20, seconds);
+  BOOST_TEST(made.certified.position < 1e-7);
+  BOOST_TEST(made.certified.velocity < 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(a_motion_in_exact_symmetry_is_known_and_known_to_be_alone) {
+  // Of masses m on springs that push with F over the length l, the fastest to the side grow by
+  // (2 sin(5 pi/12)) sqrt(F/(l m)) = 66/s: one rounding is a hundredth after half a second.
+  const Scene strut = compressed_strut();
+  const ReducedScene scene(strut);
+  const Reference early = make_reference(scene, 0.2, seconds, &strut),
+                  late = make_reference(scene, 0.7, seconds, &strut);
+  for (const Reference& made : {early, late}) {
+    BOOST_TEST(made.is_reduced_by_symmetry);
+    BOOST_TEST(made.certified.position < 1e-10);
+    BOOST_TEST((!made.is_chaotic() && std::isinf(made.horizon)));
+    BOOST_TEST_REQUIRE(made.out_of_symmetry.has_value());
+  }
+  BOOST_TEST(!early.is_only_symmetric());
+  BOOST_TEST(late.is_only_symmetric());
+  BOOST_TEST(late.out_of_symmetry->effect > apart);
+  BOOST_TEST((late.out_of_symmetry->horizon > 0.3 && late.out_of_symmetry->horizon < 0.6));
+  // The motion along the line changes F by some.
+  BOOST_TEST(late.out_of_symmetry->lyapunov == 66, boost::test_tools::tolerance(0.25));
+  // Without any reduction it is chaotic, and of the same horizon.
+  const ReducedScene whole(strut, Reductions::only({Reduction::pins}));
+  const Reference plain = make_reference(whole, 0.7, seconds);
+  BOOST_TEST(plain.is_beyond_horizon());
+  BOOST_TEST(plain.horizon == late.out_of_symmetry->horizon, boost::test_tools::tolerance(0.2));
+}
+
+BOOST_AUTO_TEST_CASE(a_push_out_of_a_stable_symmetry_does_nothing) {
+  Scene stretched = compressed_strut();
+  for (Spring& spring : stretched.springs) spring.law.rest_length = 0.8;
+  const Reference made = make_reference(ReducedScene(stretched), 0.7, seconds, &stretched);
+  BOOST_TEST_REQUIRE(made.out_of_symmetry.has_value());
+  BOOST_TEST(std::isinf(made.out_of_symmetry->horizon));
+  BOOST_TEST(made.out_of_symmetry->effect < 1e-11);
+  BOOST_TEST(!made.is_only_symmetric());
+}
+
+BOOST_AUTO_TEST_CASE(without_symmetry_there_is_nothing_to_be_pushed_out_of) {
+  Scene bent = compressed_strut();
+  bent.nodes[3].position.y() = 0.1;
+  bent.nodes[2].position.y() = 0.2;
+  const Reference made = make_reference(ReducedScene(bent), 0.1, seconds, &bent);
+  BOOST_TEST(!made.is_reduced_by_symmetry);
+  BOOST_TEST(!made.out_of_symmetry.has_value());
+  // Nor is anything known of it where the drawn scene is not.
+  const Reference unasked = make_reference(ReducedScene(compressed_strut()), 0.1, seconds);
+  BOOST_TEST((unasked.is_reduced_by_symmetry && !unasked.out_of_symmetry));
+}
+
+BOOST_AUTO_TEST_CASE(a_certificate_sees_changes_and_roundings_and_not_the_difference_alone) {
+  const ReducedScene scene(load_scene("oscillator"));
+  const Scales scales{.displacement = 2, .speed = 10, .kinetic = 50};
+  Solution one{.end = {0.1, Vec::Constant(1, 0.5), Vec::Constant(1, 1)}, .scales = scales},
+      other = one;
+  other.end.q[0] += 2e-9;  // 1e-9 of the scale
+  BOOST_TEST(joined(scene, one, other).certified.position == 2e-9,
+             boost::test_tools::tolerance(1e-6));
+  one.change.position = 3e-9;
+  BOOST_TEST(joined(scene, one, other).certified.position == 6e-9);
+  other.change.position = 4e-9;
+  BOOST_TEST(joined(scene, one, other).certified.position == 8e-9);
+  BOOST_TEST(joined(scene, one, other, {.position = 5e-9}).certified.position == 1e-8);
+  BOOST_TEST(joined(scene, one, other, {.velocity = 7e-9}).certified.velocity == 1.4e-8);
 }
 
 BOOST_AUTO_TEST_CASE(what_two_unlike_methods_agree_on_is_as_good_as_needed) {

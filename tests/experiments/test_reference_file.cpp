@@ -16,7 +16,8 @@ constexpr double until = 0.1;
 // The reference of a scene that the folder keeps or gets.
 Reference kept(const std::string& name, double horizon, const Folder& folder) {
   const Scene drawn = load_scene(name);
-  return reference_for(drawn, ReducedScene(drawn), horizon, folder.path(), {{"made", "here"}});
+  return reference_for(drawn, drawn, ReducedScene(drawn), horizon, folder.path(),
+                       {{"made", "here"}});
 }
 
 }  // namespace
@@ -66,6 +67,33 @@ BOOST_AUTO_TEST_CASE(json_brings_back_a_horizon) {
   BOOST_TEST(read.lyapunov == made.lyapunov);
   BOOST_TEST((read.modal_shares == made.modal_shares));
   BOOST_TEST(read.modal_shares_floor == made.modal_shares_floor);
+}
+
+BOOST_AUTO_TEST_CASE(json_brings_back_symmetry_and_the_scales_of_parts) {
+  Reference made;
+  made.end = {2, Vec::Ones(2), Vec::Ones(2)};
+  made.certified = {1e-9, 1e-9, 1e-9};
+  made.scales = {.displacement = 3, .speed = 4, .kinetic = 5};
+  made.scales.parts = {{.nodes = {1, 2}, .extent = 7, .displacement = 3, .speed = 4},
+                       {.nodes = {4}, .extent = 8, .displacement = 1e-10, .speed = 1e-9}};
+  made.is_reduced_by_symmetry = true;
+  made.out_of_symmetry = OutOfSymmetry{.effect = 0.3, .horizon = 1.5, .lyapunov = 66};
+  const nlohmann::json written = nlohmann::json::parse(to_json(made).dump());
+  BOOST_TEST(written.at("only_symmetric") == true);
+  BOOST_TEST(contains(written.at("scales").at("of").get<std::string>(), {"divided by", "[m/s]"}));
+  const Reference read = reference_from_json(written);
+  BOOST_TEST((read.is_reduced_by_symmetry && read.is_only_symmetric()));
+  BOOST_TEST(read.out_of_symmetry->effect == 0.3);
+  BOOST_TEST(read.out_of_symmetry->lyapunov == 66);
+  BOOST_TEST_REQUIRE(read.scales.parts.size() == 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const PartScale &was = made.scales.parts[i], &is = read.scales.parts[i];
+    BOOST_TEST((is.nodes == was.nodes && is.extent == was.extent));
+    BOOST_TEST((is.displacement == was.displacement && is.speed == was.speed));
+  }
+  made.out_of_symmetry->horizon = std::numeric_limits<double>::infinity();
+  const Reference never = reference_from_json(nlohmann::json::parse(to_json(made).dump()));
+  BOOST_TEST((std::isinf(never.out_of_symmetry->horizon) && !never.is_only_symmetric()));
 }
 
 BOOST_AUTO_TEST_CASE(json_that_is_no_reference_is_refused) {
