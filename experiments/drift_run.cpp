@@ -14,10 +14,9 @@
 namespace qddot {
 namespace {
 
-// Samples in an octave of the run: so few of methods whose steps have to end where they are looked
-// at, which would disturb them, that it matters to none but their first steps.
-constexpr int many_cells = 4096, few_cells = 256;
-// What is kept of them for tables and pictures.
+// Of less of a run nothing is said but that it blew up, or that so much of its energy is gone.
+constexpr double least_part = 0.5, gone = 0.9;
+// What is kept of the samples for tables and pictures.
 constexpr int path_octave = 24, path_even = 256;
 
 // Takes the invariants of a run's states.
@@ -142,12 +141,30 @@ DriftRun run_drift(const Method& method, const Knobs& knobs, const ReducedScene&
   return run;
 }
 
+Verdict fate(const DriftRun& run, double until) {
+  const Verdict verdict = run.energy.verdict;
+  const bool is_seen =
+      run.summary.outcome == Outcome::reached_end || run.summary.t_reached >= least_part * until;
+  const bool is_over =
+      verdict == Verdict::blows_up ||
+      (verdict == Verdict::dissipates && -run.energy.last_error > gone * run.scales.excess);
+  return is_seen || is_over ? verdict : Verdict::unknown;
+}
+
 std::string verdict(const DriftRun& run, double until) {
   const auto& [outcome, t, counts, seconds, message] = run.summary;
   const std::string words = in_words(run.energy, run.scales);
   if (outcome == Outcome::reached_end || run.energy.verdict == Verdict::blows_up) return words;
+  const std::string part = fmt::format("{:.2g} % of the run", 100 * t / until);
+  if (fate(run, until) == Verdict::unknown) {
+    return fmt::format("too short to tell from {}, {}; over that: {}", part,
+                       outcome == Outcome::over_budget
+                           ? "when its time was up"
+                           : fmt::format("where it ended: {} at t = {:.4g} s", name(outcome), t),
+                       words);
+  }
   if (outcome == Outcome::over_budget) {
-    return fmt::format("{}; over {:.2g} of the run, when its time was up", words, t / until);
+    return fmt::format("{}; over {}, when its time was up", words, part);
   }
   return fmt::format("{} at t = {:.4g} s; until then: {}", name(outcome), t, words);
 }

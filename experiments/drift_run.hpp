@@ -38,7 +38,11 @@ struct DriftRun {
 DriftRun run_drift(const Method& method, const Knobs& knobs, const ReducedScene& scene,
                    const Momenta& momenta, const MotionScales& scales, const DriftPlan& plan);
 
-// The verdict on its energy in words, with how far it came.
+// The verdict on its energy: unknown where the run ended before half of `until`, unless it blew up
+// or nearly all of its energy was gone.
+Verdict fate(const DriftRun& run, double until);
+
+// The same in words, with how far it came and what became of the energy until then.
 std::string verdict(const DriftRun& run, double until);
 
 }  // namespace qddot

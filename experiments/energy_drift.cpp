@@ -10,8 +10,10 @@
 //     each, side by side on all cores. They are looked at after some thousands of steps in each
 //     octave of the run, drawn at random, so that no oscillation is in step with that. Implicit
 //     stages are solved to 1e-9 (--solve-tolerance), so that what drifts is the method.
-//  3. Means over 64 blocks of time are fitted by a line, a random walk and noise together
-//     (energy_trend.hpp); summary.csv has the slope with its 95 % interval and a verdict in words.
+//  3. Means over 64 blocks of time are fitted by a line and noise together with a random walk,
+//     coloured noise or a slow wave (energy_trend.hpp, block_fit.hpp); summary.csv has the slope
+//     with its 95 % interval and a verdict in words, or that the run is too short for one and which
+//     length would do. The program `verdicts` finds out how often that is right.
 //  4. tolerance.csv says how the error of adaptive methods follows rtol.
 #include <algorithm>
 #include <cmath>
@@ -25,6 +27,7 @@
 
 #include "experiments/csv.hpp"
 #include "experiments/drift_run.hpp"
+#include "experiments/drift_tables.hpp"
 #include "experiments/method_options.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
@@ -156,109 +159,6 @@ std::vector<DriftRun> run_all(const std::vector<Job>& jobs, const Arguments& a,
   show_progress("");
   if (trouble) std::rethrow_exception(trouble);
   return runs;
-}
-
-const std::vector<std::string> drift_columns = {"method",         "t",    "energy",
-                                                "relative_error", "knob", "value"};
-const std::vector<std::string> summary_columns = {"method",
-                                                  "outcome",
-                                                  "drift_rate",
-                                                  "drift_rate_low",
-                                                  "drift_rate_high",
-                                                  "oscillation",
-                                                  "verdict",
-                                                  "knob",
-                                                  "value",
-                                                  "fate",
-                                                  "t_reached",
-                                                  "steps",
-                                                  "energy_error_end",
-                                                  "random_walk",
-                                                  "late_drift",
-                                                  "late_drift_low",
-                                                  "late_drift_high",
-                                                  "has_settled",
-                                                  "exponential_rate",
-                                                  "damping_ratio",
-                                                  "blow_up_time",
-                                                  "momentum_drift",
-                                                  "momentum_drift_low",
-                                                  "momentum_drift_high",
-                                                  "momentum_error_end",
-                                                  "angular_momentum_drift",
-                                                  "angular_momentum_drift_low",
-                                                  "angular_momentum_drift_high",
-                                                  "angular_momentum_error_end",
-                                                  "compensated",
-                                                  "time_s"};
-const std::vector<std::string> tolerance_columns = {
-    "method",     "rtol",           "periods",         "outcome",
-    "drift_rate", "drift_rate_low", "drift_rate_high", "energy_error_end",
-    "steps",      "time_s"};
-
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-void write_path(CsvFile& csv, const DriftRun& run) {
-  for (const DriftPoint& point : run.path) {
-    csv.row(run.method->name, point.t, point.energy, point.error, knob_name(run.method->knob),
-            run.value);
-  }
-  csv.flush_if_large();
-}
-
-void write_interval(Csv& csv, const Interval& interval) {
-  csv.field(interval.value);
-  csv.field(interval.low);
-  csv.field(interval.high);
-}
-
-constexpr Interval no_interval{nothing, nothing, nothing};
-Interval drift_of(const Trend& trend) {
-  return trend.verdict == Verdict::unknown ? no_interval : trend.drift;
-}
-
-void write_momentum(Csv& csv, const std::optional<Trend>& trend) {
-  write_interval(csv, trend ? drift_of(*trend) : no_interval);
-  csv.field(trend ? trend->last_error : nothing);
-}
-
-void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated) {
-  const Trend& e = run.energy;
-  const bool is_known = e.verdict != Verdict::unknown;
-  csv.field(run.method->name);
-  csv.field(name(run.summary.outcome));
-  write_interval(csv, drift_of(e));
-  csv.field(is_known ? e.oscillation : nothing);
-  csv.field(verdict(run, until));
-  csv.field(knob_name(run.method->knob));
-  csv.field(run.value);
-  csv.field(verdict_name(e.verdict));
-  csv.field(run.summary.t_reached);
-  csv.field(run.summary.counts.steps);
-  csv.field(run.path.back().error);
-  csv.field(is_known ? e.walk : nothing);
-  write_interval(csv, e.rate.value != 0 || !is_known ? no_interval : e.late_drift);
-  csv.field(e.has_settled ? "yes" : "no");
-  csv.field(e.rate.value != 0 ? e.rate.value : nothing);
-  csv.field(e.verdict == Verdict::dissipates ? e.damping_ratio : nothing);
-  csv.field(e.verdict == Verdict::blows_up ? e.blow_up_time : nothing);
-  write_momentum(csv, run.linear);
-  write_momentum(csv, run.angular);
-  csv.field(compensated && run.method->takes_compensation ? "yes" : "no");
-  csv.field(run.seconds);
-  csv.end_row();
-}
-
-void write_tolerance(Csv& csv, const DriftRun& run, const MotionScales& scales) {
-  csv.field(run.method->name);
-  csv.field(run.value);
-  csv.field(run.summary.t_reached * scales.frequency / (2 * M_PI));
-  csv.field(name(run.summary.outcome));
-  write_interval(csv, drift_of(run.energy));
-  csv.field(run.path.back().error);
-  csv.field(run.summary.counts.steps);
-  csv.field(run.seconds);
-  csv.end_row();
 }
 
 // The root mean square of the errors from 0.9 t to t.

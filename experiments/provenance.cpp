@@ -35,16 +35,8 @@ std::string sundials_version() {
 
 std::string code_hash() { return build_info::source_hash; }
 
-nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& scene) {
-  const auto stiff_above = scene.stiff_above ? nlohmann::json(*scene.stiff_above) : nullptr;
+nlohmann::json provenance(const std::vector<std::string>& command_line) {
   return {{"command_line", command_line},
-          {"scene",
-           {{"name", scene.name},
-            {"hash", content_hash(scene)},
-            {"dimension", scene.dimension},
-            {"nodes", scene.nodes.size()},
-            {"springs", scene.springs.size()},
-            {"stiff_above", stiff_above}}},
           {"version", build_info::version},
           {"source_hash", build_info::source_hash},
           {"compiler", build_info::compiler},
@@ -60,6 +52,18 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
                                     CHOLMOD_SUBSUB_VERSION)},
             {"boost", BOOST_LIB_VERSION}}},
           {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
+}
+
+nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& scene) {
+  nlohmann::json origin = provenance(command_line);
+  const auto stiff_above = scene.stiff_above ? nlohmann::json(*scene.stiff_above) : nullptr;
+  origin["scene"] = {{"name", scene.name},
+                     {"hash", content_hash(scene)},
+                     {"dimension", scene.dimension},
+                     {"nodes", scene.nodes.size()},
+                     {"springs", scene.springs.size()},
+                     {"stiff_above", stiff_above}};
+  return origin;
 }
 
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,

@@ -10,8 +10,11 @@
 
 namespace qddot {
 
-// Where a result comes from: command line, scene and its content hash, version of the code,
-// compiler and flags, processor, libraries, date (UTC).
+// Where a result comes from: command line, version of the code, compiler and flags, processor,
+// libraries, date (UTC).
+nlohmann::json provenance(const std::vector<std::string>& command_line);
+
+// The same with the scene and its content hash.
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn);
 
 // The same with what was left out of the scene and what is left: see Explanation. `start`: the

@@ -24,9 +24,46 @@ std::string no_drift_words(const Interval& drift) {
 }
 
 std::string settled_words(const Trend& trend) {
-  return trend.has_settled
-             ? fmt::format(" in the second half, after {:.1e} in the first", trend.first_half)
+  return trend.settled > 0 ? fmt::format(" from t = {:.3g} s on, after {:.1e} until then",
+                                         trend.settled, trend.before)
+                           : "";
+}
+
+std::string period_words(const Trend& trend) {
+  return trend.colour == Colour::oscillates && trend.period > 0
+             ? fmt::format(", with a slow wave of {:.3g} s", trend.period)
              : "";
+}
+
+// A walk that is too small for the verdict, beneath the oscillation.
+std::string beneath_words(const Trend& trend) {
+  return trend.colour == Colour::undecided
+             ? fmt::format(", beneath it at most a random walk of {:.1e} a root second", trend.walk)
+             : "";
+}
+
+bool may_be_sine(const Trend& trend) {
+  return trend.slow_period > 0 && std::isfinite(trend.slow_period);
+}
+
+// Of what may be a drift, or a wave that has not been seen long enough.
+std::string undecided_words(const Trend& trend) {
+  std::string what;
+  if (may_be_sine(trend)) {
+    what = fmt::format("a drift, or an oscillation with a period of {:.2g} s or more",
+                       trend.slow_period);
+  } else if (trend.colour == Colour::turns) {
+    what = fmt::format("an oscillation with a period of about {:.2g} s, or a change", trend.period);
+  } else if (trend.colour == Colour::undecided) {
+    what = fmt::format(
+        "a random walk of {:.1e} a root second, or an oscillation that remembers {:.2g} s or more",
+        trend.walk, trend.memory);
+  } else {
+    what = "an oscillation that widens, or beats slowly";
+  }
+  return fmt::format("too short to tell: {} (a run to t = {:.1g} s would); oscillates by {:.1e}, ",
+                     what, trend.needed, trend.oscillation) +
+         (may_be_sine(trend) ? "slope " + drift_words(trend.drift) : no_drift_words(trend.drift));
 }
 
 // Where the drift of the second half is surely another one.
@@ -42,8 +79,17 @@ std::string change_words(const Trend& trend) {
 std::string in_words(const Trend& trend, const TrendScales& scales) {
   switch (trend.verdict) {
     case Verdict::bounded:
-      return fmt::format("bounded: oscillates by {:.1e}, {}{}", trend.oscillation,
-                         no_drift_words(trend.drift), settled_words(trend));
+      return fmt::format("bounded: oscillates by {:.1e}{}{}, {}{}", trend.oscillation,
+                         period_words(trend), beneath_words(trend), no_drift_words(trend.drift),
+                         settled_words(trend));
+    case Verdict::undecided:
+      return undecided_words(trend) + settled_words(trend);
+    case Verdict::widens:
+      return fmt::format(
+          "widens: its oscillation of {:.1e} grows by {:.2g} of that a second ({:.2g} to {:.2g}), "
+          "{}{}",
+          trend.oscillation, trend.widening.value, trend.widening.low, trend.widening.high,
+          no_drift_words(trend.drift), settled_words(trend));
     case Verdict::round_off: {
       const double root_step = trend.walk * std::sqrt(scales.step);
       if (trend.drift.excludes_zero()) {
@@ -57,9 +103,6 @@ std::string in_words(const Trend& trend, const TrendScales& scales) {
                  : fmt::format("only round-off: stays within {:.1e}, {}", trend.oscillation,
                                no_drift_words(trend.drift));
     }
-    case Verdict::wanders:
-      return fmt::format("wanders like a random walk of {:.1e} a root second, {}{}", trend.walk,
-                         no_drift_words(trend.drift), settled_words(trend));
     case Verdict::drifts:
       return fmt::format("drifts by {}{}, oscillates by {:.1e}{}", drift_words(trend.drift),
                          settled_words(trend), trend.oscillation, change_words(trend));

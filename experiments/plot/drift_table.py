@@ -12,7 +12,8 @@ FONT_SIZE = 9
 FATES = {
     "round_off": ("nothing but round-off", "error at the end", COOL[3]),
     "bounded": ("bounded: no drift", "oscillation", COOL[0]),
-    "wanders": ("wanders without drift", "oscillation", COOL[2]),
+    "undecided": ("undecided: may wander", "oscillation", COOL[2]),
+    "widens": ("oscillates ever more widely", "1/s", WARM[3]),
     "drifts": ("drifts", "1/s", WARM[2]),
     "dissipates": ("dissipates", "damping ratio", WARM[4]),
     "grows": ("gains energy", "rate in 1/s", WARM[0]),
@@ -37,7 +38,8 @@ def measure(row):
     column = {
         "round_off": "energy_error_end",
         "bounded": "oscillation",
-        "wanders": "oscillation",
+        "undecided": "oscillation",
+        "widens": "widening",
         "drifts": "drift_rate",
         "dissipates": "damping_ratio",
         "grows": "exponential_rate",
@@ -57,7 +59,7 @@ def measure_words(row):
     if row["fate"] == "blows_up":
         rate = optional(row["exponential_rate"])
         return f"at {number(value)} s" + ("" if math.isnan(rate) else f", {number(rate)} /s")
-    if row["fate"] == "grows":
+    if row["fate"] in ("grows", "widens"):
         return f"{number(value)} /s"
     if row["fate"] == "dissipates":
         return f"ζ = {number(value)}"
@@ -103,11 +105,18 @@ def draw_table(sheet, top, rows, until):
         top += GROUP_GAP
 
 
+def settled(row):
+    """Whether the trend is that of the last part of the run."""
+    return row["has_settled"] == "yes"
+
+
 def remark(row, until):
     """How far the run came, where that is not the end."""
     outcome = row["outcome"]
     if outcome == "reached_end" or row["fate"] == "blows_up":
-        return "in its second half" if row["has_settled"] == "yes" else ""
+        return f"from {number(float(row['settled_from']))} s on" if settled(row) else ""
     part = float(row["t_reached"]) / until
     percent = f"{100 * part:.2g} %"
+    if row["fate"] == "unknown" and row["fate_so_far"] != "unknown":
+        return f"{row['fate_so_far'].replace('_', ' ')} in {percent} of t"
     return f"{percent} of t" if outcome == "over_budget" else f"{outcome} at {percent}"

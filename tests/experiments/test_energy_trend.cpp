@@ -90,20 +90,42 @@ BOOST_AUTO_TEST_CASE(one_sine_spans_its_amplitude) {
 
 BOOST_AUTO_TEST_CASE(a_slope_under_an_oscillation_is_found_within_its_interval) {
   for (const double sign : {-1, 1}) {
-    const double slope = sign * 5e-5 / duration;  // half of the amplitude over the run
-    int misses = 0;
+    const double slope = sign * 2e-4 / duration;  // twice the amplitude over the run
+    int misses = 0, told = 0;
     for (int seed = 0; seed < seeds; ++seed) {
       const auto vibrates = vibration(1e-4, 0.3 * seed);
       const Trend trend = judged(series([&](double t) { return vibrates(t) + slope * t; }));
+      misses += !holds(trend.drift, slope);
+      told += trend.verdict == Verdict::drifts;
+      if (trend.verdict == Verdict::undecided) continue;
       BOOST_TEST(verdict_name(trend.verdict) == "drifts");
       BOOST_TEST(trend.drift.value * sign > 0);
       BOOST_TEST(trend.drift.excludes_zero());
       BOOST_TEST(says(trend, "drifts by"));
       BOOST_TEST(!says(trend, "no drift"));
-      misses += !holds(trend.drift, slope);
     }
     BOOST_TEST(misses <= most_misses);
+    // The others may be slow sines by chance, of 5 %.
+    BOOST_TEST(told >= seeds - most_misses);
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_smaller_slope_may_be_a_part_of_a_slow_sine_and_is_said_to_be) {
+  // A block's mean has a deviation of 1.2e-5, and a rise of five of them differs from that of half
+  // a sine by less than noise does.
+  const double slope = 5e-5 / duration;
+  int misses = 0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const auto vibrates = vibration(1e-4, 0.3 * seed);
+    const Trend trend = judged(series([&](double t) { return vibrates(t) + slope * t; }));
+    BOOST_TEST((trend.verdict == Verdict::undecided || trend.verdict == Verdict::drifts));
+    if (trend.verdict == Verdict::undecided) {
+      BOOST_TEST(says(trend, "too short to tell: a drift, or an oscillation with a period of"));
+      BOOST_TEST(trend.needed >= 2 * trend.slow_period);
+    }
+    misses += !holds(trend.drift, slope);
+  }
+  BOOST_TEST(misses <= most_misses);
 }
 
 BOOST_AUTO_TEST_CASE(an_error_that_settles_is_bounded_and_one_that_changes_its_slope_says_so) {
@@ -112,22 +134,22 @@ BOOST_AUTO_TEST_CASE(an_error_that_settles_is_bounded_and_one_that_changes_its_s
     return judged(series([&](double t) { return vibrates(t) - 1e-3 * -std::expm1(-t / time); }));
   };
   const Trend soon = settling(duration / 30);
-  BOOST_TEST(soon.has_settled);
+  BOOST_TEST(soon.settled == duration / 2);
   BOOST_TEST(!soon.drift.excludes_zero());
   BOOST_TEST(soon.last_error == -1e-3, boost::test_tools::tolerance(0.01));
   BOOST_TEST(says(soon, "no drift"));
-  BOOST_TEST(says(soon, "in the second half, after -1.0e-03 in the first"));
+  BOOST_TEST(says(soon, "from t = 500 s on, after -1.0e-03 until then"));
   const Trend late = settling(duration / 2);
   BOOST_TEST(late.drift.high < 0);
   BOOST_TEST(says(late, "drifts"));
   BOOST_TEST(says(late, "second half"));
   // A line that begins after something else has gone.
   const Trend bent = judged(series([&](double t) {
-    return vibrates(t) + 1e-2 * std::expm1(-40 * t / duration) + 1e-4 * t / duration;
+    return vibrates(t) + 1e-2 * std::expm1(-40 * t / duration) + 1e-3 * t / duration;
   }));
-  BOOST_TEST(bent.has_settled);
+  BOOST_TEST(bent.settled == duration / 2);
   BOOST_TEST(bent.drift.low > 0);
-  BOOST_TEST(holds(bent.drift, 1e-4 / duration));
+  BOOST_TEST(holds(bent.drift, 1e-3 / duration));
 }
 
 BOOST_AUTO_TEST_CASE(a_slope_far_below_what_the_oscillation_hides_is_not_claimed) {
@@ -153,16 +175,88 @@ BOOST_AUTO_TEST_CASE(a_random_walk_is_no_drift_and_its_size_is_found) {
   }
   BOOST_TEST(misses <= most_misses);
   BOOST_TEST(seen > 0.9 * seeds);
-  // Block means of a walk vary a little less from one to the next than the walk itself.
-  BOOST_TEST(size > 0.8e-16);
-  BOOST_TEST(size < 1.1e-16);
+  // One size is known to 1/sqrt(2 (64 - 2)), their mean to a tenth of that, 0.9 %; and since there
+  // is never less noise than none beside a walk, it is taken for a few percent too small.
+  BOOST_TEST(size > 0.94e-16);
+  BOOST_TEST(size < 1.03e-16);
 }
 
 BOOST_AUTO_TEST_CASE(the_same_walk_a_million_roundings_large_is_not_called_round_off) {
   const Trend trend = judged(walk(1e-10, 1), {.rounding = 1e-16, .step = h});
-  BOOST_TEST(verdict_name(trend.verdict) == "wanders");
-  BOOST_TEST(says(trend, "random walk"));
+  BOOST_TEST(verdict_name(trend.verdict) == "undecided");
+  BOOST_TEST(says(trend, "too short to tell: a random walk of"));
+  BOOST_TEST(says(trend, "or an oscillation that remembers"));
   BOOST_TEST(says(trend, "no drift"));
+  BOOST_TEST(trend.needed >= 4 * duration);
+}
+
+BOOST_AUTO_TEST_CASE(a_slow_sine_is_bounded_once_it_has_been_seen_and_never_a_drift_or_a_walk) {
+  // Over the length of the run; a tenth of the noise is left in a block's mean.
+  for (const double period : {1. / 16, 1. / 8, 1. / 4, 1. / 2, 0.7, 1., 1.5, 2.}) {
+    int drifts = 0;
+    for (unsigned seed = 0; seed < 8; ++seed) {
+      std::mt19937_64 random(seed);
+      std::normal_distribution<double> normal;
+      const Trend trend = judged(series([&](double t) {
+        return 1e-4 * std::sin(2 * M_PI * t / (period * duration) + 0.8 * seed) +
+               3e-5 * normal(random);
+      }));
+      drifts += trend.verdict == Verdict::drifts;
+      if (trend.verdict == Verdict::drifts) continue;
+      BOOST_TEST(verdict_name(trend.verdict) == (period < 0.8 ? "bounded" : "undecided"));
+      if (trend.period > 0 && period < 0.8) {
+        BOOST_TEST(trend.period == period * duration, boost::test_tools::tolerance(0.1));
+      }
+      BOOST_TEST(!trend.drift.excludes_zero());
+      if (period >= 0.8) BOOST_TEST(says(trend, "too short to tell: "));
+      if (period >= 0.8) BOOST_TEST(trend.needed > 1.25 * period * duration);
+    }
+    // 5 % of intervals miss zero: more than 2 of 8 do in one of 200 times.
+    BOOST_TEST(drifts <= 2);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_oscillation_that_grows_is_not_bounded) {
+  for (const double first : {0., 0.5}) {
+    const auto vibrates = vibration(1e-4, 1);
+    const Trend trend = judged(
+        series([&](double t) { return (first + (1 - first) * t / duration) * vibrates(t); }));
+    // Growth by half of the amplitude is little beside the beats of this one.
+    BOOST_TEST(
+        (trend.verdict == Verdict::widens || (first > 0 && trend.verdict == Verdict::undecided)));
+    BOOST_TEST(says(trend, trend.verdict == Verdict::widens ? "widens: its oscillation of"
+                                                            : "an oscillation that widens"));
+    BOOST_TEST(!trend.drift.excludes_zero());
+    BOOST_TEST(holds(trend.widening, 2 * (1 - first) / (1 + first) / duration));
+  }
+  BOOST_TEST(judged(series(vibration(1e-4, 1))).widening.holds(0));
+}
+
+BOOST_AUTO_TEST_CASE(a_level_that_changed_once_is_bounded_after_that) {
+  const auto vibrates = vibration(1e-5, 1);
+  for (const double at : {0.1, 0.4, 0.7}) {
+    const Trend trend =
+        judged(series([&](double t) { return vibrates(t) - (t > at * duration ? 1e-2 : 0); }));
+    BOOST_TEST(verdict_name(trend.verdict) == "bounded");
+    BOOST_TEST(trend.settled == (at < 0.5 ? 0.5 : 0.75) * duration);
+    BOOST_TEST(trend.before == -1e-2, boost::test_tools::tolerance(0.01));
+  }
+  // One so late has not been looked at for long.
+  const Trend late =
+      judged(series([&](double t) { return vibrates(t) - (t > 0.9 * duration ? 1e-2 : 0); }));
+  BOOST_TEST(verdict_name(late.verdict) == "undecided");
+}
+
+BOOST_AUTO_TEST_CASE(a_loss_that_has_ended_is_no_dissipation) {
+  const auto vibrates = vibration(1e-3, 1);
+  for (const double loss : {0.02, 0.3}) {
+    const Trend trend = judged(
+        series([&](double t) { return vibrates(t) - loss * std::min(t / (0.2 * duration), 1.0); }));
+    BOOST_TEST(verdict_name(trend.verdict) == "bounded");
+    BOOST_TEST(trend.rate.value == 0);
+    BOOST_TEST(trend.last_error == -loss, boost::test_tools::tolerance(0.02));
+    BOOST_TEST(says(trend, "until then"));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_drift_that_outgrows_its_walk_is_one) {
@@ -261,6 +355,9 @@ BOOST_AUTO_TEST_CASE(few_samples_have_no_verdict_and_no_error_is_no_drift) {
   BOOST_TEST(verdict_name(trend.verdict) == "unknown");
   BOOST_TEST(says(trend, "too short"));
   BOOST_TEST(verdict_name(judged({}).verdict) == "unknown");
+  // Means of fours, which are too few to see a walk.
+  BOOST_TEST(verdict_name(judged(series(vibration(1e-4, 1), 40 * h)).verdict) == "unknown");
+  BOOST_TEST(verdict_name(judged(series(vibration(1e-4, 1), 400 * h)).verdict) != "unknown");
   const Trend nothing = judged(series([](double) { return 0.0; }));
   BOOST_TEST(verdict_name(nothing.verdict) == "round_off");
   BOOST_TEST(!nothing.drift.excludes_zero());
