@@ -7,10 +7,13 @@
 // M may be singular. Of a massless node, 0 = f is a constraint on its position, and its velocity is
 // that of index 2: v = q'. Both follow from the other nodes, so they are algebraic to IDA and left
 // out of its error test (Brenan, Campbell, Petzold, Numerical Solution of IVPs in DAEs, section
-// 5.2). The start is made consistent: IDACalcIC finds the position. There and at the ends of a run
-// the velocity is that in which f stays zero, 0 = (K v)_massless.
+// 5.2). Nothing depends on that velocity, which as a difference of positions over h is uncertain by
+// eps |q|/h: Newton's test does not look at it either, and the ends of a run show the one in which
+// f stays zero, 0 = (K v)_massless. The start is made consistent to rounding: massless nodes go
+// downhill to where their springs balance, the others held (IDACalcIC's Newton's iteration, which
+// knows no energy, does not find it from everywhere).
 #include <algorithm>
-#include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 #include <ida/ida.h>
@@ -19,11 +22,17 @@
 #include "integrators/sundials/orders.hpp"
 #include "integrators/sundials/stepper.hpp"
 #include "src/algebra/effective_mass.hpp"
+#include "src/analysis/curvature_signs.hpp"
+#include "src/analysis/equilibrium.hpp"
+#include "src/model/held.hpp"
 
 namespace qddot {
 namespace {
 
 using namespace sundials;
+
+// As an absolute tolerance: of what no test is to see.
+constexpr double not_looked_at = 1e30;
 
 template <MakeMatrix make_matrix>
 class Ida final : public Stepper {
@@ -36,13 +45,18 @@ class Ida final : public Stepper {
     check(IDASetErrHandlerFn(ida(), keep_message, self), "IDASetErrHandlerFn");
     check(IDAInit(ida(), residual, 0, y(), rate_.get()), "IDAInit");
     check(IDASetUserData(ida(), self), "IDASetUserData");
-    set_tolerances(rounding_of_velocities());
+    Halves absolute(atol());
+    absolute.v = (system.mass().array() > 0).select(absolute.v, not_looked_at);
+    check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
     check(IDASetLinearSolver(ida(), matrix().solver(), matrix().matrix()), "IDASetLinearSolver");
     check(IDASetJacFn(ida(), jacobian), "IDASetJacFn");
     if (knobs.max_order > 0) {
       check(IDASetMaxOrd(ida(), std::min(knobs.max_order, method.order)), "IDASetMaxOrd");
     }
     if (!system.has_massless()) return;
+    std::vector<bool> has_mass;
+    for (const double mass : system.mass()) has_mass.push_back(mass > 0);
+    massless_.emplace(std::shared_ptr<const System>(std::shared_ptr<void>(), &system), has_mass);
     is_differential_ = clone(y());
     Halves is_differential(is_differential_.get());
     is_differential.q = (system.mass().array() > 0).cast<double>();
@@ -53,24 +67,6 @@ class Ida final : public Stepper {
 
  private:
   void* ida() const { return memory_.get(); }
-
-  // Sets the tolerances, that of the velocities of massless nodes to at least so much [m/s].
-  void set_tolerances(double of_massless) {
-    Halves absolute(atol());
-    for (Index i = 0; i < system().size(); ++i) {
-      if (system().mass()[i] == 0) absolute.v[i] = std::max(atol_of_velocities(), of_massless);
-    }
-    check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
-  }
-  double atol_of_velocities() const {
-    return knobs().atol > 0 ? knobs().atol : rtol() * knobs().speed;
-  }
-
-  // Rounding of q makes v = q' of a massless node uncertain by eps |q|/h. The first steps are about
-  // h = rtol |q|/|v|, so that this can be more than the tolerance; times some that they shorten.
-  double rounding_of_velocities() const {
-    return 1e3 * std::numeric_limits<double>::epsilon() / rtol() * knobs().speed;
-  }
 
   void start(const State& state) override {
     load(state);
@@ -97,8 +93,7 @@ class Ida final : public Stepper {
 
   int take_step(double t_stop, double& t) override {
     if (!is_consistent_) {
-      const double t_start = t;
-      if (const int flag = make_consistent(t_start, t_stop); flag < 0) return flag;
+      if (const int flag = make_consistent(t); flag < 0) return flag;
       is_consistent_ = true;
     }
     const int flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
@@ -108,16 +103,24 @@ class Ida final : public Stepper {
     return flag;
   }
 
-  int make_consistent(double t_start, double t_stop) {
-    set_tolerances(1e30);  // whatever q' is beside the positions found, follow() is to say
-    const int flag = IDACalcIC(ida(), IDA_YA_YDP_INIT, t_stop);
-    set_tolerances(rounding_of_velocities());
-    if (flag < 0) return flag;
-    check(IDAGetConsistentIC(ida(), y(), rate_.get()), "IDAGetConsistentIC");
+  // Brings massless nodes to where their forces balance, with y' as it is then; 0, or a flag.
+  int make_consistent(double t_start) {
+    Halves at(y());
+    const Equilibrium balance = find_equilibrium(*massless_, at.q, knobs().length);
+    if (balance.outcome != Equilibrium::Outcome::reached) return IDA_CONV_FAIL;
+    at.q = balance.q;
+    if (is_loose()) return IDA_CONV_FAIL;
     follow();
     set_rate_of_masses();
     check(IDAReInit(ida(), t_start, y(), rate_.get()), "IDAReInit");
     return 0;
+  }
+
+  // Whether springs do not hold all massless nodes where they are, as they fold up where
+  // compressed.
+  bool is_loose() const {
+    const CurvatureSigns signs = curvature_signs(*massless_, Halves(y()).q);
+    return signs.negative + signs.flat > (system().mass().array() > 0).count();
   }
 
   // Gives massless nodes the velocity in which their forces stay balanced: the other nodes', times
@@ -177,6 +180,9 @@ class Ida final : public Stepper {
 
   Cause cause_of(int flag) const override {
     if (!is_consistent_) return Cause::consistent_start;
+    const bool is_about_a_step = flag == IDA_ERR_FAIL || flag == IDA_CONV_FAIL ||
+                                 flag == IDA_NLS_FAIL || flag == IDA_LSETUP_FAIL;
+    if (is_about_a_step && massless_ && is_loose()) return Cause::loose_massless;
     switch (flag) {
       case IDA_ERR_FAIL:
         return Cause::error_test;
@@ -207,6 +213,7 @@ class Ida final : public Stepper {
   Orders orders_;
   Vector rate_;             // y'
   Vector is_differential_;  // 1, or 0 for the entries of massless nodes; none without such nodes
+  std::optional<Held> massless_;  // the system with all but these held; none without such nodes
   bool is_consistent_ = true;
   std::unique_ptr<void, FreeMemoryBy<IDAFree>> memory_;
 };
