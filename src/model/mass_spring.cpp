@@ -6,6 +6,7 @@
 
 #include "src/model/block_pattern.hpp"
 #include "src/model/force_kernel.hpp"
+#include "src/model/kinks.hpp"
 #include "src/model/layout.hpp"
 #include "src/model/network_halves.hpp"
 #include "src/model/springs_by_node.hpp"
@@ -20,7 +21,7 @@ constexpr Index fewest_for_vectors = 16;
 // Springs between nodes all of whose coordinates are unknowns are kept apart, by their first
 // unknowns alone; the few that touch a node on a mirror go through the layout.
 template <int D>
-class MassSpring final : public System {
+class MassSpring final : public System, public Kinks {
   using Point = Eigen::Matrix<double, D, 1>;
   using Block = Eigen::Matrix<double, D, D>;
 
@@ -106,6 +107,15 @@ class MassSpring final : public System {
     });
   }
 
+  // Elsewhere than on a line hardly a motion meets a length of zero.
+  Index kinks() const override { return kinks_; }
+  void kink_lengths(const Vec& q, Vec& lengths) const override {
+    Index i = 0;
+    for_all(q, [&](const SpringLaw& law, const Point& d) {
+      if (turns_over(law)) lengths[i++] = d[0];
+    });
+  }
+
   bool holds_at(const Vec& q) const override {
     // A spring drawn at its rest length may be shorter by what rounding makes of it.
     const auto is_in_tension = [&](const EdgeLink& link) {
@@ -148,6 +158,7 @@ class MassSpring final : public System {
     for_all(anywhere, [&](const SpringLaw& law, const Point&) {
       linear_ &= law.is_linear();
       if (law.quartic > 0) has_laplacian_ = HasLaplacian::yes;
+      kinks_ += turns_over(law);
     });
     if (network.offers_split) {
       const Network stiff = only(network, true);
@@ -163,6 +174,8 @@ class MassSpring final : public System {
       }
     }
   }
+
+  static bool turns_over(const SpringLaw& law) { return D == 1 && law.rest_length > 0; }
 
   static Vec masses(const Network& network, const Layout<D>& layout) {
     Vec mass(layout.first(static_cast<int>(layout.nodes())));
@@ -375,6 +388,7 @@ class MassSpring final : public System {
   Vec weight_;  // M g + load [N]
   double constant_energy_;
   bool linear_ = false;
+  Index kinks_ = 0;
   HasLaplacian has_laplacian_ = HasLaplacian::as_bound;
   SymmetricMatrix pattern_;
   std::optional<SpringsByNode<D>> by_node_;
