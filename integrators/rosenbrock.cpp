@@ -14,8 +14,8 @@ constexpr std::size_t instants = 2;
 // the later stages take up to some 30 times of it, and its errors add up over the steps, where
 // those of the formula are far below the estimate.
 constexpr double linear_share = 1e-4;
-// Of the right-hand side, the most and the least.
-constexpr double loosest = 1e-4, tightest = 1e-15;
+// Of the right-hand side, what is within rounding.
+constexpr double tightest = 1e-15;
 
 }  // namespace
 
@@ -34,13 +34,15 @@ Rosenbrock::Rosenbrock(const Method& method, const System& system, const Knobs& 
 // With A = M - g^2 K, A U_q = b = M u and e the error of U_q, that of U_v = (U_q - r)/g is e/g, and
 // |e|_M <= |e|_A <= tau |b|_{A^-1} <= tau |u|_M where A >= M. So tau = share g |w|_M / |u|_M leaves
 // a part of the weights w of velocities, by which the step's errors are judged; accelerations of
-// stiff springs, which cancel in the sum of the stages, make u large and tau small.
+// stiff springs, which cancel in the sum of the stages, make u large and tau small. Where the
+// absolute tolerance outweighs the velocities, the same part of rtol alone.
 double Rosenbrock::tolerance(const State& now, double g, const Vec& u) const {
   const double atol = knobs().atol > 0 ? knobs().atol : knobs().rtol * knobs().speed;
   const auto& mass = system().mass().array();
   const double weights = (mass * (knobs().rtol * now.v.array().abs() + atol).square()).sum();
   const double size = (mass * u.array().square()).sum();
-  return std::clamp(linear_share * g * std::sqrt(weights / size), tightest, loosest);
+  const double asked = std::min(g * std::sqrt(weights / size), knobs().rtol);
+  return std::max(linear_share * asked, tightest);
 }
 
 void Rosenbrock::start(const State& state) {

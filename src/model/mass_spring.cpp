@@ -9,6 +9,7 @@
 #include "src/model/kinks.hpp"
 #include "src/model/layout.hpp"
 #include "src/model/network_halves.hpp"
+#include "src/model/network_weights.hpp"
 #include "src/model/springs_by_node.hpp"
 #include "src/model/stiffness_kernel.hpp"
 
@@ -130,9 +131,9 @@ class MassSpring final : public System, public Kinks {
 
  private:
   MassSpring(const Network& network, Forces forces, const Layout<D>& layout)
-      : System(masses(network, layout)),
+      : System(masses<D>(network, layout)),
         layout_(layout),
-        weight_(weights(network, layout)),
+        weight_(weights<D>(network, layout)),
         constant_energy_(network.constant_energy) {
     BlockPattern<D> pattern(layout_);
     for (const auto& link : network.links) pattern.join(link.i, link.j);
@@ -176,26 +177,6 @@ class MassSpring final : public System, public Kinks {
   }
 
   static bool turns_over(const SpringLaw& law) { return D == 1 && law.rest_length > 0; }
-
-  static Vec masses(const Network& network, const Layout<D>& layout) {
-    Vec mass(layout.first(static_cast<int>(layout.nodes())));
-    for (int i = 0; i < layout.nodes(); ++i) {
-      mass.segment(layout.first(i), layout.count(i)).setConstant(network.node_mass[i]);
-    }
-    return mass;
-  }
-  // M g + load.
-  static Vec weights(const Network& network, const Layout<D>& layout) {
-    Vec weight = masses(network, layout);
-    for (int i = 0; i < layout.nodes(); ++i) {
-      for (int a = 0; a < layout.count(i); ++a) {
-        const int d = layout.axis(i, a);
-        weight[layout.first(i) + a] *= network.gravity[d];
-        if (network.load.size() > 0) weight[layout.first(i) + a] += network.load[D * i + d];
-      }
-    }
-    return weight;
-  }
 
   void take_link(const EdgeLink& link, Holds holds, bool is_plain) {
     if (holds == Holds::in_tension) links_in_tension_.push_back(link);
