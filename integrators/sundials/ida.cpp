@@ -6,12 +6,11 @@
 //
 // M may be singular. Of a massless node, 0 = f is a constraint on its position (index 1), which the
 // error test sees like all others: where it moves fast, longer steps would throw Newton's iteration
-// onto another balance, a saddle of its energy. Its velocity v = q' is of index 2; nothing depends
-// on it, and as a difference of positions over h it is uncertain by eps |q|/h. No test looks at it
-// (Brenan, Campbell, Petzold, Numerical Solution of IVPs in DAEs, section 5.2), and the start and
-// the ends of a run have the one in which f stays zero, 0 = (K v)_massless. The start is made
-// consistent to rounding: massless nodes go downhill to where their springs balance, the others
-// held.
+// onto another balance, a saddle of its energy. Its velocity v = q' is of index 2 (Brenan,
+// Campbell, Petzold, Numerical Solution of IVPs in DAEs, section 5.2), but nothing depends on it:
+// to IDA it is 0 = -v, and what is seen has q' or, at the ends of a run, the one in which f stays
+// zero, 0 = (K v)_massless. The start is made consistent to rounding: massless nodes go downhill to
+// where their springs balance, the others held.
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -32,8 +31,6 @@ namespace {
 
 using namespace sundials;
 
-// As an absolute tolerance: of what no test is to see.
-constexpr double not_looked_at = 1e30;
 // Of the energy, in tolerances.
 constexpr double lost_by_tolerance = 10;
 
@@ -48,8 +45,6 @@ class Ida final : public Stepper {
     check(IDASetErrHandlerFn(ida(), keep_message, self), "IDASetErrHandlerFn");
     check(IDAInit(ida(), residual, 0, y(), rate_.get()), "IDAInit");
     check(IDASetUserData(ida(), self), "IDASetUserData");
-    Halves absolute(atol());
-    absolute.v = (system.mass().array() > 0).select(absolute.v, not_looked_at);
     check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
     check(IDASetLinearSolver(ida(), matrix().solver(), matrix().matrix()), "IDASetLinearSolver");
     check(IDASetJacFn(ida(), jacobian), "IDASetJacFn");
@@ -96,7 +91,8 @@ class Ida final : public Stepper {
       is_consistent_ = true;
     }
     int flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
-    if (flag == IDA_CONV_FAIL && massless_) {
+    const auto has_failed = [&] { return flag == IDA_CONV_FAIL || flag == IDA_ERR_FAIL; };
+    if (massless_ && has_failed()) {
       // Where springs hardly hold a massless node, Newton's iteration may fail from positions that
       // are good to the tolerance, however short the step. No more energy than that is to be lost:
       // more of it shows that the balance is another one, to which nodes would jump.
@@ -104,11 +100,13 @@ class Ida final : public Stepper {
       is_lost_ = make_consistent(t, lost_by_tolerance * rtol() * std::abs(energy)) < 0;
       if (is_lost_) return flag;
       flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
-      is_lost_ = flag == IDA_CONV_FAIL;
+      is_lost_ = has_failed();
     }
-    // What is seen: a last step that is short leaves q' of massless nodes as a difference of
-    // positions which are all good to the tolerance.
-    if (flag >= 0 && t == t_stop && massless_) follow();
+    if (flag < 0 || !massless_) return flag;
+    set_massless(Halves(y()).v, Halves(rate_.get()).q);
+    // A last step that is short leaves q' as a difference of positions which are all good to the
+    // tolerance.
+    if (t == t_stop) follow();
     return flag;
   }
 
@@ -123,6 +121,7 @@ class Ida final : public Stepper {
     if (is_loose()) return IDA_CONV_FAIL;
     follow();
     set_rate_of_masses();
+    set_massless(at.v, Vec::Zero(system().size()));
     earlier_ = own_counts();
     check(IDAReInit(ida(), t_start, y(), rate_.get()), "IDAReInit");
     return 0;
@@ -148,8 +147,14 @@ class Ida final : public Stepper {
     if (heavy.factorize(a, 1, k) == EffectiveMass::Definiteness::singular) return;
     Vec x;
     heavy.solve(a * system().mass().cwiseProduct(at.v), x);
+    set_massless(at.v, x);
+  }
+
+  // Gives v the entries of `values` that belong to massless nodes.
+  template <class Values>
+  void set_massless(Eigen::Map<Vec> v, const Values& values) const {
     for (Index i = 0; i < system().size(); ++i) {
-      if (system().mass()[i] == 0) at.v[i] = x[i];
+      if (system().mass()[i] == 0) v[i] = values[i];
     }
   }
 
@@ -165,6 +170,7 @@ class Ida final : public Stepper {
       const Halves at(y), change(rate);
       Halves out(residual);
       out.q = change.q - at.v;
+      if (self.massless_) self.set_massless(out.q, -at.v);
       out.v = self.system().mass().cwiseProduct(change.v) - self.force_at(self.system(), at.q);
       return std::isfinite(out.v.sum());
     });
