@@ -25,7 +25,7 @@ constexpr double smallest_mean_step = 1e-12;
 // What to begin with where the start or its rate of change says nothing, as a fraction of the run.
 constexpr double blind_step = 1e-6;
 // A step ends before a jump by this part of it, and leads over one by so many roundings.
-constexpr double short_of_jump = 1e-6;
+constexpr double short_of_jump = 1e-6, slowest_over_jump = 1e-6;
 constexpr double roundings_over_jump = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
@@ -201,7 +201,10 @@ AdaptiveStep::Jump AdaptiveStep::jump(const Instant& now, const Instant& next, d
   if (!change) return Jump::none;
   if (h_before_jump_ == 0) over_jump_ = 0;
   h_before_jump_ = std::max(h_before_jump_, h_);
-  const double least = roundings_over_jump * std::max(std::abs(now.state.t), h_before_jump_);
+  // Of the time, and of positions in the time that they take to change.
+  const double rounded = now.state.q.lpNorm<Eigen::Infinity>() / change->speed;
+  const double least = roundings_over_jump * std::max(std::abs(now.state.t), h_before_jump_) +
+                       std::min(roundings_over_jump * rounded, slowest_over_jump * h_before_jump_);
   over_jump_ = std::max(over_jump_, least);
   if (h > 2 * over_jump_) {
     const double before = std::min((1 - short_of_jump) * change->part * h, h - least);

@@ -1,6 +1,7 @@
 #include "integrators/kink_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace qddot {
 namespace {
@@ -65,7 +66,10 @@ std::optional<KinkSearch::Change> KinkSearch::first(const State& a, const State&
     }
     if (!part) continue;
     if (!first) first.emplace();
-    first->part = std::min(first->part, *part);
+    if (*part <= first->part) {
+      first->part = *part;
+      first->speed = std::abs(rate_[0][i]);
+    }
     first->is_at_end = first->is_at_end || d1 == 0;
   }
   return first;

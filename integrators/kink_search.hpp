@@ -19,6 +19,7 @@ class KinkSearch {
   struct Change {
     double part = 1;         // of the time from a to b after which the first one does, 0 to 1
     bool is_at_end = false;  // whether one of those that do is zero at b
+    double speed = 0;        // of the first one at a [m/s]
   };
   // By the cubic polynomials through both states. A length of zero at a changes at once if it is
   // not zero at b.

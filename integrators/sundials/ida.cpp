@@ -33,6 +33,8 @@ using namespace sundials;
 
 // Of the energy, in tolerances.
 constexpr double lost_by_tolerance = 10;
+// A massless node that moves so many times as fast as those with mass is hardly held by anything.
+constexpr double most_times_as_fast = 1e8;
 
 template <MakeMatrix make_matrix>
 class Ida final : public Stepper {
@@ -104,6 +106,8 @@ class Ida final : public Stepper {
     }
     if (flag < 0 || !massless_) return flag;
     set_massless(Halves(y()).v, Halves(rate_.get()).q);
+    is_lost_ = !(massless_speed() < most_times_as_fast * (moving_speed() + knobs().speed));
+    if (is_lost_) return IDA_CONV_FAIL;
     // A last step that is short leaves q' as a difference of positions which are all good to the
     // tolerance.
     if (t == t_stop) follow();
@@ -125,6 +129,14 @@ class Ida final : public Stepper {
     earlier_ = own_counts();
     check(IDAReInit(ida(), t_start, y(), rate_.get()), "IDAReInit");
     return 0;
+  }
+
+  // The largest speeds along an axis [m/s].
+  double massless_speed() const {
+    return (system().mass().array() > 0).select(0, Halves(y()).v).lpNorm<Eigen::Infinity>();
+  }
+  double moving_speed() const {
+    return (system().mass().array() > 0).select(Halves(y()).v, 0).lpNorm<Eigen::Infinity>();
   }
 
   // Whether springs do not hold all massless nodes where they are, as they fold up where
@@ -204,9 +216,10 @@ class Ida final : public Stepper {
 
   Cause cause_of(int flag) const override {
     if (!is_consistent_) return Cause::consistent_start;
+    if (is_lost_) return Cause::loose_massless;
     const bool is_about_a_step = flag == IDA_ERR_FAIL || flag == IDA_CONV_FAIL ||
                                  flag == IDA_NLS_FAIL || flag == IDA_LSETUP_FAIL;
-    if (is_about_a_step && massless_ && (is_lost_ || is_loose())) return Cause::loose_massless;
+    if (is_about_a_step && massless_ && is_loose()) return Cause::loose_massless;
     switch (flag) {
       case IDA_ERR_FAIL:
         return Cause::error_test;
