@@ -61,6 +61,7 @@ int equilibrium(const CLI::App& app, const Arguments& a,
     origin["residual"] = rest.residual;
     origin["smallest_eigenvalue"] = rest.smallest_eigenvalue;
     origin["isolated"] = rest.isolated;
+    origin["flat_directions"] = rest.flat_directions;
     origin["iterations"] = rest.iterations;
     csv->commit(origin);
   }
@@ -72,9 +73,12 @@ int equilibrium(const CLI::App& app, const Arguments& a,
              drawn.name, rest.iterations, rest.residual,
              scene.potential({0, rest.q, Vec::Zero(rest.q.size())}));
   fmt::print("smallest eigenvalue of -K: {:.6g} N/m, {}\n", rest.smallest_eigenvalue,
-             rest.isolated ? "an isolated minimum"
-                           : "zero within rounding: something is loose, and the minimum is not "
-                             "isolated");
+             rest.isolated
+                 ? std::string("an isolated minimum")
+                 : fmt::format("zero within rounding in {} direction{}: something is "
+                               "loose, or too soft to tell, and the minimum is not known "
+                               "to be isolated",
+                               rest.flat_directions, rest.flat_directions == 1 ? "" : "s"));
   return done;
 }
 

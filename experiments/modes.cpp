@@ -4,7 +4,8 @@
 //   modes --scene cloth --out results/cloth --count 6 --at equilibrium
 //
 // modes.csv has the lowest and the highest of them by rank. A mode whose shape grows instead of
-// vibrating (w^2 < 0: where the scene is no minimum of its energy) has omega = -(growth rate).
+// vibrating (w^2 < 0: where the scene is no minimum of its energy) has omega = -(growth rate); one
+// whose w^2 is zero within rounding has omega = 0.
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -16,10 +17,10 @@
 #include "experiments/csv.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
+#include "src/analysis/curvature_signs.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/analysis/largest_frequency.hpp"
 #include "src/analysis/natural_modes.hpp"
-#include "src/analysis/stability.hpp"
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/scene_file.hpp"
 #include "src/scene/settle.hpp"
@@ -29,9 +30,6 @@ namespace {
 
 constexpr int most_modes = 1000;
 constexpr int most_printed = 10;
-// What rounding, that of the positions included, may leave of a w^2 that is zero, as a part of the
-// largest.
-constexpr double square_noise = 1e-12;
 
 struct Arguments {
   std::string scene, out, at;
@@ -55,21 +53,22 @@ double omega(double square) { return std::copysign(std::sqrt(std::abs(square)), 
 struct Spectrum {
   Index finite = 0;
   NaturalModes lowest, highest;  // highest: without those that are among the lowest
+  CurvatureSigns signs;          // by rank: those that grow, then those that rounding hides
 
-  Spectrum(const ReducedScene& scene, Index count) : finite(finite_modes(scene.system())) {
+  Spectrum(const ReducedScene& scene, Index count)
+      : finite(finite_modes(scene.system())),
+        signs(curvature_signs(scene.system(), scene.initial().q)) {
     const Vec& q = scene.initial().q;
     lowest = lowest_modes(scene.system(), q, 2 * count >= finite ? finite : count);
     highest = highest_modes(scene.system(), q, std::min(count, finite - lowest.squares.size()));
-    const double largest = std::max(size(lowest.squares), size(highest.squares));
-    for (Vec* squares : {&lowest.squares, &highest.squares}) {
-      for (double& square : *squares) {
-        if (std::abs(square) <= square_noise * largest) square = 0;
-      }
+    for (Index rank = signs.negative; rank < std::min<Index>(first_positive(), finite); ++rank) {
+      const Index high = rank - (finite - highest.squares.size());
+      if (rank < lowest.squares.size()) lowest.squares[rank] = 0;
+      if (high >= 0) highest.squares[high] = 0;
     }
   }
 
- private:
-  static double size(const Vec& x) { return x.lpNorm<Eigen::Infinity>(); }
+  Index first_positive() const { return signs.negative + signs.flat; }
 };
 
 void print(const Spectrum& spectrum) {
@@ -148,15 +147,16 @@ int modes(const Arguments& a, const std::vector<std::string>& command_line) {
   const Vec& q = scene.initial().q;
   const Spectrum spectrum(scene, a.count);
   const double lanczos = largest_frequency(system, q), bound = frequency_bound(system, q);
-  const int unstable = unstable_directions(system, q);
   const Index shown = std::min<Index>(a.count, spectrum.lowest.squares.size());
   write_spectrum(table, spectrum);
   write_shapes(shapes, scene, spectrum.lowest.shapes.leftCols(shown));
   for (const Spring& spring : drawn.springs) springs.row(spring.nodes[0], spring.nodes[1]);
 
   const char* place = at_equilibrium ? "at equilibrium" : "as drawn";
-  fmt::print("{} {}: natural modes of finite frequency: {}, unstable: {}\n", drawn.name, place,
-             spectrum.finite, unstable);
+  const CurvatureSigns& signs = spectrum.signs;
+  fmt::print(
+      "{} {}: natural modes of finite frequency: {}, unstable: {}, zero within rounding: {}\n",
+      drawn.name, place, spectrum.finite, signs.negative, signs.flat);
   print(spectrum);
   fmt::print("w_max: {:.7g} rad/s by Lanczos, at most {:.7g} by Gershgorin; 2/w_max = {:.5g} s\n",
              lanczos, bound, 2 / lanczos);
@@ -165,8 +165,10 @@ int modes(const Arguments& a, const std::vector<std::string>& command_line) {
   origin["at"] = at_equilibrium ? "equilibrium" : "drawn";
   origin["gravity"] = drawn.gravity;
   origin["finite_modes"] = spectrum.finite;
-  origin["unstable_directions"] = unstable;
-  origin["omega_max"] = lanczos;  // infinite becomes null
+  origin["unstable_directions"] = signs.negative;
+  origin["flat_directions"] = signs.flat;
+  origin["flat_growth_rate_at_most"] = signs.flat_rate;  // infinite becomes null
+  origin["omega_max"] = lanczos;                         // infinite becomes null
   origin["omega_max_bound"] = bound;
   for (CsvFile* file : {&table, &shapes, &springs}) file->commit(origin);
   return done;

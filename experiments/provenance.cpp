@@ -86,6 +86,8 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
       {"largest_stable_step", 2 / e.omega_max},
       {"unstable_directions", e.is_examined ? nlohmann::json(e.unstable) : nullptr},
       {"unstable_directions_left_out", e.unstable_left_out},
+      {"flat_directions", e.is_examined ? nlohmann::json(e.flat) : nullptr},
+      {"flat_growth_rate_at_most", e.flat_rate},
       {"growth_rate", e.growth}};
   if (e.growth > 0) origin["reduced"]["fastest_growing_node"] = e.fastest;
   return origin;

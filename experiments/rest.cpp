@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/analysis/curvature_signs.hpp"
 #include "src/analysis/natural_modes.hpp"
 
 namespace qddot {
@@ -58,11 +59,8 @@ std::vector<Mode> sampled_modes(const System& system, const Vec& q, int count) {
 
 double buckling_rate(const System& system, const Vec& q) {
   if (finite_modes(system) == 0) return 0;
-  const NaturalModes lowest = lowest_modes(system, q, 1);
-  const NaturalModes highest = highest_modes(system, q, 1);
-  // What rounding leaves of a w^2 that is zero.
-  const double noise = 1e-11 * std::abs(highest.squares[0]);
-  return lowest.squares[0] < -noise ? std::sqrt(-lowest.squares[0]) : 0;
+  if (curvature_signs(system, q).negative == 0) return 0;
+  return std::sqrt(std::max(0.0, -lowest_modes(system, q, 1).squares[0]));
 }
 
 }  // namespace qddot

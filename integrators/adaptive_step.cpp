@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace qddot {
 namespace {
@@ -22,6 +24,9 @@ constexpr int steps_in_a_row = 1000;
 constexpr double smallest_mean_step = 1e-12;
 // What to begin with where the start or its rate of change says nothing, as a fraction of the run.
 constexpr double blind_step = 1e-6;
+// A step ends before a jump by this part of it, and leads over one by so many roundings.
+constexpr double short_of_jump = 1e-6, slowest_over_jump = 1e-6;
+constexpr double roundings_over_jump = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -35,7 +40,11 @@ AdaptiveStep::AdaptiveStep(const Method& method, const System& system, const Kno
       error_q_(system.size()),
       error_v_(system.size()),
       instants_(std::max<std::size_t>(accuracy.instants, 2) + 1,
-                {{0, Vec(system.size()), Vec(system.size())}, Vec(system.size())}) {}
+                {{0, Vec(system.size()), Vec(system.size())}, Vec(system.size())}),
+      kinks_(system) {
+  // No polynomial leads over a jump.
+  if (kinks_.has_kinks() && accuracy_.instants > 2) accuracy_.instants = 0;
+}
 
 void AdaptiveStep::acceleration(const Vec& q, Vec& a) {
   force(q, a);
@@ -58,6 +67,7 @@ void AdaptiveStep::start(const State& state) {
   if (ended_ == Outcome::reached_end) h_ = first_step();
   last_error_ = 1;
   was_rejected_ = false;
+  h_before_jump_ = 0;
   steps_ = 0;
   t_mark_ = state.t;
 }
@@ -127,6 +137,7 @@ Outcome AdaptiveStep::show(double t, State& state) {
 
 double AdaptiveStep::step_size(double t, double longest) const {
   const double h = std::min(h_, longest), left = t_end() - t;
+  if (h_before_jump_ > 0) return std::min(h, left);  // h_ ends where the jump is
   if (left <= stretch * h) return left;
   // Two even steps to the end are better than one and what it leaves.
   return left < 2 * h ? left / 2 : h;
@@ -149,6 +160,14 @@ Outcome AdaptiveStep::take_step() {
       error = norm(now.state, error_q_, error_v_);
       outcome = std::isfinite(error) ? judge(next.state) : Outcome::not_finite;
     }
+    const Jump jump_here =
+        kinks_.has_kinks() && outcome == Outcome::reached_end ? jump(now, next, h) : Jump::none;
+    if (jump_here == Jump::ahead) {
+      ++counts().rejected;
+      rejected();
+      continue;
+    }
+    if (jump_here == Jump::over) error = std::min(error, 1.0);
     if (error <= 1 && outcome == Outcome::reached_end) {
       accepted(next);
       if (!std::isfinite(next.a.sum())) outcome = Outcome::not_finite;
@@ -162,6 +181,7 @@ Outcome AdaptiveStep::take_step() {
       h_ = h * std::clamp(factor, smallest_factor, was_rejected_ ? 1 : largest_factor);
       last_error_ = std::max(error, smallest_error);
       was_rejected_ = false;
+      if (jump_here == Jump::over) h_ = std::exchange(h_before_jump_, 0);
       return has_crept() ? Outcome::step_too_small : Outcome::reached_end;
     }
     if (!(t + smallest_factor * h > t)) {
@@ -174,6 +194,27 @@ Outcome AdaptiveStep::take_step() {
     ++counts().rejected;
     rejected();
   }
+}
+
+AdaptiveStep::Jump AdaptiveStep::jump(const Instant& now, const Instant& next, double h) {
+  const auto change = kinks_.first(now.state, next.state);
+  if (!change) return Jump::none;
+  if (h_before_jump_ == 0) over_jump_ = 0;
+  h_before_jump_ = std::max(h_before_jump_, h_);
+  // Of the time, and of positions in the time that they take to change.
+  const double rounded = now.state.q.lpNorm<Eigen::Infinity>() / change->speed;
+  const double least = roundings_over_jump * std::max(std::abs(now.state.t), h_before_jump_) +
+                       std::min(roundings_over_jump * rounded, slowest_over_jump * h_before_jump_);
+  over_jump_ = std::max(over_jump_, least);
+  if (h > 2 * over_jump_) {
+    const double before = std::min((1 - short_of_jump) * change->part * h, h - least);
+    h_ = std::max(before, over_jump_);
+    return Jump::ahead;
+  }
+  if (!change->is_at_end) return Jump::over;
+  // Far from the origin a length stays zero for longer.
+  h_ = over_jump_ = 2 * h;
+  return Jump::ahead;
 }
 
 void AdaptiveStep::accept(bool is_limited) {

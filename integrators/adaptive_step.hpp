@@ -5,6 +5,7 @@
 
 #include "integrators/hermite.hpp"
 #include "integrators/integrator.hpp"
+#include "integrators/kink_search.hpp"
 
 namespace qddot {
 
@@ -15,6 +16,9 @@ namespace qddot {
 // controller's (Gustafsson; Hairer and Wanner, Solving ODEs II, eq. IV.2.43c), the first one is
 // that of Hairer, Norsett and Wanner, Solving ODEs I, II.4. Steps land on the end of the run only;
 // what an observer sees between them is interpolated, or is the end of an attempt of its own.
+//
+// Where the force jumps (see Kinks), a step ends just before, whatever its error estimate says; one
+// of some roundings of the time leads over it, and the next begins on the other side.
 class AdaptiveStep : public Integrator {
  protected:
   // Errors are of order h^(error_order + 1); states between steps are interpolated through so many
@@ -58,6 +62,10 @@ class AdaptiveStep : public Integrator {
   double step_size(double t, double longest) const;
   Outcome take_step();
   void accept(bool is_limited);
+  // What becomes of a step of h that ends at `next`, for the jumps of the force: whether it leads
+  // over one, is to be tried with h_ instead, or has nothing to do with any.
+  enum class Jump { none, over, ahead };
+  Jump jump(const Instant& now, const Instant& next, double h);
   bool has_crept();
   // The weighted root mean square of a pair of vectors.
   double norm(const State& at, const Vec& q, const Vec& v) const;
@@ -68,6 +76,9 @@ class AdaptiveStep : public Integrator {
   Vec error_q_, error_v_;
   std::vector<Instant> instants_;  // a ring, with a place for the next attempt
   std::size_t newest_ = 0, count_ = 0;
+  KinkSearch kinks_;
+  // While a jump is ahead: what h_ was before, and the step that leads over it; else zero.
+  double h_before_jump_ = 0, over_jump_ = 0;
   double h_ = 0, last_error_ = 1;
   bool was_rejected_ = false;
   Outcome ended_ = Outcome::reached_end;  // why there is no next step

@@ -33,6 +33,8 @@ class Rosenbrock final : public AdaptiveStep {
   Outcome attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) override;
   void accepted(Instant& next) override;
   bool factorize(const Vec& q, double g);
+  // What part of M u an iterative solve for a stage may leave.
+  double tolerance(const State& now, double g, const Vec& u) const;
 
   const RosenbrockTable& table_;
   Eigen::MatrixXd u_q_, u_v_;  // n x stages

@@ -44,7 +44,13 @@ class SemiImplicitEuler final : public FixedStep {
   Outcome solve(const Vec& b, Vec& x) {
     const Stopwatch watch(seconds(), &Seconds::solve);
     ++counts().solves;
-    return judge(matrix_.solve(b, x));
+    const Outcome outcome = judge(matrix_.solve(b, x));
+    if (outcome == Outcome::indefinite_matrix) {
+      explain(
+          "compressed springs make M - h^2 K indefinite, with which conjugate gradients cannot "
+          "solve: take --solver multifrontal, which can, or a shorter step");
+    }
+    return outcome;
   }
 
   Vec f_{system().size()}, b_{system().size()};

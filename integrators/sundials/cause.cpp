@@ -17,6 +17,8 @@ Outcome outcome_of(Cause cause) {
     case Cause::force:
     case Cause::first_force:
       return Outcome::not_finite;
+    case Cause::loose_massless:
+      return Outcome::went_slack;
     case Cause::other:
       break;
   }
@@ -39,6 +41,8 @@ const char* what_happened(Cause cause) {
       return "a force is no finite number";
     case Cause::consistent_start:
       return "no positions of the massless nodes were found in which their forces balance";
+    case Cause::loose_massless:
+      return "springs no longer hold a massless node, so that nothing says how it moves,";
     case Cause::fast_steps:
       return "the small steps of the stiff springs are below rounding";
     case Cause::end_too_close:
@@ -65,6 +69,8 @@ const char* what_to_turn(Cause cause, bool has_fixed_step) {
       return "look for extreme values in the scene";
     case Cause::consistent_start:
       return "draw them where their springs, stretched, pull equally";
+    case Cause::loose_massless:
+      return "give it mass";
     case Cause::fast_steps:
       return "raise --step-size";
     case Cause::end_too_close:

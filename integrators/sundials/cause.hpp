@@ -13,6 +13,7 @@ enum class Cause {
   force,             // f or K is not finite within the next step, a shorter one where that is tried
   first_force,       // f is not finite at the start
   consistent_start,  // no positions of massless nodes were found that balance them
+  loose_massless,    // springs no longer hold a massless node
   fast_steps,        // the small steps inside a large one are below rounding
   end_too_close,     // the time to run is below rounding
   other,

@@ -4,13 +4,16 @@
 // or the stock way with KLU. (Hindmarsh et al., ACM TOMS 31:3 (2005) 363-396.) Everything that is
 // not set here is left at IDA's default.
 //
-// M may be singular. Of a massless node, 0 = f is a constraint on its position, and its velocity is
-// that of index 2: v = q'. Both follow from the other nodes, so they are algebraic to IDA and left
-// out of its error test (Brenan, Campbell, Petzold, Numerical Solution of IVPs in DAEs, section
-// 5.2). The start is made consistent: IDACalcIC finds the position. There and at the ends of a run
-// the velocity is that in which f stays zero, 0 = (K v)_massless.
+// M may be singular. Of a massless node, 0 = f is a constraint on its position (index 1), which the
+// error test sees like all others: where it moves fast, longer steps would throw Newton's iteration
+// onto another balance, a saddle of its energy. Its velocity v = q' is of index 2 (Brenan,
+// Campbell, Petzold, Numerical Solution of IVPs in DAEs, section 5.2), but nothing depends on it:
+// to IDA it is 0 = -v, and what is seen has q' or, at the ends of a run, the one in which f stays
+// zero, 0 = (K v)_massless. The start is made consistent to rounding: massless nodes go downhill to
+// where their springs balance, the others held.
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 #include <ida/ida.h>
@@ -19,11 +22,19 @@
 #include "integrators/sundials/orders.hpp"
 #include "integrators/sundials/stepper.hpp"
 #include "src/algebra/effective_mass.hpp"
+#include "src/analysis/curvature_signs.hpp"
+#include "src/analysis/equilibrium.hpp"
+#include "src/model/held.hpp"
 
 namespace qddot {
 namespace {
 
 using namespace sundials;
+
+// Of the energy, in tolerances.
+constexpr double lost_by_tolerance = 10;
+// A massless node that moves so many times as fast as those with mass is hardly held by anything.
+constexpr double most_times_as_fast = 1e8;
 
 template <MakeMatrix make_matrix>
 class Ida final : public Stepper {
@@ -36,45 +47,26 @@ class Ida final : public Stepper {
     check(IDASetErrHandlerFn(ida(), keep_message, self), "IDASetErrHandlerFn");
     check(IDAInit(ida(), residual, 0, y(), rate_.get()), "IDAInit");
     check(IDASetUserData(ida(), self), "IDASetUserData");
-    set_tolerances(rounding_of_velocities());
+    check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
     check(IDASetLinearSolver(ida(), matrix().solver(), matrix().matrix()), "IDASetLinearSolver");
     check(IDASetJacFn(ida(), jacobian), "IDASetJacFn");
     if (knobs.max_order > 0) {
       check(IDASetMaxOrd(ida(), std::min(knobs.max_order, method.order)), "IDASetMaxOrd");
     }
     if (!system.has_massless()) return;
-    is_differential_ = clone(y());
-    Halves is_differential(is_differential_.get());
-    is_differential.q = (system.mass().array() > 0).cast<double>();
-    is_differential.v = is_differential.q;
-    check(IDASetId(ida(), is_differential_.get()), "IDASetId");
-    check(IDASetSuppressAlg(ida(), SUNTRUE), "IDASetSuppressAlg");
+    std::vector<bool> has_mass;
+    for (const double mass : system.mass()) has_mass.push_back(mass > 0);
+    massless_.emplace(std::shared_ptr<const System>(std::shared_ptr<void>(), &system), has_mass);
   }
 
  private:
   void* ida() const { return memory_.get(); }
 
-  // Sets the tolerances, that of the velocities of massless nodes to at least so much [m/s].
-  void set_tolerances(double of_massless) {
-    Halves absolute(atol());
-    for (Index i = 0; i < system().size(); ++i) {
-      if (system().mass()[i] == 0) absolute.v[i] = std::max(atol_of_velocities(), of_massless);
-    }
-    check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
-  }
-  double atol_of_velocities() const {
-    return knobs().atol > 0 ? knobs().atol : rtol() * knobs().speed;
-  }
-
-  // Rounding of q makes v = q' of a massless node uncertain by eps |q|/h. The first steps are about
-  // h = rtol |q|/|v|, so that this can be more than the tolerance; times some that they shorten.
-  double rounding_of_velocities() const {
-    return 1e3 * std::numeric_limits<double>::epsilon() / rtol() * knobs().speed;
-  }
-
   void start(const State& state) override {
     load(state);
     orders_ = {};
+    earlier_ = {};
+    is_lost_ = false;
     is_consistent_ = !system().has_massless();
     set_rate_of_masses();
     check(IDAReInit(ida(), state.t, y(), rate_.get()), "IDAReInit");
@@ -97,27 +89,61 @@ class Ida final : public Stepper {
 
   int take_step(double t_stop, double& t) override {
     if (!is_consistent_) {
-      const double t_start = t;
-      if (const int flag = make_consistent(t_start, t_stop); flag < 0) return flag;
+      if (const int flag = make_consistent(t); flag < 0) return flag;
       is_consistent_ = true;
     }
-    const int flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
-    // What is seen: a last step that is short leaves q' of massless nodes as a difference of
-    // positions which are all good to the tolerance.
-    if (flag >= 0 && t == t_stop && system().has_massless()) follow();
+    int flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
+    const auto has_failed = [&] { return flag == IDA_CONV_FAIL || flag == IDA_ERR_FAIL; };
+    if (massless_ && has_failed()) {
+      // Where springs hardly hold a massless node, Newton's iteration may fail from positions that
+      // are good to the tolerance, however short the step. No more energy than that is to be lost:
+      // more of it shows that the balance is another one, to which nodes would jump.
+      const double energy = total_energy(system(), {t, Halves(y()).q, Halves(y()).v});
+      is_lost_ = make_consistent(t, lost_by_tolerance * rtol() * std::abs(energy)) < 0;
+      if (is_lost_) return flag;
+      flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
+      is_lost_ = has_failed();
+    }
+    if (flag < 0 || !massless_) return flag;
+    set_massless(Halves(y()).v, Halves(rate_.get()).q);
+    is_lost_ = !(massless_speed() < most_times_as_fast * (moving_speed() + knobs().speed));
+    if (is_lost_) return IDA_CONV_FAIL;
+    // A last step that is short leaves q' as a difference of positions which are all good to the
+    // tolerance.
+    if (t == t_stop) follow();
     return flag;
   }
 
-  int make_consistent(double t_start, double t_stop) {
-    set_tolerances(1e30);  // whatever q' is beside the positions found, follow() is to say
-    const int flag = IDACalcIC(ida(), IDA_YA_YDP_INIT, t_stop);
-    set_tolerances(rounding_of_velocities());
-    if (flag < 0) return flag;
-    check(IDAGetConsistentIC(ida(), y(), rate_.get()), "IDAGetConsistentIC");
+  // Brings massless nodes to where their forces balance, with y' as it is then: 0, or a flag where
+  // they do not, or only with so much less energy [J].
+  int make_consistent(double t_start, double most_lost = std::numeric_limits<double>::infinity()) {
+    Halves at(y());
+    const Equilibrium balance = find_equilibrium(*massless_, at.q, knobs().length);
+    if (balance.outcome != Equilibrium::Outcome::reached) return IDA_CONV_FAIL;
+    if (system().potential(at.q) - system().potential(balance.q) > most_lost) return IDA_CONV_FAIL;
+    at.q = balance.q;
+    if (is_loose()) return IDA_CONV_FAIL;
     follow();
     set_rate_of_masses();
+    set_massless(at.v, Vec::Zero(system().size()));
+    earlier_ = own_counts();
     check(IDAReInit(ida(), t_start, y(), rate_.get()), "IDAReInit");
     return 0;
+  }
+
+  // The largest speeds along an axis [m/s].
+  double massless_speed() const {
+    return (system().mass().array() > 0).select(0, Halves(y()).v).lpNorm<Eigen::Infinity>();
+  }
+  double moving_speed() const {
+    return (system().mass().array() > 0).select(Halves(y()).v, 0).lpNorm<Eigen::Infinity>();
+  }
+
+  // Whether springs do not hold all massless nodes where they are, as they fold up where
+  // compressed.
+  bool is_loose() const {
+    const CurvatureSigns signs = curvature_signs(*massless_, Halves(y()).q);
+    return signs.negative + signs.flat > (system().mass().array() > 0).count();
   }
 
   // Gives massless nodes the velocity in which their forces stay balanced: the other nodes', times
@@ -133,8 +159,14 @@ class Ida final : public Stepper {
     if (heavy.factorize(a, 1, k) == EffectiveMass::Definiteness::singular) return;
     Vec x;
     heavy.solve(a * system().mass().cwiseProduct(at.v), x);
+    set_massless(at.v, x);
+  }
+
+  // Gives v the entries of `values` that belong to massless nodes.
+  template <class Values>
+  void set_massless(Eigen::Map<Vec> v, const Values& values) const {
     for (Index i = 0; i < system().size(); ++i) {
-      if (system().mass()[i] == 0) at.v[i] = x[i];
+      if (system().mass()[i] == 0) v[i] = values[i];
     }
   }
 
@@ -150,6 +182,7 @@ class Ida final : public Stepper {
       const Halves at(y), change(rate);
       Halves out(residual);
       out.q = change.q - at.v;
+      if (self.massless_) self.set_massless(out.q, -at.v);
       out.v = self.system().mass().cwiseProduct(change.v) - self.force_at(self.system(), at.q);
       return std::isfinite(out.v.sum());
     });
@@ -165,18 +198,28 @@ class Ida final : public Stepper {
   }
 
   void collect_counts() override {
-    long steps = 0, failed_tests = 0, failed_solves = 0, setups = 0, iterations = 0;
-    check(IDAGetNumSteps(ida(), &steps), "IDAGetNumSteps");
-    check(IDAGetNumErrTestFails(ida(), &failed_tests), "IDAGetNumErrTestFails");
-    check(IDAGetNumStepSolveFails(ida(), &failed_solves), "IDAGetNumStepSolveFails");
-    check(IDAGetNumLinSolvSetups(ida(), &setups), "IDAGetNumLinSolvSetups");
-    check(IDAGetNumNonlinSolvIters(ida(), &iterations), "IDAGetNumNonlinSolvIters");
-    set_counts({steps, failed_tests, failed_solves, setups, iterations});
+    set_counts(own_counts());
     orders_.into(counts());
+  }
+
+  OwnCounts own_counts() const {
+    OwnCounts own{};
+    check(IDAGetNumSteps(ida(), &own.steps), "IDAGetNumSteps");
+    check(IDAGetNumErrTestFails(ida(), &own.failed_tests), "IDAGetNumErrTestFails");
+    check(IDAGetNumStepSolveFails(ida(), &own.failed_solves), "IDAGetNumStepSolveFails");
+    check(IDAGetNumLinSolvSetups(ida(), &own.setups), "IDAGetNumLinSolvSetups");
+    check(IDAGetNumNonlinSolvIters(ida(), &own.iterations), "IDAGetNumNonlinSolvIters");
+    return {own.steps + earlier_.steps, own.failed_tests + earlier_.failed_tests,
+            own.failed_solves + earlier_.failed_solves, own.setups + earlier_.setups,
+            own.iterations + earlier_.iterations};
   }
 
   Cause cause_of(int flag) const override {
     if (!is_consistent_) return Cause::consistent_start;
+    if (is_lost_) return Cause::loose_massless;
+    const bool is_about_a_step = flag == IDA_ERR_FAIL || flag == IDA_CONV_FAIL ||
+                                 flag == IDA_NLS_FAIL || flag == IDA_LSETUP_FAIL;
+    if (is_about_a_step && massless_ && is_loose()) return Cause::loose_massless;
     switch (flag) {
       case IDA_ERR_FAIL:
         return Cause::error_test;
@@ -205,9 +248,11 @@ class Ida final : public Stepper {
   }
 
   Orders orders_;
-  Vector rate_;             // y'
-  Vector is_differential_;  // 1, or 0 for the entries of massless nodes; none without such nodes
+  Vector rate_;                   // y'
+  std::optional<Held> massless_;  // the system with all but these held; none without such nodes
   bool is_consistent_ = true;
+  bool is_lost_ = false;  // whether no balance is left near the massless nodes
+  OwnCounts earlier_{};   // before IDA was started anew, which forgets them
   std::unique_ptr<void, FreeMemoryBy<IDAFree>> memory_;
 };
 

@@ -36,6 +36,10 @@ class Klu final : public NewtonMatrix {
     s_.setConstant(-1);
     e_ = c * mass_;
     pattern_.fill(c, -1, s_, k, e_, SM_DATA_S(entries_.get()));
+    for (Index i = 0; i < mass_.size(); ++i) {
+      // The diagonal entry is the first of its column.
+      if (mass_[i] == 0) SM_DATA_S(entries_.get())[pattern_.column_starts()[i]] = 0;
+    }
   }
 
   void begin_run() override {

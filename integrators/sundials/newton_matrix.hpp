@@ -20,7 +20,8 @@ class NewtonMatrix {
 
   // I - gamma J of y' = (v, M^-1 f(q)), J = [[0, I], [M^-1 K, 0]].
   virtual void set_explicit_form(double gamma, const SymmetricMatrix& k) = 0;
-  // c dF/dy' + dF/dy = [[c I, -I], [-K, c M]] of F = (q' - v, M v' - f(q)).
+  // c dF/dy' + dF/dy = [[c I, -I], [-K, c M]] of F = (q' - v, M v' - f(q)); the first half of F is
+  // -v where there is no mass, so that c is zero there.
   virtual void set_implicit_form(double c, const SymmetricMatrix& k) = 0;
 
   SUNMatrix matrix() const { return matrix_.get(); }

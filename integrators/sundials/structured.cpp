@@ -3,7 +3,8 @@
 // With b = (a - r)/gamma from the first row, M gamma times the second is
 //   (M - gamma^2 K) a = M (r + gamma s).
 // Of the implicit form, c = 1/gamma:              c a - b = r,   c M b - K a = s
-//   (M - gamma^2 K) a = gamma (M r + gamma s),   b = c a - r.
+//   (M - gamma^2 K) a = gamma (M r + gamma s),   b = c a - r;
+// but of a node without mass the first row is -b = r.
 // No product with K is needed, so the factors may belong to another gamma or an older K than the
 // step at hand, which is when Newton's iteration takes a few more rounds.
 #include "integrators/sundials/newton_matrix.hpp"
@@ -51,7 +52,7 @@ class Structured final : public NewtonMatrix {
     if (factors_.solve(b_, a_) != SolveOutcome::found) return 1;
     if (definiteness_ == EffectiveMass::Definiteness::indefinite && !is_solved()) return 1;
     if (is_implicit_) {
-      ab.v = a_ / gamma_ - rs.q;
+      ab.v = (mass_.array() > 0).select(a_ / gamma_ - rs.q, -rs.q);
     } else {
       ab.v = (a_ - rs.q) / gamma_;
     }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "src/algebra/effective_mass.hpp"
+#include "src/analysis/curvature_signs.hpp"
 #include "src/analysis/stability.hpp"
 
 namespace qddot {
@@ -17,10 +18,9 @@ constexpr int most_steps = 2000;
 constexpr int most_polishing = 3;
 constexpr int most_halvings = 40;
 constexpr int most_shifts = 60;
-constexpr double far_away = 1e6;           // lengths
-constexpr double first_radius = 0.1;       // lengths
-constexpr double least_shift = 1e-12;      // of the bound of M'^-1 K
-constexpr double curvature_noise = 1e-11;  // of the largest row sum of |K|
+constexpr double far_away = 1e6;       // lengths
+constexpr double first_radius = 0.1;   // lengths
+constexpr double least_shift = 1e-12;  // of the bound of M'^-1 K
 
 const char* const falls_for_ever =
     "there is no equilibrium: a part that nothing holds falls for ever";
@@ -48,11 +48,11 @@ class Descent {
         if (!step()) return end(Outcome::not_converged, stuck);
         continue;
       }
-      curvature_ = smallest_curvature(system_, q_);
-      if (curvature_.value >= -curvature_noise * row_sum_) {
+      if (curvature_signs(system_, q_).negative == 0) {
         polish();
         return end(Outcome::reached, "");
       }
+      curvature_ = smallest_curvature(system_, q_);
       if (!leave_saddle()) return end(Outcome::not_converged, stuck);
     }
     return end(Outcome::not_converged, too_long);
@@ -166,7 +166,9 @@ class Descent {
   }
 
   Equilibrium end(Outcome outcome, const char* message) {
-    if (outcome != Outcome::reached && k_.coeffs().allFinite()) {
+    CurvatureSigns signs;
+    if (k_.coeffs().allFinite()) {
+      signs = curvature_signs(system_, q_);
       curvature_ = smallest_curvature(system_, q_);
     }
     return {.outcome = outcome,
@@ -174,7 +176,8 @@ class Descent {
             .q = q_,
             .residual = largest(f_),
             .smallest_eigenvalue = curvature_.value,
-            .isolated = curvature_.value > curvature_noise * row_sum_,
+            .isolated = signs.negative + signs.flat == 0,
+            .flat_directions = signs.flat,
             .iterations = iterations_};
   }
 

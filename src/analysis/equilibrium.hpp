@@ -15,10 +15,11 @@ struct Equilibrium {
   Vec q{};                         // [m], n
   double residual = 0;             // the largest |f_i(q)| [N]
   double smallest_eigenvalue = 0;  // of -K(q) [N/m]; zero where n = 0
-  // Whether the smallest eigenvalue is above rounding, 1e-11 of the largest row sum of |K|. If not,
-  // something is loose (a mechanism, a slack part, a free body) and the energy stays the same to
-  // second order along it.
+  // Whether the energy rises in every direction. If not, it stays the same to second order, within
+  // rounding (see CurvatureSigns), in so many: something is loose (a mechanism, a slack part, a
+  // free body), or too soft for its sign to be told.
   bool isolated = true;
+  int flat_directions = 0;
   int iterations = 0;  // Newton's steps and escapes from saddles
 };
 
@@ -32,8 +33,8 @@ struct Equilibrium {
 // velocity while they lead downhill (dynamic relaxation: Barnes, Form finding and analysis of
 // tension structures by dynamic relaxation, 1999), which become Newton's where a = 0. They are cut
 // to a trust radius and halved until V falls (Armijo) or, where V's rounding hides that, |f|.
-// A stationary point where -K has an eigenvalue below -1e-11 of the largest row sum of |K| is no
-// minimum; it is left along the eigenvector, to the side where V is lower.
+// A stationary point where -K has an eigenvalue that is negative whatever rounding does is no
+// minimum; it is left along an eigenvector, to the side where V is lower.
 //
 // Reached: |f_i| <= 8 eps max_i sum_j |K_ij| max(|q|, length), which is what the rounding of q
 // makes of f = 0, and then as far below as Newton's steps still lead. Unbounded: 1e6 lengths away

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -24,6 +25,8 @@ constexpr Index largest_dense = 400;
 constexpr double least_offset = 1e-8;
 constexpr double growth = 4;
 constexpr int most_tries = 40;
+// Beside a value, those below this part of it are looked at once more.
+constexpr double small_part = 1e-3;
 
 // The pencil -K x = w^2 M x at one q.
 struct Pencil {
@@ -52,6 +55,32 @@ struct Pencil {
       "it moves");
 }
 
+// Eigenvalues that are small beside the largest are wrong by roundings of that one. In the space of
+// their own vectors, which are right to rounding, only the rounding of what these vectors meet of
+// the matrix A is left: so again and again for what is small even there. `projected` is X'AX for
+// some of the vectors.
+template <class Projected>
+void look_again_at_small(const Projected& projected, Vec& values, MatrixXd& vectors) {
+  Index first = 0, count = values.size();
+  for (;;) {
+    const Vec sizes = values.segment(first, count).cwiseAbs();
+    const double small = small_part * sizes.maxCoeff();
+    const auto begin = std::ranges::find_if(sizes, [&](double size) { return size <= small; });
+    first += begin - sizes.begin();
+    count = (sizes.array() <= small).count();
+    if (count == 0 || small == 0) break;
+    const MatrixXd own = vectors.middleCols(first, count);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(projected(own));
+    values.segment(first, count) = solver.eigenvalues();
+    vectors.middleCols(first, count) = own * solver.eigenvectors();
+  }
+  std::vector<Index> order(values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](Index j) { return values[j]; });
+  values = Vec(values(order));
+  vectors = MatrixXd(vectors(Eigen::all, order));
+}
+
 // All finite modes, the massless unknowns eliminated: with a and b for massive and massless ones,
 // -K_bb x_b = K_ba x_a and (-K_aa - K_ab (-K_bb)^-1 K_ba) x_a = w^2 M_a x_a.
 NaturalModes dense_modes(const Pencil& p) {
@@ -70,10 +99,13 @@ NaturalModes dense_modes(const Pencil& p) {
     follow = -held.solve(stiff(b, a));
   }
   const MatrixXd condensed = stiff(a, a) + stiff(a, b) * follow;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(per_root.asDiagonal() * condensed *
-                                                       per_root.asDiagonal());
+  const MatrixXd per_mass = per_root.asDiagonal() * condensed * per_root.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(per_mass);
   NaturalModes modes{solver.eigenvalues(), MatrixXd(p.system.size(), std::ssize(a))};
-  const MatrixXd shapes = per_root.asDiagonal() * solver.eigenvectors();
+  MatrixXd vectors = solver.eigenvectors();
+  look_again_at_small([&](const MatrixXd& x) { return MatrixXd(x.transpose() * (per_mass * x)); },
+                      modes.squares, vectors);
+  const MatrixXd shapes = per_root.asDiagonal() * vectors;
   modes.shapes(a, Eigen::all) = shapes;
   modes.shapes(b, Eigen::all) = follow * shapes;
   return modes;
@@ -96,10 +128,14 @@ NaturalModes modes_beside(const Pencil& p, EffectiveMass& matrix, double offset,
     shapes.col(j) = x * (offset / pairs.values[j]);
   }
   // By Rayleigh and Ritz in the space of these shapes: w^2 of second order in their errors.
-  const MatrixXd stiffness = -shapes.transpose() * (p.k.selfadjointView<Eigen::Lower>() * shapes);
+  const auto projected = [&](const MatrixXd& some) {
+    return MatrixXd(-some.transpose() * (p.k.selfadjointView<Eigen::Lower>() * some));
+  };
   const MatrixXd masses = shapes.transpose() * p.mass.asDiagonal() * shapes;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(stiffness, masses);
-  return {ritz.eigenvalues(), shapes * ritz.eigenvectors()};
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(projected(shapes), masses);
+  NaturalModes modes{ritz.eigenvalues(), shapes * ritz.eigenvectors()};
+  look_again_at_small(projected, modes.squares, modes.shapes);
+  return modes;
 }
 
 bool is_small(const Pencil& p, Index count) {
@@ -128,7 +164,16 @@ NaturalModes lowest_modes(const System& system, const Vec& q, Index count, const
     if (tries == most_tries) refuse_loose_massless();
     offset *= growth;
   }
-  return modes_beside(p, matrix, offset, count);
+  NaturalModes modes = modes_beside(p, matrix, offset, count);
+  // From far off, modes that differ much look alike.
+  for (int tries = 0; tries < most_tries; ++tries) {
+    const double size = modes.squares.lpNorm<Eigen::Infinity>();
+    if (size >= small_part * offset) break;
+    offset = std::max(10 * size, small_part * offset);
+    if (!matrix.factorize_positive(offset, 1, p.k)) break;
+    modes = modes_beside(p, matrix, offset, count);
+  }
+  return modes;
 }
 
 NaturalModes highest_modes(const System& system, const Vec& q, Index count) {

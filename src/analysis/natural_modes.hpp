@@ -20,8 +20,9 @@ Index finite_modes(const System& system);
 // The `count` lowest modes at q, all finite ones where there are no more; those of negative w^2 are
 // the very lowest. Each as often as it is multiple (a free body in space at rest has six of w = 0).
 // Small systems by dense decomposition; large ones by Lanczos' method on (-K - s M)^-1 M, with the
-// shift s below all w^2, found by trying which matrix is positive definite. w^2 is right to about
-// 1e-15 of the largest w^2, which is what rounding of K leaves.
+// shift s below all w^2, found by trying which matrix is positive definite, and as near to the
+// lowest as they are small. w^2 is right to what rounding of K leaves at the places that move in
+// the shape; whether that hides its sign, curvature_signs() tells.
 // Throws std::domain_error where a massless unknown is not held by its springs (-K among the
 // massless is not positive definite), so that M q'' = f(q) does not say how it moves.
 NaturalModes lowest_modes(const System& system, const Vec& q, Index count);

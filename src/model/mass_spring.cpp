@@ -6,6 +6,7 @@
 
 #include "src/model/block_pattern.hpp"
 #include "src/model/force_kernel.hpp"
+#include "src/model/kinks.hpp"
 #include "src/model/layout.hpp"
 #include "src/model/network_halves.hpp"
 #include "src/model/nodal_loads.hpp"
@@ -22,7 +23,7 @@ constexpr Index fewest_for_vectors = 16;
 // Springs between nodes all of whose coordinates are unknowns are kept apart, by their first
 // unknowns alone; the few that touch a node on a mirror go through the layout.
 template <int D>
-class MassSpring final : public System {
+class MassSpring final : public System, public Kinks {
   using Point = Eigen::Matrix<double, D, 1>;
   using Block = Eigen::Matrix<double, D, D>;
 
@@ -111,6 +112,15 @@ class MassSpring final : public System {
     });
   }
 
+  // Elsewhere than on a line hardly a motion meets a length of zero.
+  Index kinks() const override { return kinks_; }
+  void kink_lengths(const Vec& q, Vec& lengths) const override {
+    Index i = 0;
+    for_all(q, [&](const SpringLaw& law, const Point& d) {
+      if (turns_over(law)) lengths[i++] = d[0];
+    });
+  }
+
   bool holds_at(const Vec& q) const override {
     // A spring drawn at its rest length may be shorter by what rounding makes of it.
     const auto is_in_tension = [&](const EdgeLink& link) {
@@ -156,6 +166,7 @@ class MassSpring final : public System {
     for_all(anywhere, [&](const SpringLaw& law, const Point&) {
       linear_ &= law.is_linear();
       if (law.quartic > 0) has_laplacian_ = HasLaplacian::yes;
+      kinks_ += turns_over(law);
     });
     if (network.offers_split) {
       const Network stiff = only(network, true);
@@ -171,6 +182,8 @@ class MassSpring final : public System {
       }
     }
   }
+
+  static bool turns_over(const SpringLaw& law) { return D == 1 && law.rest_length > 0; }
 
   void take_link(const EdgeLink& link, Holds holds, bool is_plain) {
     if (holds == Holds::in_tension) links_in_tension_.push_back(link);
@@ -365,6 +378,7 @@ class MassSpring final : public System {
   std::vector<double> offsets_;  // [m], of all springs in the order of for_all; empty where none
   double constant_energy_;
   bool linear_ = false;
+  Index kinks_ = 0;
   HasLaplacian has_laplacian_ = HasLaplacian::as_bound;
   SymmetricMatrix pattern_;
   std::optional<SpringsByNode<D>> by_node_;

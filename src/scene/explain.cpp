@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "src/analysis/curvature_signs.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/analysis/largest_frequency.hpp"
 #include "src/analysis/natural_modes.hpp"
-#include "src/analysis/stability.hpp"
 
 namespace qddot {
 namespace {
@@ -56,11 +56,25 @@ std::string step_sentence(const Explanation& e) {
       w, e.omega_bound, 2 / w);
 }
 
+std::string flat_growth(const Explanation& e) {
+  return std::isfinite(e.flat_rate)
+             ? fmt::format(" (growth slower than exp({:.1g} t))", e.flat_rate)
+             : "";
+}
+
 std::string stability_sentence(const Explanation& e, const Scene& scene) {
   if (!e.is_examined)
     return "whether K is indefinite at the start is not known: the scene, or its numbers, are too "
            "large";
-  if (e.unstable == 0) return "K is negative semidefinite at the start: no direction grows";
+  if (e.unstable == 0 && e.flat == 0) {
+    return "K is negative definite at the start: no direction grows";
+  }
+  if (e.unstable == 0) {
+    return fmt::format(
+        "K is negative semidefinite within rounding at the start: no direction grows, but in {} it "
+        "is zero or its sign cannot be told{}",
+        e.flat, flat_growth(e));
+  }
   std::string sentence =
       fmt::format("K is indefinite at the start, in {} direction{} (springs are compressed)",
                   e.unstable, e.unstable == 1 ? "" : "s");
@@ -68,6 +82,10 @@ std::string stability_sentence(const Explanation& e, const Scene& scene) {
     const auto& x = scene.nodes[e.fastest].position;
     sentence += fmt::format("; the fastest grows as exp({:.4g} t), most at node {} ({})", e.growth,
                             e.fastest, fmt::join(x.data(), x.data() + scene.dimension, ", "));
+  }
+  if (e.flat > 0) {
+    sentence +=
+        fmt::format("; in {} more it is zero or its sign cannot be told{}", e.flat, flat_growth(e));
   }
   return sentence;
 }
@@ -100,9 +118,12 @@ Explanation explain(const Scene& scene, const ReducedScene& reduced) {
   if (!e.is_examined || e.unknowns == 0) return e;
   const ReducedScene all(scene, Reductions::all_directions());
   try {
-    e.unstable = unstable_directions(all.system(), all.initial().q);
+    const CurvatureSigns signs = curvature_signs(all.system(), all.initial().q);
+    e.unstable = signs.negative;
+    e.flat = signs.flat;
+    e.flat_rate = signs.flat_rate;
     if (e.unstable == 0) return e;
-    e.unstable_left_out = std::max(0, e.unstable - unstable_directions(system, q));
+    e.unstable_left_out = std::max(0, e.unstable - curvature_signs(system, q).negative);
   } catch (const std::runtime_error&) {
     e.is_examined = false;  // stiffnesses that overflow
     return e;

@@ -20,6 +20,8 @@ struct Explanation {
   double omega_max = 0;    // by Lanczos, to about 1e-4; NaN where that does not converge
   // At the start, in all directions in which the nodes may move:
   int unstable = 0;           // directions in which V falls: K is indefinite if there are any
+  int flat = 0;               // in which V is flat within rounding (see CurvatureSigns),
+  double flat_rate = 0;       // and the rate [1/s] that no growth in them exceeds
   int unstable_left_out = 0;  // of these, how many the reduced motion never takes
   double growth = 0;          // of the fastest [1/s], 0 where it is not known
   std::size_t fastest = 0;    // the node that the fastest moves most

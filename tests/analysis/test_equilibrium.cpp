@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
+#include "src/analysis/curvature_signs.hpp"
 #include "src/analysis/equilibrium.hpp"
 #include "src/analysis/stability.hpp"
 #include "src/scene/generators.hpp"
@@ -30,12 +31,15 @@ void check_minimum(const System& system, const Equilibrium& e, double length) {
   const Vec f = force_at(system, e.q);
   BOOST_TEST(f.lpNorm<Eigen::Infinity>() == e.residual);
   BOOST_TEST(e.residual <= 8 * eps * row_sum * std::max(e.q.lpNorm<Eigen::Infinity>(), length));
-  BOOST_TEST(unstable_directions(system, e.q) == 0);
+  const CurvatureSigns signs = curvature_signs(system, e.q);
+  BOOST_TEST(signs.negative == 0);
   BOOST_TEST(e.smallest_eigenvalue >= -1e-11 * row_sum);
   // That of the place before the last steps of Newton's: the same but for rounding.
   const double smallest = smallest_curvature(system, e.q).value;
   BOOST_TEST(std::abs(e.smallest_eigenvalue - smallest) < 1e-9 * row_sum);
-  BOOST_TEST(e.isolated == (e.smallest_eigenvalue > 1e-11 * row_sum));
+  BOOST_TEST(e.isolated == (signs.flat == 0));
+  BOOST_TEST(e.flat_directions == signs.flat);
+  if (e.smallest_eigenvalue > 1e-11 * row_sum) BOOST_TEST(e.isolated);
 }
 
 // How far a coordinate may be from the exact minimum: the force that is left over the stiffness.

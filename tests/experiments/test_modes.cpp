@@ -132,6 +132,33 @@ BOOST_AUTO_TEST_CASE(growth_is_written_as_a_negative_omega) {
   BOOST_TEST(std::abs(stable.value(0, "omega") - std::sqrt(10 / 1.1)) < 1e-12);
 }
 
+BOOST_AUTO_TEST_CASE(growth_and_soft_modes_are_told_beside_stiff_springs) {
+  const Folder folder;
+  const std::string stands = folder.write(
+      "stands.toml",
+      "dimension = 2\ngravity = [0, -10]\n"
+      "nodes = [{position = [0, 0], pinned = true}, {position = [0, 1], mass = 0.01}]\n"
+      "springs = [{nodes = [0, 1], stiffness = 1e9, rest_length = 1.0000000001}]\n");
+  const Exit upright_one = run_modes(folder, {"--scene", stands});
+  BOOST_TEST_REQUIRE(upright_one.status == 0, upright_one.err);
+  BOOST_TEST(contains(upright_one.out, {"unstable: 1", "zero within rounding: 0", "grows"}));
+  // w^2 = -g / l to the rounding of k: 1e-15 of 1e11 / s^2.
+  BOOST_TEST(std::abs(read_csv(file_in(folder, "modes.csv")).value(0, "omega") + std::sqrt(10)) <
+             1e-4);
+  const std::string soft = folder.write(
+      "soft.toml",
+      "dimension = 1\nnodes = [{position = [0], pinned = true}, {position = [1], mass = 1}, "
+      "{position = [2], mass = 1}]\nsprings = [{nodes = [0, 1], stiffness = 1e9}, "
+      "{nodes = [1, 2], stiffness = 0.001}]\n");
+  const Exit slow = run_modes(folder, {"--scene", soft});
+  BOOST_TEST(contains(slow.out, {"unstable: 0", "zero within rounding: 0"}));
+  // The second mass on its spring of 0.001 N/m, whose other end gives way by 1e-12 of it.
+  BOOST_TEST(std::abs(read_csv(file_in(folder, "modes.csv")).value(0, "omega") / std::sqrt(0.001) -
+                      1) < 1e-11);
+  const Exit rest = run("equilibrium", {"--scene", soft});
+  BOOST_TEST(contains(rest.out, {"0.001 N/m", "an isolated minimum"}), rest.out);
+}
+
 BOOST_AUTO_TEST_CASE(zeros_are_written_as_zeros) {
   const Folder folder;
   BOOST_TEST(run_modes(folder, {"--scene", "pair"}).status == 0);

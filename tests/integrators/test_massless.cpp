@@ -154,7 +154,8 @@ BOOST_AUTO_TEST_CASE(adaptive_methods_come_as_near_to_the_one_in_series_as_their
         for (const double rtol : {1e-4, 1e-6, 1e-8}) {
           const Verdict verdict = judge(method, dimension, rtol);
           BOOST_TEST(verdict.difference < 1000 * rtol);  // as in the suite `sundials`
-          BOOST_TEST(verdict.difference < last);
+          // Two errors, each of up to some 300 tolerances, may cancel at one tolerance.
+          BOOST_TEST(verdict.difference < std::max(last, 300 * rtol));
           BOOST_TEST(verdict.force < balance(rtol));
           last = verdict.difference;
         }
@@ -199,6 +200,39 @@ BOOST_AUTO_TEST_CASE(a_massless_node_drawn_out_of_balance_is_brought_to_it_and_m
       }
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(random_networks_with_massless_nodes_run_at_every_tolerance_or_at_none) {
+  std::mt19937 random(14);
+  int reached = 0, slack = 0;
+  for (int scene = 0; scene < 12; ++scene) {
+    const int dimension = 1 + scene % 3;
+    // Springs differ by two orders, so that some massless nodes hang on soft ones.
+    Problem p = random_network(random, dimension, 5, 1.4);
+    for (auto& link : p.network.links) {
+      link.law.stiffness *= std::pow(10, std::uniform_real_distribution<>(0, 2)(random));
+    }
+    p.network.node_mass[1] = p.network.node_mass[3] = 0;
+    const auto system = make_mass_spring(p.network);
+    std::vector<Run> runs;
+    for (const double rtol : {1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
+      runs.push_back(run(method_named("ida"), *system, p.initial, 0.5, {.rtol = rtol}));
+      const Summary& summary = runs.back().summary;
+      BOOST_TEST_CONTEXT("scene " << scene << " at " << rtol) {
+        BOOST_TEST((summary.outcome == runs.front().summary.outcome), summary.message);
+        const bool is_slack = summary.outcome == Outcome::went_slack ||
+                              summary.message.starts_with("no positions of the massless nodes");
+        BOOST_TEST((is_slack || summary.outcome == Outcome::reached_end), summary.message);
+        // Where springs let go of a node does not depend on the tolerance, if that is not so loose
+        // that another swing of it does.
+        if (rtol < 1e-7) BOOST_TEST(std::abs(summary.t_reached - runs[2].summary.t_reached) < 0.01);
+        reached += summary.outcome == Outcome::reached_end;
+        slack += is_slack;
+      }
+    }
+  }
+  BOOST_TEST(reached > 20);
+  BOOST_TEST(reached + slack == 60);
 }
 
 BOOST_AUTO_TEST_CASE(where_all_nodes_are_massless_all_are_at_rest_in_balance) {

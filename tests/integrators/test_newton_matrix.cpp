@@ -60,7 +60,9 @@ MatrixXd dense_matrix(Form form, const System& system, double gamma, const Symme
   if (form == Form::explicit_gamma) {
     a << one, -gamma * one, -gamma * dense_mass(system).inverse() * dense(k), one;
   } else {
-    a << one / gamma, -one, -dense(k), dense_mass(system) / gamma;
+    const Vec has_mass = (system.mass().array() > 0).cast<double>();
+    const MatrixXd of_mass = has_mass.asDiagonal();
+    a << of_mass / gamma, -one, -dense(k), dense_mass(system) / gamma;
   }
   return a;
 }

@@ -64,7 +64,18 @@ BOOST_AUTO_TEST_CASE(a_string_in_tension_has_nothing_to_tell) {
   const Explanation e = explained(strut(0.1));
   BOOST_TEST(e.unstable == 0);
   BOOST_TEST(e.unstable_left_out == 0);
-  BOOST_TEST(contains(in_words(e, strut(0.1)), "semidefinite"));
+  BOOST_TEST(e.flat == 0);
+  BOOST_TEST(contains(in_words(e, strut(0.1)), "definite at the start: no direction grows"));
+}
+
+BOOST_AUTO_TEST_CASE(what_rounding_hides_is_told) {
+  // Drawn at their rest lengths, springs neither hold nor push across the line.
+  const Explanation e = explained(strut(0));
+  BOOST_TEST(e.unstable == 0);
+  BOOST_TEST(e.flat == 6);
+  // Some 100 roundings of 400 N/m, over 1 kg.
+  BOOST_TEST(e.flat_rate < 1e-5);
+  BOOST_TEST(contains(in_words(e, strut(0)), "in 6 it is zero or its sign cannot be told"));
 }
 
 BOOST_AUTO_TEST_CASE(directions_that_are_kept_are_not_left_out) {

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "src/model/system.hpp"
+
+namespace qddot {
+
+// What a System may be beside: one whose force jumps where certain lengths change their sign. On a
+// line a spring of rest length l0 > 0 that passes through length zero turns its force of k l0 over.
+class Kinks {
+ public:
+  virtual ~Kinks() = default;
+  // How many such lengths there are.
+  virtual Index kinks() const = 0;
+  // These lengths, with their signs [m], into `lengths`, sized by the caller: affine functions of
+  // q.
+  virtual void kink_lengths(const Vec& q, Vec& lengths) const = 0;
+};
+
+}  // namespace qddot

@@ -1,0 +1,194 @@
+#include <limits>
+#include <random>
+
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+
+#include "src/analysis/curvature_signs.hpp"
+#include "src/analysis/natural_modes.hpp"
+#include "tests/problems.hpp"
+
+using namespace qddot;
+
+namespace {
+
+using Real = long double;
+using Dense = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+using Column = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+// A network's -K, spring by spring, and the sum of the stiffnesses at each node, in 64 bits of
+// mantissa.
+struct Reference {
+  Dense stiff;
+  Column at_node;
+
+  Reference(const Problem& p) {
+    const Network& n = p.network;
+    const Index size = p.initial.q.size();
+    stiff = Dense::Zero(size, size);
+    at_node = Column::Zero(size);
+    const auto place = [&](int i) -> Column {
+      return p.initial.q.segment(n.dimension * i, n.dimension).cast<Real>();
+    };
+    const auto block = [&](const SpringLaw& law, const Column& d) -> Dense {
+      const Real l = d.norm();
+      const Column e = d / l;
+      const Dense one = Dense::Identity(n.dimension, n.dimension);
+      return law.tangent(l) * e * e.transpose() + law.tension(l) / l * (one - e * e.transpose());
+    };
+    const auto add = [&](int i, int j, const Dense& b) {
+      stiff.block(n.dimension * i, n.dimension * j, n.dimension, n.dimension) += b;
+    };
+    const auto note = [&](int i, const SpringLaw& law, const Column& d) {
+      at_node.segment(n.dimension * i, n.dimension).array() += law.tangent(Real(d.norm()));
+    };
+    for (const auto& link : n.links) {
+      const Column d = place(link.j) - place(link.i);
+      const Dense b = block(link.law, d);
+      add(link.i, link.i, b);
+      add(link.j, link.j, b);
+      add(link.i, link.j, -b);
+      add(link.j, link.i, -b);
+      note(link.i, link.law, d);
+      note(link.j, link.law, d);
+    }
+    for (const auto& anchor : n.anchors) {
+      const Column d = anchor.point.head(n.dimension).cast<Real>() - place(anchor.i);
+      add(anchor.i, anchor.i, block(anchor.law, d));
+      note(anchor.i, anchor.law, d);
+    }
+  }
+  // Eigenvalues of D^-1 (-K), ascending.
+  Column eigenvalues(const Column& d) const {
+    const Column scale = d.cwiseSqrt().cwiseInverse();
+    const Dense scaled = scale.asDiagonal() * stiff * scale.asDiagonal();
+    return Eigen::SelfAdjointEigenSolver<Dense>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
+  }
+};
+
+// An upright pendulum: k times softer than 1 along the other way, it falls as m g / l says.
+Problem pendulum(double ratio, bool upright) {
+  const double weight = 0.1;
+  Problem p;
+  p.network = {.dimension = 2, .node_mass = Vec::Constant(1, 0.01)};
+  p.network.gravity[1] = -10;
+  const double y = upright ? 1 : -1;
+  p.network.anchors = {{0, {0, 0, 0}, {ratio * weight, 1 - weight / (ratio * weight) * -y}}};
+  p.initial.q = Vec{{0, y}};
+  return p;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(curvature_signs)
+
+BOOST_AUTO_TEST_CASE(pendulum_on_a_spring_of_any_stiffness_falls_or_hangs) {
+  for (double ratio = 10; ratio <= 1e12; ratio *= 10) {
+    for (const bool upright : {true, false}) {
+      const Problem p = pendulum(ratio, upright);
+      const CurvatureSigns signs =
+          qddot::curvature_signs(*make_mass_spring(p.network), p.initial.q);
+      BOOST_TEST(signs.negative == (upright ? 1 : 0), ratio);
+      BOOST_TEST(signs.flat == 0, ratio);
+      BOOST_TEST(signs.flat_rate == 0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(soft_spring_beside_a_stiff_one_is_not_loose) {
+  for (const double soft : {1e3, 1.0, 1e-3, 1e-9, 1e-15}) {
+    const auto system =
+        make_mass_spring({.dimension = 1,
+                          .node_mass = Vec::Ones(2),
+                          .links = {{0, 1, {soft, 1}}},
+                          .anchors = {{0, {0, 0, 0}, {.stiffness = 1e9, .rest_length = 1}}}});
+    BOOST_TEST(qddot::curvature_signs(*system, Vec{{1, 2}}).negative == 0, soft);
+    BOOST_TEST(qddot::curvature_signs(*system, Vec{{1, 2}}).flat == 0, soft);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(signs_of_random_networks_are_those_of_more_digits_at_all_ratios_of_stiffness) {
+  std::mt19937 random(19);
+  int negative = 0, flat = 0, all = 0;
+  for (const double decades : {0.0, 3.0, 6.0, 9.0, 12.0}) {
+    for (const double stretch : {1.2, 1.0, 0.98, 0.7}) {
+      for (const int dimension : {1, 2, 3}) {
+        for (const int nodes : {1, 4, 12}) {
+          Problem p = random_network(random, dimension, nodes, stretch);
+          const auto spread = [&](SpringLaw& law) {
+            const double factor =
+                std::pow(10, std::uniform_real_distribution<>(0, decades)(random));
+            law.stiffness *= factor;
+            law.quartic *= factor;
+          };
+          for (auto& link : p.network.links) spread(link.law);
+          for (auto& anchor : p.network.anchors) spread(anchor.law);
+          const auto system = make_mass_spring(p.network);
+          const CurvatureSigns signs = qddot::curvature_signs(*system, p.initial.q);
+          const Reference reference(p);
+          const Column values = reference.eigenvalues(reference.at_node);
+          const auto below = [&](Real value) { return (values.array() < value).count(); };
+          BOOST_TEST(signs.negative <= below(0));
+          BOOST_TEST(signs.negative + signs.flat >= below(0));
+          // Two rows of K of up to 40 springs' roundings each, 32 eps of both and of k, and what
+          // positions add: all of it is below 1e-12 of the stiffness at the place.
+          BOOST_TEST(signs.flat <= below(1e-12L) - below(-1e-12L));
+          if (signs.flat > 0) {
+            const Column rates = reference.eigenvalues(system->mass().cast<Real>());
+            BOOST_TEST(rates[signs.negative] >= -std::pow(signs.flat_rate, 2));
+          }
+          negative += signs.negative;
+          flat += signs.flat;
+          all += static_cast<int>(values.size());
+        }
+      }
+    }
+  }
+  // There was something to count, and little that could not be: mechanisms at rest lengths.
+  BOOST_TEST(negative > all / 20);
+  BOOST_TEST(flat < all / 10);
+}
+
+BOOST_AUTO_TEST_CASE(what_is_loose_is_flat_and_hardly_grows) {
+  // A free pair in space at its rest length: translations, and turns about two axes.
+  const auto pair =
+      make_mass_spring({.dimension = 3, .node_mass = Vec::Ones(2), .links = {{0, 1, {100, 1}}}});
+  const CurvatureSigns signs = qddot::curvature_signs(*pair, Vec{{0, 0, 0, 0.6, 0.8, 0}});
+  BOOST_TEST(signs.negative == 0);
+  BOOST_TEST(signs.flat == 5);
+  // Some 100 roundings of the row sums, 400 N/m, over 1 kg.
+  BOOST_TEST(signs.flat_rate < 1e-5);
+  // Without springs nothing is known to rise, nor to grow.
+  const auto nothing = make_mass_spring({.dimension = 2, .node_mass = Vec::Ones(2)});
+  BOOST_TEST(qddot::curvature_signs(*nothing, Vec::Ones(4)).flat == 4);
+  BOOST_TEST(qddot::curvature_signs(*nothing, Vec::Ones(4)).flat_rate == 0);
+}
+
+BOOST_AUTO_TEST_CASE(soft_modes_beside_stiff_ones_have_their_own_digits) {
+  // Two rows of masses between walls, w_j = 2 sqrt(k/m) sin(j pi / (2 (n+1))), small and large.
+  for (const int n : {20, 250}) {
+    const double soft = 1e-3, stiff = 1e9;
+    Network network{.dimension = 1, .node_mass = Vec::Ones(2 * n)};
+    for (int i = 0; i + 1 < n; ++i) {
+      network.links.push_back({i, i + 1, {soft, 1}});
+      network.links.push_back({n + i, n + i + 1, {stiff, 1}});
+    }
+    for (const int i : {0, n - 1}) {
+      const Eigen::Vector3d wall(i == 0 ? -1 : n, 0, 0);
+      network.anchors.push_back({i, wall, {soft, 1}});
+      network.anchors.push_back({n + i, wall, {stiff, 1}});
+    }
+    Vec q(2 * n);
+    q << Vec::LinSpaced(n, 0, n - 1), Vec::LinSpaced(n, 0, n - 1);
+    const auto system = make_mass_spring(network);
+    BOOST_TEST(qddot::curvature_signs(*system, q).flat == 0);
+    const NaturalModes modes = lowest_modes(*system, q, 3);
+    for (Index j = 0; j < 3; ++j) {
+      const double w = 2 * std::sqrt(soft) * std::sin(double(j + 1) * M_PI / (2 * (n + 1)));
+      // Roundings of the soft row's k: its lowest w^2 is 4e-5 of them.
+      BOOST_TEST(std::abs(modes.squares[j] / (w * w) - 1) < 1e-10);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

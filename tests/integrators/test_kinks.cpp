@@ -1,0 +1,119 @@
+#include <boost/test/unit_test.hpp>
+
+#include "integrators/kink_search.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+namespace {
+
+// m x'' = -k (x - l0 sign x): a mass on a line that swings through the pin of its spring, from rest
+// at x0 > 2 l0. x = l0 + (x0 - l0) cos w t until it is at the pin, at t1; from there it goes on as
+// it came, x(t1 + s) = -x(t1 - s).
+struct ThroughThePin {
+  double k, m, l0, x0, origin = 0;
+
+  double pass() const { return std::acos(-l0 / (x0 - l0)) / std::sqrt(k / m); }
+  double position(double t) const {
+    double sign = 1;
+    for (; t > 2 * pass(); t -= 2 * pass()) sign = -sign;
+    if (t > pass()) {
+      t = 2 * pass() - t;
+      sign = -sign;
+    }
+    return origin + sign * (l0 + (x0 - l0) * std::cos(std::sqrt(k / m) * t));
+  }
+  Problem problem() const {
+    Problem p{{.dimension = 1, .node_mass = Vec::Constant(1, m)}, {}};
+    p.network.anchors = {{0, {origin, 0, 0}, {k, l0}}};
+    p.initial = {0, Vec::Constant(1, origin + x0), Vec::Zero(1)};
+    return p;
+  }
+};
+
+ThroughThePin random_one(std::mt19937& random) {
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  const double l0 = uniform(0.2, 1);
+  return {std::pow(10, uniform(1, 4)), uniform(0.5, 2), l0, l0 * uniform(2.1, 4)};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(kinks)
+
+BOOST_AUTO_TEST_CASE(errors_follow_the_tolerance_through_jumps_of_the_force) {
+  std::mt19937 random(20);
+  for (int trial = 0; trial < 20; ++trial) {
+    const ThroughThePin exact = random_one(random);
+    const auto system = make_mass_spring(exact.problem().network);
+    const double until = 5.3 * exact.pass();  // three jumps
+    for (const char* method : {"dprkn6", "dprkn8", "dprkn12"}) {
+      for (const double rtol : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13}) {
+        BOOST_TEST_CONTEXT(method << " at " << rtol << " in trial " << trial) {
+          // What is seen between steps is as accurate as they are.
+          std::vector<State> seen;
+          const Observer observer{{0.97 * exact.pass(), 1.001 * exact.pass(), 3.5 * exact.pass()},
+                                  [&](const State& s) { seen.push_back(s); }};
+          const Knobs knobs{
+              .rtol = rtol, .length = exact.x0, .speed = exact.x0 * std::sqrt(exact.k / exact.m)};
+          const Run r =
+              run(method_named(method), *system, exact.problem().initial, until, knobs, observer);
+          BOOST_TEST(r.summary.message == "");
+          seen.push_back(r.state);
+          for (const State& s : seen) {
+            // As on smooth motions of a few periods; and some 100 roundings of steps and times.
+            BOOST_TEST(std::abs(s.q[0] - exact.position(s.t)) < (10 * rtol + 1e-13) * exact.x0);
+          }
+        }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(rodas4_follows_it_too) {
+  const ThroughThePin exact{400, 1, 0.5, 1.7};
+  const auto system = make_mass_spring(exact.problem().network);
+  for (const double rtol : {1e-4, 1e-6, 1e-8}) {
+    const Run r = run(method_named("rodas4"), *system, exact.problem().initial, 5.3 * exact.pass(),
+                      {.rtol = rtol});
+    BOOST_TEST(r.summary.message == "");
+    BOOST_TEST(std::abs(r.state.q[0] - exact.position(r.state.t)) < 1000 * rtol);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(far_from_the_origin_where_a_length_stays_zero_for_many_roundings_it_goes_on) {
+  const ThroughThePin exact{400, 1, 0.5, 1.75, 1e6};
+  const auto system = make_mass_spring(exact.problem().network);
+  const Run r = run(method_named("dprkn8"), *system, exact.problem().initial, 5.3 * exact.pass(),
+                    {.rtol = 1e-8, .length = 1, .speed = 30});
+  BOOST_TEST(r.summary.message == "");
+  // Positions are rounded by 1e-10 m at each of some hundred steps.
+  BOOST_TEST(std::abs(r.state.q[0] - exact.position(r.state.t)) < 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(the_first_change_of_sign_is_found_where_the_ends_show_none) {
+  const ThroughThePin scene{400, 1, 0.5, 1.7};
+  const auto system = make_mass_spring(scene.problem().network);
+  KinkSearch search(*system);
+  BOOST_TEST(search.has_kinks());
+  const auto at = [](double t, double x, double v) {
+    return State{t, Vec::Constant(1, x), Vec::Constant(1, v)};
+  };
+  // x = (t - 0.3) (t - 0.6), which a cubic polynomial follows.
+  const auto twice = search.first(at(0, 0.18, -0.9), at(1, 0.28, 1.1));
+  BOOST_TEST_REQUIRE(twice.has_value());
+  BOOST_TEST(std::abs(twice->part - 0.3) < 1e-14);
+  const auto once = search.first(at(2, 1, -4), at(2.5, -1, -4));
+  BOOST_TEST_REQUIRE(once.has_value());
+  BOOST_TEST(std::abs(once->part - 0.5) < 1e-14);
+  BOOST_TEST(!search.first(at(0, 1, -1), at(1, 0.5, -0.1)));
+  BOOST_TEST(search.first(at(0, 0, 1), at(1, 1, 1))->part == 0);
+  BOOST_TEST(!search.first(at(0, 0, 0), at(1, 0, 0)));
+  // Springs of rest length zero, and those in a plane, have none.
+  BOOST_TEST(!KinkSearch(*make_mass_spring(Oscillator().problem().network)).has_kinks());
+  BOOST_TEST(!KinkSearch(*make_mass_spring(hammock(2).network)).has_kinks());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
