@@ -33,7 +33,8 @@ const std::vector<std::string>& point_columns() {
                                                    "order",
                                                    "error_energy_max",
                                                    "error_momentum_max",
-                                                   "error_modal_shares"};
+                                                   "error_modal_shares",
+                                                   "energy_growth"};
   return columns;
 }
 
@@ -49,7 +50,7 @@ void point_row(Csv& csv, const std::string& scene, const Point& p) {
           c.newton_iterations, c.indefinite_factorizations, order_mean(c), c.order_reductions,
           c.stability_limited_steps, p.timed_runs, family_name(p.method->family), p.method->order,
           measured(p.on_the_way.energy), measured(p.on_the_way.momentum),
-          measured(p.on_the_way.modal_shares));
+          measured(p.on_the_way.modal_shares), p.energy_growth);
 }
 
 }  // namespace qddot

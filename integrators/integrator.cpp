@@ -79,8 +79,10 @@ std::string_view advice(Outcome outcome) {
     case Outcome::stiffness_varies:
       return "K changes with the positions, and this method is for constant K: take another one";
     case Outcome::went_slack:
-      return "springs in series through a massless node came under compression, where they fold up "
-             "in no time: give the node a mass";
+      return "springs at a massless node came under compression, where they fold up in no time: "
+             "give the node a mass; or on a scene of one dimension, where nothing folds up, keep "
+             "it "
+             "(--no-reduce massless) and take a method that accepts massless nodes";
     case Outcome::no_stiff_set:
       return "the scene names no stiff springs, whose forces this method takes apart: give it "
              "stiff_above, or take another method";
