@@ -143,7 +143,8 @@ DriftRun run_drift(const Method& method, const Knobs& knobs, const ReducedScene&
 }
 
 std::string verdict(const DriftRun& run, double until) {
-  const auto& [outcome, t, counts, seconds, message] = run.summary;
+  const Outcome outcome = run.summary.outcome;
+  const double t = run.summary.t_reached;
   const std::string words = in_words(run.energy, run.scales);
   if (outcome == Outcome::reached_end || run.energy.verdict == Verdict::blows_up) return words;
   if (outcome == Outcome::over_budget) {

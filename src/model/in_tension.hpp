@@ -71,24 +71,27 @@ class InTension {
     return difference(layout, spring, v);
   }
 
-  // A vibration of frequency w along the spring, w^2 = k (1/m_i + 1/m_j), takes it no farther than
-  // its speed divided by w. Of the cubic that is a quarter of speed times step: where h w > 4, the
-  // speed along the spring counts as a part of itself.
+  // Where h w <= 2, with w^2 = k (1/m_i + 1/m_j) for a vibration along the spring, the cubic
+  // resolves it. In longer steps, the rates of l at the two ends count without what they have in
+  // common but the lengths do not show, which is an error of first order of the velocities; and no
+  // more than a vibration can make of them, whose speed takes it as far as itself divided by w,
+  // where the cubic goes up to a quarter of it times h.
   static SquaredLength on_the_way(const Layout<D>& layout, const Vec& mass, const Spring& spring,
                                   const State& from, const State& to) {
     const double h = to.t - from.t;
-    const double w2 = spring.law.stiffness *
-                      (per_mass(layout, mass, spring.i) + per_mass(layout, mass, spring.j));
-    const double share = h * h * w2 > 16 ? 4 / (h * std::sqrt(w2)) : 1;
-    const auto third = [&](const Point& d, const Point& change) -> Point {
-      const double l2 = d.squaredNorm();
-      const double along = l2 > 0 ? (1 - share) * change.dot(d) / l2 : 0;
-      return h / 3 * (change - along * d);
-    };
-    // The cubic by its own coefficients in Bernstein's form, and their products.
     const Point a = difference(layout, spring, from.q), d = difference(layout, spring, to.q);
-    const Point b = a + third(a, rate(layout, spring, from.v));
-    const Point c = d - third(d, rate(layout, spring, to.v));
+    Point a_rate = rate(layout, spring, from.v), d_rate = rate(layout, spring, to.v);
+    const double hw = h * std::sqrt(spring.law.stiffness * (per_mass(layout, mass, spring.i) +
+                                                            per_mass(layout, mass, spring.j)));
+    const double first = a.norm(), last = d.norm();
+    if (hw > 2 && first > 0 && last > 0) {
+      const double r = a_rate.dot(a) / first, s = d_rate.dot(d) / last;
+      const double common = (r + s) / 2 - (last - first) / h, share = std::min(1.0, 4 / hw);
+      a_rate -= (r - share * (r - common)) / first * a;
+      d_rate -= (s - share * (s - common)) / last * d;
+    }
+    // The cubic by its own coefficients in Bernstein's form, and their products.
+    const Point b = a + h / 3 * a_rate, c = d - h / 3 * d_rate;
     return {a.dot(a),
             a.dot(b),
             (2 * a.dot(c) + 3 * b.dot(b)) / 5,

@@ -100,14 +100,15 @@ BOOST_AUTO_TEST_CASE(the_state_is_that_of_its_time_however_little_parts_it_from_
         std::vector<double> times;
         for (int i = 1; i < 10; ++i) times.push_back(i * t_end / 10);
         const Observer observer{times, [](const State& s) {
-                                  // Ten steps round by an eps of x each, and v = u/h more.
-                                  BOOST_TEST(std::abs(s.q[0] - s.t) < 1e-13);
-                                  BOOST_TEST(std::abs(s.v[0] - 1) < 1e-13);
+                                  // Steps round by an eps of x each, v = u/h more, and Newton's
+                                  // iteration of ARKODE's methods leaves some 1e-13.
+                                  BOOST_TEST(std::abs(s.q[0] - s.t) < 1e-12);
+                                  BOOST_TEST(std::abs(s.v[0] - 1) < 1e-12);
                                 }};
         const Run r = run(method, *system, p.initial, t_end, {.step_size = 0.1}, observer);
         BOOST_TEST(r.summary.message == "");
         BOOST_TEST(r.state.t == t_end);
-        BOOST_TEST(std::abs(r.state.q[0] - t_end) < 1e-13);
+        BOOST_TEST(std::abs(r.state.q[0] - t_end) < 1e-12);
         BOOST_TEST(r.summary.counts.steps == (beside > 1e-6 ? 11 : 10));
       }
     }
