@@ -72,10 +72,11 @@ class InTension {
   }
 
   // Where h w <= 2, with w^2 = k (1/m_i + 1/m_j) for a vibration along the spring, the cubic
-  // resolves it. In longer steps, the rates of l at the two ends count without what they have in
+  // resolves it. In longer steps the rates of l at the two ends count without what they have in
   // common but the lengths do not show, which is an error of first order of the velocities; and no
   // more than a vibration can make of them, whose speed takes it as far as itself divided by w,
-  // where the cubic goes up to a quarter of it times h.
+  // where the cubic goes up to a quarter of it times h. Of a vibration that turns more than once in
+  // a step, h w > 8, the two ends tell nothing.
   static SquaredLength on_the_way(const Layout<D>& layout, const Vec& mass, const Spring& spring,
                                   const State& from, const State& to) {
     const double h = to.t - from.t;
@@ -86,7 +87,8 @@ class InTension {
     const double first = a.norm(), last = d.norm();
     if (hw > 2 && first > 0 && last > 0) {
       const double r = a_rate.dot(a) / first, s = d_rate.dot(d) / last;
-      const double common = (r + s) / 2 - (last - first) / h, share = std::min(1.0, 4 / hw);
+      const double common = (r + s) / 2 - (last - first) / h,
+                   share = hw > 8 ? 0 : std::min(1.0, 4 / hw);
       a_rate -= (r - share * (r - common)) / first * a;
       d_rate -= (s - share * (s - common)) / last * d;
     }

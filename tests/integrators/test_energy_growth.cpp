@@ -114,8 +114,10 @@ BOOST_AUTO_TEST_CASE(methods_with_soft_springs_above_their_limit_say_so_with_rea
       const Run fine = run(method_named(name), *system, p.initial, 5, {.step_size = 0.01});
       BOOST_TEST(fine.summary.message == "");
       BOOST_TEST(fine.summary.energy_growth < 1.5);
-      // Three steps at h w = 6, far beyond the limits of all of them.
-      const Run coarse = run(method_named(name), *system, p.initial, 1.8, {.step_size = 0.6});
+      // A few steps at h w = 3 or 6, far beyond the limits of all of them.
+      const bool is_mri = std::string_view(name).starts_with("arkode");
+      const Run coarse = run(method_named(name), *system, p.initial, is_mri ? 0.6 : 1.8,
+                             {.step_size = is_mri ? 0.3 : 0.6});
       BOOST_TEST(coarse.summary.message == "");
       BOOST_TEST(coarse.summary.energy_growth > 1e3);
     }
