@@ -9,7 +9,7 @@ namespace {
 
 // Steps between two looks at the kinetic energy, which take a tenth of a force's time; and looks
 // between two at the whole energy, which takes several forces'.
-constexpr int steps_a_look = 8, looks_an_energy = 128;
+constexpr int steps_a_look = 16, looks_an_energy = 64;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double largest = 1e300;
 

@@ -1,5 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
+#include "src/scene/reduce.hpp"
 #include "tests/integrators/runs.hpp"
 
 using namespace qddot;
@@ -109,11 +110,32 @@ BOOST_AUTO_TEST_CASE(who_keeps_a_massless_node_notices_that_its_place_is_no_long
         BOOST_TEST(before.summary.message == "");
       }
     }
-    // On a line nothing can fold.
+    // In one dimension nothing can fold.
     const Problem p = thrown(1);
     const auto system = make_mass_spring(p.network);
     const Run r = run(method, *system, p.initial, 0.2, knobs_of(method, 1e-3, 1e-6));
     BOOST_TEST(r.summary.message == "");
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_would_fold_across_the_line_that_a_plane_scene_is_left_with_is_noticed) {
+  Scene scene{.dimension = 2, .gravity = {0, -9.81, 0}};
+  scene.nodes = {{.position = {0, 0, 0}, .pinned = true},
+                 {.position = {0, -0.95, 0}, .mass = 0},
+                 {.position = {0, -1.95, 0}, .velocity = {0, 3, 0}, .mass = 2}};
+  scene.springs = {{{0, 1}, {200, 0.8}}, {{1, 2}, {300, 0.9}}};
+  const ReducedScene reduced(scene, Reductions().without(Reduction::massless));
+  BOOST_TEST(reduced.system().size() == 2);
+  for (const Method& method : accepting_massless()) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r =
+          run(method, reduced.system(), reduced.initial(), 0.2, knobs_of(method, 1e-3, 1e-7));
+      BOOST_TEST(name(r.summary.outcome) == "went_slack");
+      // The state is that before the step in which it happens.
+      const double told = number_behind(r.summary.message, "at t = ");
+      BOOST_TEST(std::abs(told - time_of_slack()) < 3e-3);
+      BOOST_TEST((r.state.t <= told && r.state.t > told - 0.01));
+    }
   }
 }
 
