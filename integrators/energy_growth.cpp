@@ -12,6 +12,8 @@ namespace {
 constexpr int steps_a_look = 16, looks_an_energy = 64;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double largest = 1e300;
+// [s^2]: vibrations of 1e9 to 1 rad/s.
+constexpr double shortest_way = 1e-18, longest_way = 1;
 
 }  // namespace
 
@@ -56,11 +58,32 @@ double EnergyGrowth::rounding() {
   return 4 * most;
 }
 
+// The way that a motion from rest at the start sets out on, q + s M^-1 f, goes down at first: the
+// lowest V on it, at lengths s of which each is twice the one before.
+double EnergyGrowth::lowest_ahead() {
+  Vec& ahead = q_of_kinetic_;
+  Vec& way = v_of_kinetic_;
+  system_.force(q_, way);
+  for (Index i = 0; i < way.size(); ++i) {
+    way[i] = system_.mass()[i] > 0 ? way[i] / system_.mass()[i] : 0;
+  }
+  double lowest = system_.potential(q_);
+  for (double s = shortest_way; s < longest_way; s *= 2) {
+    ahead = q_ + s * way;
+    const double potential = system_.potential(ahead);
+    if (potential < lowest) lowest = potential;
+  }
+  return lowest;
+}
+
 double EnergyGrowth::factor(const State& state) {
   see(q_of_kinetic_, v_of_kinetic_);
   see(state.q, state.v);
-  const double gained = most_ - start_, own = start_ - lowest_;
+  const double gained = most_ - start_;
+  double own = start_ - lowest_;
   if (gained <= own) return own > 0 ? 1 + gained / own : 1;
+  // A run that grew from the first step on has seen nothing of the motion.
+  own = std::max(own, start_ - lowest_ahead());
   const double unsure = rounding();
   if (gained <= unsure + 4 * epsilon * std::abs(most_)) return 1;
   return std::min(1 + gained / std::max(own, unsure), largest);

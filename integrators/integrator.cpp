@@ -65,7 +65,9 @@ std::string_view advice(Outcome outcome) {
       return "M - h^2 K is not positive definite, as compressed springs make it: take a smaller "
              "step or an explicit method";
     case Outcome::step_too_small:
-      return "the step is too small for the time to advance: take a larger step or tolerance";
+      return "the step is too small for the time to advance: take a larger step or tolerance, or "
+             "an "
+             "earlier end";
     case Outcome::singular_mass:
       return "a massless node has no acceleration: give it a mass or take a method that accepts "
              "massless nodes";

@@ -117,6 +117,7 @@ Outcome Stepper::run_to(State& state, double t_stop) {
     counts() += beside_;
     return outcome;
   } catch (...) {
+    if (has_fixed_step() && now_.t > state.t) state = now_;
     collect_counts();
     counts() += beside_;
     throw;

@@ -87,6 +87,16 @@ BOOST_AUTO_TEST_CASE(a_growth_is_what_the_energies_on_the_way_say) {
   BOOST_TEST(said > seen / 10);
 }
 
+BOOST_AUTO_TEST_CASE(a_motion_from_rest_that_grows_from_the_first_step_on_is_told_by_how_much) {
+  // Drawn out and let go, at h w = 2.01: V is never again as low as at the start. The least energy
+  // that is found ahead is within a factor of 2 in s of the lowest, (1/3)^2 of V left at most.
+  const Problem p = Oscillator{.mass = 1, .stiffness = 100, .x0 = 1, .v0 = 0}.problem();
+  const auto [said, seen] = growth_seen(method_named("verlet"), p, 8.04, {.step_size = 0.201}, 40);
+  BOOST_TEST(seen > 100);
+  BOOST_TEST(said > seen / 2);
+  BOOST_TEST(said < 2 * seen);
+}
+
 BOOST_AUTO_TEST_CASE(adaptive_methods_that_let_an_oscillation_grow_say_so) {
   const Problem p = pushed(10);
   for (const char* name : {"cvode_bdf", "cvode_adams"}) {
