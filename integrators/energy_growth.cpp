@@ -15,6 +15,22 @@ constexpr double largest = 1e300;
 // [s^2]: vibrations of 1e9 to 1 rad/s.
 constexpr double shortest_way = 1e-18, longest_way = 1;
 
+// The way that a motion from rest at q sets out on, q + s M^-1 f, goes down at first: the lowest V
+// on it, at s of which each is twice the one before. With two vectors of n for scratch.
+double lowest_ahead(const System& system, const Vec& q, Vec& ahead, Vec& way) {
+  system.force(q, way);
+  for (Index i = 0; i < way.size(); ++i) {
+    way[i] = system.mass()[i] > 0 ? way[i] / system.mass()[i] : 0;
+  }
+  double lowest = system.potential(q);
+  for (double s = shortest_way; s < longest_way; s *= 2) {
+    ahead = q + s * way;
+    const double potential = system.potential(ahead);
+    if (potential < lowest) lowest = potential;
+  }
+  return lowest;
+}
+
 }  // namespace
 
 void EnergyGrowth::start(const State& state) {
@@ -58,24 +74,6 @@ double EnergyGrowth::rounding() {
   return 4 * most;
 }
 
-// The way that a motion from rest at the start sets out on, q + s M^-1 f, goes down at first: the
-// lowest V on it, at lengths s of which each is twice the one before.
-double EnergyGrowth::lowest_ahead() {
-  Vec& ahead = q_of_kinetic_;
-  Vec& way = v_of_kinetic_;
-  system_.force(q_, way);
-  for (Index i = 0; i < way.size(); ++i) {
-    way[i] = system_.mass()[i] > 0 ? way[i] / system_.mass()[i] : 0;
-  }
-  double lowest = system_.potential(q_);
-  for (double s = shortest_way; s < longest_way; s *= 2) {
-    ahead = q_ + s * way;
-    const double potential = system_.potential(ahead);
-    if (potential < lowest) lowest = potential;
-  }
-  return lowest;
-}
-
 double EnergyGrowth::factor(const State& state) {
   see(q_of_kinetic_, v_of_kinetic_);
   see(state.q, state.v);
@@ -83,7 +81,7 @@ double EnergyGrowth::factor(const State& state) {
   double own = start_ - lowest_;
   if (gained <= own) return own > 0 ? 1 + gained / own : 1;
   // A run that grew from the first step on has seen nothing of the motion.
-  own = std::max(own, start_ - lowest_ahead());
+  own = std::max(own, start_ - lowest_ahead(system_, q_, q_of_kinetic_, v_of_kinetic_));
   const double unsure = rounding();
   if (gained <= unsure + 4 * epsilon * std::abs(most_)) return 1;
   return std::min(1 + gained / std::max(own, unsure), largest);

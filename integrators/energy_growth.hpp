@@ -27,7 +27,6 @@ class EnergyGrowth {
   void look(const State& state);
   void see(const Vec& q, const Vec& v);
   double rounding();
-  double lowest_ahead();
 
   const System& system_;
   int until_look_ = 1, looks_ = 0;
