@@ -7,9 +7,9 @@
 namespace qddot {
 namespace {
 
-// Steps between two looks at the kinetic energy, which take a tenth of a force's time; and looks
+// Steps between two looks at the kinetic energy, which take a tenth of a step's time; and looks
 // between two at the whole energy, which takes several forces'.
-constexpr int steps_a_look = 16, looks_an_energy = 64;
+constexpr int steps_a_look = 32, looks_an_energy = 32;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double largest = 1e300;
 // [s^2]: vibrations of 1e9 to 1 rad/s.

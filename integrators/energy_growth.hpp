@@ -9,7 +9,7 @@ namespace qddot {
 //   1 + (E_max - E(0)) / D,
 // 1 for an exact motion, also for one that begins at rest and falls. E is computed at the start, at
 // the end, at every 1024th step and where the kinetic energy was largest (to a factor of two, of
-// every 16th step); so this is a lower bound, at a cost that a run does not notice.
+// every 32nd step); so this is a lower bound, at a cost that a run does not notice.
 class EnergyGrowth {
  public:
   // Borrows the system.

@@ -47,7 +47,7 @@ Outcome FixedStep::run_to(State& state, double t_stop) {
 Outcome FixedStep::take_steps(double t_stop) {
   const StepTimes& times = *times_;
   if (!times.can_be_taken()) return Outcome::step_too_small;
-  while (taken_ < times.count() && times.reaches(taken_ + 1, t_stop)) {
+  for (const double last = times.last_by(t_stop); taken_ < last;) {
     if (must_stop()) return Outcome::over_budget;
     const double i = taken_ + 1;
     Outcome outcome = step(now_, times.length(i), next_);

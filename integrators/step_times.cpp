@@ -26,4 +26,11 @@ StepTimes::StepTimes(double t_start, double t_end, double h)
   rounding_ = std::min(rounding_, h / 4);
 }
 
+double StepTimes::last_by(double t) const {
+  double i = std::clamp(std::floor((t - t_start_) / h_), 0.0, count_);
+  while (i > 0 && !reaches(i, t)) --i;
+  while (i < count_ && reaches(i + 1, t)) ++i;
+  return i;
+}
+
 }  // namespace qddot

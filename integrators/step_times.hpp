@@ -16,11 +16,13 @@ class StepTimes {
   // The time after step i, and the length of step i = 1 ... count().
   double after(double i) const { return i < count_ ? t_start_ + i * h_ : t_end_; }
   double length(double i) const { return i < count_ ? h_ : last_h_; }
-  // Whether t is the time after step i, and whether it is that or later, but for rounding.
+  // The last step that ends at t or before, but for rounding, and whether step i ends just there.
+  double last_by(double t) const;
   bool is_after(double i, double t) const { return reaches(i, t) && t <= after(i) + rounding_; }
-  bool reaches(double i, double t) const { return t >= after(i) - rounding_; }
 
  private:
+  bool reaches(double i, double t) const { return t >= after(i) - rounding_; }
+
   double t_start_, t_end_, h_, count_, last_h_, rounding_;
   bool can_be_taken_;
 };

@@ -141,7 +141,7 @@ Outcome Stepper::take_chosen_steps(State& state, double t_stop) {
 Outcome Stepper::take_fixed_steps(State& state, double t_stop) {
   const StepTimes& times = *times_;
   if (!times.can_be_taken()) return Outcome::step_too_small;
-  while (taken_ < times.count() && times.reaches(taken_ + 1, t_stop)) {
+  for (const double last = times.last_by(t_stop); taken_ < last;) {
     const double i = taken_ + 1;
     // No stop time: a first step that ends on one is returned by ARKODE 6.4.1 as its half.
     set_step_size(times.length(i));

@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(a_growth_is_what_the_energies_on_the_way_say) {
   BOOST_TEST(growth(euler, pushed(10), 10, {.step_size = 0.01}) == std::pow(1.01, 1000),
              boost::test_tools::tolerance(1e-6));
   // Just above the limit, far from diverging; seen to the factor of 2 between two looks, and the
-  // 16 steps of growth by some 1.13 each between them.
+  // 32 steps of growth by some 1.13 each between them.
   const auto [said, seen] = growth_seen(verlet, pushed(10), 20.02, {.step_size = 0.2002}, 100);
   BOOST_TEST(seen > 100);
   BOOST_TEST(said <= seen * 1.0001);
