@@ -26,6 +26,8 @@ constexpr std::size_t most_named = 3;
 // A motion is still what it was while its energy has changed by less than this part of the largest
 // kinetic energy so far.
 constexpr double same = 0.5;
+// What a growth of the energy is told from; and beyond this its size says nothing any more.
+constexpr double largest_growth = 10, countless = 1e6;
 
 bool has_own_step(const Method& method) { return has_linear_step(method) && method.order > 0; }
 
@@ -165,6 +167,16 @@ std::string step_warning(const Method& method, const Knobs& knobs, const Reduced
       h, limit, limit / w, method.name, w);
 }
 
+std::string growth_warning(const Method& method, const Summary& summary) {
+  const double growth = summary.energy_growth;
+  if (growth <= largest_growth) return "";
+  return fmt::format(
+      "the energy grew to {} times what this motion can have, so this is not the scene's motion: "
+      "lower {}",
+      growth > countless ? fmt::format("more than {:g}", countless) : fmt::format("{:.3g}", growth),
+      method.knob == Knob::step_size ? "--step-size" : "--rtol");
+}
+
 std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedScene& scene,
                       double until, const Summary& summary, double seconds) {
   constexpr std::array diagnosed = {Outcome::diverged, Outcome::not_finite,
@@ -176,7 +188,7 @@ std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedSce
   const auto left = [&] { return seconds - seconds_since(begin); };
   const double h = knobs.step_size;
   const Before before = before_failure(method, knobs, scene, summary.t_reached, seconds / 4);
-  std::string words = fmt::format("it failed in step {}", summary.counts.steps + 1);
+  std::string words = fmt::format("it failed in step {}", summary.failed_step);
   if (summary.outcome == Outcome::diverged && before.t < summary.t_reached) {
     words += fmt::format(", its energy no longer right after t = {:.3g} s", before.t);
   }

@@ -12,6 +12,11 @@ namespace qddot {
 // methods that choose their steps, or whose steps are for the soft springs alone.
 std::string step_warning(const Method& method, const Knobs& knobs, const ReducedScene& scene);
 
+// Whether a run's energy has grown to more than ten times what its motion can have, whatever the
+// outcome and the method, in a sentence; empty where it has not. A symplectic method that just
+// holds may come near that: at h w = 1.9 energies swing by 1/(1 - (h w)^2/4) = 10.
+std::string growth_warning(const Method& method, const Summary& summary);
+
 // Why a run of fixed steps that failed with `summary` did so, and what would have held, in a few
 // sentences: at which step; the limit that it crossed (h w_max over the motion so long as its
 // energy was still about the same, or h times the rate at which compressed springs push to the

@@ -152,7 +152,8 @@ Verdict fate(const DriftRun& run, double until) {
 }
 
 std::string verdict(const DriftRun& run, double until) {
-  const auto& [outcome, t, counts, seconds, message] = run.summary;
+  const Outcome outcome = run.summary.outcome;
+  const double t = run.summary.t_reached;
   const std::string words = in_words(run.energy, run.scales);
   if (outcome == Outcome::reached_end || run.energy.verdict == Verdict::blows_up) return words;
   const std::string part = fmt::format("{:.2g} % of the run", 100 * t / until);

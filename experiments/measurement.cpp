@@ -50,6 +50,7 @@ Point measure(const Method& method, double value, const ReducedScene& scene, dou
   point.outcome = summary.outcome;
   point.t_reached = summary.t_reached;
   point.counts = summary.counts;
+  point.energy_growth = summary.energy_growth;
   if (summary.outcome != Outcome::reached_end) return point;
   point.errors = errors_between(scene, state, reference.end, reference.energy, reference.scales);
 

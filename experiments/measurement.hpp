@@ -18,6 +18,7 @@ struct Point {
   double setup = 0;               // wall time of allocation and symbolic analysis [s]
   int timed_runs = 0;
   Counts counts{};
+  double energy_growth = 1;  // as in Summary
 };
 
 // What some methods may be told besides their knob; the others do not care. As in Knobs.

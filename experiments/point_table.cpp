@@ -37,7 +37,8 @@ const std::vector<std::string>& point_columns() {
                                                    "error_momentum_max",
                                                    "error_modal_shares",
                                                    "error_position_at_least",
-                                                   "error_position_at_most"};
+                                                   "error_position_at_most",
+                                                   "energy_growth"};
   return columns;
 }
 
@@ -55,7 +56,7 @@ void point_row(Csv& csv, const std::string& scene, const Point& p, double certif
           c.stability_limited_steps, p.timed_runs, family_name(p.method->family), p.method->order,
           measured(p.on_the_way.energy), measured(p.on_the_way.momentum),
           measured(p.on_the_way.modal_shares), measured(position.at_least),
-          measured(position.at_most));
+          measured(position.at_most), p.energy_growth);
 }
 
 }  // namespace qddot

@@ -68,7 +68,8 @@ void declare(CLI::App& app, Arguments& a) {
       "TOML of the scene as nodes and springs, to the last bit; without --method nothing "
       "else is done");
   app.add_option("--every", a.every,
-                 "the time between samples in s; steps land on them. Stands behind the output it "
+                 "the time between samples in s, which change no steps of fixed size. Stands "
+                 "behind the output it "
                  "is for, or once for both")
       ->expected(1)
       ->take_all();
@@ -332,13 +333,17 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
     nlohmann::json origin = provenance(command_line, drawn, start, scene);
     origin["outcome"] = name(summary.outcome);
     origin["t_reached"] = summary.t_reached;
+    origin["energy_growth"] = summary.energy_growth;
     output.finish(state, origin);
   }
   fmt::print("{} on {}: {} at t = {:g} s after {}\n", method.name, drawn.name,
              name(summary.outcome), summary.t_reached, in_words(summary.counts));
-  if (summary.outcome == Outcome::reached_end) {
-    const std::string warning = step_warning(method, knobs, scene);
+  const auto warn = [](const std::string& warning) {
     if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
+  };
+  if (summary.outcome != Outcome::diverged) warn(growth_warning(method, summary));
+  if (summary.outcome == Outcome::reached_end) {
+    warn(step_warning(method, knobs, scene));
     return done;
   }
   const double patience = std::clamp(20 * seconds, shortest_patience, longest_patience);

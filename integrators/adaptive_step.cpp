@@ -129,8 +129,8 @@ Outcome AdaptiveStep::show(double t, State& state) {
   const Instant& from = last(1);
   Instant& at = last(instants_.size() - 1);
   Outcome outcome = attempt(from, t - from.state.t, at, error_q_, error_v_);
-  if (outcome == Outcome::reached_end) outcome = judge(at.state);
   at.state.t = t;
+  if (outcome == Outcome::reached_end) outcome = judge(from.state, at.state);
   state = outcome == Outcome::reached_end ? at.state : from.state;
   return outcome;
 }
@@ -158,7 +158,7 @@ Outcome AdaptiveStep::take_step() {
     double error = INFINITY;
     if (outcome == Outcome::reached_end) {
       error = norm(now.state, error_q_, error_v_);
-      outcome = std::isfinite(error) ? judge(next.state) : Outcome::not_finite;
+      outcome = std::isfinite(error) ? judge(now.state, next.state) : Outcome::not_finite;
     }
     const Jump jump_here =
         kinks_.has_kinks() && outcome == Outcome::reached_end ? jump(now, next, h) : Jump::none;
@@ -221,6 +221,7 @@ void AdaptiveStep::accept(bool is_limited) {
   newest_ = (newest_ + 1) % instants_.size();
   count_ = std::min(count_ + 1, instants_.size());
   ++counts().steps;
+  note(last().state);
   if (is_limited) ++counts().stability_limited_steps;
 }
 

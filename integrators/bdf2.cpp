@@ -19,6 +19,13 @@ class Bdf2 final : public ImplicitStep {
     last_h_ = 0;
   }
 
+  void resume(const FixedStep& run, const State& now) override {
+    const auto& other = static_cast<const Bdf2&>(run);
+    start(now);
+    last_ = other.last_;
+    last_h_ = other.last_h_;
+  }
+
   Outcome step(const State& now, double h, State& next) override {
     const double w = last_h_ > 0 ? h / last_h_ : 0;  // w = 0: implicit Euler
     const double back = w * w / (1 + 2 * w), c = (1 + w) / (1 + 2 * w);

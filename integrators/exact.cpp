@@ -2,7 +2,7 @@
 // (and under a constant force, a uniform motion about the rest position):
 //   q_{n+1}, v_{n+1} = exp(A h)-propagation of q_n, v_n, at every h (see linear_motion.hpp).
 // No step error at any step size; the modes are found once a run, by a dense eigenproblem.
-#include <optional>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -23,9 +23,13 @@ class Exact final : public FixedStep {
  private:
   void start(const State&) override {
     if (system().size() > largest_size) return;
-    motion_.emplace(system());
+    motion_ = std::make_shared<LinearMotion>(system());
     ++counts().stiffness_evaluations;
     ++counts().factorizations;
+  }
+
+  void resume(const FixedStep& run, const State&) override {
+    motion_ = static_cast<const Exact&>(run).motion_;
   }
 
   Outcome step(const State& now, double h, State& next) override {
@@ -39,7 +43,7 @@ class Exact final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  std::optional<LinearMotion> motion_;
+  std::shared_ptr<const LinearMotion> motion_;
   LinearMotion::Scratch scratch_;
 };
 

@@ -5,8 +5,12 @@
 //   gamma = 1/2 - alpha_m + alpha_f,  beta = 1/4 (1 - alpha_m + alpha_f)^2
 // with f at the mean position, so that each step is one stage in u, that position less q_n. The
 // alphas follow from the damping wanted at infinite frequency: there each step multiplies a motion
-// by the spectral radius rho. Order 2, A-stable. The a_n are no more than that: their equation
-// holds between the steps.
+// by the spectral radius rho. Order 2, A-stable. Their equation holds between the steps, so that
+// a_n is the acceleration at t_n + (alpha_m - alpha_f) h, to second order. Where a step h' follows
+// one of h it is taken at (alpha_m - alpha_f) h' instead, on the line through the last two:
+//   a_n + (alpha_m - alpha_f) (h'/h - 1) (a_n - a_{n-1}),
+// without which each change of h would leave an error of first order in it. Steps only ever shorten
+// (the last one, and those to what is observed between two), so that the line is not followed far.
 #include "integrators/implicit_step.hpp"
 #include "integrators/registry.hpp"
 
@@ -37,9 +41,21 @@ class GeneralizedAlpha : public ImplicitStep {
   void start(const State& state) override {
     ImplicitStep::start(state);
     acceleration(state.q, a_);
+    last_h_ = 0;
+  }
+
+  void resume(const FixedStep& run, const State&) override {
+    const auto& other = static_cast<const GeneralizedAlpha&>(run);
+    ImplicitStep::start(State{});
+    a_ = other.a_;
+    last_a_ = other.last_a_;
+    last_h_ = other.last_h_;
   }
 
   Outcome step(const State& now, double h, State& next) override {
+    if (last_h_ > 0 && h != last_h_) {
+      a_ += (alpha_.m - alpha_.f) * (h / last_h_ - 1) * (a_ - last_a_);
+    }
     const double gamma = 0.5 - alpha_.m + alpha_.f;
     const double beta = 0.25 * (1 - alpha_.m + alpha_.f) * (1 - alpha_.m + alpha_.f);
     const double s = (1 - alpha_.f) * beta / (1 - alpha_.m) * h * h;
@@ -48,15 +64,17 @@ class GeneralizedAlpha : public ImplicitStep {
     if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
       return outcome;
     }
-    new_a_ = ((u_ - free_) / s - alpha_.m * a_) / (1 - alpha_.m);
+    last_a_ = a_;
+    a_ = ((u_ - free_) / s - alpha_.m * last_a_) / (1 - alpha_.m);
     next.q = now.q + u_ / (1 - alpha_.f);
-    next.v = now.v + h * ((1 - gamma) * a_ + gamma * new_a_);
-    a_.swap(new_a_);
+    next.v = now.v + h * ((1 - gamma) * last_a_ + gamma * a_);
+    last_h_ = h;
     return Outcome::reached_end;
   }
 
   const Alphas alpha_;
-  Vec a_{system().size()}, new_a_{system().size()};
+  Vec a_{system().size()}, last_a_{system().size()};
+  double last_h_ = 0;  // 0: no step yet, and a_ is that of the start
 };
 
 class ChungHulbert final : public GeneralizedAlpha {

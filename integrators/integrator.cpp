@@ -1,9 +1,11 @@
 #include "integrators/integrator.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "integrators/massless_balance.hpp"
 #include "integrators/method.hpp"
 
 namespace qddot {
@@ -11,6 +13,11 @@ namespace {
 
 // Beyond |v| = 1e30 m/s nothing of a motion is left, and numbers are still far from overflow.
 constexpr double largest_speed_squared = 1e60;
+// h^2 below this has lost digits.
+constexpr double shortest_squared = 1e-290;
+// How far below zero an eigenvalue of the balance of massless nodes must be to count, beside the
+// relative tolerance of adaptive methods, which leave their places as uncertain.
+constexpr double balance_tolerance = 1e-6;
 
 }  // namespace
 
@@ -58,7 +65,9 @@ std::string_view advice(Outcome outcome) {
       return "M - h^2 K is not positive definite, as compressed springs make it: take a smaller "
              "step or an explicit method";
     case Outcome::step_too_small:
-      return "the step is too small for the time to advance: take a larger step or tolerance";
+      return "the step is too small for the time to advance: take a larger step or tolerance, or "
+             "an "
+             "earlier end";
     case Outcome::singular_mass:
       return "a massless node has no acceleration: give it a mass or take a method that accepts "
              "massless nodes";
@@ -72,9 +81,10 @@ std::string_view advice(Outcome outcome) {
     case Outcome::stiffness_varies:
       return "K changes with the positions, and this method is for constant K: take another one";
     case Outcome::went_slack:
-      return "springs in series through a massless node came under compression, where they are no "
-             "longer equal to one spring: keep the node (--no-reduce massless) and take a method "
-             "that accepts massless nodes";
+      return "springs at a massless node came under compression, where they fold up in no time: "
+             "give the node a mass; or on a scene of one dimension, where nothing folds up, keep "
+             "it "
+             "(--no-reduce massless) and take a method that accepts massless nodes";
     case Outcome::no_stiff_set:
       return "the scene names no stiff springs, whose forces this method takes apart: give it "
              "stiff_above, or take another method";
@@ -108,21 +118,34 @@ Seconds& Seconds::operator+=(const Seconds& more) {
   return *this;
 }
 
+Integrator::Integrator(const Method& method, const System& system, const Knobs& knobs)
+    : method_(method), system_(system), knobs_(knobs), growth_(system) {}
+
+Integrator::~Integrator() = default;
+
 Summary Integrator::advance(State& state, double t_end, const Observer& observer,
                             std::stop_token stop) {
   counts_ = {};
   seconds_ = {};
   message_.clear();
+  failed_step_ = 0;
   stop_ = std::move(stop);
+  has_begun_ = false;
   Outcome outcome;
+  double growth = 1;
   try {
     outcome = run(state, t_end, observer);
   } catch (const std::exception& error) {
     outcome = Outcome::solver_failed;
     explain(error.what());
   }
-  if (outcome != Outcome::reached_end && message_.empty()) message_ = advice(outcome);
-  return {outcome, state.t, counts_, seconds_, message_};
+  try {
+    if (has_begun_) growth = energy_growth(state);
+  } catch (const std::exception&) {  // of an energy that cannot be computed there is nothing to say
+  }
+  if (outcome == Outcome::reached_end) return {outcome, state.t, counts_, seconds_, {}, growth};
+  if (failed_step_ == 0) failed_step_ = counts_.steps + 1;
+  return {outcome, state.t, counts_, seconds_, words_on(outcome), growth, failed_step_};
 }
 
 Outcome Integrator::judge(SolveOutcome solution) {
@@ -132,11 +155,53 @@ Outcome Integrator::judge(SolveOutcome solution) {
   return Outcome::solver_failed;
 }
 
-Outcome Integrator::judge(const State& state) const {
-  const double speed_squared = state.v.squaredNorm();
+Outcome Integrator::judge(const State& from, const State& to) {
+  const double speed_squared = to.v.squaredNorm();
   if (std::isnan(speed_squared)) return Outcome::not_finite;
   if (!(speed_squared < largest_speed_squared)) return Outcome::diverged;
-  return system_.holds_at(state.q) ? Outcome::reached_end : Outcome::went_slack;
+  if (const auto t = system_.stops_holding(from, to)) {
+    slack_at_ = *t;
+    return Outcome::went_slack;
+  }
+  if (balance_ && !balance_->is_stable([&](SymmetricMatrix& k) { stiffness(to.q, k); })) {
+    slack_at_ = to.t;
+    return Outcome::went_slack;
+  }
+  return Outcome::reached_end;
+}
+
+std::string Integrator::words_on(Outcome outcome) const {
+  if (outcome == Outcome::went_slack) {
+    return fmt::format("at t = {:.6g} s {}", slack_at_, advice(outcome));
+  }
+  return message_.empty() ? std::string(advice(outcome)) : message_;
+}
+
+void Integrator::join(const Integrator& run) {
+  message_.clear();
+  stop_ = run.stop_;
+  t_end_ = run.t_end_;
+}
+
+void Integrator::take_over(Integrator& other) {
+  message_ = other.message_;
+  slack_at_ = other.slack_at_;
+  counts_ += other.counts_;
+  seconds_ += other.seconds_;
+  other.counts_ = {};
+  other.seconds_ = {};
+}
+
+void Integrator::set_out(const State& state) {
+  if (system_.parts().empty()) {  // else each part looks after itself
+    growth_.start(state);
+    if (system_.has_massless()) {
+      balance_ =
+          std::make_unique<MasslessBalance>(system_, std::max(balance_tolerance, knobs_.rtol));
+    }
+  }
+  begin(state);
+  start(state);
 }
 
 Outcome Integrator::run(State& state, double t_end, const Observer& observer) {
@@ -147,6 +212,12 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer) {
   }
   if (system_.has_massless() && !method_.accepts_massless) return Outcome::singular_mass;
   if (const auto why = misfit(method_, system_)) return *why;
+  if (const double whole = t_end - state.t; whole > 0 && !(whole * whole > shortest_squared)) {
+    explain(fmt::format(
+        "the {:g} s to run are too short for their square to be a number: ask for a later end",
+        whole));
+    return Outcome::step_too_small;
+  }
 
   const bool moves = system_.size() > 0 && t_end > state.t;
   const auto go_to = [&](double t) {
@@ -155,7 +226,10 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer) {
     return outcome;
   };
   t_end_ = t_end;
-  if (moves) start(state);
+  if (moves) {
+    has_begun_ = true;
+    set_out(state);
+  }
   for (const double t : observer.times) {
     if (const Outcome outcome = go_to(t); outcome != Outcome::reached_end) return outcome;
     observer.see(state);

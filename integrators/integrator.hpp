@@ -4,17 +4,20 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "integrators/energy_growth.hpp"
 #include "src/algebra/solver.hpp"
 #include "src/model/system.hpp"
 
 namespace qddot {
 
 struct Method;
+class MasslessBalance;
 
 // How a run ended. Everything but reached_end is a failure, and a failure is data.
 enum class Outcome {
@@ -28,7 +31,7 @@ enum class Outcome {
   solver_failed,      // a library gave up for another reason
   over_budget,        // stopped from outside
   stiffness_varies,   // a method for constant K, and a system whose K is not
-  went_slack,         // the system no longer is what it stands for (System::holds_at)
+  went_slack,         // compressed springs at a massless node (System::holds_at, MasslessBalance)
   no_stiff_set,       // a method that takes stiff forces apart, and none are named (System::split)
   no_laplacian,       // a method that takes L in the place of -K, and a system that has none
 };
@@ -88,6 +91,10 @@ struct Summary {
   Counts counts;
   Seconds seconds;
   std::string message = "advance was not called";  // one sentence; empty where the end was reached
+  // The largest energy against that of the start (see EnergyGrowth); of several parts the largest.
+  double energy_growth = 1;
+  // Which step failed, 1, 2, ..., of the part that failed; 0 where the end was reached.
+  std::int64_t failed_step = 0;
 };
 
 // What a method is told before it runs: the one that belongs to its kind.
@@ -114,9 +121,10 @@ struct Knobs {
 };
 
 // Looks at a run from outside: `see` is called at each of `times` [s] (ascending, after the start,
-// at most t_end) and at no other. Steps land on those times exactly, the last one before each
-// shortened where it must be; but for methods that interpolate (Method::interpolates), whose steps
-// are the same with and without an observer.
+// at most t_end) and at no other. Methods of fixed steps, and those that interpolate
+// (Method::interpolates), take the same steps with and without an observer; what it sees between
+// the steps of the former is where a shorter step from the last one would lead. Adaptive methods of
+// SUNDIALS land on those times.
 struct Observer {
   std::vector<double> times;
   std::function<void(const State&)> see;
@@ -125,9 +133,8 @@ struct Observer {
 // Steps a System through time. Borrows the system, which must outlive it; owns its scratch space.
 class Integrator {
  public:
-  Integrator(const Method& method, const System& system, const Knobs& knobs)
-      : method_(method), system_(system), knobs_(knobs) {}
-  virtual ~Integrator() = default;
+  Integrator(const Method& method, const System& system, const Knobs& knobs);
+  virtual ~Integrator();
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
@@ -138,10 +145,13 @@ class Integrator {
                   std::stop_token stop = {});
 
  protected:
+  // Called once a run, before start(): for what steps a method, whatever its formula.
+  virtual void begin(const State&) {}
   // Called once a run, before the first step.
   virtual void start(const State&) {}
   // Brings `state` from its time to t_stop exactly. Called for each of the observer's times and for
-  // t_end; a method that interpolates may have gone beyond t_stop, but never beyond t_end.
+  // t_end. A method may have gone beyond t_stop, but never beyond t_end, or not as far, and show
+  // where it would be.
   virtual Outcome run_to(State& state, double t_stop) = 0;
 
   const System& system() const { return system_; }
@@ -153,9 +163,19 @@ class Integrator {
   // Where the run is to end [s]; known from start() on.
   double t_end() const { return t_end_; }
   bool must_stop() const { return stop_.stop_requested(); }
-  // Whether a state can be accepted: reached_end, or else why not (not_finite, diverged,
-  // went_slack).
-  Outcome judge(const State& state) const;
+  // Whether the state after a step from the one before can be accepted: reached_end, or else why
+  // not (not_finite, diverged, went_slack).
+  Outcome judge(const State& from, const State& to);
+  // To be called with each state that is accepted.
+  void note(const State& state) { growth_.note(state); }
+  // Becomes a part of another's run: ends no later and is stopped with it.
+  void join(const Integrator& run);
+  // Takes over what another has done since it was last asked, and what it has to say of it.
+  void take_over(Integrator& other);
+  // All that comes before the first step of a run.
+  void set_out(const State& state);
+  // Why it ended so, in a sentence.
+  std::string words_on(Outcome outcome) const;
   // Whether a solve found what it was to find: reached_end, or else why not (indefinite_matrix, or
   // solver_failed, which is explained).
   Outcome judge(SolveOutcome solution);
@@ -191,6 +211,8 @@ class Integrator {
   friend class Parts;  // which runs several as one
 
   Outcome run(State& state, double t_end, const Observer& observer);
+  // Of the run up to `state`.
+  virtual double energy_growth(const State& state) { return growth_.factor(state); }
 
   const Method& method_;
   const System& system_;
@@ -200,6 +222,11 @@ class Integrator {
   double t_end_ = 0;
   std::stop_token stop_;
   std::string message_;
+  EnergyGrowth growth_;
+  std::unique_ptr<MasslessBalance> balance_;  // where there are massless nodes
+  bool has_begun_ = false;
+  double slack_at_ = 0;  // [s], where went_slack
+  std::int64_t failed_step_ = 0;
 };
 
 }  // namespace qddot

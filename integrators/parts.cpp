@@ -10,7 +10,7 @@ Parts::Parts(const Method& method, const System& system, const Knobs& knobs)
     : Integrator(method, system, knobs) {
   Index first = 0;
   for (const auto& part : system.parts()) {
-    pieces_.push_back({first, make_integrator(method, *part, knobs), {}, {}});
+    pieces_.push_back({first, make_integrator(method, *part, knobs), {}, {}, 1});
     first += part->size();
   }
 }
@@ -21,15 +21,14 @@ void Parts::start(const State& state) {
     piece.state = {state.t, state.q.segment(piece.first, n), state.v.segment(piece.first, n)};
     piece.integrator->counts_ = {};
     piece.integrator->seconds_ = {};
+    piece.growth = 1;
     start(piece);
   }
 }
 
 void Parts::start(Piece& piece) {
-  piece.integrator->message_.clear();
-  piece.integrator->stop_ = stop_;
-  piece.integrator->t_end_ = t_end();
-  piece.integrator->start(piece.state);
+  piece.integrator->join(*this);
+  piece.integrator->set_out(piece.state);
 }
 
 Outcome Parts::run_to(State& state, double t_stop) {
@@ -44,7 +43,9 @@ Outcome Parts::run_to(State& state, double t_stop) {
       const Outcome own = run_piece(piece, t_end);
       if (own == Outcome::reached_end) continue;
       outcome = own;
-      explain(piece.integrator->message_);
+      explain(piece.integrator->words_on(own));
+      slack_at_ = piece.integrator->slack_at_;
+      failed_step_ = piece.integrator->counts_.steps + 1;
       t_end = piece.state.t;
     }
   }
@@ -56,6 +57,7 @@ Outcome Parts::run_piece(Piece& piece, double t_end) {
   Outcome outcome = Outcome::solver_failed;
   try {
     if (piece.state.t != piece.begin.t) {
+      piece.growth = growth_of(piece);
       piece.state = piece.begin;
       start(piece);
     }
@@ -66,6 +68,16 @@ Outcome Parts::run_piece(Piece& piece, double t_end) {
   }
   if (outcome == Outcome::reached_end) piece.state.t = t_end;
   return outcome;
+}
+
+double Parts::growth_of(Piece& piece) {
+  return std::max(piece.growth, piece.integrator->energy_growth(piece.state));
+}
+
+double Parts::energy_growth(const State&) {
+  double most = 1;
+  for (Piece& piece : pieces_) most = std::max(most, growth_of(piece));
+  return most;
 }
 
 void Parts::gather(State& state) {

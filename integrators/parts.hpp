@@ -22,6 +22,7 @@ class Parts final : public Integrator {
     Index first;  // of its unknowns
     std::unique_ptr<Integrator> integrator;
     State state, begin;  // now, and where the present run_to began
+    double growth;       // of the energy in runs that were taken back
   };
 
   void start(const State& state) override;
@@ -31,6 +32,8 @@ class Parts final : public Integrator {
   // Brings the piece to t_end from where it begins, whether or not it has run from there before.
   Outcome run_piece(Piece& piece, double t_end);
   void gather(State& state);
+  double growth_of(Piece& piece);
+  double energy_growth(const State& state) override;
 
   std::vector<Piece> pieces_;
 };

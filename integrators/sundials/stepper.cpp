@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "integrators/step_times.hpp"
-
 namespace qddot::sundials {
 namespace {
 
@@ -100,6 +98,14 @@ void Stepper::keep_message(int, const char*, const char*, char* message, void* s
   }
 }
 
+void Stepper::begin(const State& state) {
+  if (!has_fixed_step()) return;
+  now_ = state;
+  times_.emplace(state.t, t_end(), knobs().step_size);
+  taken_ = 0;
+  beside_ = {};
+}
+
 Outcome Stepper::run_to(State& state, double t_stop) {
   parked_ = nullptr;
   is_finite_ = true;
@@ -108,9 +114,12 @@ Outcome Stepper::run_to(State& state, double t_stop) {
     const Outcome outcome =
         has_fixed_step() ? take_fixed_steps(state, t_stop) : take_chosen_steps(state, t_stop);
     collect_counts();
+    counts() += beside_;
     return outcome;
   } catch (...) {
+    if (has_fixed_step() && now_.t > state.t) state = now_;
     collect_counts();
+    counts() += beside_;
     throw;
   }
 }
@@ -130,16 +139,48 @@ Outcome Stepper::take_chosen_steps(State& state, double t_stop) {
 }
 
 Outcome Stepper::take_fixed_steps(State& state, double t_stop) {
-  const StepTimes times(state.t, t_stop, knobs().step_size);
+  const StepTimes& times = *times_;
   if (!times.can_be_taken()) return Outcome::step_too_small;
-  for (double i = 1; i <= times.count(); ++i) {
+  for (const double last = times.last_by(t_stop); taken_ < last;) {
+    const double i = taken_ + 1;
     // No stop time: a first step that ends on one is returned by ARKODE 6.4.1 as its half.
     set_step_size(times.length(i));
-    const Outcome outcome = take_one(state, times.after(i));
-    if (outcome != Outcome::reached_end) return outcome;
-    state.t = times.after(i);
+    const Outcome outcome = take_one(now_, times.after(i));
+    if (outcome == Outcome::reached_end) now_.t = times.after(i);
+    if (outcome != Outcome::reached_end) {
+      if (now_.t > state.t) state = now_;
+      return outcome;
+    }
+    taken_ = i;
   }
+  if (!times.is_after(taken_, t_stop)) return step_aside(state, t_stop);
+  now_.t = t_stop;
+  state = now_;
   return Outcome::reached_end;
+}
+
+Outcome Stepper::step_aside(State& state, double t) {
+  if (!aside_) {
+    auto made = method().make(method(), system(), knobs());
+    aside_.reset(&dynamic_cast<Stepper&>(*made));
+    made.release();
+  }
+  aside_->join(*this);
+  aside_->start(now_);
+  aside_->set_step_size(t - now_.t);
+  State there = now_;
+  const Outcome outcome = aside_->take_one(there, t);
+  aside_->collect_counts();
+  if (outcome == Outcome::reached_end) {
+    state = there;
+  } else {
+    if (now_.t > state.t) state = now_;
+  }
+  aside_->counts().steps = 0;
+  beside_ += aside_->counts();
+  beside_.force_evaluations = beside_.stiffness_evaluations = 0;  // which nobody else counts
+  take_over(*aside_);
+  return outcome;
 }
 
 Outcome Stepper::take_one(State& state, double t_stop) {
@@ -152,8 +193,9 @@ Outcome Stepper::take_one(State& state, double t_stop) {
   next_.q = halves.q;
   next_.v = halves.v;
   next_.t = t;
-  if (const Outcome outcome = judge(next_); outcome != Outcome::reached_end) return outcome;
+  if (const Outcome outcome = judge(state, next_); outcome != Outcome::reached_end) return outcome;
   std::swap(state, next_);
+  note(state);
   note_step();
   return Outcome::reached_end;
 }

@@ -2,10 +2,12 @@
 
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "integrators/integrator.hpp"
 #include "integrators/method.hpp"
+#include "integrators/step_times.hpp"
 #include "integrators/sundials/cause.hpp"
 #include "integrators/sundials/newton_matrix.hpp"
 #include "integrators/sundials/vector.hpp"
@@ -25,8 +27,9 @@ inline const System& soft_of(const System& system) {
 }
 
 // What ARKODE, CVODE and IDA share: the first-order form y = (q, v) in a vector of length 2n, steps
-// one by one up to a stop time (of the library's choice, or of constant length where the method's
-// knob is a step size), and the boundary to C, across which no exception passes.
+// one by one (of the library's choice, up to a stop time; or of constant length where the method's
+// knob is a step size, which are the same whatever is observed, as those of FixedStep), and the
+// boundary to C, across which no exception passes.
 class Stepper : public Integrator {
  public:
   // Newton's matrix is that of `implicit_part`, which has the unknowns of the system: itself, or
@@ -101,9 +104,12 @@ class Stepper : public Integrator {
   Outcome failure(Cause cause, const std::string& flag, double t);
 
  private:
+  void begin(const State& state) final;
   Outcome run_to(State& state, double t_stop) final;
   Outcome take_chosen_steps(State& state, double t_stop);
   Outcome take_fixed_steps(State& state, double t_stop);
+  // By another object, from the last step to a time before the next one.
+  Outcome step_aside(State& state, double t);
   Outcome take_one(State& state, double t_stop);
   // What the flag says, but for forces that are not finite: a library may call these a failure to
   // converge or of its small steps, and the first one a failure of later ones.
@@ -116,7 +122,11 @@ class Stepper : public Integrator {
   Vec per_mass_;  // 1/m
   Vec q_, f_;
   SymmetricMatrix k_;
-  State next_;
+  State now_, next_;
+  std::optional<StepTimes> times_;  // where they are fixed
+  double taken_ = 0;                // of these steps
+  std::unique_ptr<Stepper> aside_;
+  Counts beside_;  // what the library counted of the steps aside
   std::exception_ptr parked_;
   bool is_finite_ = true;  // what the last callback computed
   std::string said_;

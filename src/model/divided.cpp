@@ -117,4 +117,15 @@ bool Divided::holds_at(const Vec& q) const {
   return holds;
 }
 
+std::optional<double> Divided::stops_holding(const State& from, const State& to) const {
+  std::optional<double> first;
+  for_each(parts_, from.q, [&](const System& part, const Vec& own, Index at) {
+    const Index n = part.size();
+    const auto t = part.stops_holding({from.t, own, from.v.segment(at, n)},
+                                      {to.t, to.q.segment(at, n), to.v.segment(at, n)});
+    if (t && (!first || *t < *first)) first = t;
+  });
+  return first;
+}
+
 }  // namespace qddot

@@ -24,6 +24,7 @@ class Divided final : public System {
   HasLaplacian has_laplacian() const override;
   void laplacian(SymmetricMatrix& l) const override;
   bool holds_at(const Vec& q) const override;
+  std::optional<double> stops_holding(const State& from, const State& to) const override;
   std::span<const std::unique_ptr<System>> parts() const override { return parts_; }
 
  private:

@@ -27,6 +27,9 @@ class Held final : public System {
   HasLaplacian has_laplacian() const override { return system_->has_laplacian(); }
   void laplacian(SymmetricMatrix& l) const override;
   bool holds_at(const Vec& q) const override { return system_->holds_at(q); }
+  std::optional<double> stops_holding(const State& from, const State& to) const override {
+    return system_->stops_holding(from, to);
+  }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
 
  private:

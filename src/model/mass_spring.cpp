@@ -6,6 +6,7 @@
 
 #include "src/model/block_pattern.hpp"
 #include "src/model/force_kernel.hpp"
+#include "src/model/in_tension.hpp"
 #include "src/model/kinks.hpp"
 #include "src/model/layout.hpp"
 #include "src/model/network_halves.hpp"
@@ -121,16 +122,9 @@ class MassSpring final : public System, public Kinks {
     });
   }
 
-  bool holds_at(const Vec& q) const override {
-    // A spring drawn at its rest length may be shorter by what rounding makes of it.
-    const auto is_in_tension = [&](const EdgeLink& link) {
-      return edge_between(q, link).norm() >= (1 - 1e-12) * link.law.rest_length;
-    };
-    const auto anchor_is = [&](const Anchor& anchor) {
-      return edge_between(q, anchor).norm() >= (1 - 1e-12) * anchor.law.rest_length;
-    };
-    return std::ranges::all_of(links_in_tension_, is_in_tension) &&
-           std::ranges::all_of(anchors_in_tension_, anchor_is);
+  bool holds_at(const Vec& q) const override { return in_tension_.holds_at(layout_, q); }
+  std::optional<double> stops_holding(const State& from, const State& to) const override {
+    return in_tension_.first_slack(layout_, mass(), from, to);
   }
 
  private:
@@ -186,7 +180,7 @@ class MassSpring final : public System, public Kinks {
   static bool turns_over(const SpringLaw& law) { return D == 1 && law.rest_length > 0; }
 
   void take_link(const EdgeLink& link, Holds holds, bool is_plain) {
-    if (holds == Holds::in_tension) links_in_tension_.push_back(link);
+    if (holds == Holds::in_tension) in_tension_.add({link.i, link.j, link.mirror, link.law});
     if (!layout_.is_full(link.i) || !layout_.is_full(link.j)) {
       edge_links_.push_back(link);
     } else if (is_plain) {
@@ -198,7 +192,7 @@ class MassSpring final : public System, public Kinks {
     }
   }
   void take_anchor(const Anchor& anchor, Holds holds) {
-    if (holds == Holds::in_tension) anchors_in_tension_.push_back(anchor);
+    if (holds == Holds::in_tension) in_tension_.add({anchor.i, -1, anchor.point, anchor.law});
     if (layout_.is_full(anchor.i)) {
       anchors_.push_back({layout_.first(anchor.i), anchor.point, anchor.law});
     } else {
@@ -371,10 +365,9 @@ class MassSpring final : public System, public Kinks {
   std::vector<int> link_places_, image_places_;  // as in EdgeLink
   std::vector<EdgeLink> edge_links_;             // with an end that has fewer unknowns
   std::vector<Anchor> edge_anchors_;             // likewise, by nodes
-  std::vector<EdgeLink> links_in_tension_;       // once more, those that hold in tension only
-  std::vector<Anchor> anchors_in_tension_;
-  Vec weight_;                   // M g + load [N]
-  Vec constant_force_;           // and what offsets pull
+  InTension<D> in_tension_;                      // once more, those that hold in tension only
+  Vec weight_;                                   // M g + load [N]
+  Vec constant_force_;                           // and what offsets pull
   std::vector<double> offsets_;  // [m], of all springs in the order of for_all; empty where none
   double constant_energy_;
   bool linear_ = false;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -80,8 +81,12 @@ class System {
   virtual void laplacian(SymmetricMatrix&) const {}
 
   // Whether this system is, at q, still what it stands for (see Holds in spring.hpp).
-  // Integrators ask after each step and go no further where it is not.
   virtual bool holds_at(const Vec&) const { return true; }
+  // When, on the way from the state before a step to the one after it, this stops [s]; nothing
+  // where it does not. Integrators ask after each step and do not accept one on which it does.
+  virtual std::optional<double> stops_holding(const State&, const State& to) const {
+    return holds_at(to.q) ? std::nullopt : std::optional(to.t);
+  }
   // The systems that this one is made of where no force couples them, each with its own run of
   // consecutive unknowns, in order; empty where it is one whole.
   virtual std::span<const std::unique_ptr<System>> parts() const { return {}; }

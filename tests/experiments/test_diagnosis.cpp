@@ -1,6 +1,7 @@
 #include <regex>
 
 #include <boost/test/unit_test.hpp>
+#include <nlohmann/json.hpp>
 
 #include "tests/experiments/process.hpp"
 
@@ -46,6 +47,39 @@ BOOST_AUTO_TEST_CASE(the_step_it_failed_in_is_the_one_after_the_last_that_was_ta
   BOOST_TEST(failed > 24);
   BOOST_TEST(failed < 29);
   BOOST_TEST(contains(result.out, {fmt::format("after {} steps", failed - 1)}), result.out);
+}
+
+BOOST_AUTO_TEST_CASE(of_several_parts_the_step_is_that_of_the_one_that_failed) {
+  // The oscillator of h w = 4, beside one that takes as many steps to nobody's harm.
+  const Folder folder;
+  const std::string scene = folder.write(
+      "two.toml",
+      "dimension = 1\nuntil = 100\n"
+      "nodes = [{position = [0], pinned = true}, "
+      "{position = [1], velocity = [1], mass = 1}, "
+      "{position = [10], pinned = true}, "
+      "{position = [11], velocity = [1], mass = 1}]\n"
+      "springs = [{nodes = [0, 1], stiffness = 1}, {nodes = [2, 3], stiffness = 100}]\n");
+  const Exit result = simulate({"--scene", scene, "--method", "verlet", "--step-size", "0.4"});
+  BOOST_TEST(result.status == 3);
+  const double failed = number_behind(result.err, "it failed in step ");
+  BOOST_TEST(failed > 24);
+  BOOST_TEST(failed < 29);
+}
+
+BOOST_AUTO_TEST_CASE(a_run_whose_energy_grew_by_orders_is_warned_of_whatever_the_method) {
+  const Folder folder;
+  for (const char* method : {"cvode_bdf", "cvode_adams"}) {
+    const Exit coarse = simulate({"--scene", "oscillator", "--method", method, "--rtol", "1e-2",
+                                  "--until", "30", "--final", folder / "f.csv"});
+    BOOST_TEST(coarse.status == 0);
+    BOOST_TEST(contains(coarse.err, {"warning", "the energy grew to", "lower --rtol"}), coarse.err);
+    const auto sidecar = nlohmann::json::parse(read_all(folder / "f.json"));
+    BOOST_TEST(static_cast<double>(sidecar.at("energy_growth")) > 10);
+    const Exit fine =
+        simulate({"--scene", "oscillator", "--method", method, "--rtol", "1e-6", "--until", "30"});
+    BOOST_TEST(fine.err == "");
+  }
 }
 
 BOOST_AUTO_TEST_CASE(explicit_euler_is_told_apart_since_no_step_holds) {

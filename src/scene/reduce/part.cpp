@@ -34,6 +34,20 @@ void add_spring(const Folded::Spring& spring, const Folded& half, const std::vec
   }
 }
 
+// Massless nodes on two springs, by the body's numbers. They fold up where these are compressed,
+// across the line that is all that a network of one dimension knows.
+std::vector<bool> joints_of(const Body& body) {
+  std::vector<int> springs(body.nodes.size(), 0);
+  for (const Spring& spring : body.springs) {
+    for (const std::size_t i : spring.nodes) ++springs[i];
+  }
+  std::vector<bool> joints;
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    joints.push_back(i < body.free && body.mass[i] == 0 && springs[i] == 2);
+  }
+  return joints;
+}
+
 }  // namespace
 
 Part::Part(const Body& body, int dimension, const Reductions& reductions) : origin_(body.origin) {
@@ -84,7 +98,12 @@ Part::Part(const Body& body, int dimension, const Reductions& reductions) : orig
     images_.push_back({number, half.images[i].signs});
   }
   network.links.reserve(half.springs.size());
-  for (const Folded::Spring& spring : half.springs) add_spring(spring, half, numbers, network);
+  const std::vector<bool> joints = joints_of(body);
+  for (Folded::Spring spring : half.springs) {
+    const bool would_fold = axes == 1 && dimension > 1 && (joints[spring.a] || joints[spring.b]);
+    if (would_fold) spring.holds = Holds::in_tension;
+    add_spring(spring, half, numbers, network);
+  }
 
   if (network.uses_constant_stiffness && !with_pins) {
     if (auto straight = straightened(network, initial_.q, initial_.v)) {

@@ -1,0 +1,90 @@
+#include "integrators/energy_growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace qddot {
+namespace {
+
+// Steps between two looks at the kinetic energy, which take a tenth of a step's time; and looks
+// between two at the whole energy, which takes several forces'.
+constexpr int steps_a_look = 32, looks_an_energy = 32;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double largest = 1e300;
+// [s^2]: vibrations of 1e9 to 1 rad/s.
+constexpr double shortest_way = 1e-18, longest_way = 1;
+
+// The way that a motion from rest at q sets out on, q + s M^-1 f, goes down at first: the lowest V
+// on it, at s of which each is twice the one before. With two vectors of n for scratch.
+double lowest_ahead(const System& system, const Vec& q, Vec& ahead, Vec& way) {
+  system.force(q, way);
+  for (Index i = 0; i < way.size(); ++i) {
+    way[i] = system.mass()[i] > 0 ? way[i] / system.mass()[i] : 0;
+  }
+  double lowest = system.potential(q);
+  for (double s = shortest_way; s < longest_way; s *= 2) {
+    ahead = q + s * way;
+    const double potential = system.potential(ahead);
+    if (potential < lowest) lowest = potential;
+  }
+  return lowest;
+}
+
+}  // namespace
+
+void EnergyGrowth::start(const State& state) {
+  until_look_ = 1;
+  looks_ = 0;
+  q_ = q_of_kinetic_ = state.q;
+  v_of_kinetic_ = state.v;
+  kinetic_ = system_.kinetic(state.v);
+  lowest_ = system_.potential(state.q);
+  start_ = most_ = kinetic_ + lowest_;
+}
+
+void EnergyGrowth::look(const State& state) {
+  until_look_ = steps_a_look;
+  const double kinetic = system_.kinetic(state.v);
+  if (kinetic > 2 * kinetic_) {
+    kinetic_ = kinetic;
+    q_of_kinetic_ = state.q;
+    v_of_kinetic_ = state.v;
+  }
+  if (++looks_ % looks_an_energy == 0) see(state.q, state.v);
+}
+
+void EnergyGrowth::see(const Vec& q, const Vec& v) {
+  const double potential = system_.potential(q), energy = system_.kinetic(v) + potential;
+  most_ = std::max(most_, std::isfinite(energy) ? energy : largest);
+  lowest_ = std::min(lowest_, potential);
+}
+
+// What the last bits of the positions at the start make of V.
+double EnergyGrowth::rounding() {
+  const double potential = system_.potential(q_);
+  double most = epsilon * std::abs(potential);
+  for (const int period : {1, 2, 3}) {
+    q_of_kinetic_ = q_;
+    for (Index i = 0; i < q_.size(); ++i) {
+      q_of_kinetic_[i] *= 1 + (i % period == 0 ? 4 : -4) * epsilon;
+    }
+    most = std::max(most, std::abs(system_.potential(q_of_kinetic_) - potential));
+  }
+  return 4 * most;
+}
+
+double EnergyGrowth::factor(const State& state) {
+  see(q_of_kinetic_, v_of_kinetic_);
+  see(state.q, state.v);
+  const double gained = most_ - start_;
+  double own = start_ - lowest_;
+  if (gained <= own) return own > 0 ? 1 + gained / own : 1;
+  // A run that grew from the first step on has seen nothing of the motion.
+  own = std::max(own, start_ - lowest_ahead(system_, q_, q_of_kinetic_, v_of_kinetic_));
+  const double unsure = rounding();
+  if (gained <= unsure + 4 * epsilon * std::abs(most_)) return 1;
+  return std::min(1 + gained / std::max(own, unsure), largest);
+}
+
+}  // namespace qddot

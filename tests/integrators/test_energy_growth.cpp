@@ -1,0 +1,147 @@
+#include <boost/test/unit_test.hpp>
+
+#include "src/model/divided.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+
+BOOST_AUTO_TEST_SUITE(energy_growth)
+
+namespace {
+
+// Four masses that fall from rest in a row of springs which hang from a pin.
+Problem falling() {
+  Problem p{{.dimension = 2, .gravity = {0, -9.81, 0}, .node_mass = Vec{{1, 0.1, 0.3, 2}}}, {}};
+  for (int i = 0; i < 3; ++i) p.network.links.push_back({i, i + 1, {500, 0.5}});
+  p.network.anchors = {{0, {0, 0, 0}, {500, 0.5}}};
+  p.initial = {0, Vec{{0.5, 0, 1, 0, 1.5, 0, 2, 0}}, Vec::Zero(8)};
+  return p;
+}
+
+// The oscillator pushed from rest length, so that all of its energy is what it starts with.
+Problem pushed(double omega, double v0 = 1) {
+  return Oscillator{.mass = 1, .stiffness = omega * omega, .x0 = 0, .v0 = v0}.problem();
+}
+
+double growth(const Method& method, const Problem& p, double t_end, const Knobs& knobs) {
+  return run(method, *make_mass_spring(p.network), p.initial, t_end, knobs).summary.energy_growth;
+}
+
+// What a run says, and what its states at many times do.
+struct Growth {
+  double said, seen;
+};
+Growth growth_seen(const Method& method, const Problem& p, double t_end, const Knobs& knobs,
+                   int looks) {
+  const auto system = make_mass_spring(p.network);
+  double most = 0;
+  Observer observer{{}, [&](const State& s) { most = std::max(most, total_energy(*system, s)); }};
+  for (int i = 1; i <= looks; ++i) observer.times.push_back(i * t_end / looks);
+  const Run r = run(method, *system, p.initial, t_end, knobs, observer);
+  return {r.summary.energy_growth, most / total_energy(*system, p.initial)};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(motions_as_they_should_be_have_no_more_energy_than_they_began_with) {
+  for (const Problem& p : {falling(), hammock(2), hammock(3), linear_hammock(2)}) {
+    for (const Method& method : general_methods()) {
+      if (method.name == "explicit_euler") continue;  // which gains some at every h
+      BOOST_TEST_CONTEXT(method.name) {
+        // h w_max < 0.3 of the chain, 0.1 of the others.
+        const double g = growth(method, p, 1, knobs_of(method, 0.004, 1e-6));
+        BOOST_TEST(g >= 1);
+        BOOST_TEST(g < 1.1);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_rests_in_balance_does_not_grow) {
+  // Rest far from the origin, where V rounds by 1e-10 J of which nothing is motion.
+  Problem p{{.dimension = 1, .gravity = {9.81, 0, 0}, .node_mass = Vec::Ones(1)}, {}};
+  p.network.anchors = {{0, {1000, 0, 0}, {981, 1}}};
+  p.initial = {0, Vec::Constant(1, 1001.01), Vec::Zero(1)};
+  for (const Method& method : general_methods()) {
+    BOOST_TEST(growth(method, p, 1, knobs_of(method, 0.01, 1e-6)) < 10, method.name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(symplectic_swings_below_the_limit_are_no_growth) {
+  // The modified energy v^2 + w^2 q^2 (1 - (h w)^2/4) is kept: up to 1/(1 - 0.81) = 5.3.
+  const double g = growth(method_named("verlet"), pushed(10), 100, {.step_size = 0.18});
+  BOOST_TEST(g < 5.3);
+  BOOST_TEST(g > 2);
+}
+
+BOOST_AUTO_TEST_CASE(a_growth_is_what_the_energies_on_the_way_say) {
+  const Method &euler = method_named("explicit_euler"), &verlet = method_named("verlet");
+  // (1 + (h w)^2)^steps: e^10 after 1000 steps of 0.1.
+  BOOST_TEST(growth(euler, pushed(10), 10, {.step_size = 0.01}) == std::pow(1.01, 1000),
+             boost::test_tools::tolerance(1e-6));
+  // Just above the limit, far from diverging; seen to the factor of 2 between two looks, and the
+  // 32 steps of growth by some 1.13 each between them.
+  const auto [said, seen] = growth_seen(verlet, pushed(10), 20.02, {.step_size = 0.2002}, 100);
+  BOOST_TEST(seen > 100);
+  BOOST_TEST(said <= seen * 1.0001);
+  BOOST_TEST(said > seen / 10);
+}
+
+BOOST_AUTO_TEST_CASE(a_motion_from_rest_that_grows_from_the_first_step_on_is_told_by_how_much) {
+  // Drawn out and let go, at h w = 2.01: V is never again as low as at the start. The least energy
+  // that is found ahead is within a factor of 2 in s of the lowest, (1/3)^2 of V left at most.
+  const Problem p = Oscillator{.mass = 1, .stiffness = 100, .x0 = 1, .v0 = 0}.problem();
+  const auto [said, seen] = growth_seen(method_named("verlet"), p, 8.04, {.step_size = 0.201}, 40);
+  BOOST_TEST(seen > 100);
+  BOOST_TEST(said > seen / 2);
+  BOOST_TEST(said < 2 * seen);
+}
+
+BOOST_AUTO_TEST_CASE(adaptive_methods_that_let_an_oscillation_grow_say_so) {
+  const Problem p = pushed(10);
+  for (const char* name : {"cvode_bdf", "cvode_adams"}) {
+    const Method& method = method_named(name);
+    // Each look is the end of a step.
+    const auto [said, seen] = growth_seen(method, p, 30, {.rtol = 1e-2}, 100);
+    BOOST_TEST_CONTEXT(name << " says " << said << " and shows " << seen) {
+      BOOST_TEST(seen > 10);
+      BOOST_TEST(said > seen / 4);
+      BOOST_TEST(said < seen * 4);
+      BOOST_TEST(growth(method, p, 30, {.rtol = 1e-7}) < 1.5);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(methods_with_soft_springs_above_their_limit_say_so_with_reached_end) {
+  // A soft vibration of w = 10 rad/s beside a stiff one that the methods take care of.
+  Problem p{{.dimension = 1, .node_mass = Vec::Ones(2)}, {0, Vec{{0, 0}}, Vec{{1, 1}}}};
+  p.network.anchors = {{0, {0, 0, 0}, {1e4, 0}, Holds::always, true},
+                       {1, {0, 0, 0}, {100, 0}, Holds::always, false}};
+  p.network.offers_split = true;
+  const auto system = make_mass_spring(p.network);
+  for (const char* name : {"linear_midpoint", "linear_midpoint4", "arkode_mri3", "arkode_mri4"}) {
+    BOOST_TEST_CONTEXT(name) {
+      const Run fine = run(method_named(name), *system, p.initial, 5, {.step_size = 0.01});
+      BOOST_TEST(fine.summary.message == "");
+      BOOST_TEST(fine.summary.energy_growth < 1.5);
+      // A few steps at h w = 3 or 6, far beyond the limits of all of them.
+      const bool is_mri = std::string_view(name).starts_with("arkode");
+      const Run coarse = run(method_named(name), *system, p.initial, is_mri ? 0.6 : 1.8,
+                             {.step_size = is_mri ? 0.3 : 0.6});
+      BOOST_TEST(coarse.summary.message == "");
+      BOOST_TEST(coarse.summary.energy_growth > 1e3);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(of_several_parts_the_worst_counts) {
+  std::vector<std::unique_ptr<System>> parts;
+  for (const double omega : {1., 11.}) parts.push_back(make_mass_spring(pushed(omega).network));
+  const Divided both(std::move(parts));
+  const Run r =
+      run(method_named("verlet"), both, {0, Vec{{0, 0}}, Vec{{1000, 1e-3}}}, 6, {.step_size = 0.2});
+  BOOST_TEST(r.summary.message == "");
+  BOOST_TEST(r.summary.energy_growth > 1e6);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,98 @@
+#include <random>
+
+#include <boost/test/unit_test.hpp>
+
+#include "src/model/divided.hpp"
+#include "src/model/in_tension.hpp"
+#include "tests/problems.hpp"
+
+using namespace qddot;
+
+namespace {
+
+// A spring of rest length 1 m and k = 1 N/m between a pin and a mass of 1 kg in 2D.
+std::unique_ptr<System> tether(double stiffness = 1) {
+  Network network{.dimension = 2, .node_mass = Vec::Ones(1)};
+  network.anchors = {{0, {0, 0, 0}, {stiffness, 1}, Holds::in_tension}};
+  return make_mass_spring(network);
+}
+
+State state(double t, double x, double y, double vx, double vy) {
+  return {t, Vec{{x, y}}, Vec{{vx, vy}}};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(in_tension)
+
+BOOST_AUTO_TEST_CASE(the_first_place_below_a_bound_is_that_of_many_samples) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> number(-1, 1);
+  constexpr double binomials[] = {1, 6, 15, 20, 15, 6, 1};
+  int found = 0;
+  for (int i = 0; i < 300; ++i) {
+    SquaredLength c;
+    for (double& x : c) x = number(random);
+    c.front() = 0.5;
+    const double bound = 0.3 * number(random);
+    std::optional<double> sampled;
+    for (int j = 0; j <= 1000 && !sampled; ++j) {
+      const double s = j / 1000.;
+      double sum = 0;
+      for (int k = 0; k < 7; ++k) {
+        sum += binomials[k] * c[k] * std::pow(s, k) * std::pow(1 - s, 6 - k);
+      }
+      if (sum < bound) sampled = s;
+    }
+    const auto first = first_below(c, bound);
+    // Samples miss a dip between two of them; what they see is there.
+    if (sampled) BOOST_TEST((first && *first <= *sampled + 1e-6));
+    if (sampled && first && *sampled - *first < 2e-3) ++found;
+    if (!first) BOOST_TEST(!sampled);
+  }
+  BOOST_TEST(found > 100);
+}
+
+BOOST_AUTO_TEST_CASE(a_spring_in_tension_at_both_ends_of_a_step_may_not_be_so_between) {
+  // x = 1.1 - s + s^2 with s = t - 3, down to 0.85 and up again, is its own cubic.
+  const State from = state(3, 1.1, 0, -1, 0), to = state(4, 1.1, 0, 1, 0);
+  const auto system = tether();
+  BOOST_TEST(system->holds_at(from.q));
+  BOOST_TEST(system->holds_at(to.q));
+  // 1.1 - s + s^2 = 1.
+  const double s = 0.5 - std::sqrt(0.15);
+  BOOST_REQUIRE(system->stops_holding(from, to));
+  BOOST_TEST(std::abs(*system->stops_holding(from, to) - (3 + s)) < 1e-5);
+  // x = 1.3 - s + s^2 stays above 1.
+  BOOST_TEST(!system->stops_holding(state(3, 1.3, 0, -1, 0), state(4, 1.3, 0, 1, 0)));
+}
+
+BOOST_AUTO_TEST_CASE(a_turning_spring_is_as_long_as_it_is) {
+  // A quarter of a circle of radius 1.05 in one step: the cubic with h v = r pi/2 at both ends errs
+  // by 1 % of the radius.
+  const double r = 1.05, v = r * M_PI / 2;
+  BOOST_TEST(!tether()->stops_holding(state(0, r, 0, 0, v), state(1, 0, r, -v, 0)));
+  // The straight way between the two ends is shorter.
+  BOOST_TEST(tether()->stops_holding(state(0, r, 0, -r, r), state(1, 0, r, -r, r)).has_value());
+}
+
+BOOST_AUTO_TEST_CASE(speeds_along_a_stiff_spring_take_it_no_farther_than_it_can_swing) {
+  // w = 1000 rad/s: at 1 m/s it swings by 1e-3 m, which is less than the 1e-2 m that it is drawn
+  // out by; the plain cubic over a step of 1 s would go down by 0.25 m.
+  const State from = state(0, 1.01, 0, -1, 0), to = state(1, 1.01, 0, 1, 0);
+  BOOST_TEST(!tether(1e6)->stops_holding(from, to));
+  BOOST_TEST(tether(1)->stops_holding(from, to).has_value());
+}
+
+BOOST_AUTO_TEST_CASE(of_several_parts_the_first_counts) {
+  std::vector<std::unique_ptr<System>> parts;
+  parts.push_back(tether());
+  parts.push_back(tether());
+  const Divided both(std::move(parts));
+  const State from{0, Vec{{1.1, 0, 1.05, 0}}, Vec{{-1, 0, -1, 0}}};
+  const State to{1, Vec{{1.1, 0, 1.05, 0}}, Vec{{1, 0, 1, 0}}};
+  BOOST_REQUIRE(both.stops_holding(from, to));
+  BOOST_TEST(std::abs(*both.stops_holding(from, to) - (0.5 - std::sqrt(0.2))) < 1e-5);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
