@@ -171,7 +171,7 @@ Outcome Integrator::judge(const State& from, const State& to) {
 }
 
 std::string Integrator::words_on(Outcome outcome) const {
-  if (outcome == Outcome::went_slack) {
+  if (outcome == Outcome::went_slack && message_.empty()) {
     return fmt::format("at t = {:.6g} s {}", slack_at_, advice(outcome));
   }
   return message_.empty() ? std::string(advice(outcome)) : message_;

@@ -213,6 +213,16 @@ BOOST_AUTO_TEST_CASE(random_networks_with_massless_nodes_run_at_every_tolerance_
       link.law.stiffness *= std::pow(10, std::uniform_real_distribution<>(0, 2)(random));
     }
     p.network.node_mass[1] = p.network.node_mass[3] = 0;
+    // Springs of rest length zero pull whatever happens, and hold what they touch for ever.
+    const auto is_massless = [](int node) { return node == 1 || node == 3; };
+    if (scene % 2 == 0) {
+      for (auto& link : p.network.links) {
+        if (is_massless(link.i) || is_massless(link.j)) link.law.rest_length = 0;
+      }
+      for (auto& anchor : p.network.anchors) {
+        if (is_massless(anchor.i)) anchor.law.rest_length = 0;
+      }
+    }
     const auto system = make_mass_spring(p.network);
     std::vector<Run> runs;
     for (const double rtol : {1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
@@ -231,7 +241,7 @@ BOOST_AUTO_TEST_CASE(random_networks_with_massless_nodes_run_at_every_tolerance_
       }
     }
   }
-  BOOST_TEST(reached > 20);
+  BOOST_TEST(reached >= 30);  // those that are held
   BOOST_TEST(reached + slack == 60);
 }
 
