@@ -25,6 +25,10 @@ constexpr double least_share = 1.0 / 16, most_share = 1e8, share_step = 4, sharp
 // walk being at the edge of what is possible (Self and Liang, J. American Statistical Association
 // 82 (1987) 605-610).
 constexpr double certain_walk = 5.4;
+// What chance exceeds once in twenty times, the variance of noise beside a walk being at that edge:
+// below that a walk is taken to be alone. A part of it would else go to noise, which cannot be
+// negative, and the walk and the interval of the slope come out too small.
+constexpr double likely_noise = 2.7;
 // Likewise of the likeliest coloured noise and of the likeliest wave to a walk, where a walk is
 // true: by simulation (the program `verdicts` prints how often it happens).
 constexpr double certain_noise = 7, certain_wave = 12;
@@ -295,6 +299,12 @@ BlockFit fit_blocks(const Vec& y) {
       result.slope = average(is_wave ? waving.fits : noises.fits, y.size());
     } else {
       result.colour = Colour::undecided;
+      const Fit& alone = walking.back();
+      if (2 * (walk.log_likelihood - alone.log_likelihood) < likely_noise) {
+        result.level = alone.level;
+        result.walk = std::sqrt(alone.ratio * alone.variance);
+        result.slope = average({alone}, y.size());
+      }
     }
   }
   if (result.slope.excludes_zero()) {
