@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(exact_is_offered_where_k_is_constant_only) {
   BOOST_TEST(complains(refused, 2, "simulate", {"orbit", "exact", "verlet"}), refused.err);
   const auto names_in = [&](const char* scene) {
     const Exit result = run("work_precision", {"--scene", scene, "--until", "0.1", "--repeats", "1",
-                                               "--point-limit", "0.2", "--out", folder.path()});
+                                               "--point-limit", "0.02", "--out", folder.path()});
     BOOST_TEST(result.status == 0, result.err);
     return read_all(folder / "points.csv");
   };
