@@ -32,7 +32,7 @@ constexpr double likely_noise = 2.7;
 // Likewise of the likeliest coloured noise and of the likeliest wave to a walk, where a walk is
 // true: by simulation (the program `verdicts` prints how often it happens).
 constexpr double certain_noise = 7, certain_wave = 12;
-// Of an oscillation that is known to come back so many periods have been seen.
+// An oscillation is known to come back where so many of its periods have been seen.
 constexpr double least_periods = 1.25;
 // And where 95 % of chance end, of one number that is fitted (chi-squared). More of memories, which
 // are said of those alone that are not told from walks: by simulation.
@@ -135,7 +135,7 @@ class Series {
     return std::max(least_, left.squaredNorm());
   }
 
-  // Of a sine of that period [blocks], without a slope.
+  // What a sine of that period [blocks] leaves, without a slope.
   double squares_beside_sine(double period) const {
     const double w = 2 * M_PI / period;
     // The cosine as its difference from one, so that it is no constant for long periods.

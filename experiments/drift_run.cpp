@@ -14,7 +14,7 @@
 namespace qddot {
 namespace {
 
-// Of less of a run nothing is said but that it blew up, or that so much of its energy is gone.
+// A shorter part of a run tells only that it blew up, or that so much of its energy is gone.
 constexpr double least_part = 0.5, gone = 0.9;
 // What is kept of the samples for tables and pictures.
 constexpr int path_octave = 24, path_even = 256;

@@ -10,7 +10,7 @@
 namespace qddot {
 namespace {
 
-// Of fewer means nobody can say whether they wander, or how far they may.
+// Fewer means cannot say whether they wander, or how far they may.
 constexpr Index told_blocks = 16;
 // Of a run that first does something else, the last part says so much more surely what it comes
 // to; of one line through noise it says nearly three times less, of a walk nearly the same.

@@ -65,7 +65,7 @@ def symmetry_in_words(reference):
     return (
         "this motion exists only in exact symmetry: a push of one rounding out of it moves the"
         f" nodes apart from t = {number(reference.symmetric_until)} s on.\n"
-        "Errors are those of computing the symmetric motion, which no thing that is pushed makes."
+        "Errors are those of computing the symmetric motion, from which any push leads away."
     )
 
 
