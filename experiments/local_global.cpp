@@ -22,15 +22,18 @@
 //  speed.csv        --speed alone: one iteration, set-up, and what one of Newton's iterations
 //                   takes to assemble and factorise, for 33, 65 and 101 nodes
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/iterated_steps.hpp"
 #include "experiments/newton.hpp"
+#include "experiments/pace.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/swinging_cloth.hpp"
@@ -47,6 +50,8 @@ constexpr int standard_nodes = 33;
 constexpr double standard_stiffness = 1200;
 constexpr int speed_nodes[] = {33, 65, 101};
 constexpr int most_iterations_of_figure_3 = 100;
+constexpr double most_steps_of_run = 1e6;
+constexpr std::array iterations_of_runs = {1, 2, 3, 5, 10, 20, 50, 100, 200};
 
 struct Arguments {
   std::string out;
@@ -108,7 +113,8 @@ nlohmann::json setups(const Comparison& comparison) {
   return setups;
 }
 
-void write_step(const Arguments& a, const std::vector<std::string>& command_line) {
+// Whether all solvers came to the end.
+bool write_step(const Arguments& a, const std::vector<std::string>& command_line) {
   CsvFile convergence(a.out + "/convergence.csv",
                       {"solver", "iteration", "seconds", "relative_error"});
   CsvFile positions(a.out + "/positions.csv",
@@ -143,6 +149,13 @@ void write_step(const Arguments& a, const std::vector<std::string>& command_line
   origin["step_error"] = own;
   convergence.commit(origin);
   positions.commit(origin);
+  bool all_held = true;
+  for (const Solved& solved : comparison.all) {
+    if (solved.failure.empty()) continue;
+    fmt::print(stderr, "local_global: {}\n", solved.failure);
+    all_held = false;
+  }
+  return all_held;
 }
 
 void write_figure_3(const Arguments& a, const std::vector<std::string>& command_line) {
@@ -200,7 +213,7 @@ void write_run(const Arguments& a, const std::vector<std::string>& command_line)
   };
   for (const Method& method : methods()) {
     if (!method.takes_iterations) continue;
-    for (const int iterations : {1, 2, 3, 5, 10, 20, 50, 100, 200}) add(method, iterations);
+    for (const int iterations : iterations_of_runs) add(method, iterations);
   }
   for (const int iterations : {1, 2, 3, 5, 10, 20}) add(newton_clamped(), iterations);
   add(newton_exact(), most_newton_iterations);
@@ -245,6 +258,39 @@ void write_speed(const Arguments& a, const std::vector<std::string>& command_lin
   csv.commit(origin_of(command_line, SwingingCloth(standard_nodes, a.stiffness, 0), a));
 }
 
+// Throws InvalidInput for what would take steps without end; says on stderr what takes more than a
+// minute.
+void require_affordable(const Arguments& a) {
+  const double steps = a.until / a.step_size;
+  if (!(steps <= most_steps_of_run)) {
+    throw InvalidInput(fmt::format(
+        "--step-size {:g}: the runs of {:g} s (--until) are {:.3g} steps; allowed are up to {:g}",
+        a.step_size, a.until, steps, most_steps_of_run));
+  }
+  require_reachable(a.nodes, a.stiffness, a.step_size, "--step-size");
+  require_reachable(a.nodes, a.stiffness, a.until, "--until");
+  double sizes = 0;
+  for (const double stiffness : a.stiffnesses) {
+    require_reachable(a.nodes, stiffness, a.swing, "--swing");
+    sizes += 1;
+  }
+  for (const int nodes : a.resolutions) {
+    const double part = (nodes - 1) / static_cast<double>(a.nodes - 1);
+    require_reachable(nodes, a.stiffness * part, a.swing, "--swing");
+    sizes += part * part;
+  }
+  double of_runs = 0;
+  for (const int iterations : iterations_of_runs) of_runs += 4 * iterations;
+  const double iterations =
+      iterations_of_comparison(a.iterations, a.repeats) +
+      sizes * iterations_of_comparison(std::min(a.iterations, most_iterations_of_figure_3), 1) +
+      steps * of_runs;
+  const double seconds =
+      seconds_of_iterations(SwingingCloth(a.nodes, a.stiffness, 0), a.step_size, iterations);
+  if (seconds > 60)
+    fmt::print(stderr, "local_global: this takes about {}\n", duration_in_words(seconds));
+}
+
 int local_global_program(const Arguments& a, const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_within(a.nodes, 3, 400, "--nodes");
@@ -255,21 +301,22 @@ int local_global_program(const Arguments& a, const std::vector<std::string>& com
   require_within(a.iterations, 1, 100000, "--iterations");
   require_repeats(a.repeats);
   require_positive(a.stiffness, "--stiffness", "a stiffness in N/m");
-  require_positive(a.step_size, "--step-size", "h in s");
   require_positive(a.until, "--until", "the length of the runs in s");
   if (!(std::isfinite(a.swing) && a.swing >= 0)) {
     throw InvalidInput(fmt::format(
         "--swing {} is not allowed; it is a time in s, finite and at least 0", a.swing));
   }
+  require_step_size(a.step_size, "--step-size", a.swing + a.until);
+  if (!a.speed) require_affordable(a);
   require_folder(a.out);
   if (a.speed) {
     write_speed(a, command_line);
     return done;
   }
-  write_step(a, command_line);
+  const bool all_held = write_step(a, command_line);
   write_figure_3(a, command_line);
   write_run(a, command_line);
-  return done;
+  return all_held ? done : end_not_reached;
 }
 
 }  // namespace

@@ -30,6 +30,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/machine_limits.hpp"
 #include "experiments/memory.hpp"
@@ -95,7 +96,7 @@ void declare(CLI::App& app, Arguments& a) {
 
 void require_options(const CLI::App& app, const Arguments& a) {
   require_given(a.out, "--out", "the folder for the results");
-  require_positive(a.step_size, "--step-size", "h in s");
+  require_step_size(a.step_size, "--step-size");
   require_positive(a.point_limit, "--point-limit", "the seconds a step may take");
   require_within(a.sizes, 1, 20, "--sizes");
   if (app.count("--memory-limit") > 0) {

@@ -16,12 +16,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/aside.hpp"
 #include "experiments/catalogue.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/diagnosis.hpp"
 #include "experiments/method_options.hpp"
 #include "experiments/node_table.hpp"
+#include "experiments/pace.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
@@ -170,8 +172,8 @@ Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& metho
     throw InvalidInput(
         fmt::format("{} is missing; {} needs it, greater than 0", wanted, method.name));
   }
-  if (fixed) require_positive(a.step_size, "--step-size", "h in s");
-  if (!fixed) require_positive(a.rtol, "--rtol", "a relative tolerance");
+  if (fixed) require_step_size(a.step_size, "--step-size");
+  if (!fixed) require_rtol(a.rtol, "--rtol");
   if (app.count("--atol") > 0) require_positive(a.atol, "--atol", "an absolute tolerance");
   require_options(app, a.options, method);
   return {.step_size = a.step_size,
@@ -311,23 +313,31 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   require_distinct_outputs(app, a);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  if (method.knob == Knob::step_size) require_step_size(a.step_size, "--step-size", until);
   const Scene start = started(drawn, a.scene);
   Reductions reductions = reductions_of(a.scene);
   // Springs in series are one in tension only: who takes the node between them need not care.
   if (method.accepts_massless) reductions = reductions.without(Reduction::massless);
   const ReducedScene scene(start, reductions);
   require_fit(method, scene, a.scene.name);
+  const Knobs scaled = with_tolerance_scales(knobs, scene);
+  require_atol(scaled);
 
   WrittenScene written_scene(a.written_scene_path);
   Output output(a, scene, until);
   written_scene.commit(drawn);
   State state = scene.initial();
   output.see(state);
-  const auto integrator =
-      make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene));
+  const auto warn = [](const std::string& warning) {
+    if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
+  };
+  warn(tolerance_warning(scaled));
+  const auto integrator = make_integrator(method, scene.system(), scaled);
   Summary summary;
-  const double seconds =
-      seconds_of([&] { summary = integrator->advance(state, until, output.observer()); });
+  const double seconds = seconds_of([&] {
+    const Pace pace("simulate", *integrator, until);
+    summary = integrator->advance(state, until, output.observer());
+  });
 
   if (output.is_asked_for()) {
     nlohmann::json origin = provenance(command_line, drawn, start, scene);
@@ -338,9 +348,6 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   }
   fmt::print("{} on {}: {} at t = {:g} s after {}\n", method.name, drawn.name,
              name(summary.outcome), summary.t_reached, in_words(summary.counts));
-  const auto warn = [](const std::string& warning) {
-    if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
-  };
   if (summary.outcome != Outcome::diverged) warn(growth_warning(method, summary));
   if (summary.outcome == Outcome::reached_end) {
     warn(step_warning(method, knobs, scene));

@@ -27,6 +27,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/amplitude_rows.hpp"
 #include "experiments/chosen_steps.hpp"
 #include "experiments/csv.hpp"
@@ -274,7 +275,7 @@ int stability_map(const CLI::App& app, const Arguments& a,
   require(a);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
-  if (app.count("--step-size") > 0) require_positive(a.step_size, "--step-size", "h in s");
+  if (app.count("--step-size") > 0) require_step_size(a.step_size, "--step-size");
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   const auto methods = select_methods(a.methods, scene, a.scene.name);

@@ -193,6 +193,7 @@ void Integrator::take_over(Integrator& other) {
 }
 
 void Integrator::set_out(const State& state) {
+  reached_ = state.t;
   if (system_.parts().empty()) {  // else each part looks after itself
     growth_.start(state);
     if (system_.has_massless()) {
