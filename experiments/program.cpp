@@ -10,6 +10,7 @@
 
 #include "experiments/build_info.hpp"
 #include "experiments/interruption.hpp"
+#include "experiments/memory.hpp"
 #include "experiments/overwriting.hpp"
 #include "experiments/reference.hpp"
 #include "experiments/whole_file.hpp"
@@ -86,6 +87,8 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return complain(app, error.what(), bad_input);
   } catch (const NoReference& error) {
     return complain(app, error.what(), end_not_reached);
+  } catch (const std::bad_alloc&) {
+    return complain(app, out_of_memory(), end_not_reached);
   } catch (const std::exception& error) {
     return complain(app, error.what(), failed);
   }

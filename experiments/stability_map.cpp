@@ -110,12 +110,15 @@ void require(const Arguments& a) {
 std::vector<AmplitudeRow> rows_of(const Arguments& a, const Scene& start,
                                   const std::optional<Scene>& rest) {
   const Reductions reductions = reductions_of(a.scene);
-  if (!a.vary.empty()) return varied_rows(a.scene.name, a.vary, a.amplitudes, reductions);
-  if (!rest) return {};
-  auto rows = scaled_rows(start, *rest, a.amplitudes, reductions);
-  if (rows.size() < a.amplitudes.size()) {
-    fmt::print(stderr, "stability_map: {} of {} amplitudes are left out, at which nothing moves\n",
-               a.amplitudes.size() - rows.size(), a.amplitudes.size());
+  std::vector<std::string> left_out;
+  std::vector<AmplitudeRow> rows;
+  if (!a.vary.empty()) {
+    rows = varied_rows(a.scene.name, a.vary, a.amplitudes, reductions, &left_out);
+  } else if (rest) {
+    rows = scaled_rows(start, *rest, a.amplitudes, reductions, &left_out);
+  }
+  for (const std::string& why : left_out) {
+    fmt::print(stderr, "stability_map: {}; its row is left out\n", in_one_line(why));
   }
   return rows;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -135,6 +136,11 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
   double growth = 1;
   try {
     outcome = run(state, t_end, observer);
+  } catch (const std::bad_alloc&) {
+    outcome = Outcome::solver_failed;
+    explain(
+        "memory ran out: take a scene of fewer nodes, or a method or solver that factorises "
+        "nothing (verlet; conjugate gradients)");
   } catch (const std::exception& error) {
     outcome = Outcome::solver_failed;
     explain(error.what());
