@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/interruption.hpp"
 #include "experiments/reference.hpp"
 #include "integrators/registry.hpp"
 #include "src/analysis/frequency_bound.hpp"
@@ -31,7 +32,8 @@ Scene draw(int nodes, double stiffness) {
 State moved(const char* method, const System& system, State state, double duration) {
   const double h = share_of_limit / frequency_bound(system, state.q);
   const Summary summary = make_integrator(*find_method(method), system, {.step_size = h})
-                              ->advance(state, state.t + duration);
+                              ->advance(state, state.t + duration, {}, interruption());
+  stop_if_interrupted();
   if (summary.outcome != Outcome::reached_end) {
     throw NoReference(fmt::format("the cloth's own motion ends at {:.4g} s: {}", summary.t_reached,
                                   summary.message));
