@@ -14,6 +14,7 @@
 #include "integrators/registry.hpp"
 #include "src/algebra/effective_mass.hpp"
 #include "src/analysis/frequency_bound.hpp"
+#include "src/scene/scene_limits.hpp"
 
 namespace qddot {
 namespace {
