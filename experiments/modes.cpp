@@ -183,12 +183,7 @@ int main(int argc, char** argv) {
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
   qddot::add_threads_option(app);
-  return qddot::run_program(app, argc, argv, [&]() -> int {
-    try {
-      return qddot::modes(arguments, {argv, argv + argc});
-    } catch (const std::domain_error& no_modes) {
-      fmt::print(stderr, "modes: {}\n", no_modes.what());
-      return qddot::end_not_reached;
-    }
+  return qddot::run_program(app, argc, argv, [&] {
+    return qddot::modes(arguments, {argv, argv + argc});
   });
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "experiments/deadline.hpp"
+#include "experiments/interruption.hpp"
 #include "integrators/registry.hpp"
 
 namespace qddot {
@@ -69,20 +70,21 @@ std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method
   const auto integrator = make_integrator(method, scene.system(), knobs);
   Solution solution{.end = initial};
   const Deadline deadline(seconds);
-  const std::int64_t apart = (samples + most_looks - 1) / most_looks;
-  const std::int64_t looks = (samples + apart - 1) / apart;
+  const std::int64_t gap = (samples + most_looks - 1) / most_looks;
+  const std::int64_t looks = (samples + gap - 1) / gap;
   const std::int64_t stride = (looks + longest_path - 1) / longest_path;
   std::int64_t seen = 0;
   Observer each{{}, [&](const State& state) {
                   extend(solution.scales, scene, state);
                   if (++seen % stride == 0 || seen == looks) solution.path.push_back(state);
                 }};
-  for (std::int64_t i = apart; i < samples; i += apart) {
+  for (std::int64_t i = gap; i < samples; i += gap) {
     each.times.push_back(until * static_cast<double>(i) / static_cast<double>(samples));
   }
   each.times.push_back(until);
   extend(solution.scales, scene, solution.end);
   const Summary summary = integrator->advance(solution.end, until, each, deadline.token());
+  stop_if_interrupted();
   if (summary.outcome != Outcome::reached_end) return {};
   return solution;
 }
@@ -114,8 +116,10 @@ std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double
                      has_scales ? scales.displacement_of(scales.parts[i]) : scales.displacement,
                  speed = has_scales ? scales.speed_of(scales.parts[i]) : scales.speed;
     if (!fehlberg_step_by_step(part, q, v, until, tolerance, length > 0 ? length : 1,
-                               speed > 0 ? speed : 1, deadline))
+                               speed > 0 ? speed : 1, deadline)) {
+      stop_if_interrupted();
       return {};
+    }
     at += part.size();
   }
   solution.made_by = fmt::format("Boost.odeint Fehlberg 7(8) at tolerance {:.0e}", tolerance);

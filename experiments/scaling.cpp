@@ -40,6 +40,7 @@
 #include "experiments/provenance.hpp"
 #include "experiments/scaling_run.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/study.hpp"
 #include "src/scene/invalid_input.hpp"
 
 namespace qddot {
@@ -225,6 +226,8 @@ int scaling(const CLI::App& app, const Arguments& a, const std::vector<std::stri
   std::vector<std::vector<SolvedMethod>> methods;
   for (const std::string& name : a.scenes) methods.push_back(select(find_sized_scenes(name), a));
   require_folder(a.out);
+  Study study(app, a.out, {"scaling.csv", "exponents.csv", "roofline.csv"}, {});
+  if (const auto status = study.completed()) return *status;
   CsvFile costs(a.out + "/scaling.csv",
                 {"scene", "nodes", "springs", "method", "phase", "seconds", "bytes"});
   CsvFile exponents(a.out + "/exponents.csv", {"scene", "method", "phase", "exponent", "low",
@@ -238,8 +241,10 @@ int scaling(const CLI::App& app, const Arguments& a, const std::vector<std::stri
                   .bytes = is_told ? gigabyte * a.memory_limit : taken_of_free * free_memory(),
                   .step_size = a.step_size,
                   .reductions = reductions_of(a.choice)});
-  for (std::size_t i = 0; i < a.scenes.size(); ++i)
-    run.measure(find_sized_scenes(a.scenes[i]), sizes_of(a), methods[i]);
+  study.measure([&] {
+    for (std::size_t i = 0; i < a.scenes.size(); ++i)
+      run.measure(study, find_sized_scenes(a.scenes[i]), sizes_of(a), methods[i]);
+  });
   show_progress("");
 
   const double peak = peak_flops(look);
@@ -251,8 +256,8 @@ int scaling(const CLI::App& app, const Arguments& a, const std::vector<std::stri
                method, nodes, why);
   }
   const nlohmann::json origin = origin_of(command_line, a, run);
-  for (CsvFile* file : {&costs, &exponents, &roofline}) file->commit(origin);
-  return run.has_failed() ? end_not_reached : done;
+  return study.finish({&costs, &exponents, &roofline}, origin,
+                      run.has_failed() ? end_not_reached : done);
 }
 
 }  // namespace
@@ -263,6 +268,7 @@ int main(int argc, char** argv) {
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
   qddot::add_threads_option(app);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::scaling(app, arguments, {argv, argv + argc});
   });

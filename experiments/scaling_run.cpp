@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/interruption.hpp"
 #include "experiments/machine_limits.hpp"
 #include "experiments/memory.hpp"
 #include "experiments/progress.hpp"
@@ -17,6 +18,13 @@
 #include "src/scene/scene_limits.hpp"
 
 namespace qddot {
+
+// What nlohmann::json looks for by these names.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PhaseCost, scene, nodes, springs, method, phase, seconds, bytes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ForceRate, seconds, bytes, flops)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScalingSize, scene, hash, nodes, springs, unknowns, force, triad)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOut, scene, method, nodes, why)
+
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
@@ -57,6 +65,23 @@ double bytes_of(const SymmetricMatrix& k) {
                              k.outerSize() * sizeof(int));
 }
 
+std::vector<std::string> names_of(const std::vector<SolvedMethod>& methods) {
+  std::vector<std::string> names;
+  for (const SolvedMethod& solved : methods) names.push_back(solved.name());
+  return names;
+}
+
+// What was added to the first `count`.
+template <class T>
+std::vector<T> since(const std::vector<T>& all, std::size_t count) {
+  return {all.begin() + static_cast<std::ptrdiff_t>(count), all.end()};
+}
+
+template <class T>
+void append(const nlohmann::json& more, std::vector<T>& all) {
+  for (const auto& one : more) all.push_back(one.get<T>());
+}
+
 }  // namespace
 
 std::string SolvedMethod::name() const {
@@ -65,35 +90,63 @@ std::string SolvedMethod::name() const {
   return fmt::format("{}:{}", method->name, found->second);
 }
 
-void ScalingRun::measure(const SizedScenes& scenes, const std::vector<double>& sizes,
+void ScalingRun::measure(Study& study, const SizedScenes& scenes, const std::vector<double>& sizes,
                          std::vector<SolvedMethod> methods) {
   for (const double size : sizes) {
-    if (methods.empty() || !fits(scenes, "", phases_before, size, passing_memory)) return;
-    show_progress(at(scenes.name, std::round(size)));
-    std::optional<Scene> drawn;
-    std::optional<ReducedScene> reduced;
-    const Making drawing = make(drawn, [&] { return scenes.draw(size); });
-    sizes_.push_back({.scene = scenes.name,
-                      .hash = content_hash(*drawn),
-                      .nodes = static_cast<double>(drawn->nodes.size()),
-                      .springs = static_cast<double>(drawn->springs.size())});
-    add("", "scene", drawing.seconds, drawing.bytes);
-    const Making reducing = make(reduced, [&] { return ReducedScene(*drawn, limits_.reductions); });
-    add("", "reduce", reducing.seconds, reducing.bytes);
-    const double moving = moving_springs(*drawn);
-    drawn.reset();
-    sizes_.back().unknowns = reduced->system().size();
-    sizes_.back().force = force_rate(*reduced, moving, look);
-    sizes_.back().triad = triad_bandwidth(sizes_.back().force.bytes, look);
-    measure_size(scenes, *reduced, methods);
+    if (methods.empty()) return;
+    const nlohmann::json piece =
+        study.piece(fmt::format("{} {:.17g}", scenes.name, size), [&]() -> nlohmann::json {
+          ScalingRun one = *this;
+          auto fitting = methods;
+          const bool has_measured = one.measure_size(scenes, size, fitting);
+          return {{"measured", has_measured},
+                  {"methods", names_of(fitting)},
+                  {"costs", since(one.costs_, costs_.size())},
+                  {"sizes", since(one.sizes_, sizes_.size())},
+                  {"left_out", since(one.left_out_, left_out_.size())},
+                  {"has_failed", one.has_failed_}};
+        });
+    append(piece.at("costs"), costs_);
+    append(piece.at("sizes"), sizes_);
+    append(piece.at("left_out"), left_out_);
+    has_failed_ = piece.at("has_failed");
+    if (!piece.at("measured")) return;
+    const std::vector<std::string> fitting = piece.at("methods");
+    std::erase_if(methods, [&](const SolvedMethod& solved) {
+      return std::ranges::find(fitting, solved.name()) == fitting.end();
+    });
   }
 }
 
-void ScalingRun::measure_size(const SizedScenes& scenes, const ReducedScene& scene,
+bool ScalingRun::measure_size(const SizedScenes& scenes, double size,
                               std::vector<SolvedMethod>& methods) {
+  if (!fits(scenes, "", phases_before, size, passing_memory)) return false;
+  show_progress(at(scenes.name, std::round(size)));
+  std::optional<Scene> drawn;
+  std::optional<ReducedScene> reduced;
+  const Making drawing = make(drawn, [&] { return scenes.draw(size); });
+  sizes_.push_back({.scene = scenes.name,
+                    .hash = content_hash(*drawn),
+                    .nodes = static_cast<double>(drawn->nodes.size()),
+                    .springs = static_cast<double>(drawn->springs.size())});
+  add("", "scene", drawing.seconds, drawing.bytes);
+  const Making reducing = make(reduced, [&] { return ReducedScene(*drawn, limits_.reductions); });
+  add("", "reduce", reducing.seconds, reducing.bytes);
+  const double moving = moving_springs(*drawn);
+  drawn.reset();
+  sizes_.back().unknowns = reduced->system().size();
+  sizes_.back().force = force_rate(*reduced, moving, look);
+  sizes_.back().triad = triad_bandwidth(sizes_.back().force.bytes, look);
+  measure_methods(scenes, *reduced, methods);
+  return true;
+}
+
+void ScalingRun::measure_methods(const SizedScenes& scenes, const ReducedScene& scene,
+                                 std::vector<SolvedMethod>& methods) {
   const double nodes = sizes_.back().nodes;
   double stable = 0;  // half of what is certainly stable [s]; zero until an explicit method asks
   std::erase_if(methods, [&](const SolvedMethod& solved) {
+    stop_if_interrupted();
     if (!fits(scenes, solved.name(), phases_of_method, nodes, 1)) return true;
     const bool implicit = solved.method->implicit;
     if (!implicit && stable == 0) {
@@ -102,6 +155,8 @@ void ScalingRun::measure_size(const SizedScenes& scenes, const ReducedScene& sce
     show_progress(at(fmt::format("{}, {}", scenes.name, solved.name()), nodes));
     try {
       measure_method(solved, scene, implicit ? limits_.step_size : stable);
+    } catch (const Interrupted&) {
+      throw;
     } catch (const std::exception& error) {  // out of memory
       leave_out(solved.name(), nodes, error.what());
       return true;

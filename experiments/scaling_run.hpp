@@ -5,6 +5,7 @@
 
 #include "experiments/force_rate.hpp"
 #include "experiments/phase_table.hpp"
+#include "experiments/study.hpp"
 #include "integrators/method.hpp"
 #include "src/algebra/solver.hpp"
 #include "src/scene/reduce.hpp"
@@ -51,8 +52,9 @@ class ScalingRun {
  public:
   explicit ScalingRun(const ScalingLimits& limits) : limits_(limits) {}
 
-  // The scene at about each of these numbers of nodes, ascending, with the methods.
-  void measure(const SizedScenes& scenes, const std::vector<double>& sizes,
+  // The scene at about each of these numbers of nodes, ascending, with the methods. Each size is a
+  // piece of the study.
+  void measure(Study& study, const SizedScenes& scenes, const std::vector<double>& sizes,
                std::vector<SolvedMethod> methods);
 
   const std::vector<PhaseCost>& costs() const { return costs_; }
@@ -62,8 +64,11 @@ class ScalingRun {
   bool has_failed() const { return has_failed_; }
 
  private:
-  void measure_size(const SizedScenes& scenes, const ReducedScene& scene,
-                    std::vector<SolvedMethod>& methods);
+  // The scene at one size, all methods that fit; erases those that do not. False where the scene
+  // itself does not.
+  bool measure_size(const SizedScenes& scenes, double size, std::vector<SolvedMethod>& methods);
+  void measure_methods(const SizedScenes& scenes, const ReducedScene& scene,
+                       std::vector<SolvedMethod>& methods);
   void measure_method(const SolvedMethod& solved, const ReducedScene& scene, double step_size);
   bool fits(const SizedScenes& scenes, const std::string& method,
             const std::vector<std::string>& phases, double nodes, double memory);

@@ -163,6 +163,12 @@ int solvers(const CLI::App& app, const Arguments& a, const std::vector<std::stri
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   const System& system = scene.system();
+  if (system.size() == 0) {
+    throw InvalidInput(fmt::format(
+        "{}: nothing of it is unknown, so that there is no matrix; allowed are scenes with free "
+        "nodes on springs",
+        a.scene.name));
+  }
   require_folder(a.out);
   Study study(
       app, a.out, {"solvers.csv"},

@@ -87,6 +87,10 @@ Study::Study(const CLI::App& app, const std::string& folder, const std::vector<s
   }
 }
 
+Study::~Study() {
+  if (journal_ && journal_->size() == 0) journal_->remove();
+}
+
 nlohmann::json Study::piece(const std::string& name, const std::function<nlohmann::json()>& make) {
   if (auto known = journal_->find(name)) return *known;
   stop_if_interrupted();

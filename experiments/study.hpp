@@ -32,6 +32,10 @@ class Study {
   // is measured anew, of an interrupted run. Throws InvalidInput as Journal does.
   Study(const CLI::App& app, const std::string& folder, const std::vector<std::string>& tables,
         const nlohmann::json& about);
+  // Leaves no journal where nothing was measured.
+  ~Study();
+  Study(const Study&) = delete;
+  Study& operator=(const Study&) = delete;
 
   // What it ended with, where --resume finds it complete: there is nothing to do then.
   std::optional<int> completed() const { return completed_; }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 #include <omp.h>
+#include <new>
 #include <stdexcept>
 
 #include <suitesparse/cholmod.h>
@@ -83,7 +84,7 @@ class CholmodFactors : public Factors {
     right.dtype = CHOLMOD_DOUBLE;
     // solve2 keeps its workspace between calls, where cholmod_solve would allocate.
     if (!cholmod_solve2(CHOLMOD_A, current_, &right, nullptr, &x_, nullptr, &y_, &e_, &common_)) {
-      throw std::runtime_error("CHOLMOD could not solve: out of memory");
+      throw std::bad_alloc();
     }
     x = Eigen::Map<const Vec>(static_cast<const double*>(x_->x), b.size());
     return SolveOutcome::found;
@@ -110,7 +111,7 @@ class CholmodFactors : public Factors {
   cholmod_factor* analyze(int kind) {
     common_.supernodal = kind;
     cholmod_factor* factor = cholmod_analyze(&view_, &common_);
-    if (!factor) throw std::runtime_error("CHOLMOD could not analyse: out of memory");
+    if (!factor) throw std::bad_alloc();
     return factor;
   }
 
@@ -124,7 +125,7 @@ class CholmodFactors : public Factors {
     cholmod_factorize(&view_, factor, &common_);
     omp_set_max_active_levels(levels);
     if (common_.status < CHOLMOD_OK) {
-      throw std::runtime_error("CHOLMOD could not factorise: out of memory");
+      throw std::bad_alloc();
     }
     return factor->minor >= factor->n;
   }

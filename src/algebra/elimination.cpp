@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -79,7 +80,7 @@ class Analysis {
     }
     if (!factor_) {
       cholmod_finish(&common_);
-      throw std::runtime_error("CHOLMOD could not analyse: out of memory");
+      throw std::bad_alloc();
     }
   }
   ~Analysis() {

@@ -118,7 +118,7 @@ CurvatureSigns curvature_signs(const System& system, const Vec& q) {
   system.stiffness(q, k);
   if (!k.coeffs().allFinite()) throw std::runtime_error("the stiffness matrix is not finite");
   Vec e = rounding_of_rows(system, q, k);
-  if (!e.allFinite()) throw std::runtime_error("the stiffness matrix overflows");
+  if (!e.allFinite()) throw std::domain_error("the stiffness matrix overflows");
   const double largest = e.maxCoeff();
   if (largest == 0) return {.negative = 0, .flat = static_cast<int>(system.size())};
   // Where no spring pulls at all, any other number does.
