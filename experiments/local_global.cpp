@@ -358,7 +358,7 @@ int measure_steps(const CLI::App& app, const Arguments& a, const nlohmann::json&
   const auto commit = [&](CsvFile& table, const nlohmann::json& own) {
     nlohmann::json whole = origin;
     whole.update(own);
-    study.commit(table, whole, status);
+    study.complete(table, whole, status);
   };
   commit(tables.convergence, tables.of_step);
   commit(tables.positions, tables.of_step);

@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(a_file_that_is_not_as_it_was_written_is_not_believed) {
     BOOST_TEST(again.energy == made.energy);
   }
   // Cut short, or without a checksum.
-  for (const std::string& text : {whole.substr(0, whole.size() / 2), std::string("[]"), [&] {
+  for (const std::string& text : {whole.substr(0, whole.size() / 2), [&] {
                                     nlohmann::json json = nlohmann::json::parse(whole);
                                     json.erase("checksum");
                                     return json.dump();
