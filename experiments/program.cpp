@@ -92,7 +92,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return complain(app, error.what(), end_not_reached);
   } catch (const std::bad_alloc&) {
     return complain(app, out_of_memory(), end_not_reached);
-  } catch (const std::system_error& error) {  // no thread can be started
+  } catch (const std::system_error&) {  // no thread can be started
     return complain(app, out_of_memory(), end_not_reached);
   } catch (const std::exception& error) {
     return complain(app, error.what(), failed);

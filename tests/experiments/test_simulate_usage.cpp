@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(tolerances_and_steps_that_cannot_mean_anything_are_refused)
     check_value_refused("--atol", atol, {"--atol", "not allowed", "below 10"});
   }
   // A second holds no more than 1e15 steps.
-  for (const char* h : {"9e-16", "1e-300"}) {
+  for (const char* h : {"9e-16", "1e-20"}) {
     check_value_refused("--step-size", h, {"--step-size", "not allowed", "at least 1e-15"});
   }
   check_value_refused("--step-size", "1e200", {"--step-size", "not allowed", "1e+150"});
