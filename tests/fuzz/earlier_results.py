@@ -1,0 +1,54 @@
+"""Folders of results that studies wrote before, to be found, spoiled, by those that are fuzzed."""
+
+import os
+import subprocess
+from dataclasses import dataclass
+
+from random_scenes import spoiled
+from studies import SCENE, STUDIES
+
+
+@dataclass
+class Earlier:
+    """A study's command line without --out, and the folder that it wrote."""
+
+    arguments: list
+    folder: str
+
+    def again(self, random):
+        """The same command line into "results", perhaps to be resumed."""
+        more = random.choice([[], [], ["--resume"], ["--force"], ["--resume", "--force"]])
+        return self.arguments + ["--out", "results"] + more
+
+
+def earlier_results(programs, names, place):
+    """Earlier results of those of `names` that are studies, by name, as folders of `place`."""
+    results = {}
+    os.makedirs(place)
+    with open(os.path.join(place, "steady.toml"), "wb") as file:
+        file.write(SCENE)
+    for name in set(names) & set(STUDIES):
+        arguments, folder = STUDIES[name].split(), os.path.join(place, name)
+        # The folder is called as the sandbox's, as command lines are part of what is written.
+        subprocess.run([os.path.join(programs, name)] + arguments + ["--out", "results"], cwd=place,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=60, check=False)
+        if os.path.isdir(os.path.join(place, "results")):
+            os.rename(os.path.join(place, "results"), folder)
+            results[name] = Earlier(arguments, folder)
+    return results
+
+
+def spoil_one(random, sandbox):
+    """Writes the scene of the earlier results, and spoils one of these, mostly; both count as found."""
+    with open(os.path.join(sandbox.here, "steady.toml"), "wb") as file:
+        file.write(SCENE)
+    sandbox.inputs.add("steady.toml")
+    folder = os.path.join(sandbox.here, "results")
+    chosen = random.choice(sorted(os.listdir(folder)))
+    path = os.path.join(folder, chosen)
+    if random.random() < 0.8 and os.path.isfile(path):
+        with open(path, "rb") as file:
+            data = file.read()
+        with open(path, "wb") as file:
+            file.write(spoiled(random, data))
+    sandbox.notice()

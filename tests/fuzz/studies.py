@@ -1,0 +1,19 @@
+"""A small command line of every study, whose points do not depend on how fast the machine is."""
+
+SCENE = b'until = 0.02\n[generator]\nkind = "chain"\nnodes = 6\n'
+
+# Parts of a second each; to the last, "--out FOLDER" is added. No run comes near its limit of time.
+STUDIES = {
+    "work_precision": "--scene steady.toml --methods verlet,rk4,ida --repeats 1 --point-limit 100 --until 0.01",
+    "convergence": "--scene steady.toml --methods verlet,rk4,implicit_midpoint --until 0.01",
+    "stability_map": "--scene steady.toml --methods verlet,rk4 --columns 6 --amplitudes 0.03,0.3 --cell-limit 100 --until 0.01",
+    "energy_drift": "--scene steady.toml --methods verlet,rk4,dprkn6 --step-size 1e-4 --until 0.05 --method-limit 100",
+    "exchange": "--scene fpu --methods verlet,rk4 --until 1 --h-omega 0.1,1",
+    "local_global": "--nodes 5 --iterations 20 --repeats 1 --stiffnesses 300,600 --resolutions 4,5 --swing 0.02 --until 0.02",
+    "scaling": "--scenes chain --methods verlet --least-nodes 20 --most-nodes 60 --sizes 1",
+    "crossover": "--family chain --nodes 9 --until 0.01 --ratios 1,10 --methods verlet,rk4 --repeats 1 --point-limit 100",
+    "stock_sundials": "--scene steady.toml --methods ida,arkode_dirk4 --rtol 1e-3,1e-5 --repeats 1 --until 0.01",
+    "solvers": "--scene steady.toml --repeats 2",
+    "modes": "--scene steady.toml",
+    "verdicts": "--seeds 1 --cells 64",
+    "bench": "steady.toml@0.01 --methods verlet --repeats 1 --point-limit 100 --peers odeint"}
