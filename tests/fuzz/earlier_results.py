@@ -14,27 +14,28 @@ class Earlier:
 
     arguments: list
     folder: str
+    options: set
 
     def again(self, random):
         """The same command line into "results", perhaps to be resumed."""
-        more = random.choice([[], [], ["--resume"], ["--force"], ["--resume", "--force"]])
+        more = [name for name in ("--resume", "--force") if name in self.options and random.random() < 0.4]
         return self.arguments + ["--out", "results"] + more
 
 
-def earlier_results(programs, names, place):
-    """Earlier results of those of `names` that are studies, by name, as folders of `place`."""
+def earlier_results(programs, options, place):
+    """Earlier results of studies by name, as folders of `place`; `options`: those of each program."""
     results = {}
     os.makedirs(place)
     with open(os.path.join(place, "steady.toml"), "wb") as file:
         file.write(SCENE)
-    for name in set(names) & set(STUDIES):
+    for name in set(options) & set(STUDIES):
         arguments, folder = STUDIES[name].split(), os.path.join(place, name)
         # The folder is called as the sandbox's, as command lines are part of what is written.
         subprocess.run([os.path.join(programs, name)] + arguments + ["--out", "results"], cwd=place,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=60, check=False)
         if os.path.isdir(os.path.join(place, "results")):
             os.rename(os.path.join(place, "results"), folder)
-            results[name] = Earlier(arguments, folder)
+            results[name] = Earlier(arguments, folder, {option.name for option in options[name]})
     return results
 
 

@@ -64,11 +64,12 @@ class Campaign:
         if not self.names:
             sys.exit(f"fuzz_commands: {a.bin}: none of {', '.join(chosen)} is there")
         methods = methods_of(os.path.join(self.bin, "simulate"))
-        self.commands = {n: Commands(n, options_of(os.path.join(self.bin, n)), methods) for n in self.names}
+        options = {n: options_of(os.path.join(self.bin, n)) for n in self.names}
+        self.commands = {n: Commands(n, options[n], methods) for n in self.names}
         place = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
         self.place = tempfile.mkdtemp(prefix="fuzz_commands.", dir=place)
         os.chmod(self.place, 0o777)
-        self.earlier = earlier_results(self.bin, self.names, os.path.join(self.place, "earlier"))
+        self.earlier = earlier_results(self.bin, options, os.path.join(self.place, "earlier"))
 
     def do(self, number):
         """The run of that number: program, arguments, how it ended and what is wrong with it."""

@@ -17,7 +17,7 @@ PATHS = ["scene.toml", "./scene.toml", "sub/../scene.toml", "end.json", "end.csv
 # Choices, (low, high) of a logarithmic range, or the name of a rule below; all so that runs take milliseconds.
 SENSIBLE = {
     "--scene": "scene", "--methods": "methods", "--out": "folder", "--until": (1e-3, 2e-2), "--swing": (1e-3, 2e-2),
-    "--final": "file", "--trajectory": "file", "--energy": "file", "--write-scene": "file", "--motion": "file",
+    "--final": "file", "--trajectory": "file", "--energy": "file", "--write-scene": ["new.toml", "folder/new.toml"], "--motion": "file",
     "--every": (1e-3, 1e-2), "--step-size": (1e-4, 1e-2), "--rtol": (1e-8, 1e-2), "--atol": (1e-10, 1e-2),
     "--repeats": ["1", "2"], "--point-limit": (5e-3, 3e-2), "--cell-limit": (2e-3, 1e-2),
     "--method-limit": (5e-3, 3e-2), "--time-limit": (5e-3, 0.5), "--memory-limit": (0.05, 2),
@@ -31,6 +31,8 @@ SENSIBLE = {
     "--spectral-radius": ["0", "0.5", "1"], "--scenes": ["chain", "cloth", "chain,lattice"], "scenes": "scenes",
     "--solver": ["automatic", "multifrontal", "cholmod", "conjugate_gradients"], "--peers": ["odeint", "none"],
     "--solvers": ["multifrontal", "cholmod", "multifrontal,conjugate_gradients"], "--accuracy": (1e-6, 1e-1)}
+OF_A_PROGRAM = {("crossover", "--nodes"): ["9", "10"], ("exchange", "--until"): (0.1, 1),
+                ("energy_drift", "--step-size"): (1e-6, 2e-5), ("exchange", "--scene"): ["fpu", "scene.toml"]}
 # What makes a run short, or possible at all, is nearly always given.
 NEEDED = {"--scene", "--out", "--until", "--swing", "--methods", "--repeats", "--point-limit", "--cell-limit",
           "--method-limit", "--time-limit", "--nodes", "--stiffnesses", "--resolutions", "--most-nodes",
@@ -57,7 +59,7 @@ class Commands:
 
     def sensible(self, random, option):
         """A value that should be fine, as text."""
-        rule = SENSIBLE.get(option.name)
+        rule = OF_A_PROGRAM.get((self.program, option.name)) or SENSIBLE.get(option.name)
         if isinstance(rule, list):
             return random.choice(rule)
         if isinstance(rule, tuple):
@@ -110,7 +112,7 @@ class Commands:
                 given.append((option, forced.get(option.name) or self.sensible(random, option)))
         random.shuffle(given)
         given.sort(key=lambda one: one[0].name == "--every")
-        for _ in range(random.choice([0, 0, 1, 1, 1, 2, 3])):
+        for _ in range(random.choice([0, 0, 0, 1, 1, 1, 2, 3])):
             given = self._altered(random, given)
         return self._spelled(random, given)
 
@@ -119,11 +121,12 @@ class Commands:
         what = random.random()
         if what < 0.65 and given:
             return given[:at] + [(given[at][0], self.hostile(random, given[at][0]))] + given[at + 1:]
-        if what < 0.85 or not given:
-            option = random.choice(self.options)
+        if what < 0.88 or not given:
+            there = {option.name for option, _ in given}
+            option = random.choice([o for o in self.options if o.name not in there] or self.options)
             value = self.hostile(random, option) if random.random() < 0.6 else self.sensible(random, option)
             return given + [(option, value)]
-        if what < 0.92:
+        if what < 0.95:
             return given[:at] + given[at + 1:]
         return given + [given[at]]
 

@@ -52,9 +52,6 @@ def _network(random, extremes):
     lines = [f"dimension = {d}", f"until = {number(random, 1e-3, 2e-2, extremes)}"]
     if random.random() < 0.6:
         lines.append(f"gravity = {where()}")
-    for key, value in [("stiff_above", "300"), ("start", '"equilibrium"')]:
-        if random.random() < 0.15:
-            lines.append(f"{key} = {value}")
     places = []
     for i in range(n):
         places.append(random.choice(places) if places and random.random() < 0.03 else where())
@@ -147,10 +144,13 @@ def random_scene(random):
         lines = _network(random, extremes)
     else:
         lines, files = _mesh(random, extremes)
+    for key, value, chance in [("stiff_above", "300", 0.2), ("start", '"equilibrium"', 0.1)]:
+        if random.random() < chance:
+            lines.insert(0, f"{key} = {value}")
     if random.random() < 0.25:
         lines.insert(0, f"name = {quoted(random.choice(HOSTILE_NAMES))}")
     files["scene.toml"] = ("\n".join(lines) + "\n").encode()
-    if random.random() < 0.35:
+    if random.random() < 0.25:
         for _ in range(random.choice([1, 1, 1, 2, 5])):
             name = random.choice(sorted(files))
             files[name] = spoiled(random, files[name])

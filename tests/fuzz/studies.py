@@ -17,3 +17,20 @@ STUDIES = {
     "modes": "--scene steady.toml",
     "verdicts": "--seeds 1 --cells 64",
     "bench": "steady.toml@0.01 --methods verlet --repeats 1 --point-limit 100 --peers odeint"}
+
+# The same, of a second or so.
+LONG_STUDIES = STUDIES | {
+    "work_precision": "--scene steady.toml --methods verlet,rk4,blanes_moan4,dprkn8,implicit_midpoint,ida,cvode_bdf,arkode_dirk4"
+                      " --repeats 2 --point-limit 1000 --until 0.02",
+    "convergence": "--scene steady.toml --methods verlet,rk4,blanes_moan4,implicit_midpoint,trapezoidal,bdf2 --until 0.05",
+    "stability_map": "--scene steady.toml --methods verlet,rk4,implicit_euler,bdf2,hht --columns 12 --amplitudes 0.03,0.1,0.3,1"
+                     " --cell-limit 1000 --until 0.05",
+    "energy_drift": "--scene steady.toml --methods verlet,rk4,dprkn6,implicit_midpoint,hht --step-size 2e-5 --until 0.3"
+                    " --method-limit 1000",
+    "exchange": "--scene fpu --methods verlet,rk4,blanes_moan4,implicit_midpoint --until 10 --h-omega 0.1,1",
+    "local_global": "--nodes 15 --iterations 100 --repeats 2 --stiffnesses 300,600 --resolutions 9,11 --swing 0.1 --until 0.1",
+    "scaling": "--scenes chain,cloth --methods verlet --least-nodes 20 --most-nodes 200 --sizes 2 --point-limit 1000",
+    "crossover": "--family chain --nodes 12 --until 0.02 --ratios 1,10,100 --methods verlet,rk4,ida,implicit_midpoint --repeats 2"
+                 " --point-limit 1000",
+    "stock_sundials": "--scene steady.toml --rtol 1e-3,1e-5,1e-7 --repeats 3 --until 0.02 --point-limit 1000",
+    "solvers": "--scene lattice --repeats 3"}
