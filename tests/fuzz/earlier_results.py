@@ -5,7 +5,7 @@ import subprocess
 from dataclasses import dataclass
 
 from random_scenes import spoiled
-from studies import SCENE, STUDIES
+from studies import SCENES, STUDIES, write_scenes
 
 
 @dataclass
@@ -26,8 +26,7 @@ def earlier_results(programs, options, place):
     """Earlier results of studies by name, as folders of `place`; `options`: those of each program."""
     results = {}
     os.makedirs(place)
-    with open(os.path.join(place, "steady.toml"), "wb") as file:
-        file.write(SCENE)
+    write_scenes(place)
     for name in set(options) & set(STUDIES):
         arguments, folder = STUDIES[name].split(), os.path.join(place, name)
         # The folder is called as the sandbox's, as command lines are part of what is written.
@@ -40,10 +39,9 @@ def earlier_results(programs, options, place):
 
 
 def spoil_one(random, sandbox):
-    """Writes the scene of the earlier results, and spoils one of these, mostly; both count as found."""
-    with open(os.path.join(sandbox.here, "steady.toml"), "wb") as file:
-        file.write(SCENE)
-    sandbox.inputs.add("steady.toml")
+    """Writes the scenes of the earlier results, and spoils one of these, mostly; both count as found."""
+    write_scenes(sandbox.here)
+    sandbox.inputs.update(SCENES)
     folder = os.path.join(sandbox.here, "results")
     chosen = random.choice(sorted(os.listdir(folder)))
     path = os.path.join(folder, chosen)

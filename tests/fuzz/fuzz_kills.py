@@ -21,7 +21,7 @@ import tempfile
 import time
 
 from limited_run import run, spelled
-from studies import LONG_STUDIES, SCENE
+from studies import LONG_STUDIES, write_scenes
 from written_tables import differences, faults, json_of
 
 
@@ -53,8 +53,7 @@ class Study:
     def _run(self, where, stop_after, stop_signal, more=()):
         folder = os.path.join(self.place, where, "here")
         os.makedirs(folder, exist_ok=True)
-        with open(os.path.join(folder, "steady.toml"), "wb") as file:
-            file.write(SCENE)
+        write_scenes(folder)
         environment = {"PATH": "/usr/bin:/bin", "HOME": folder, "LC_ALL": "C.UTF-8", "OMP_NUM_THREADS": "1",
                        "OPENBLAS_NUM_THREADS": "1"}
         return run(self.argv + list(more), folder, environment, 600, 600, patience=10, stop_after=stop_after,

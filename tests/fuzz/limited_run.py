@@ -1,5 +1,6 @@
 """Runs of programs under limits of memory, file size and time, with what they cost."""
 
+import fcntl
 import os
 import resource
 import select
@@ -81,38 +82,53 @@ def _ended(poll, pid, cpu, wall):
         slice_ = max(0.05, cpu - spent)
 
 
+def _pipe():
+    """Ends of a pipe that takes 1 MB before anyone reads: no limit of file sizes is one of what is said."""
+    ends = os.pipe()
+    fcntl.fcntl(ends[0], fcntl.F_SETPIPE_SZ, 1 << 20)
+    os.set_blocking(ends[1], False)
+    return ends
+
+
+def _all_of(descriptor):
+    with open(descriptor, "rb") as file:
+        return file.read()
+
+
 def run(argv, folder, environment, cpu, wall, patience=5, stop_after=None, stop_signal=signal.SIGINT):
     """Runs `argv` in `folder` for at most `cpu` s of processor time or `wall` s.
 
-    After that, or after `stop_after` s, sends `stop_signal` and waits for the end as long as `patience` (processor time) or
-    four times that, before the process is killed and the status is None.
+    After that, or after `stop_after` s, sends `stop_signal` and waits for the end as long as `patience` (processor
+    time) or four times that, before the process is killed and the status is None.
     """
     started = time.monotonic()
-    with open(folder + "/../out", "w+b") as out, open(folder + "/../err", "w+b") as err:
+    out, err = _pipe(), _pipe()
+    try:
         # SIGXFSZ stays ignored as it is in Python: to write too much is an error and not a signal.
-        process = subprocess.Popen(argv, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=out,
-                                   stderr=err, close_fds=False, restore_signals=False, start_new_session=True)
-        poll, descriptor = select.poll(), os.pidfd_open(process.pid)
-        poll.register(descriptor, select.POLLIN)
-        asked, to_end, ended = False, 0.0, False
+        process = subprocess.Popen(argv, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=out[1],
+                                   stderr=err[1], restore_signals=False, start_new_session=True)
+    finally:
+        os.close(out[1]), os.close(err[1])
+    poll, descriptor = select.poll(), os.pidfd_open(process.pid)
+    poll.register(descriptor, select.POLLIN)
+    asked, to_end, ended = False, 0.0, False
+    try:
+        if stop_after is not None:
+            ended = bool(poll.poll(1000 * stop_after))
+        else:
+            ended = _ended(poll, process.pid, cpu, wall)
+        if not ended:
+            asked, sent = True, time.monotonic()
+            os.killpg(process.pid, stop_signal)
+            ended = _ended(poll, process.pid, patience, 4 * patience)
+            to_end = time.monotonic() - sent
+    finally:
+        os.close(descriptor)
         try:
-            if stop_after is not None:
-                ended = bool(poll.poll(1000 * stop_after))
-            else:
-                ended = _ended(poll, process.pid, cpu, wall)
-            if not ended:
-                asked, sent = True, time.monotonic()
-                os.killpg(process.pid, stop_signal)
-                ended = _ended(poll, process.pid, patience, 4 * patience)
-                to_end = time.monotonic() - sent
-        finally:
-            os.close(descriptor)
-            try:
-                os.killpg(process.pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
-        _, raw, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(raw)
-        out.seek(0), err.seek(0)
-        return Run(process.returncode if ended else None, out.read(1 << 20), err.read(1 << 20),
-                   time.monotonic() - started, usage.ru_utime + usage.ru_stime, asked, to_end)
+            os.killpg(process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+    _, raw, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(raw)
+    return Run(process.returncode if ended else None, _all_of(out[0]), _all_of(err[0]),
+               time.monotonic() - started, usage.ru_utime + usage.ru_stime, asked, to_end)

@@ -47,8 +47,6 @@ class Sandbox:
             state[os.path.relpath(folder, self.root)] = "folder"
             for name in names:
                 path = os.path.join(folder, name)
-                if path in (self.root + "/out", self.root + "/err"):
-                    continue
                 mode = os.lstat(path).st_mode
                 if stat.S_ISREG(mode) and mode & 0o400:
                     with open(path, "rb") as file:
