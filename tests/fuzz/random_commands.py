@@ -68,8 +68,8 @@ class Commands:
             case "scene": return self._scene(random)
             case "scenes": return self._scene(random) + "@0.005"
             case "methods": return self._method_list(random)
-            case "folder": return random.choice(["new", "new", "folder", "results", "mine", "."])
-            case "file": return random.choice(["new.csv", option.name[2:] + ".csv", "folder/new.csv", "end.csv"])
+            case "folder": return random.choice(["new"] * 4 + ["folder", "results", "mine", "."])
+            case "file": return random.choice(["new.csv", "folder/new.csv"] + [option.name[2:] + ".csv"] * 5 + ["end.csv"])
         if option.choices:
             return random.choice(option.choices)
         if option.default and random.random() < 0.5:
@@ -103,7 +103,7 @@ class Commands:
         forced = self._simulate(random) if self.program == "simulate" else {}
         given = []
         for option in self.options:
-            chance = 0.98 if option.name in NEEDED else 0.04
+            chance = 0.99 if option.name in NEEDED else 0.3 / len(self.options)
             if option.name in ("--explain", "--list-methods", "--list-scenes"):
                 chance = 0.01
             if self.program == "simulate" and option.name in ("--step-size", "--rtol", "--every", "--method"):

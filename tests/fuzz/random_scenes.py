@@ -100,8 +100,9 @@ def _mesh_text(kind, points, cells):
 
 def _mesh(random, extremes):
     kind = random.choice(["obj", "mesh", "msh"])
-    file = random.choice(["body." + kind] * 6 + ["./body." + kind, "sub/../body." + kind, "fifo", "folder",
-                                                 "none.obj", "locked.toml", "zero", "scene.toml", "loop"])
+    file = random.choice((["body." + kind] * 6 + ["./body." + kind, "sub/../body." + kind]) * 3
+                         + ["fifo.obj", "folder.mesh", "none.obj", "locked.obj", "zero.obj", "zero.msh", "scene.toml",
+                            "loop.mesh"])
     lines = ["gravity = [0.0, 0.0, -9.81]", f"until = {number(random, 1e-3, 2e-2, extremes)}", "[mesh]",
              f"file = {quoted(file)}", f"stiffness = {number(random, 10, 1e4, extremes)}",
              f"{random.choice(['node_mass', 'total_mass'])} = {number(random, 0.1, 5, extremes)}"]

@@ -21,7 +21,9 @@ class Sandbox:
             with open(os.path.join(self.here, name), "wb") as file:
                 file.write(data)
         for name, target in [("link.toml", "scene.toml"), ("loop", "loop"), ("dangling", "nowhere/file"),
-                             ("zero", "/dev/zero"), ("full", "/dev/full")]:
+                             ("zero", "/dev/zero"), ("full", "/dev/full"), ("fifo.obj", "fifo"), ("folder.mesh", "folder"),
+                             ("locked.obj", "locked.toml"), ("zero.obj", "/dev/zero"), ("zero.msh", "/dev/zero"),
+                             ("loop.mesh", "loop")]:
             os.symlink(target, os.path.join(self.here, name))
         os.mkfifo(os.path.join(self.here, "fifo"))
         os.chmod(os.path.join(self.here, "locked.toml"), 0)
