@@ -23,11 +23,13 @@
 #include "experiments/csv.hpp"
 #include "experiments/measurement.hpp"
 #include "experiments/observed_orders.hpp"
+#include "experiments/point_record.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/reference_words.hpp"
 #include "experiments/resolved_frequency.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/study.hpp"
 #include "src/scene/invalid_input.hpp"
 
 namespace qddot {
@@ -81,14 +83,13 @@ double rounding_of_steps(const Reference& reference, double steps) {
 // Runs of a method at h, h/2, h/4, ... [s] that reached the end or failed; a run over the budget
 // ends the series.
 std::vector<Point> halvings(const Method& method, const ReducedScene& scene, double until,
-                            const Reference& reference) {
+                            const Reference& reference, const Effort& effort) {
   const double w = resolved_frequency(method, scene.system(), scene.initial().q);
   const double coarsest = method.implicit ? 16 : std::max(16.0, std::ceil(until * w));
   std::vector<Point> points;
   for (int halving = 0; halving <= most_halvings; ++halving) {
     const double h = until / (coarsest * std::exp2(halving));
-    points.push_back(
-        measure(method, h, scene, until, reference, {.seconds = longest_run, .repeats = 1}));
+    points.push_back(measure(method, h, scene, until, reference, effort));
     if (points.back().outcome == Outcome::over_budget) {
       points.pop_back();
       break;
@@ -131,35 +132,40 @@ int convergence(const CLI::App& app, const Arguments& a,
   const auto selected = select_fixed_step(a.methods, scene, a.scene.name);
   require_folder(a.out);
 
+  Study study(app, a.out, {"order.csv"},
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
+  if (const auto status = study.completed()) return *status;
   const nlohmann::json origin = provenance(command_line, drawn, start, scene);
   CsvFile csv(a.out + "/order.csv",
               {"method", "h", "error_position", "error_velocity", "observed_order"});
-  const Reference reference = reference_for(drawn, start, scene, until, a.out, origin);
-  fmt::print("{} to t = {:g} s; reference certified to {:.1e}\n{}\n\n", drawn.name, until,
-             reference.certified.position, what_divides(reference));
-  const std::string symmetry = symmetry_in_words(reference);
-  if (!symmetry.empty()) fmt::print("{}\n\n", symmetry);
-  if (reference.is_beyond_horizon()) {
+  study.measure([&] {
+    const Reference reference = reference_for(drawn, start, scene, until, a.out, origin);
+    fmt::print("{} to t = {:g} s; reference certified to {:.1e}\n{}\n\n", drawn.name, until,
+               reference.certified.position, what_divides(reference));
+    const std::string symmetry = symmetry_in_words(reference);
+    if (!symmetry.empty()) fmt::print("{}\n\n", symmetry);
+    if (reference.is_beyond_horizon()) {
+      fmt::print(
+          "The motion is chaotic: from t = {:.3g} s on nobody knows the positions, so that their "
+          "errors at\nt = {:g} s mean nothing and no order can be observed. An earlier --until "
+          "shows it.\n",
+          reference.horizon, until);
+      for (const Method* method : selected)
+        csv.row(method->name, nothing, nothing, nothing, nothing);
+      return;
+    }
+    fmt::print("{:<20} {:>5}  {:>10}  {:>10}  {:>8}\n", "method", "order", "h in s", "error",
+               "observed");
+    const Effort effort{.seconds = longest_run, .repeats = 1, .recall = points_of(study)};
+    for (const Method* method : selected)
+      tabulate(csv, *method, until, reference, halvings(*method, scene, until, reference, effort));
     fmt::print(
-        "The motion is chaotic: from t = {:.3g} s on nobody knows the positions, so that their "
-        "errors at\nt = {:g} s mean nothing and no order can be observed. An earlier --until "
-        "shows it.\n",
-        reference.horizon, until);
-    for (const Method* method : selected) csv.row(method->name, nothing, nothing, nothing, nothing);
-    csv.commit(origin);
-    return done;
-  }
-  fmt::print("{:<20} {:>5}  {:>10}  {:>10}  {:>8}\n", "method", "order", "h in s", "error",
-             "observed");
-  for (const Method* method : selected)
-    tabulate(csv, *method, until, reference, halvings(*method, scene, until, reference));
-  fmt::print(
-      "\n-: no order, since one of the errors is above {:g} or within {:g} times of the "
-      "reference's "
-      "own or of rounding,\n   or the orders observed beside it are more than {:g} away\n",
-      largest_asymptotic, well_above, agreeing);
-  csv.commit(origin);
-  return done;
+        "\n-: no order, since one of the errors is above {:g} or within {:g} times of the "
+        "reference's own\n   or of rounding, or the orders observed beside it are more than {:g} "
+        "away\n",
+        largest_asymptotic, well_above, agreeing);
+  });
+  return study.finish({&csv}, origin, done);
 }
 
 }  // namespace
@@ -170,6 +176,7 @@ int main(int argc, char** argv) {
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
   qddot::add_threads_option(app);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::convergence(app, arguments, {argv, argv + argc});
   });

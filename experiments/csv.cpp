@@ -43,7 +43,7 @@ std::string sidecar_of(const std::string& path) {
 }
 
 CsvFile::CsvFile(const std::string& path, const std::vector<std::string>& header)
-    : Csv(header), file_(path), sidecar_(sidecar_of(path)) {}
+    : Csv(header), file_(path, std::string(text()), sidecar_of(path)), sidecar_(sidecar_of(path)) {}
 
 void CsvFile::commit(const nlohmann::json& origin) {
   flush();

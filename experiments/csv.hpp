@@ -33,6 +33,8 @@ class Csv {
   }
   void field(std::string_view text);
   void end_row();
+  // Appends rows that another table of the same columns wrote, without its header.
+  void rows(std::string_view text) { text_.append(text.data(), text.data() + text.size()); }
 
   std::string_view text() const { return {text_.data(), text_.size()}; }
   void clear() { text_.clear(); }

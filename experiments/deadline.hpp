@@ -6,10 +6,12 @@
 #include <stop_token>
 #include <thread>
 
+#include "experiments/interruption.hpp"
+
 namespace qddot {
 
-// Asks for a stop after a number of seconds, from a sleeping thread: the run that is timed only
-// reads a flag. Disarmed when destroyed.
+// Asks for a stop after a number of seconds, or when the program is to end, from a sleeping thread:
+// the run that is timed only reads a flag. Disarmed when destroyed.
 class Deadline {
  public:
   explicit Deadline(double seconds)
@@ -24,9 +26,15 @@ class Deadline {
   bool passed() const { return source_.stop_requested(); }
 
  private:
+  struct Ask {
+    std::stop_source source;
+    void operator()() { source.request_stop(); }
+  };
+
   std::stop_source source_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
+  std::stop_callback<Ask> on_interruption_{interruption(), Ask{source_}};
   std::jthread watcher_;  // last: starts when all else is there, and joins first
 };
 

@@ -20,23 +20,9 @@ constexpr double own_warm_up = 0.1;
 // A run that is looked at ends sooner or later [s]; it is as long as the one before, and not timed.
 constexpr double longest_look = 60;
 
-}  // namespace
-
-Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
-                const MethodOptions& options) {
-  Knobs knobs;
-  (method.knob == Knob::step_size ? knobs.step_size : knobs.rtol) = value;
-  knobs.max_order = options.max_order;
-  knobs.stability_detection = options.stability_detection;
-  knobs.iterations = options.iterations;
-  knobs.solve_tolerance = options.solve_tolerance;
-  knobs.spectral_radius = options.spectral_radius;
-  knobs.solver = find_solver(options.solver).value();
-  return with_tolerance_scales(knobs, scene);
-}
-
-Point measure(const Method& method, double value, const ReducedScene& scene, double until,
-              const Reference& reference, const Effort& effort) {
+// The point as it is measured now.
+Point taken(const Method& method, double value, const ReducedScene& scene, double until,
+            const Reference& reference, const Effort& effort) {
   Point point{.method = &method, .value = value};
   const Knobs knobs = knobs_for(method, value, scene, effort.options);
   std::unique_ptr<Integrator> integrator;
@@ -84,6 +70,27 @@ Point measure(const Method& method, double value, const ReducedScene& scene, dou
     point.on_the_way.energy = std::max(point.on_the_way.energy, point.errors.energy);
   }
   return point;
+}
+
+}  // namespace
+
+Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
+                const MethodOptions& options) {
+  Knobs knobs;
+  (method.knob == Knob::step_size ? knobs.step_size : knobs.rtol) = value;
+  knobs.max_order = options.max_order;
+  knobs.stability_detection = options.stability_detection;
+  knobs.iterations = options.iterations;
+  knobs.solve_tolerance = options.solve_tolerance;
+  knobs.spectral_radius = options.spectral_radius;
+  knobs.solver = find_solver(options.solver).value();
+  return with_tolerance_scales(knobs, scene);
+}
+
+Point measure(const Method& method, double value, const ReducedScene& scene, double until,
+              const Reference& reference, const Effort& effort) {
+  const auto take = [&] { return taken(method, value, scene, until, reference, effort); };
+  return effort.recall ? effort.recall(method, value, take) : take();
 }
 
 }  // namespace qddot

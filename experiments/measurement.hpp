@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "experiments/reference.hpp"
 #include "experiments/watch.hpp"
 #include "integrators/method.hpp"
@@ -33,17 +35,22 @@ struct MethodOptions {
 
 // How long a point may take, how often it is timed, and how it is run.
 struct Effort {
+  using Take = std::function<Point()>;
+
   double seconds = 10;  // for one run; slower ones become over_budget
   int repeats = 5;      // timed runs; fewer, but one, where they would take half of that together
   MethodOptions options{};
   const Watch* watch = nullptr;  // if any, sees one more run, untimed
+  // If any, gives a point that may be known already, or takes it.
+  std::function<Point(const Method&, double value, const Take& take)> recall{};
 };
 
 // What the user turns, as the method's kind takes it, with the scene's tolerance scales.
 Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
                 const MethodOptions& options = {});
 
-// Runs the method once untimed, which a run of 0.1 s need not be, and then up to `repeats` times; a
+// The point of that value as the effort recalls it, or else takes it: runs the method once untimed,
+// which a run of 0.1 s need not be, and then up to `repeats` times; a
 // repeat that fails makes the point a failure. Runs too short for the clock are timed in batches.
 // Single thread.
 Point measure(const Method& method, double value, const ReducedScene& scene, double until,

@@ -1,6 +1,5 @@
 #include "experiments/program.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -9,26 +8,74 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "experiments/build_info.hpp"
+#include "experiments/interruption.hpp"
+#include "experiments/overwriting.hpp"
 #include "experiments/reference.hpp"
+#include "experiments/whole_file.hpp"
 #include "src/scene/invalid_input.hpp"
 
 namespace qddot {
 namespace {
 
-// In one line, whatever a name in it holds.
-int complain(const CLI::App& app, std::string sentence, ExitStatus status) {
-  std::ranges::replace_if(
-      sentence, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  fmt::print(stderr, "{}: {}\n", app.get_name(), sentence);
+int complain(const CLI::App& app, const std::string& sentence, int status) {
+  fmt::print(stderr, "{}: {}\n", app.get_name(), in_one_line(sentence));
   return status;
 }
 
+// The options that every program takes.
+struct EveryProgram {
+  explicit EveryProgram(CLI::App& app) {
+    app.set_version_flag("--version", fmt::format("{} of qddot {}, {}", app.get_name(),
+                                                  build_info::version, build_info::compiler));
+    app.add_flag("--force", force, "replace files that qddot did not write");
+    limit = app.add_option("--time-limit", seconds,
+                           "seconds after which the program ends in order, with what it has")
+                ->take_last();
+  }
+  void apply(Interruptible& run) const {
+    if (force) allow_replacing();
+    if (limit->count() == 0) return;
+    require_positive(seconds, "--time-limit", "the seconds that the program may take");
+    run.end_after(seconds);
+  }
+
+  bool force = false;
+  double seconds = 0;
+  CLI::Option* limit;
+};
+
 }  // namespace
 
+std::string in_one_line(const std::string& text) {
+  std::string line;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const bool begins_control =
+        c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    if (c == '\n' || c == '\r' || c == '\t') {
+      line += ' ';
+    } else if (c < ' ' || c == 0x7f || begins_control) {
+      line += '?';
+      i += begins_control;
+    } else {
+      line += text[i];
+    }
+  }
+  return line;
+}
+
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  const EveryProgram options(app);
   try {
+    Interruptible run;
     app.parse(argc, argv);
+    options.apply(run);
     return body();
+  } catch (const Interrupted& error) {
+    return complain(app, error.what(), error.status);
+  } catch (const CannotWrite& error) {
+    return complain(app, error.what(), end_not_reached);
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ConversionError& error) {

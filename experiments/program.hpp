@@ -14,9 +14,14 @@ namespace qddot {
 // What an experiment's process tells its caller.
 enum ExitStatus { done = 0, failed = 1, bad_input = 2, end_not_reached = 3 };
 
-// Parses the command line into what `app` binds and runs `body`. --help prints and returns 0; a
-// wrong option or an InvalidInput prints one sentence, "program: ...", and returns bad_input; any
-// other exception prints one and returns failed.
+// The text in one line without control characters, whatever names it holds.
+std::string in_one_line(const std::string& text);
+
+// Parses the command line into what `app` binds, and --force, --time-limit and --version, and runs
+// `body`, which SIGINT, SIGTERM and the time limit interrupt (see interruption.hpp). --help prints
+// and returns 0. Prints one sentence, "program: ...", and returns bad_input for a wrong option or
+// an InvalidInput, end_not_reached for what cannot be written (CannotWrite) or has no reference,
+// 130 for a signal, and failed for any other exception.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
 
 // Adds --threads: the cores that forces, stiffness and factorisations of one run may use, 1 unless

@@ -18,6 +18,13 @@
 namespace qddot {
 namespace {
 
+std::string sundials_version() {
+  std::array<char, 32> version{};
+  return SUNDIALSGetVersion(version.data(), version.size()) == 0 ? version.data() : "unknown";
+}
+
+}  // namespace
+
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -25,13 +32,6 @@ std::string processor() {
   }
   return "unknown";
 }
-
-std::string sundials_version() {
-  std::array<char, 32> version{};
-  return SUNDIALSGetVersion(version.data(), version.size()) == 0 ? version.data() : "unknown";
-}
-
-}  // namespace
 
 std::string code_hash() { return build_info::source_hash; }
 

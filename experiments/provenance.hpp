@@ -22,6 +22,9 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,
                           const Scene& start, const ReducedScene& reduced);
 
+// The processor's name.
+std::string processor();
+
 // Hash of all sources that decide a motion; changes when the code does.
 std::string code_hash();
 

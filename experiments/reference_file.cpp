@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/interruption.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/reference.hpp"
 #include "experiments/whole_file.hpp"
@@ -98,6 +99,20 @@ bool fits(const Reference& reference, const ReducedScene& scene) {
          });
 }
 
+// Throws Interrupted where the program is to end: what was made meanwhile may be poorer for it.
+Reference made(const ReducedScene& scene, const Scene& start, double until,
+               std::optional<double> needed) {
+  try {
+    Reference reference = needed ? agreed_reference(scene, until, *needed, longest_agreeing)
+                                 : make_reference(scene, until, longest_making, &start);
+    stop_if_interrupted();
+    return reference;
+  } catch (const NoReference&) {
+    stop_if_interrupted();
+    throw;
+  }
+}
+
 }  // namespace
 
 nlohmann::json to_json(const Reference& r) {
@@ -174,8 +189,7 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
     }
   }
   WholeFile whole(file);
-  const Reference reference = needed ? agreed_reference(scene, until, *needed, longest_agreeing)
-                                     : make_reference(scene, until, longest_making, &start);
+  const Reference reference = made(scene, start, until, needed);
   nlohmann::json json = origin;
   json.update(to_json(reference));
   json["key"] = key;

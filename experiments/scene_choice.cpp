@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "experiments/catalogue.hpp"
+#include "experiments/overwriting.hpp"
 #include "experiments/program.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
@@ -37,7 +38,10 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
 
 Scene load(const SceneChoice& choice) {
   require_given(choice.name, "--scene", "a generator's name or a scene file");
-  return load_scene(choice.name);
+  return load_scene(choice.name, [](const std::string& path) {
+    protect_input(path);
+    return read_text(path);
+  });
 }
 
 Scene started(const Scene& drawn, const SceneChoice& choice) {

@@ -20,8 +20,10 @@
 #include "experiments/catalogue.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/diagnosis.hpp"
+#include "experiments/interruption.hpp"
 #include "experiments/method_options.hpp"
 #include "experiments/node_table.hpp"
+#include "experiments/overwriting.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
@@ -40,6 +42,9 @@ namespace {
 
 // Seconds that may be spent on why a run failed: some twenty times what the run took.
 constexpr double shortest_patience = 1, longest_patience = 5;
+
+// An interruption waits so long [s] for the step at hand.
+constexpr double patience_with_a_step = 60;
 
 struct Arguments {
   SceneChoice scene;
@@ -193,7 +198,7 @@ class WrittenScene {
   }
   void commit(const Scene& scene) {
     if (!file_) return;
-    file_->write(to_toml(scene));
+    file_->write(signed_text(to_toml(scene)));
     file_->commit();
   }
 
@@ -326,18 +331,28 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   const auto integrator =
       make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene));
   Summary summary;
-  const double seconds =
-      seconds_of([&] { summary = integrator->advance(state, until, output.observer()); });
+  wait_for_answer(patience_with_a_step);
+  const double seconds = seconds_of(
+      [&] { summary = integrator->advance(state, until, output.observer(), interruption()); });
+  const auto why = summary.outcome == Outcome::over_budget ? interrupted() : std::nullopt;
 
   if (output.is_asked_for()) {
     nlohmann::json origin = provenance(command_line, drawn, start, scene);
     origin["outcome"] = name(summary.outcome);
     origin["t_reached"] = summary.t_reached;
     origin["energy_growth"] = summary.energy_growth;
+    origin["seconds"] = seconds;
+    origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
     output.finish(state, origin);
   }
-  fmt::print("{} on {}: {} at t = {:g} s after {}\n", method.name, drawn.name,
-             name(summary.outcome), summary.t_reached, in_words(summary.counts));
+  fmt::print("{} on {}: {} at t = {:g} s after {}, in {:.3g} s\n", method.name,
+             in_one_line(drawn.name), why ? "interrupted" : name(summary.outcome),
+             summary.t_reached, in_words(summary.counts), seconds);
+  if (why) {
+    fmt::print(stderr, "simulate: interrupted by {}: {} of {} s reached\n", why->by,
+               summary.t_reached, until);
+    return why->status;
+  }
   const auto warn = [](const std::string& warning) {
     if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
   };

@@ -2,24 +2,23 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <stdexcept>
 #include <unistd.h>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "experiments/overwriting.hpp"
+#include "experiments/unfinished.hpp"
 #include "src/scene/invalid_input.hpp"
 
 namespace qddot {
 
-WholeFile::WholeFile(const std::string& path)
-    : path_(path), beside_(fmt::format("{}.{}.part", path, ::getpid())) {
-  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
-    throw InvalidInput(
-        fmt::format("{}: is a folder or a device; allowed is the name of a file", path));
-  }
-  file_ = std::fopen(beside_.c_str(), "w");
+WholeFile::WholeFile(const std::string& path, const std::string& beginning,
+                     const std::string& sidecar)
+    : path_(path), beside_(unfinished_name(path)) {
+  require_replaceable(path, beginning, sidecar);
+  const int file = open_unfinished(path);
+  file_ = file < 0 ? nullptr : ::fdopen(file, "w");
   if (!file_) {
     throw InvalidInput(
         fmt::format("{}: cannot be written ({}); allowed is a file in a folder that "
@@ -30,23 +29,30 @@ WholeFile::WholeFile(const std::string& path)
 
 WholeFile::~WholeFile() {
   if (!file_) return;
-  std::fclose(file_);
   std::remove(beside_.c_str());
+  forget_unfinished(beside_);
+  std::fclose(file_);
 }
 
 void WholeFile::write(std::string_view text) {
-  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) {
-    throw std::runtime_error(fmt::format("{}: {}", path_, std::strerror(errno)));
-  }
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno);
 }
 
 void WholeFile::commit() {
-  std::FILE* file = std::exchange(file_, nullptr);
-  if (std::fclose(file) != 0 || std::rename(beside_.c_str(), path_.c_str()) != 0) {
-    const std::string reason = std::strerror(errno);
-    std::remove(beside_.c_str());
-    throw std::runtime_error(fmt::format("{}: {}", path_, reason));
-  }
+  // The lock is held until the file has its name, so that nobody takes it for a stale one.
+  const int lock = ::dup(::fileno(file_));
+  const bool is_written = std::fclose(std::exchange(file_, nullptr)) == 0;
+  const int error = errno;
+  const bool is_whole = is_written && std::rename(beside_.c_str(), path_.c_str()) == 0;
+  const int reason = is_written ? errno : error;
+  if (!is_whole) std::remove(beside_.c_str());
+  forget_unfinished(beside_);
+  if (lock >= 0) ::close(lock);
+  if (!is_whole) fail(reason);
+}
+
+void WholeFile::fail(int error) const {
+  throw CannotWrite(fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
 }
 
 }  // namespace qddot

@@ -14,6 +14,10 @@
 //     from 1e-1 to 1e-9, the fastest method known to have reached it: of the positions at the end
 //     or, where that is beyond the chaotic motion's horizon and nobody knows them, of the energy on
 //     the way.
+#include <algorithm>
+#include <functional>
+#include <optional>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -23,11 +27,13 @@
 #include "experiments/judgement.hpp"
 #include "experiments/ladder.hpp"
 #include "experiments/method_options.hpp"
+#include "experiments/point_record.hpp"
 #include "experiments/point_table.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/study.hpp"
 #include "src/scene/invalid_input.hpp"
 
 namespace qddot {
@@ -71,6 +77,16 @@ void tabulate(Csv& csv, const std::string& scene, const std::vector<FrontRow>& f
   }
 }
 
+// The points of each method from coarse to fine, whatever the order in which they were taken.
+std::vector<Point> from_coarse_to_fine(const std::vector<std::vector<Point>>& taken) {
+  std::vector<Point> points;
+  for (std::vector<Point> own : taken) {
+    std::ranges::sort(own, std::ranges::greater(), &Point::value);
+    points.insert(points.end(), own.begin(), own.end());
+  }
+  return points;
+}
+
 int work_precision(const CLI::App& app, const Arguments& a,
                    const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
@@ -84,33 +100,42 @@ int work_precision(const CLI::App& app, const Arguments& a,
   require_reference_exists(scene, a.scene.name);
   const auto selected = select_methods(a.methods, scene, a.scene.name);
   require_folder(a.out);
+  Study study(app, a.out, {"points.csv", "front.csv"},
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
+  if (const auto status = study.completed()) return *status;
   CsvFile points_csv(a.out + "/points.csv", point_columns());
   CsvFile front_csv(a.out + "/front.csv", front_columns);
 
   nlohmann::json origin = provenance(command_line, drawn, start, scene);
   origin["until"] = until;
-  show_progress("making the reference ...");
-  const Reference reference = reference_for(drawn, start, scene, until, a.out, origin);
-
-  const Watch watch(start, scene, until, reference);
-  Effort effort = a.effort;
-  effort.watch = &watch;
-  std::vector<Point> points;
-  for (const Method* method : selected) {
-    const auto more = climb(*method, scene, until, reference, effort,
-                            [](const Point& point) { show_progress(describe(point)); });
-    points.insert(points.end(), more.begin(), more.end());
-  }
+  std::optional<Reference> reference;
+  std::vector<std::vector<Point>> taken;  // by method
+  study.measure([&] {
+    show_progress("making the reference ...");
+    reference = reference_for(drawn, start, scene, until, a.out, origin);
+    const Watch watch(start, scene, until, *reference);
+    Effort effort = a.effort;
+    effort.watch = &watch;
+    effort.recall = points_of(study);
+    for (const Method* method : selected) {
+      taken.emplace_back();
+      climb(*method, scene, until, *reference, effort, [&](const Point& point) {
+        show_progress(describe(point));
+        taken.back().push_back(point);
+      });
+    }
+  });
   show_progress("");
 
-  const auto front = fastest_at_each_accuracy(points, reference);
-  for (const Point& point : points)
-    point_row(points_csv, drawn.name, point, reference.certified.position);
-  tabulate(front_csv, drawn.name, front, judged_by(reference));
-  points_csv.commit(origin);
-  front_csv.commit(origin);
-  print_front(drawn.name, until, front, reference);
-  return done;
+  if (reference) {
+    const std::vector<Point> points = from_coarse_to_fine(taken);
+    const auto front = fastest_at_each_accuracy(points, *reference);
+    for (const Point& point : points)
+      point_row(points_csv, drawn.name, point, reference->certified.position);
+    tabulate(front_csv, drawn.name, front, judged_by(*reference));
+    print_front(drawn.name, until, front, *reference);
+  }
+  return study.finish({&points_csv, &front_csv}, origin, done);
 }
 
 }  // namespace
@@ -122,6 +147,7 @@ int main(int argc, char** argv) {
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
   qddot::add_threads_option(app);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::work_precision(app, arguments, {argv, argv + argc});
   });

@@ -145,11 +145,14 @@ Scene read_scene(const std::string& path) {
   return parse_scene(read_text(path), path, std::filesystem::path(path).parent_path());
 }
 
-Scene load_scene(const std::string& name_or_path) {
+Scene load_scene(const std::string& name_or_path, const TextSource& read) {
   if (const Generator* generator = find_generator(name_or_path))
     return generate(*generator, {}, name_or_path);
   std::error_code ignored;
-  if (std::filesystem::exists(name_or_path, ignored)) return read_scene(name_or_path);
+  if (std::filesystem::exists(name_or_path, ignored)) {
+    return parse_scene(read(name_or_path), name_or_path,
+                       std::filesystem::path(name_or_path).parent_path(), {}, read);
+  }
   throw InvalidInput(fmt::format("{}: it is neither a file nor a generator; allowed are {}",
                                  name_or_path, generator_names()));
 }

@@ -21,7 +21,8 @@ Scene parse_scene(const std::string& text, const std::string& path,
                   const TextSource& read = read_text);
 
 // The scene that a user names on a command line: a generator's name, else a file's path.
-// Throws InvalidInput as read_scene does, and for a name that is neither.
-Scene load_scene(const std::string& name_or_path);
+// Throws InvalidInput as read_scene does, and for a name that is neither. All files are read by
+// `read`.
+Scene load_scene(const std::string& name_or_path, const TextSource& read = read_text);
 
 }  // namespace qddot

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/csv.hpp"
+#include "experiments/journal.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace qddot {
+
+// Adds --resume.
+void add_resume_option(CLI::App& app);
+
+// A study that is measured piece by piece into tables of one folder, and that may be interrupted
+// at any time: each piece is kept in `folder`/PROGRAM.journal as it comes. The same command with
+// --resume finds the pieces there again and measures what is missing; the journal goes once all
+// tables are complete.
+class Study {
+ public:
+  // `about`: what decides the results beside the program's options and the code: the scene's hash,
+  // say; `tables`: the files X.csv in `folder` that it makes. Says on stderr what is kept, or what
+  // is measured anew, of an interrupted run. Throws InvalidInput as Journal does.
+  Study(const CLI::App& app, const std::string& folder, const std::vector<std::string>& tables,
+        const nlohmann::json& about);
+
+  // What it ended with, where --resume finds it complete: there is nothing to do then.
+  std::optional<int> completed() const { return completed_; }
+
+  // The piece of that name: as it was kept, or made now and kept. Throws Interrupted where the
+  // program is to end; what was made meanwhile counts for nothing. Thread-safe.
+  nlohmann::json piece(const std::string& name, const std::function<nlohmann::json()>& make);
+
+  // Runs `body`, which makes pieces and ends early where the program is to end.
+  void measure(const std::function<void()>& body);
+
+  // Commits the tables, in whose sidecars `interrupted` says by what the program was ended, or is
+  // null. Returns `status`, or that of the interruption, after a sentence on what to do next.
+  int finish(const std::vector<CsvFile*>& tables, nlohmann::json origin, int status);
+
+ private:
+  std::string program_, path_;
+  nlohmann::json key_;
+  std::optional<int> completed_;
+  std::unique_ptr<Journal> journal_;
+};
+
+}  // namespace qddot
