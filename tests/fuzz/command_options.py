@@ -7,7 +7,8 @@ from dataclasses import dataclass
 # "  -h,--help   words", "  --until FLOAT=2 ...   words", and the words alone on the next line.
 _LINE = re.compile(
     r"^  (?:-\w,)?(?P<name>--[\w-]+|[a-z]\w*)"
-    r"(?: (?P<kind>[A-Z]{2,}))?(?:=(?P<default>\[[^\]]*\]|\S+))?(?P<several> \.\.\.)?(?:\s+(?P<words>.*))?$")
+    r"(?: (?P<kind>[A-Z]{2,}))?(?:=(?P<default>\[[^\]]*\]|\S+))?(?P<several> \.\.\.)?(?:\s+(?P<words>.*))?$"
+)
 
 
 @dataclass(frozen=True)
@@ -40,14 +41,23 @@ def parse_help(text):
             continue
         if match["name"] in ("--help", "--version"):
             continue
-        options.append(Option(match["name"], match["kind"] or "FLAG", match["default"],
-                              bool(match["several"]), match["words"] or ""))
+        options.append(
+            Option(
+                match["name"],
+                match["kind"] or "FLAG",
+                match["default"],
+                bool(match["several"]),
+                match["words"] or "",
+            )
+        )
     return options
 
 
 def options_of(program):
     """The options of the executable `program`; raises RuntimeError if its help cannot be read."""
-    run = subprocess.run([program, "--help"], capture_output=True, text=True, timeout=60, check=False)
+    run = subprocess.run(
+        [program, "--help"], capture_output=True, text=True, timeout=60, check=False
+    )
     options = parse_help(run.stdout)
     if run.returncode != 0 or not options:
         raise RuntimeError(f"{program} --help ended with status {run.returncode} and no options")
@@ -56,8 +66,13 @@ def options_of(program):
 
 def methods_of(simulate):
     """Names of methods by what they take: {"step_size": [...], "rtol": [...]}."""
-    run = subprocess.run([simulate, "--list-methods", "--csv"], capture_output=True, text=True,
-                         timeout=60, check=True)
+    run = subprocess.run(
+        [simulate, "--list-methods", "--csv"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
     methods = {"step_size": [], "rtol": []}
     for line in run.stdout.split("\n")[1:]:
         fields = line.split(",")

@@ -11,7 +11,7 @@ _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 def _value_of(argv, name):
     values = [argv[k + 1] for k, a in enumerate(argv[:-1]) if a == name]
-    values += [a[len(name) + 1:] for a in argv if a.startswith(name + "=")]
+    values += [a[len(name) + 1 :] for a in argv if a.startswith(name + "=")]
     try:
         return float(values[-1]) if values else None
     except ValueError:
@@ -40,10 +40,16 @@ def _of_status(program, run, err):
     elif run.status == 130:
         yield "status 130 without a signal", err[-200:]
     elif run.status in (2, 3):
-        said = [line for line in err.split("\n")[:-1] if not line.startswith(f"{program}: warning: ")]
+        said = [
+            line for line in err.split("\n")[:-1] if not line.startswith(f"{program}: warning: ")
+        ]
         if not err.endswith("\n") or run.status == 2 and len(said) != 1:
-            yield f"status {run.status}: {len(said)} lines where one sentence is documented", err[-300:]
-        elif not said or not said[-1].startswith(f"{program}: ") or len(said[-1]) < len(program) + 12:
+            yield f"status {run.status}: {len(said)} lines where one sentence is documented", err[
+                -300:
+            ]
+        elif (
+            not said or not said[-1].startswith(f"{program}: ") or len(said[-1]) < len(program) + 12
+        ):
             yield f"status {run.status} without a sentence of the program's", err[-300:]
 
 
@@ -73,7 +79,11 @@ def _of_files(argv, run, sandbox):
 def verdict(program, argv, run, sandbox):
     """Pairs of a fault's kind and its detail; none if the run was as documented."""
     err, out = (text.decode(errors="backslashreplace") for text in (run.err, run.out))
-    found = list(_of_time(argv, run)) + list(_of_status(program, run, err)) + list(_of_files(argv, run, sandbox))
+    found = (
+        list(_of_time(argv, run))
+        + list(_of_status(program, run, err))
+        + list(_of_files(argv, run, sandbox))
+    )
     for name, text in [("stdout", out), ("stderr", err)]:
         control = _CONTROL.search(text)
         if control:

@@ -18,7 +18,11 @@ class Earlier:
 
     def again(self, random):
         """The same command line into "results", perhaps to be resumed."""
-        more = [name for name in ("--resume", "--force") if name in self.options and random.random() < 0.4]
+        more = [
+            name
+            for name in ("--resume", "--force")
+            if name in self.options and random.random() < 0.4
+        ]
         return self.arguments + ["--out", "results"] + more
 
 
@@ -30,8 +34,14 @@ def earlier_results(programs, options, place):
     for name in set(options) & set(STUDIES):
         arguments, folder = STUDIES[name].split(), os.path.join(place, name)
         # The folder is called as the sandbox's, as command lines are part of what is written.
-        subprocess.run([os.path.join(programs, name)] + arguments + ["--out", "results"], cwd=place,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=60, check=False)
+        subprocess.run(
+            [os.path.join(programs, name)] + arguments + ["--out", "results"],
+            cwd=place,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            timeout=60,
+            check=False,
+        )
         if os.path.isdir(os.path.join(place, "results")):
             os.rename(os.path.join(place, "results"), folder)
             results[name] = Earlier(arguments, folder, {option.name for option in options[name]})

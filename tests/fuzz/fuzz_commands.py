@@ -28,13 +28,31 @@ from random_scenes import random_scene
 from sandbox import Sandbox
 
 # How often each is drawn: what takes longer is drawn less.
-PROGRAMS = {"simulate": 30, "equilibrium": 8, "modes": 8, "work_precision": 8, "convergence": 8, "stability_map": 8,
-            "energy_drift": 8, "exchange": 6, "stock_sundials": 5, "crossover": 4, "local_global": 5, "solvers": 2,
-            "scaling": 0.5, "verdicts": 0.5, "bench": 0.5, "advise": 3, "sweep": 2}
+PROGRAMS = {
+    "simulate": 30,
+    "equilibrium": 8,
+    "modes": 8,
+    "work_precision": 8,
+    "convergence": 8,
+    "stability_map": 8,
+    "energy_drift": 8,
+    "exchange": 6,
+    "stock_sundials": 5,
+    "crossover": 4,
+    "local_global": 5,
+    "solvers": 2,
+    "scaling": 0.5,
+    "verdicts": 0.5,
+    "bench": 0.5,
+    "advise": 3,
+    "sweep": 2,
+}
 
 
 def arguments_of(caller):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", required=True, help="the folder of the programs")
     parser.add_argument("--count", type=int, default=10**9, help="how many runs")
     parser.add_argument("--seconds", type=float, default=10**9, help="for how long")
@@ -43,9 +61,15 @@ def arguments_of(caller):
     parser.add_argument("--only", type=int, help="the number of the only run")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time")
     parser.add_argument("--programs", help="a,b,... (default: all)")
-    parser.add_argument("--keep", help="a folder for the sandboxes of what is found, as they were before")
-    parser.add_argument("--memory", type=float, default=2, help="GB of address space that a run may take")
-    parser.add_argument("--limit", type=float, default=2, help="s of processor time before a run is sent SIGINT")
+    parser.add_argument(
+        "--keep", help="a folder for the sandboxes of what is found, as they were before"
+    )
+    parser.add_argument(
+        "--memory", type=float, default=2, help="GB of address space that a run may take"
+    )
+    parser.add_argument(
+        "--limit", type=float, default=2, help="s of processor time before a run is sent SIGINT"
+    )
     a = parser.parse_args(caller)
     if a.only is not None:
         a.first, a.count, a.jobs = a.only, 1, 1
@@ -84,7 +108,12 @@ class Campaign:
             spoil_one(dice, sandbox)
         if self.a.keep:
             kept = os.path.join(self.place, f"kept{number}")
-            shutil.copytree(sandbox.here, kept, symlinks=True, ignore=lambda _, names: {"fifo", "locked.toml"} & set(names))
+            shutil.copytree(
+                sandbox.here,
+                kept,
+                symlinks=True,
+                ignore=lambda _, names: {"fifo", "locked.toml"} & set(names),
+            )
         found = [("the fuzzer could not run it", "")]
         try:
             argv = [os.path.join(self.bin, name)] + arguments
@@ -135,13 +164,18 @@ class Report:
         print(f"{'program':<16}{'runs':>8}" + "".join(f"{s:>8}" for s in columns) + "   ms a run")
         for name, counts in sorted(self.statuses.items()):
             total = sum(counts.values())
-            print(f"{name:<16}{total:>8}" + "".join(f"{counts[s]:>8}" for s in columns)
-                  + f"{1e3 * self.seconds[name] / total:>11.0f}")
+            print(
+                f"{name:<16}{total:>8}"
+                + "".join(f"{counts[s]:>8}" for s in columns)
+                + f"{1e3 * self.seconds[name] / total:>11.0f}"
+            )
         for key, count in self.counts.most_common():
             number, arguments, detail = self.found[key]
-            print(f"\n{count} x {key[0]}: {key[1]}\n    {detail.strip()[:300]!r}\n    {spelled([key[0]] + arguments)[:1500]}"
-                  f"\n    again: {sys.argv[0]} --bin {self.a.bin} --seed {self.a.seed} --only {number}"
-                  + (f" --programs {self.a.programs}" if self.a.programs else ""))
+            print(
+                f"\n{count} x {key[0]}: {key[1]}\n    {detail.strip()[:300]!r}\n    {spelled([key[0]] + arguments)[:1500]}"
+                f"\n    again: {sys.argv[0]} --bin {self.a.bin} --seed {self.a.seed} --only {number}"
+                + (f" --programs {self.a.programs}" if self.a.programs else "")
+            )
         print(f"\n{sum(self.counts.values())} findings of {len(self.counts)} kinds")
 
 
@@ -152,8 +186,12 @@ def main(caller=None):
         os.makedirs(a.keep, exist_ok=True)
     try:
         next_number, results = multiprocessing.Value("q", a.first), multiprocessing.Queue()
-        workers = [multiprocessing.Process(target=work, args=(campaign, next_number, started + a.seconds, results))
-                   for _ in range(a.jobs)]
+        workers = [
+            multiprocessing.Process(
+                target=work, args=(campaign, next_number, started + a.seconds, results)
+            )
+            for _ in range(a.jobs)
+        ]
         for worker in workers:
             worker.start()
         running = len(workers)

@@ -26,14 +26,20 @@ from limited_run import run, spelled
 from studies import STUDIES, write_scenes
 from written_tables import faults
 
-SIMULATE = ("--scene steady.toml --method verlet --step-size 1e-4 --until 0.02 --final results/final.csv --trajectory "
-            "results/trajectory.csv --energy results/energy.csv --every 1e-4 --write-scene results/scene.toml")
+SIMULATE = (
+    "--scene steady.toml --method verlet --step-size 1e-4 --until 0.02 --final results/final.csv --trajectory "
+    "results/trajectory.csv --energy results/energy.csv --every 1e-4 --write-scene results/scene.toml"
+)
 COMMANDS = {name: words + " --out results" for name, words in STUDIES.items()} | {
-    "simulate": SIMULATE, "equilibrium": "--scene steady.toml --final results/rest.csv"}
+    "simulate": SIMULATE,
+    "equilibrium": "--scene steady.toml --final results/rest.csv",
+}
 
 
 def arguments_of(caller):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", required=True, help="the folder of the programs")
     parser.add_argument("--programs", help="a,b,... (default: all)")
     parser.add_argument("--way", choices=["limit", "disk", "both"], default="both")
@@ -52,7 +58,11 @@ class Place:
         self.here = os.path.join(self.disk, "here")
         os.makedirs(self.disk)
         if way == "disk":
-            subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "none", self.disk], check=True, capture_output=True)
+            subprocess.run(
+                ["mount", "-t", "tmpfs", "-o", "size=1m", "none", self.disk],
+                check=True,
+                capture_output=True,
+            )
         os.makedirs(self.here)
         write_scenes(self.here)
 
@@ -77,9 +87,17 @@ class Place:
             # The soft limit only, which this process can raise again.
             resource.setrlimit(resource.RLIMIT_FSIZE, (room, resource.RLIM_INFINITY))
         try:
-            return run(argv, self.here, {"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8", "OMP_NUM_THREADS": "1"}, 60, 120)
+            return run(
+                argv,
+                self.here,
+                {"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8", "OMP_NUM_THREADS": "1"},
+                60,
+                120,
+            )
         finally:
-            resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+            resource.setrlimit(
+                resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+            )
             if os.path.exists(filler):
                 os.remove(filler)
 
@@ -104,7 +122,11 @@ def wrong(place, program, ended, earlier):
             yield f"{name} of an earlier run is lost"
     for name, data in now.items():
         sidecar = name[:-4] + ".json"
-        if name.endswith(".csv") and data != earlier.get(name, data) and now.get(sidecar) == earlier.get(sidecar):
+        if (
+            name.endswith(".csv")
+            and data != earlier.get(name, data)
+            and now.get(sidecar) == earlier.get(sidecar)
+        ):
             yield f"{name} is new and its sidecar is of an earlier run"
     yield from faults(os.path.join(place.here, "results"), now)
 
@@ -117,13 +139,17 @@ def sweep(a, program, way):
         os.makedirs(os.path.join(place.here, "results"))
         first = place.run(argv, None)
         if first.status != 0:
-            print(f"{program:<16}{way:<7} cannot be tried: status {first.status}: {first.err.decode()[-200:]}")
+            print(
+                f"{program:<16}{way:<7} cannot be tried: status {first.status}: {first.err.decode()[-200:]}"
+            )
             return 1
         earlier = place.results()
         sizes = sorted(map(len, earlier.values()))
         # Journals that are gone in the end take room, too.
         full = 2 * (sizes[-1] if way == "limit" else sum(sizes) + 4096 * (2 + len(sizes)))
-        rooms = sorted({round(full * (k / a.points) ** 2) for k in range(a.points + 1)} | set(range(0, 3)))
+        rooms = sorted(
+            {round(full * (k / a.points) ** 2) for k in range(a.points + 1)} | set(range(0, 3))
+        )
         bad, statuses = {}, {}
         for room in rooms:
             for there in (True, False):  # once over earlier results, once into a folder without
@@ -135,16 +161,22 @@ def sweep(a, program, way):
                 ended = place.run(argv, room)
                 statuses[ended.status] = statuses.get(ended.status, 0) + 1
                 for fault in wrong(place, program, ended, earlier if there else {}):
-                    bad.setdefault(fault.split(": ")[0].split(".")[0], []).append((room, there, fault))
+                    bad.setdefault(fault.split(": ")[0].split(".")[0], []).append(
+                        (room, there, fault)
+                    )
     finally:
         place.close()
     count = sum(map(len, bad.values()))
-    print(f"{program:<16}{way:<7}{2 * len(rooms):>5} runs with room for 0 to {full} bytes, statuses {statuses}, {count} faults",
-          flush=True)
+    print(
+        f"{program:<16}{way:<7}{2 * len(rooms):>5} runs with room for 0 to {full} bytes, statuses {statuses}, {count} faults",
+        flush=True,
+    )
     for cases in bad.values():
         room, there, fault = cases[0]
-        print(f"    {len(cases)} x {fault}\n        room for {room} bytes{', over earlier results' * there}: "
-              f"{spelled([program] + argv[1:])}")
+        print(
+            f"    {len(cases)} x {fault}\n        room for {room} bytes{', over earlier results' * there}: "
+            f"{spelled([program] + argv[1:])}"
+        )
     return count
 
 

@@ -26,7 +26,9 @@ from written_tables import differences, faults, json_of
 
 
 def arguments_of(caller):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", required=True, help="the folder of the programs")
     parser.add_argument("--kills", type=int, default=10, help="trials of each study")
     parser.add_argument("--study", help="a,b,... (default: all)")
@@ -35,7 +37,9 @@ def arguments_of(caller):
     parser.add_argument("--jobs", type=int, default=1, help="trials at a time")
     parser.add_argument("--signals", default="KILL,KILL,INT,TERM", help="drawn from these")
     a = parser.parse_args(caller)
-    a.bin, a.signals = os.path.abspath(a.bin), [signal.Signals["SIG" + name] for name in a.signals.split(",")]
+    a.bin, a.signals = os.path.abspath(a.bin), [
+        signal.Signals["SIG" + name] for name in a.signals.split(",")
+    ]
     return a
 
 
@@ -47,22 +51,44 @@ class Study:
         self.place = os.path.join(place, name)
         self.argv = [os.path.join(a.bin, name)] + LONG_STUDIES[name].split() + ["--out", "results"]
         first = self._run("whole", None, None)
-        self.seconds, self.status, self.err = first.wall, first.status, first.err.decode(errors="replace")
+        self.seconds, self.status, self.err = (
+            first.wall,
+            first.status,
+            first.err.decode(errors="replace"),
+        )
         self.whole = os.path.join(self.place, "whole", "here", "results")
 
     def _run(self, where, stop_after, stop_signal, more=()):
         folder = os.path.join(self.place, where, "here")
         os.makedirs(folder, exist_ok=True)
         write_scenes(folder)
-        environment = {"PATH": "/usr/bin:/bin", "HOME": folder, "LC_ALL": "C.UTF-8", "OMP_NUM_THREADS": "1",
-                       "OPENBLAS_NUM_THREADS": "1"}
-        return run(self.argv + list(more), folder, environment, 600, 600, patience=10, stop_after=stop_after,
-                   stop_signal=stop_signal)
+        environment = {
+            "PATH": "/usr/bin:/bin",
+            "HOME": folder,
+            "LC_ALL": "C.UTF-8",
+            "OMP_NUM_THREADS": "1",
+            "OPENBLAS_NUM_THREADS": "1",
+        }
+        return run(
+            self.argv + list(more),
+            folder,
+            environment,
+            600,
+            600,
+            patience=10,
+            stop_after=stop_after,
+            stop_signal=stop_signal,
+        )
 
     def trial(self, number):
         """Faults of one trial and the seconds that all of its runs took."""
         dice, where = random.Random(f"{self.seed}/{self.name}/{number}"), f"trial{number}"
-        results, found, spent, more = os.path.join(self.place, where, "here", "results"), [], 0.0, []
+        results, found, spent, more = (
+            os.path.join(self.place, where, "here", "results"),
+            [],
+            0.0,
+            [],
+        )
         for _ in range(dice.choice([1, 1, 2, 3])):
             which = dice.choice(self.signals)
             ended = self._run(where, dice.uniform(0, self.seconds), which, more)
@@ -75,11 +101,16 @@ class Study:
                 found.append(f"{which.name}: status {ended.status}, 130 is documented")
             names = os.listdir(results) if os.path.isdir(results) else []
             found += [f"after {which.name}: {fault}" for fault in faults(results, names)]
-            found += [f"after {which.name}: {name} says nothing of it" for name in self._silent(results, names)]
+            found += [
+                f"after {which.name}: {name} says nothing of it"
+                for name in self._silent(results, names)
+            ]
         last = self._run(where, None, None, ["--resume"])
         spent += last.wall
         if last.status != self.status:
-            found.append(f"--resume: status {last.status}: {last.err.decode(errors='replace')[-200:]}")
+            found.append(
+                f"--resume: status {last.status}: {last.err.decode(errors='replace')[-200:]}"
+            )
         elif not os.path.isdir(results):
             found.append("--resume: there are no results")
         else:
@@ -111,15 +142,20 @@ def campaign(a, name, place):
         trials = list(pool.map(study.trial, range(a.first, a.first + a.kills)))
     bad = [trial for trial in trials if trial[1]]
     costs = sorted(spent / study.seconds for _, _, spent in trials)
-    print(f"{name:<16}{study.seconds:>8.2f} s{len(trials):>8} trials{len(bad):>6} bad   killed and resumed over "
-          f"undisturbed: median {costs[len(costs) // 2]:.2f}, at most {costs[-1]:.2f}", flush=True)
+    print(
+        f"{name:<16}{study.seconds:>8.2f} s{len(trials):>8} trials{len(bad):>6} bad   killed and resumed over "
+        f"undisturbed: median {costs[len(costs) // 2]:.2f}, at most {costs[-1]:.2f}",
+        flush=True,
+    )
     kinds = {}
     for number, found, _ in bad:
         for fault in found:
             kinds.setdefault(fault.split(":")[0], []).append((number, fault))
     for cases in kinds.values():
-        print(f"    {len(cases)} x {cases[0][1]}\n        again: {sys.argv[0]} --bin {a.bin} --seed {a.seed} "
-              f"--study {name} --first {cases[0][0]} --kills 1\n        {spelled([name] + study.argv[1:])}")
+        print(
+            f"    {len(cases)} x {cases[0][1]}\n        again: {sys.argv[0]} --bin {a.bin} --seed {a.seed} "
+            f"--study {name} --first {cases[0][0]} --kills 1\n        {spelled([name] + study.argv[1:])}"
+        )
     return len(bad)
 
 
@@ -135,7 +171,9 @@ def main(caller=None):
         bad = sum(campaign(a, name, place) for name in present if name in LONG_STUDIES)
     finally:
         shutil.rmtree(place, ignore_errors=True)
-    print(f"{bad} bad of {a.kills} trials of each of {len(present)} studies, {time.monotonic() - started:.0f} s")
+    print(
+        f"{bad} bad of {a.kills} trials of each of {len(present)} studies, {time.monotonic() - started:.0f} s"
+    )
     return 1 if bad else 0
 
 

@@ -22,7 +22,7 @@ from written_tables import faults
 MEDIUM = b'until = 0.01\n[generator]\nkind = "cloth"\nnodes = 60\n'
 COMMANDS = {
     "simulate": "--scene medium.toml --method implicit_euler --step-size 2e-3 --until 0.01 --final results/f.csv"
-                " --trajectory results/t.csv --every 2e-3",
+    " --trajectory results/t.csv --every 2e-3",
     "equilibrium": "--scene steady.toml --final results/f.csv",
     "modes": "--scene medium.toml --out results --count 3",
     "work_precision": "--scene small.toml --methods verlet,ida --repeats 1 --until 0.005 --out results",
@@ -31,19 +31,25 @@ COMMANDS = {
     "energy_drift": "--scene small.toml --methods verlet,hht --step-size 1e-4 --until 0.05 --out results",
     "exchange": "--scene fpu --methods verlet --until 10 --h-omega 1 --out results",
     "local_global": "--nodes 40 --iterations 10 --repeats 1 --stiffnesses 300 --resolutions 21 --swing 0.05 --until 0.05"
-                    " --out results",
+    " --out results",
     "scaling": "--scenes cloth --least-nodes 1000 --most-nodes 20000 --sizes 1 --out results",
     "crossover": "--nodes 6 --ratios 1,10 --methods verlet,ida --until 0.02 --repeats 1 --out results",
     "stock_sundials": "--scene small.toml --methods ida --rtol 1e-3 --repeats 1 --until 0.005 --out results",
     "solvers": "--scene medium.toml --repeats 1 --out results",
-    "verdicts": "--seeds 1 --cells 64 --out results"}
-SCENES = {"medium.toml": MEDIUM, "small.toml": MEDIUM.replace(b"60", b"8"),
-          "steady.toml": b'[generator]\nkind = "cloth"\nnodes = 12\n'}
+    "verdicts": "--seeds 1 --cells 64 --out results",
+}
+SCENES = {
+    "medium.toml": MEDIUM,
+    "small.toml": MEDIUM.replace(b"60", b"8"),
+    "steady.toml": b'[generator]\nkind = "cloth"\nnodes = 12\n',
+}
 MOST = 4 << 30  # bytes
 
 
 def arguments_of(caller):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", required=True, help="the folder of the programs")
     parser.add_argument("--programs", help="a,b,... (default: all)")
     parser.add_argument("--sizes", type=int, default=10, help="how many sizes of memory")
@@ -61,7 +67,12 @@ def attempt(argv, place, size):
         for name, data in SCENES.items():
             with open(os.path.join(folder, name), "wb") as file:
                 file.write(data)
-        environment = {"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        environment = {
+            "PATH": "/usr/bin:/bin",
+            "LC_ALL": "C.UTF-8",
+            "OMP_NUM_THREADS": "1",
+            "OPENBLAS_NUM_THREADS": "1",
+        }
         limited = ["/bin/sh", "-c", f'ulimit -v {size // 1024} && exec "$0" "$@"'] + argv
         ended = run(limited, folder, environment, 60, 120)
         results = os.path.join(folder, "results")
@@ -88,7 +99,9 @@ def wrong(program, ended, spoiled):
     said = ended.err.decode(errors="replace").strip().split("\n")[-1]
     if ended.status not in (0, 2, 3):
         yield f"status {ended.status}: {said[-200:]}"
-    elif ended.status and (not said.startswith(program + ": ") or "memory" not in said or not re.search(r"\d", said)):
+    elif ended.status and (
+        not said.startswith(program + ": ") or "memory" not in said or not re.search(r"\d", said)
+    ):
         yield f"status {ended.status}, and no sentence on how much memory: {said[:200]}"
     yield from spoiled
 
@@ -100,7 +113,9 @@ def sweep(a, program, place):
     full = bare and least(argv, place, bare, MOST)
     if not full:
         ended = attempt(argv, place, MOST)[0]
-        return [f"{program:<16} cannot be tried: status {ended.status}: {ended.err.decode(errors='replace')[-200:]}"], 1
+        return [
+            f"{program:<16} cannot be tried: status {ended.status}: {ended.err.decode(errors='replace')[-200:]}"
+        ], 1
     sizes = [int(bare * (full / bare) ** ((k + 0.5) / a.sizes)) for k in range(a.sizes)]
     statuses, bad = {}, {}
     for size in sizes:
@@ -108,17 +123,24 @@ def sweep(a, program, place):
         statuses[ended.status] = statuses.get(ended.status, 0) + 1
         for fault in wrong(program, ended, spoiled):
             bad.setdefault(re.sub(r"[\d.]+", "#", fault), []).append((size, fault))
-    lines = [f"{program:<16}help needs {bare / 2**20:.0f} MB, the run {full / 2**20:.0f} MB; {a.sizes} sizes between: "
-             f"statuses {statuses}, {sum(map(len, bad.values()))} faults"]
+    lines = [
+        f"{program:<16}help needs {bare / 2**20:.0f} MB, the run {full / 2**20:.0f} MB; {a.sizes} sizes between: "
+        f"statuses {statuses}, {sum(map(len, bad.values()))} faults"
+    ]
     for cases in bad.values():
-        lines += [f"    {len(cases)} x {cases[0][1]}", f"        ulimit -v {cases[0][0] // 1024}; {spelled([program] + argv[1:])}"]
+        lines += [
+            f"    {len(cases)} x {cases[0][1]}",
+            f"        ulimit -v {cases[0][0] // 1024}; {spelled([program] + argv[1:])}",
+        ]
     return lines, sum(map(len, bad.values()))
 
 
 def main(caller=None):
     a = arguments_of(caller)
     names = a.programs.split(",") if a.programs else sorted(COMMANDS)
-    names = [name for name in names if name in COMMANDS and os.access(os.path.join(a.bin, name), os.X_OK)]
+    names = [
+        name for name in names if name in COMMANDS and os.access(os.path.join(a.bin, name), os.X_OK)
+    ]
     if not names:
         sys.exit(f"fuzz_memory: {a.bin}: no program of {', '.join(COMMANDS)} is there")
     limit_this_process()  # no core files

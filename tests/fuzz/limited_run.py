@@ -51,10 +51,23 @@ def become_nobody(reachable):
 
 def spelled(argv):
     """The command line for a shell, bytes that are no text escaped."""
-    return " ".join(shlex.quote(a) if a.isprintable() else
-                    "$'" + "".join(c if c.isprintable() and c not in "'\\" else
-                                   "".join(f"\\x{b:02x}" for b in c.encode(errors="surrogateescape")) for c in a) + "'"
-                    for a in argv)
+    return " ".join(
+        (
+            shlex.quote(a)
+            if a.isprintable()
+            else "$'"
+            + "".join(
+                (
+                    c
+                    if c.isprintable() and c not in "'\\"
+                    else "".join(f"\\x{b:02x}" for b in c.encode(errors="surrogateescape"))
+                )
+                for c in a
+            )
+            + "'"
+        )
+        for a in argv
+    )
 
 
 def _cpu_of(pid):
@@ -95,7 +108,9 @@ def _all_of(descriptor):
         return file.read()
 
 
-def run(argv, folder, environment, cpu, wall, patience=5, stop_after=None, stop_signal=signal.SIGINT):
+def run(
+    argv, folder, environment, cpu, wall, patience=5, stop_after=None, stop_signal=signal.SIGINT
+):
     """Runs `argv` in `folder` for at most `cpu` s of processor time or `wall` s.
 
     After that, or after `stop_after` s, sends `stop_signal` and waits for the end as long as `patience` (processor
@@ -105,8 +120,16 @@ def run(argv, folder, environment, cpu, wall, patience=5, stop_after=None, stop_
     out, err = _pipe(), _pipe()
     try:
         # SIGXFSZ stays ignored as it is in Python: to write too much is an error and not a signal.
-        process = subprocess.Popen(argv, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=out[1],
-                                   stderr=err[1], restore_signals=False, start_new_session=True)
+        process = subprocess.Popen(
+            argv,
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=out[1],
+            stderr=err[1],
+            restore_signals=False,
+            start_new_session=True,
+        )
     finally:
         os.close(out[1]), os.close(err[1])
     poll, descriptor = select.poll(), os.pidfd_open(process.pid)
@@ -130,5 +153,12 @@ def run(argv, folder, environment, cpu, wall, patience=5, stop_after=None, stop_
             pass
     _, raw, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(raw)
-    return Run(process.returncode if ended else None, _all_of(out[0]), _all_of(err[0]),
-               time.monotonic() - started, usage.ru_utime + usage.ru_stime, asked, to_end)
+    return Run(
+        process.returncode if ended else None,
+        _all_of(out[0]),
+        _all_of(err[0]),
+        time.monotonic() - started,
+        usage.ru_utime + usage.ru_stime,
+        asked,
+        to_end,
+    )

@@ -2,42 +2,8 @@
 
 import math
 
-EDGE_NUMBERS = ["0", "-0", "-1", "1e300", "1e-300", "5e-324", "1.7976931348623157e308", "1e400", "-1e300",
-                "nan", "inf", "-inf", "", " ", "1e", "0x10", "1.5.2", "99999999999999999999", "2147483647",
-                "2147483648", "-2147483649", "18446744073709551616", "1e9", "1e-9", "1e-16", "true", "½",
-                "+1", "--1", "1_000", "0.1", "1", "2", "3", "1000", "1 2", "1,", ",1", "1,,2", "0,0", "1,nan"]
-EDGE_TEXTS = ["", " ", ".", "..", "/", "$HOME", "$(touch x)", "`x`", '"', "'", "a\nb", "a\rb", "\x1b[31mred",
-              "\x07", "\x9b31m", "ünïcödé", "漢字", "\udcff\udcfe", "x" * 300, "x" * 5000, "x/" * 1500, "%s%n",
-              "{}", "\\", ",", ",,", "a,b", "two words", "-", "-h", "--help", "*", "~", "a=b", "@1", "chain@nan"]
-PATHS = ["scene.toml", "./scene.toml", "sub/../scene.toml", "end.json", "end.csv", "notes.txt", "body.obj",
-         "mine", "mine/points.csv", "results", "folder", "folder/", "fifo", "locked.toml", "locked",
-         "locked/x.csv", "link.toml", "loop", "dangling", "dangling/x.csv", "zero", "full", "empty.toml",
-         "$x.toml", "-dash.toml", "none/x.csv", "none.toml", "scene.toml/x.csv", "new.csv", "new", "scene",
-         "scene.csv", "x" * 260, "mine/end.csv", ".", "..", ""]
-# Choices, (low, high) of a logarithmic range, or the name of a rule below; all so that runs take milliseconds.
-SENSIBLE = {
-    "--scene": "scene", "--methods": "methods", "--out": "folder", "--until": (1e-3, 2e-2), "--swing": (1e-3, 2e-2),
-    "--final": "file", "--trajectory": "file", "--energy": "file", "--write-scene": ["new.toml", "folder/new.toml"], "--motion": "file",
-    "--every": (1e-3, 1e-2), "--step-size": (1e-4, 1e-2), "--rtol": (1e-8, 1e-2), "--atol": (1e-10, 1e-2),
-    "--repeats": ["1", "2"], "--point-limit": (5e-3, 3e-2), "--cell-limit": (2e-3, 1e-2),
-    "--method-limit": (5e-3, 3e-2), "--time-limit": (5e-3, 0.5), "--memory-limit": (0.05, 2),
-    "--nodes": ["3", "4", "5"], "--stiffness": (10, 1e4), "--iterations": ["1", "2", "5", "20"],
-    "--stiffnesses": ["300", "300,600"], "--resolutions": ["3", "4", "3,5"], "--least-nodes": ["20", "30"],
-    "--most-nodes": ["30", "60"], "--sizes": ["1", "2"], "--ratios": ["1", "1,100"], "--family": ["chain", "whole", "frame"],
-    "--seeds": ["1"], "--cells": ["64", "128"], "--kinds": ["one jump"], "--columns": ["2", "3"],
-    "--amplitudes": ["0.1", "0.03,0.3"], "--low": ["0.1", "1"], "--high": ["3", "10"], "--threads": ["1", "2"],
-    "--vary": ["stiffness", "nodes", "mass"], "--tolerated": (0.01, 1), "--h-omega": ["1", "0.1,2"],
-    "--count": ["1", "3"], "--at": ["drawn", "equilibrium"], "--max-order": ["2", "5"], "--solve-tolerance": (1e-9, 1e-2),
-    "--spectral-radius": ["0", "0.5", "1"], "--scenes": ["chain", "cloth", "chain,lattice"], "scenes": "scenes",
-    "--solver": ["automatic", "multifrontal", "cholmod", "conjugate_gradients"], "--peers": ["odeint", "none"],
-    "--solvers": ["multifrontal", "cholmod", "multifrontal,conjugate_gradients"], "--accuracy": (1e-6, 1e-1)}
-OF_A_PROGRAM = {("crossover", "--nodes"): ["9", "10"], ("exchange", "--until"): (0.1, 1),
-                ("energy_drift", "--step-size"): (1e-6, 2e-5), ("exchange", "--scene"): ["fpu", "scene.toml"]}
-# What makes a run short, or possible at all, is nearly always given.
-NEEDED = {"--scene", "--out", "--until", "--swing", "--methods", "--repeats", "--point-limit", "--cell-limit",
-          "--method-limit", "--time-limit", "--nodes", "--stiffnesses", "--resolutions", "--most-nodes",
-          "--least-nodes", "--ratios", "--seeds", "--cells", "--columns", "--amplitudes", "--sizes", "--peers", "scenes"}
-GENERATORS = ["oscillator", "orbit", "pair", "pendulum", "strut", "chain"]
+from hostile_values import EDGE_NUMBERS, EDGE_TEXTS, PATHS
+from sensible_values import GENERATORS, NEEDED, OF_A_PROGRAM, SENSIBLE
 
 
 class Commands:
@@ -65,11 +31,18 @@ class Commands:
         if isinstance(rule, tuple):
             return f"{math.exp(random.uniform(math.log(rule[0]), math.log(rule[1]))):.3g}"
         match rule:
-            case "scene": return self._scene(random)
-            case "scenes": return self._scene(random) + "@0.005"
-            case "methods": return self._method_list(random)
-            case "folder": return random.choice(["new"] * 4 + ["folder", "results", "mine", "."])
-            case "file": return random.choice(["new.csv", "folder/new.csv"] + [option.name[2:] + ".csv"] * 5 + ["end.csv"])
+            case "scene":
+                return self._scene(random)
+            case "scenes":
+                return self._scene(random) + "@0.005"
+            case "methods":
+                return self._method_list(random)
+            case "folder":
+                return random.choice(["new"] * 4 + ["folder", "results", "mine", "."])
+            case "file":
+                return random.choice(
+                    ["new.csv", "folder/new.csv"] + [option.name[2:] + ".csv"] * 5 + ["end.csv"]
+                )
         if option.choices:
             return random.choice(option.choices)
         if option.default and random.random() < 0.5:
@@ -86,14 +59,22 @@ class Commands:
         if kind > 0.97:
             text = self.sensible(random, option)
             at = random.randrange(len(text) + 1)
-            return text[:at] + random.choice(["\x1b", "é", "0", "-", ",", " ", "$", "\udc80", "e9"]) + text[at:]
+            return (
+                text[:at]
+                + random.choice(["\x1b", "é", "0", "-", ",", " ", "$", "\udc80", "e9"])
+                + text[at:]
+            )
         return random.choice(pool)
 
     def _simulate(self, random):
         knob = random.choice(["step_size", "rtol"])
-        names = {"--method": random.choice(self.methods[knob]),
-                 "--step-size" if knob == "step_size" else "--rtol": None}
-        chosen = random.sample(["--final", "--trajectory", "--energy", "--write-scene"], random.choice([0, 1, 1, 2]))
+        names = {
+            "--method": random.choice(self.methods[knob]),
+            "--step-size" if knob == "step_size" else "--rtol": None,
+        }
+        chosen = random.sample(
+            ["--final", "--trajectory", "--energy", "--write-scene"], random.choice([0, 1, 1, 2])
+        )
         if {"--trajectory", "--energy"} & set(chosen):
             chosen.append("--every")
         return names | {name: None for name in chosen}
@@ -106,7 +87,12 @@ class Commands:
             chance = 0.99 if option.name in NEEDED else 0.3 / len(self.options)
             if option.name in ("--explain", "--list-methods", "--list-scenes"):
                 chance = 0.01
-            if self.program == "simulate" and option.name in ("--step-size", "--rtol", "--every", "--method"):
+            if self.program == "simulate" and option.name in (
+                "--step-size",
+                "--rtol",
+                "--every",
+                "--method",
+            ):
                 chance = 0.01
             if option.name in forced or random.random() < chance:
                 given.append((option, forced.get(option.name) or self.sensible(random, option)))
@@ -120,14 +106,20 @@ class Commands:
         at = random.randrange(len(given)) if given else 0
         what = random.random()
         if what < 0.65 and given:
-            return given[:at] + [(given[at][0], self.hostile(random, given[at][0]))] + given[at + 1:]
+            return (
+                given[:at] + [(given[at][0], self.hostile(random, given[at][0]))] + given[at + 1 :]
+            )
         if what < 0.88 or not given:
             there = {option.name for option, _ in given}
             option = random.choice([o for o in self.options if o.name not in there] or self.options)
-            value = self.hostile(random, option) if random.random() < 0.6 else self.sensible(random, option)
+            value = (
+                self.hostile(random, option)
+                if random.random() < 0.6
+                else self.sensible(random, option)
+            )
             return given + [(option, value)]
         if what < 0.95:
-            return given[:at] + given[at + 1:]
+            return given[:at] + given[at + 1 :]
         return given + [given[at]]
 
     def _spelled(self, random, given):
@@ -143,5 +135,7 @@ class Commands:
                 arguments += [option.name, value]
         if random.random() < 0.03 and arguments:
             at = random.randrange(len(arguments))
-            arguments[at] = random.choice([arguments[at][:-1], arguments[at] + "x", random.choice(EDGE_TEXTS)])
+            arguments[at] = random.choice(
+                [arguments[at][:-1], arguments[at] + "x", random.choice(EDGE_TEXTS)]
+            )
         return arguments

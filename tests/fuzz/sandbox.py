@@ -4,10 +4,20 @@ import os
 import shutil
 import stat
 
-OWN = {"end.json": b'{"mine": true}\n', "end.csv": b"my,own\n1,2\n", "notes.txt": b"mine\n",
-       "mine/points.csv": b"my,own\n1,2\n", "mine/points.json": b"[1]\n", "mine/summary.csv": b"my,own\n3,4\n",
-       "mine/reference.json": b'{"mine": 1}\n', "mine/map.json": b"{}\n", "empty.toml": b"",
-       "-dash.toml": b"dimension = 1\n", "locked.toml": b"dimension = 1\n", "body.obj": b"v 0 0 0\n"}
+OWN = {
+    "end.json": b'{"mine": true}\n',
+    "end.csv": b"my,own\n1,2\n",
+    "notes.txt": b"mine\n",
+    "mine/points.csv": b"my,own\n1,2\n",
+    "mine/points.json": b"[1]\n",
+    "mine/summary.csv": b"my,own\n3,4\n",
+    "mine/reference.json": b'{"mine": 1}\n',
+    "mine/map.json": b"{}\n",
+    "empty.toml": b"",
+    "-dash.toml": b"dimension = 1\n",
+    "locked.toml": b"dimension = 1\n",
+    "body.obj": b"v 0 0 0\n",
+}
 
 
 class Sandbox:
@@ -20,10 +30,19 @@ class Sandbox:
         for name, data in (OWN | files | {"$x.toml": files.get("scene.toml", b"")}).items():
             with open(os.path.join(self.here, name), "wb") as file:
                 file.write(data)
-        for name, target in [("link.toml", "scene.toml"), ("loop", "loop"), ("dangling", "nowhere/file"),
-                             ("zero", "/dev/zero"), ("full", "/dev/full"), ("fifo.obj", "fifo"), ("folder.mesh", "folder"),
-                             ("locked.obj", "locked.toml"), ("zero.obj", "/dev/zero"), ("zero.msh", "/dev/zero"),
-                             ("loop.mesh", "loop")]:
+        for name, target in [
+            ("link.toml", "scene.toml"),
+            ("loop", "loop"),
+            ("dangling", "nowhere/file"),
+            ("zero", "/dev/zero"),
+            ("full", "/dev/full"),
+            ("fifo.obj", "fifo"),
+            ("folder.mesh", "folder"),
+            ("locked.obj", "locked.toml"),
+            ("zero.obj", "/dev/zero"),
+            ("zero.msh", "/dev/zero"),
+            ("loop.mesh", "loop"),
+        ]:
             os.symlink(target, os.path.join(self.here, name))
         os.mkfifo(os.path.join(self.here, "fifo"))
         os.chmod(os.path.join(self.here, "locked.toml"), 0)
@@ -40,8 +59,15 @@ class Sandbox:
     @property
     def environment(self):
         home = os.path.join(self.root, "home")
-        return {"PATH": "/usr/bin:/bin", "HOME": home, "TMPDIR": home, "XDG_CACHE_HOME": home, "LC_ALL": "C.UTF-8",
-                "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        return {
+            "PATH": "/usr/bin:/bin",
+            "HOME": home,
+            "TMPDIR": home,
+            "XDG_CACHE_HOME": home,
+            "LC_ALL": "C.UTF-8",
+            "OMP_NUM_THREADS": "1",
+            "OPENBLAS_NUM_THREADS": "1",
+        }
 
     def _state(self):
         state = {}
@@ -63,7 +89,11 @@ class Sandbox:
         after = self._state()
         new = [name for name in after if name not in self.before]
         files = [name for name in new if after[name] != "folder"]
-        return files, [n for n in new if after[n] == "folder"], [n for n, was in self.before.items() if after.get(n) != was]
+        return (
+            files,
+            [n for n in new if after[n] == "folder"],
+            [n for n, was in self.before.items() if after.get(n) != was],
+        )
 
     def remove(self):
         os.chmod(os.path.join(self.here, "locked"), 0o700)

@@ -8,9 +8,11 @@ import re
 
 NOT_FINITE = {"nan", "-nan", "+nan", "inf", "-inf", "+inf", "infinity", "-infinity"}
 # Measured times (and memory) and what is computed from them: columns, and tables of who was the fastest.
-TIMES = re.compile(r"^seconds$|_s$|per_second$|^(structured|stock)_(force|stiffness|factorization|solve|rest)$"
-                   r"|^(ratio|is_at_least|margin|runner_up|timed_runs|gflops)$"
-                   r"|^bytes$")
+TIMES = re.compile(
+    r"^seconds$|_s$|per_second$|^(structured|stock)_(force|stiffness|factorization|solve|rest)$"
+    r"|^(ratio|is_at_least|margin|runner_up|timed_runs|gflops)$"
+    r"|^bytes$"
+)
 TABLES_OF_TIMES = {"front.csv", "crossover.csv", "kinds.csv", "ratios.csv", "exponents.csv"}
 
 
