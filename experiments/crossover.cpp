@@ -27,6 +27,7 @@
 // explicit steps at their limit. It fails where vibrations of stiff springs are part of what is
 // asked: an implicit method then has to resolve them too.
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -38,7 +39,9 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/csv.hpp"
+#include "experiments/interruption.hpp"
 #include "experiments/ladder.hpp"
+#include "experiments/point_record.hpp"
 #include "experiments/point_table.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
@@ -46,6 +49,7 @@
 #include "experiments/race.hpp"
 #include "experiments/scene_choice.hpp"
 #include "experiments/stiff_scenes.hpp"
+#include "experiments/study.hpp"
 #include "src/scene/invalid_input.hpp"
 
 namespace qddot {
@@ -151,25 +155,17 @@ class Climbers {
   Climbers(std::vector<const Method*> methods, const Effort& effort)
       : methods_(std::move(methods)), effort_(effort) {}
 
-  void measure(Rung& rung, double until) {
+  // Throws Interrupted where the program is to end; the points so far are then in the rung.
+  void measure(Study& study, Rung& rung, double until) {
     Race race(*rung.reference);
     std::map<const Method*, std::vector<Point>> points;
-    for (const Method* method : methods_) {
-      if (!applies_to(*method, rung.scene->system())) continue;
-      Effort effort = effort_;
-      effort.seconds = std::min(effort.seconds, race.seconds_of_interest());
-      points[method] = climb(
-          *method, *rung.scene, until, *rung.reference, effort,
-          [&](const Point& point) {
-            race.take(point);
-            show_progress(fmt::format("ratio {:g}: {}", rung.ratio, describe(point)));
-          },
-          [&](const Point& point) { return race.is_over(point); });
+    try {
+      climb_all(study, rung, until, race, points);
+    } catch (const Interrupted&) {
+      gather(points, rung);
+      throw;
     }
-    // Into the order of the registry, as the map has it.
-    for (const auto& [method, own] : points) {
-      rung.points.insert(rung.points.end(), own.begin(), own.end());
-    }
+    gather(points, rung);
     std::map<const Method*, double> handicaps;
     for (const Method* method : methods_) {
       const auto own = points.find(method);
@@ -182,6 +178,33 @@ class Climbers {
   }
 
  private:
+  void climb_all(Study& study, const Rung& rung, double until, Race& race,
+                 std::map<const Method*, std::vector<Point>>& points) {
+    for (const Method* method : methods_) {
+      if (!applies_to(*method, rung.scene->system())) continue;
+      Effort effort = effort_;
+      effort.seconds = std::min(effort.seconds, race.seconds_of_interest());
+      effort.recall = points_of(study, fmt::format("{:.17g} ", rung.ratio));
+      std::vector<Point>& own = points[method];
+      climb(
+          *method, *rung.scene, until, *rung.reference, effort,
+          [&](const Point& point) {
+            race.take(point);
+            own.push_back(point);
+            show_progress(fmt::format("ratio {:g}: {}", rung.ratio, describe(point)));
+          },
+          [&](const Point& point) { return race.is_over(point); });
+      std::ranges::sort(own, std::ranges::greater(), &Point::value);
+    }
+  }
+
+  // Into the order of the registry, as the map has it.
+  static void gather(const std::map<const Method*, std::vector<Point>>& points, Rung& rung) {
+    for (const auto& [method, own] : points) {
+      rung.points.insert(rung.points.end(), own.begin(), own.end());
+    }
+  }
+
   std::vector<const Method*> methods_;
   Effort effort_;
 };
@@ -253,6 +276,29 @@ void print_winners(const std::vector<Rung>& all) {
   }
 }
 
+// The reference and the methods at one ratio. False, after a sentence, where there is no reference.
+bool measure_rung(Study& study, const std::string& out,
+                  const std::vector<std::string>& command_line, double until, Climbers& climbers,
+                  Rung& rung) {
+  const std::string folder = fmt::format("{}/ratio_{:.9g}", out, rung.ratio);
+  require_folder(folder);
+  show_progress(fmt::format("ratio {:g}: making the reference ...", rung.ratio));
+  const auto origin = provenance(command_line, rung.drawn, rung.drawn, *rung.scene);
+  bool has_reference = true;
+  try {
+    rung.reference =
+        reference_for(rung.drawn, rung.drawn, *rung.scene, until, folder, origin, needed);
+    climbers.measure(study, rung, until);
+  } catch (const NoReference& error) {
+    show_progress("");
+    fmt::print(stderr, "crossover: ratio {:g}: {}; its cells are left empty\n", rung.ratio,
+               error.what());
+    has_reference = false;
+  }
+  rung.placings = placings(rung.points, rung.reference.value_or(Reference()));
+  return has_reference;
+}
+
 int crossover(const CLI::App& app, Arguments a, const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
@@ -267,6 +313,9 @@ int crossover(const CLI::App& app, Arguments a, const std::vector<std::string>& 
   const auto competing = kinds_of(methods);
   Climbers climbers(methods, a.effort);
   require_folder(a.out);
+  Study study(app, a.out, {"crossover.csv", "kinds.csv", "points.csv"},
+              {{"family", a.family}, {"until", until}, {"nodes", all.front().drawn.nodes.size()}});
+  if (const auto status = study.completed()) return *status;
   CsvFile winners(a.out + "/crossover.csv", winner_columns);
   CsvFile of_kinds(a.out + "/kinds.csv", kind_columns);
   std::vector<std::string> columns = point_columns();
@@ -274,34 +323,25 @@ int crossover(const CLI::App& app, Arguments a, const std::vector<std::string>& 
   CsvFile points(a.out + "/points.csv", columns);
 
   bool is_whole = true;
-  for (Rung& rung : all) {
-    const std::string folder = fmt::format("{}/ratio_{:.9g}", a.out, rung.ratio);
-    require_folder(folder);
-    show_progress(fmt::format("ratio {:g}: making the reference ...", rung.ratio));
-    const auto origin = provenance(command_line, rung.drawn, rung.drawn, *rung.scene);
-    try {
-      rung.reference =
-          reference_for(rung.drawn, rung.drawn, *rung.scene, until, folder, origin, needed);
-      climbers.measure(rung, until);
-    } catch (const NoReference& error) {
-      show_progress("");
-      fmt::print(stderr, "crossover: ratio {:g}: {}; its cells are left empty\n", rung.ratio,
-                 error.what());
-      is_whole = false;
+  std::size_t complete = 0;
+  study.measure([&] {
+    for (Rung& rung : all) {
+      is_whole = measure_rung(study, a.out, command_line, until, climbers, rung) && is_whole;
+      ++complete;
     }
-    rung.placings = placings(rung.points, rung.reference.value_or(Reference()));
-    tabulate(winners, of_kinds, points, rung, competing);
-  }
+  });
   show_progress("");
   const nlohmann::json origin = origin_of(command_line, a.family, until, all);
-  for (CsvFile* file : {&winners, &of_kinds, &points}) file->commit(origin);
+  for (const Rung& rung : all) tabulate(winners, of_kinds, points, rung, competing);
+  // What no method could win yet is not said to be lost.
+  all.resize(complete);
   print_winners(all);
   for (const Rung& rung : all) {
     if (!rung.reference || rung.reference->certified.position <= Race::accuracies.back()) continue;
     fmt::print("at ratio {:g} the reference is certified to {:.1e}: nothing is said below that\n",
                rung.ratio, rung.reference->certified.position);
   }
-  return is_whole ? done : end_not_reached;
+  return study.finish({&winners, &of_kinds, &points}, origin, is_whole ? done : end_not_reached);
 }
 
 }  // namespace
@@ -312,6 +352,7 @@ int main(int argc, char** argv) {
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
   qddot::add_threads_option(app);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::crossover(app, arguments, {argv, argv + argc});
   });

@@ -17,6 +17,8 @@ namespace qddot {
 class Csv {
  public:
   explicit Csv(const std::vector<std::string>& header);
+  // Rows alone, for the rows() of another.
+  Csv() = default;
 
   // Appends one row, a field for each argument: numbers, or text that is quoted where it must be.
   template <class... Fields>

@@ -26,13 +26,16 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/csv.hpp"
+#include "experiments/drift_record.hpp"
 #include "experiments/drift_run.hpp"
 #include "experiments/drift_tables.hpp"
+#include "experiments/interruption.hpp"
 #include "experiments/method_options.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/study.hpp"
 #include "experiments/timing.hpp"
 #include "src/scene/invalid_input.hpp"
 
@@ -134,10 +137,11 @@ std::vector<Job> jobs_of(const Arguments& a, double step_size, const ReducedScen
   return jobs;
 }
 
-std::vector<DriftRun> run_all(const std::vector<Job>& jobs, const Arguments& a,
+// The runs that were made before the program is to end, in the order of the jobs.
+std::vector<DriftRun> run_all(Study& study, const std::vector<Job>& jobs, const Arguments& a,
                               const ReducedScene& scene, const Momenta& momenta,
                               const MotionScales& scales, const Horizon& horizon) {
-  std::vector<DriftRun> runs(jobs.size());
+  std::vector<std::optional<DriftRun>> runs(jobs.size());
   std::size_t finished = 0;
   std::exception_ptr trouble;
 #pragma omp parallel for schedule(dynamic)
@@ -145,12 +149,17 @@ std::vector<DriftRun> run_all(const std::vector<Job>& jobs, const Arguments& a,
     try {
       Knobs knobs = knobs_for(*jobs[i].method, jobs[i].value, scene, a.options);
       knobs.compensated = a.compensated && jobs[i].method->takes_compensation;
-      runs[i] = run_drift(*jobs[i].method, knobs, scene, momenta, scales,
-                          {horizon.step_size, horizon.until, jobs[i].seconds});
+      const std::string name = fmt::format("{} {:.17g}", jobs[i].method->name, jobs[i].value);
+      runs[i] = drift_run_of(study.piece(name, [&] {
+        return record_of(run_drift(*jobs[i].method, knobs, scene, momenta, scales,
+                                   {horizon.step_size, horizon.until, jobs[i].seconds}));
+      }));
 #pragma omp critical
       show_progress(fmt::format("{} of {} runs: {} {:.3g}: {}", ++finished, jobs.size(),
                                 jobs[i].method->name, jobs[i].value,
-                                verdict_name(runs[i].energy.verdict)));
+                                verdict_name(runs[i]->energy.verdict)));
+    } catch (const Interrupted&) {
+      // The run is missing.
     } catch (...) {
 #pragma omp critical
       trouble = std::current_exception();
@@ -158,7 +167,11 @@ std::vector<DriftRun> run_all(const std::vector<Job>& jobs, const Arguments& a,
   }
   show_progress("");
   if (trouble) std::rethrow_exception(trouble);
-  return runs;
+  std::vector<DriftRun> made;
+  for (auto& run : runs) {
+    if (run) made.push_back(std::move(*run));
+  }
+  return made;
 }
 
 // The root mean square of the errors from 0.9 t to t.
@@ -234,14 +247,23 @@ int energy_drift(const CLI::App& app, const Arguments& a,
   const Horizon horizon = horizon_of(app, a, scene);
   const std::vector<Job> jobs = jobs_of(a, horizon.step_size, scene);
   require_folder(a.out);
+  Study study(app, a.out, {"drift.csv", "summary.csv", "tolerance.csv"},
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}});
+  if (const auto status = study.completed()) return *status;
   CsvFile paths(a.out + "/drift.csv", drift_columns);
   CsvFile summary(a.out + "/summary.csv", summary_columns);
   CsvFile tolerance(a.out + "/tolerance.csv", tolerance_columns);
 
-  show_progress("measuring the scales of the motion ...");
   const Momenta momenta(start);
-  const MotionScales scales = motion_scales(scene, momenta, horizon.until);
-  const std::vector<DriftRun> runs = run_all(jobs, a, scene, momenta, scales, horizon);
+  MotionScales scales{};
+  std::vector<DriftRun> runs;
+  study.measure([&] {
+    show_progress("measuring the scales of the motion ...");
+    scales = motion_scales(scene, momenta, horizon.until);
+    stop_if_interrupted();
+    runs = run_all(study, jobs, a, scene, momenta, scales, horizon);
+    if (runs.size() < jobs.size()) stop_if_interrupted();
+  });
 
   for (const DriftRun& run : runs) {
     write_path(paths, run);
@@ -265,8 +287,7 @@ int energy_drift(const CLI::App& app, const Arguments& a,
   origin["frequency"] = scales.frequency;
   origin["rounding"] = scales.rounding;
   origin["seconds"] = seconds_since(begin);
-  for (CsvFile* file : {&paths, &summary, &tolerance}) file->commit(origin);
-  return done;
+  return study.finish({&paths, &summary, &tolerance}, origin, done);
 }
 
 }  // namespace
@@ -277,6 +298,7 @@ int main(int argc, char** argv) {
                "energy_drift");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::energy_drift(app, arguments, {argv, argv + argc});
   });

@@ -41,6 +41,8 @@
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/study.hpp"
+#include "experiments/summary_record.hpp"
 #include "integrators/registry.hpp"
 #include "src/analysis/natural_modes.hpp"
 #include "src/scene/invalid_input.hpp"
@@ -102,7 +104,7 @@ double stiff_frequency(const System& system, const Vec& q) {
 }
 
 // The scene, what its runs have in common, and what its stiff springs start with.
-struct Study {
+struct Excitation {
   Scene drawn, start;
   ReducedScene scene;
   double until = 0, every = 0, omega = 0, window = 0;
@@ -116,26 +118,49 @@ struct Result {
   double sum_deviation = 0, energy_error = 0;
 };
 
+// As a journal keeps it, and back.
+nlohmann::json record_of(const Result& result) {
+  nlohmann::json energies = nlohmann::json::array();
+  for (const Vec& e : result.course.energies) energies.push_back(std::vector(e.begin(), e.end()));
+  return {{"times", result.course.times},
+          {"energies", energies},
+          {"summary", result.summary},
+          {"sum_deviation", result.sum_deviation},
+          {"energy_error", result.energy_error}};
+}
+
+Result result_of(const nlohmann::json& record) {
+  Result result{.summary = record.at("summary"),
+                .sum_deviation = record.at("sum_deviation"),
+                .energy_error = record.at("energy_error")};
+  result.course.times = record.at("times").get<std::vector<double>>();
+  for (const auto& energies : record.at("energies")) {
+    const auto values = energies.get<std::vector<double>>();
+    result.course.energies.push_back(Vec::Map(values.data(), std::ssize(values)));
+  }
+  return result;
+}
+
 // Seen at the start and then at `times`, which a run of constant steps is to reach in whole ones.
-Result run_of(const Study& study, const Method& method, double knob,
+Result run_of(const Excitation& excitation, const Method& method, double knob,
               const std::vector<double>& times) {
   Result result;
   const auto see = [&](const State& state) {
-    const Vec energies = stiff_energies(study.start, study.scene.expand(state));
+    const Vec energies = stiff_energies(excitation.start, excitation.scene.expand(state));
     const auto raise = [](double& largest, double value) {
       if (!(value <= largest)) largest = value;
     };
-    raise(result.sum_deviation, std::abs(energies.sum() / study.sum - 1));
-    raise(result.energy_error, std::abs(study.scene.energy(state) / study.energy - 1));
+    raise(result.sum_deviation, std::abs(energies.sum() / excitation.sum - 1));
+    raise(result.energy_error, std::abs(excitation.scene.energy(state) / excitation.energy - 1));
     result.course.times.push_back(state.t);
     result.course.energies.push_back(energies);
   };
-  State state = study.scene.initial();
+  State state = excitation.scene.initial();
   see(state);
   const Deadline deadline(longest_run);
   result.summary =
-      make_integrator(method, study.scene.system(), knobs_for(method, knob, study.scene))
-          ->advance(state, study.until, {times, see}, deadline.token());
+      make_integrator(method, excitation.scene.system(), knobs_for(method, knob, excitation.scene))
+          ->advance(state, excitation.until, {times, see}, deadline.token());
   return result;
 }
 
@@ -153,14 +178,16 @@ struct CertifiedCourse {
   double certified = 0;  // the largest |I_j - I_j'| of the two ways, over sum I(0)
 };
 
-CertifiedCourse reference_of(const Study& study) {
-  CertifiedCourse reference{.h = reference_h_omega / study.omega};
-  const auto times = multiples_near(study.every, reference.h, study.until);
+CertifiedCourse reference_of(Study& study, const Excitation& excitation) {
+  CertifiedCourse reference{.h = reference_h_omega / excitation.omega};
+  const auto times = multiples_near(excitation.every, reference.h, excitation.until);
   const auto reached = [&](const char* name, double knob) {
-    Result result = run_of(study, *find_method(name), knob, times);
+    Result result = result_of(study.piece(fmt::format("reference {}", name), [&] {
+      return record_of(run_of(excitation, *find_method(name), knob, times));
+    }));
     if (result.summary.outcome == Outcome::reached_end) return result;
     throw NoReference(fmt::format("{} reaches {} of {} s only, so that there is no reference: {}",
-                                  name, result.summary.t_reached, study.until,
+                                  name, result.summary.t_reached, excitation.until,
                                   result.summary.message));
   };
   reference.result = reached("kahan_li8", reference.h);
@@ -168,7 +195,7 @@ CertifiedCourse reference_of(const Study& study) {
   for (std::size_t i = 0; i <= times.size(); ++i) {
     const Vec apart = reference.result.course.energies[i] - other.course.energies[i];
     reference.certified =
-        std::max(reference.certified, apart.lpNorm<Eigen::Infinity>() / study.sum);
+        std::max(reference.certified, apart.lpNorm<Eigen::Infinity>() / excitation.sum);
   }
   return reference;
 }
@@ -236,17 +263,18 @@ std::vector<const Method*> select_fixed_step(const Arguments& a, const ReducedSc
 }
 
 // Checks what was asked for and looks at the start.
-Study study_of(const CLI::App& app, const Arguments& a) {
+Excitation excitation_of(const CLI::App& app, const Arguments& a) {
   const Scene drawn = load(a.scene);
   const Scene start = started(drawn, a.scene);
-  Study study{.drawn = drawn, .start = start, .scene = ReducedScene(start, reductions_of(a.scene))};
-  require_reference_exists(study.scene, a.scene.name);
-  study.until = horizon(a.until, app.count("--until") > 0, drawn);
-  const State& initial = study.scene.initial();
-  study.omega = stiff_frequency(study.scene.system(), initial.q);
-  study.energy = study.scene.energy(initial);
-  study.sum = stiff_energies(start, start.nodes).sum();
-  if (!(study.omega > 0)) {
+  Excitation excitation{
+      .drawn = drawn, .start = start, .scene = ReducedScene(start, reductions_of(a.scene))};
+  require_reference_exists(excitation.scene, a.scene.name);
+  excitation.until = horizon(a.until, app.count("--until") > 0, drawn);
+  const State& initial = excitation.scene.initial();
+  excitation.omega = stiff_frequency(excitation.scene.system(), initial.q);
+  excitation.energy = excitation.scene.energy(initial);
+  excitation.sum = stiff_energies(start, start.nodes).sum();
+  if (!(excitation.omega > 0)) {
     throw InvalidInput(fmt::format(
         "{}: stiff_above: {}; allowed are finite numbers above 0 in N/m that some spring between "
         "free nodes has more stiffness than, since it is such springs whose energy is followed",
@@ -254,30 +282,68 @@ Study study_of(const CLI::App& app, const Arguments& a) {
         drawn.stiff_above ? fmt::format("{} leaves no stiff spring that moves", *drawn.stiff_above)
                           : "it is missing"));
   }
-  if (!(study.sum > 0)) {
+  if (!(excitation.sum > 0)) {
     throw InvalidInput(
         fmt::format("{}: the stiff springs start without energy, {} J, so that there is none to be "
                     "exchanged; allowed are scenes that start with a stiff spring drawn or moving "
                     "out of its rest length",
-                    a.scene.name, study.sum));
+                    a.scene.name, excitation.sum));
   }
-  const double longest = std::ranges::max(a.h_omega) / study.omega;
-  if (!(10 * longest <= study.until)) {
+  const double longest = std::ranges::max(a.h_omega) / excitation.omega;
+  if (!(10 * longest <= excitation.until)) {
     throw InvalidInput(
         fmt::format("--until {} is not allowed with --h-omega {}; it is at least ten steps of it, "
                     "{:.3g} s",
-                    study.until, std::ranges::max(a.h_omega), 10 * longest));
+                    excitation.until, std::ranges::max(a.h_omega), 10 * longest));
   }
-  study.every = app.count("--every") > 0 ? a.every : study.until / 1000;
-  if (!(study.every <= study.until / 10)) {
+  excitation.every = app.count("--every") > 0 ? a.every : excitation.until / 1000;
+  if (!(excitation.every <= excitation.until / 10)) {
     throw InvalidInput(
         fmt::format("--every {} is not allowed; it is at most a tenth of the time, "
                     "{} s",
-                    study.every, study.until));
+                    excitation.every, excitation.until));
   }
-  study.window = std::min(periods_of_mean * 2 * M_PI / study.omega, study.until / 4);
-  return study;
+  excitation.window = std::min(periods_of_mean * 2 * M_PI / excitation.omega, excitation.until / 4);
+  return excitation;
 }
+
+// Writes and prints what came of each run, against the reference.
+class Reporter {
+ public:
+  Reporter(const Excitation& excitation, const CertifiedCourse& reference, CsvFile& courses,
+           CsvFile& table)
+      : excitation_(excitation),
+        exact_(reference.result.course),
+        own_(compare(exact_, exact_, excitation.window)),
+        courses_(courses),
+        table_(table) {
+    fmt::print(
+        "{} to t = {:g} s: w = {:.7g} rad/s; reference certified to {:.1e} of the energy\n\n",
+        excitation.drawn.name, excitation.until, excitation.omega, reference.certified);
+    fmt::print("{:<24} {:>6} {:>10} {:>10} {:>10} {:>7}  {}\n", "method", "h w", "sum I off",
+               "H off", "I_j off", "tempo", "verdict");
+  }
+
+  void operator()(const std::string& method, double h, double h_omega, const Result& result) {
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    const bool reached = result.summary.outcome == Outcome::reached_end;
+    ExchangeComparison c{.distance = nothing, .tempo = nothing, .misfit = nothing};
+    if (reached) c = compare(result.course, exact_, excitation_.window);
+    const std::string verdict = reached ? verdict_on(c, own_) : verdict_on(result.summary);
+    write_course(courses_, method, h, h_omega, result.course);
+    table_.row(method, h, h_omega, name(result.summary.outcome), result.summary.t_reached,
+               result.summary.counts.steps, result.summary.counts.force_evaluations,
+               result.sum_deviation, result.energy_error, c.distance, c.tempo, c.misfit, verdict);
+    fmt::print("{:<24} {:>6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>7.3f}  {}\n", method, h_omega,
+               result.sum_deviation, result.energy_error, c.distance, c.tempo, verdict);
+  }
+
+ private:
+  const Excitation& excitation_;
+  const EnergyCourse& exact_;
+  const ExchangeComparison own_;
+  CsvFile &courses_, &table_;
+};
 
 int exchange(const CLI::App& app, const Arguments& a,
              const std::vector<std::string>& command_line) {
@@ -289,52 +355,40 @@ int exchange(const CLI::App& app, const Arguments& a,
       throw InvalidInput(fmt::format("--h-omega: {} is named twice; allowed is once", h_omega));
   }
   if (app.count("--every") > 0) require_positive(a.every, "--every", "a time in s");
-  const Study study = study_of(app, a);
-  const auto selected = select_fixed_step(a, study.scene);
+  const Excitation excitation = excitation_of(app, a);
+  const auto selected = select_fixed_step(a, excitation.scene);
   require_folder(a.out);
+  Study study(app, a.out, {"exchange.csv", "summary.csv"},
+              {{"scene", content_hash(excitation.drawn)}, {"name", excitation.drawn.name}});
+  if (const auto status = study.completed()) return *status;
   CsvFile courses(a.out + "/exchange.csv", {"method", "h", "h_omega", "t", "spring", "energy"});
   CsvFile table(a.out + "/summary.csv",
                 {"method", "h", "h_omega", "outcome", "t_reached", "steps", "force_evaluations",
                  "sum_deviation", "energy_error", "exchange_error", "tempo", "misfit", "verdict"});
 
-  const CertifiedCourse reference = reference_of(study);
-  const EnergyCourse& exact = reference.result.course;
-  const ExchangeComparison own = compare(exact, exact, study.window);
-  fmt::print("{} to t = {:g} s: w = {:.7g} rad/s; reference certified to {:.1e} of the energy\n\n",
-             study.drawn.name, study.until, study.omega, reference.certified);
-  fmt::print("{:<24} {:>6} {:>10} {:>10} {:>10} {:>7}  {}\n", "method", "h w", "sum I off", "H off",
-             "I_j off", "tempo", "verdict");
-  const auto report = [&](const std::string& method, double h, double h_omega,
-                          const Result& result) {
-    const double nothing = std::numeric_limits<double>::quiet_NaN();
-    const bool reached = result.summary.outcome == Outcome::reached_end;
-    ExchangeComparison c{.distance = nothing, .tempo = nothing, .misfit = nothing};
-    if (reached) c = compare(result.course, exact, study.window);
-    const std::string verdict = reached ? verdict_on(c, own) : verdict_on(result.summary);
-    write_course(courses, method, h, h_omega, result.course);
-    table.row(method, h, h_omega, name(result.summary.outcome), result.summary.t_reached,
-              result.summary.counts.steps, result.summary.counts.force_evaluations,
-              result.sum_deviation, result.energy_error, c.distance, c.tempo, c.misfit, verdict);
-    fmt::print("{:<24} {:>6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>7.3f}  {}\n", method, h_omega,
-               result.sum_deviation, result.energy_error, c.distance, c.tempo, verdict);
-  };
-  report("reference", reference.h, reference_h_omega, reference.result);
-  for (const Method* method : selected) {
-    for (const double h_omega : a.h_omega) {
-      const double h = h_omega / study.omega;
-      show_progress(fmt::format("{} at h w = {:g}", method->name, h_omega));
-      report(method->name, h, h_omega,
-             run_of(study, *method, h, multiples_near(study.every, h, study.until)));
+  nlohmann::json origin =
+      provenance(command_line, excitation.drawn, excitation.start, excitation.scene);
+  origin["omega"] = excitation.omega;
+  origin["until"] = excitation.until;
+  origin["window"] = excitation.window;
+  study.measure([&] {
+    const CertifiedCourse reference = reference_of(study, excitation);
+    origin["certified"] = reference.certified;
+    Reporter report(excitation, reference, courses, table);
+    report("reference", reference.h, reference_h_omega, reference.result);
+    for (const Method* method : selected) {
+      for (const double h_omega : a.h_omega) {
+        const double h = h_omega / excitation.omega;
+        show_progress(fmt::format("{} at h w = {:g}", method->name, h_omega));
+        const auto times = multiples_near(excitation.every, h, excitation.until);
+        report(method->name, h, h_omega,
+               result_of(study.piece(fmt::format("{} {:.17g}", method->name, h), [&] {
+                 return record_of(run_of(excitation, *method, h, times));
+               })));
+      }
     }
-  }
-  nlohmann::json origin = provenance(command_line, study.drawn, study.start, study.scene);
-  origin["omega"] = study.omega;
-  origin["until"] = study.until;
-  origin["window"] = study.window;
-  origin["certified"] = reference.certified;
-  courses.commit(origin);
-  table.commit(origin);
-  return done;
+  });
+  return study.finish({&courses, &table}, origin, done);
 }
 
 }  // namespace
@@ -345,6 +399,7 @@ int main(int argc, char** argv) {
                "exchange");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::exchange(app, arguments, {argv, argv + argc});
   });

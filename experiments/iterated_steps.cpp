@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/interruption.hpp"
 #include "experiments/newton.hpp"
 #include "experiments/timing.hpp"
 #include "integrators/registry.hpp"
@@ -44,6 +45,7 @@ Solved solve(const Method& method, const SwingingCloth& cloth, double h, int mos
     Step step{.iterations = iterations};
     // Of several the first is not timed.
     for (int i = repeats > 1 ? -1 : 0; i < repeats; ++i) {
+      stop_if_interrupted();
       step.end = cloth.start;
       Summary summary;
       const double all =

@@ -23,16 +23,19 @@
 //                   takes to assemble and factorise, for 33, 65 and 101 nodes
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/csv.hpp"
+#include "experiments/interruption.hpp"
 #include "experiments/iterated_steps.hpp"
 #include "experiments/newton.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/study.hpp"
 #include "experiments/swinging_cloth.hpp"
 #include "experiments/timing.hpp"
 #include "integrators/registry.hpp"
@@ -108,19 +111,19 @@ nlohmann::json setups(const Comparison& comparison) {
   return setups;
 }
 
-void write_step(const Arguments& a, const std::vector<std::string>& command_line) {
-  CsvFile convergence(a.out + "/convergence.csv",
-                      {"solver", "iteration", "seconds", "relative_error"});
-  CsvFile positions(a.out + "/positions.csv",
-                    {"solver", "iteration", "seconds", "distance_to_converged", "step_error"});
+// One step by all solvers, for convergence.csv and positions.csv.
+nlohmann::json compare_steps(const Arguments& a) {
+  Csv convergence, positions;
+  std::string lines;
+  const auto print = [&](const std::string& line) { lines += line; };
   const SwingingCloth cloth(a.nodes, a.stiffness, a.swing);
   const Comparison comparison(cloth, a.step_size, a.iterations, a.repeats);
   const State exact = cloth.truth(cloth.start, a.step_size);
   const double own = cloth.distance(comparison.converged, exact);
-  fmt::print("one step of {:g} s: {:.3g} m from the true motion when converged\n", a.step_size,
-             own);
-  fmt::print("{:<24} {:>10} {:>9}  {}\n", "solver", "iterations", "ms",
-             "until no more than a tenth is added to that");
+  print(fmt::format("one step of {:g} s: {:.3g} m from the true motion when converged\n",
+                    a.step_size, own));
+  print(fmt::format("{:<24} {:>10} {:>9}  {}\n", "solver", "iterations", "ms",
+                    "until no more than a tenth is added to that"));
   for (const Solved& solved : comparison.all) {
     const Step* enough = nullptr;
     for (const Step& step : solved.steps) {
@@ -130,73 +133,108 @@ void write_step(const Arguments& a, const std::vector<std::string>& command_line
       positions.row(solved.method->name, step.iterations, step.seconds, distance, own);
       if (!enough && distance <= own / 10) enough = &step;
     }
-    if (enough) {
-      fmt::print("{:<24} {:>10} {:>9.3f}\n", solved.method->name, enough->iterations,
-                 1e3 * enough->seconds);
-    } else {
-      fmt::print("{:<24} {:>10}\n", solved.method->name,
-                 fmt::format("> {}", solved.steps.back().iterations));
-    }
+    print(enough ? fmt::format("{:<24} {:>10} {:>9.3f}\n", solved.method->name, enough->iterations,
+                               1e3 * enough->seconds)
+                 : fmt::format("{:<24} {:>10}\n", solved.method->name,
+                               fmt::format("> {}", solved.steps.back().iterations)));
   }
-  nlohmann::json origin = origin_of(command_line, cloth, a);
-  origin["setup"] = setups(comparison);
-  origin["step_error"] = own;
-  convergence.commit(origin);
-  positions.commit(origin);
+  return {{"convergence", convergence.text()},
+          {"positions", positions.text()},
+          {"lines", lines},
+          {"setup", setups(comparison)},
+          {"step_error", own}};
 }
 
-void write_figure_3(const Arguments& a, const std::vector<std::string>& command_line) {
-  const SwingingCloth standard(a.nodes, a.stiffness, 0);
-  nlohmann::json origin = origin_of(command_line, standard, a);
-  const auto add = [&](CsvFile& csv, auto value, int nodes, double stiffness) {
-    const SwingingCloth cloth(nodes, stiffness, a.swing);
-    const Comparison comparison(cloth, a.step_size,
-                                std::min(a.iterations, most_iterations_of_figure_3), 1);
-    for (const Solved& solved : comparison.all) {
-      for (const Step& step : solved.steps) {
-        csv.row(value, solved.method->name, step.iterations, step.seconds,
-                comparison.relative_error(step));
+// Tables that appear together when all that there is to measure has been, or was interrupted.
+struct StepTables {
+  explicit StepTables(const std::string& folder)
+      : convergence(folder + "/convergence.csv",
+                    {"solver", "iteration", "seconds", "relative_error"}),
+        positions(folder + "/positions.csv",
+                  {"solver", "iteration", "seconds", "distance_to_converged", "step_error"}),
+        stiffness(folder + "/stiffness.csv",
+                  {"stiffness", "solver", "iteration", "seconds", "relative_error"}),
+        resolution(folder + "/resolution.csv",
+                   {"nodes", "solver", "iteration", "seconds", "relative_error"}),
+        run(folder + "/run.csv",
+            {"solver", "iterations", "seconds", "position_error", "energy_change"}) {}
+  static std::vector<std::string> names() {
+    return {"convergence.csv", "positions.csv", "stiffness.csv", "resolution.csv", "run.csv"};
+  }
+
+  CsvFile convergence, positions, stiffness, resolution, run;
+  // What their sidecars have of their own.
+  nlohmann::json of_step = nlohmann::json::object(), of_stiffness = nlohmann::json::object(),
+                 of_resolution = nlohmann::json::object();
+};
+
+void write_step(Study& study, const Arguments& a, StepTables& tables) {
+  const nlohmann::json step = study.piece("step", [&] { return compare_steps(a); });
+  tables.convergence.rows(step.at("convergence").get<std::string>());
+  tables.positions.rows(step.at("positions").get<std::string>());
+  fmt::print("{}", step.at("lines").get<std::string>());
+  tables.of_step = {{"setup", step.at("setup")}, {"step_error", step.at("step_error")}};
+}
+
+void write_figure_3(Study& study, const Arguments& a, StepTables& tables) {
+  const auto add = [&](const char* table, CsvFile& csv, nlohmann::json& own, auto value, int nodes,
+                       double stiffness) {
+    const nlohmann::json piece = study.piece(fmt::format("{} {}", table, value), [&] {
+      const SwingingCloth cloth(nodes, stiffness, a.swing);
+      const Comparison comparison(cloth, a.step_size,
+                                  std::min(a.iterations, most_iterations_of_figure_3), 1);
+      Csv rows;
+      for (const Solved& solved : comparison.all) {
+        for (const Step& step : solved.steps) {
+          rows.row(value, solved.method->name, step.iterations, step.seconds,
+                   comparison.relative_error(step));
+        }
       }
-    }
-    origin["setup"][fmt::format("{:g}", static_cast<double>(value))] = setups(comparison);
+      return nlohmann::json{{"rows", rows.text()}, {"setup", setups(comparison)}};
+    });
+    csv.rows(piece.at("rows").get<std::string>());
+    own["setup"][fmt::format("{:g}", static_cast<double>(value))] = piece.at("setup");
   };
-  CsvFile stiffness_csv(a.out + "/stiffness.csv",
-                        {"stiffness", "solver", "iteration", "seconds", "relative_error"});
-  for (const double stiffness : a.stiffnesses) add(stiffness_csv, stiffness, a.nodes, stiffness);
-  stiffness_csv.commit(origin);
-  CsvFile resolution_csv(a.out + "/resolution.csv",
-                         {"nodes", "solver", "iteration", "seconds", "relative_error"});
-  origin.erase("setup");
+  for (const double stiffness : a.stiffnesses)
+    add("stiffness", tables.stiffness, tables.of_stiffness, stiffness, a.nodes, stiffness);
   for (const int nodes : a.resolutions) {
-    add(resolution_csv, nodes, nodes, a.stiffness * (nodes - 1) / static_cast<double>(a.nodes - 1));
+    add("resolution", tables.resolution, tables.of_resolution, nodes, nodes,
+        a.stiffness * (nodes - 1) / static_cast<double>(a.nodes - 1));
   }
-  resolution_csv.commit(origin);
 }
 
-void write_run(const Arguments& a, const std::vector<std::string>& command_line) {
-  CsvFile csv(a.out + "/run.csv",
-              {"solver", "iterations", "seconds", "position_error", "energy_change"});
+void write_run(Study& study, const Arguments& a, CsvFile& csv) {
   const SwingingCloth cloth(a.nodes, a.stiffness, 0);
-  const State exact = cloth.truth(cloth.start, a.until);
   const double energy = total_energy(cloth.system(), cloth.start);
+  std::optional<State> exact;
   fmt::print("\nruns of {:g} s with steps of {:g} s\n{:<24} {:>10} {:>9} {:>9} {:>9}\n", a.until,
              a.step_size, "solver", "iterations", "s", "m off", "J lost");
-  const auto add = [&](const Method& method, int iterations) {
+  const auto made = [&](const Method& method, int iterations) -> nlohmann::json {
+    if (!exact) exact = cloth.truth(cloth.start, a.until);
     State end = cloth.start;
     Summary summary;
     const auto integrator = make_integrator(method, cloth.system(),
                                             {.step_size = a.step_size, .iterations = iterations});
-    const double seconds =
-        seconds_of([&] { summary = integrator->advance(end, cloth.start.t + a.until); });
+    const double seconds = seconds_of(
+        [&] { summary = integrator->advance(end, cloth.start.t + a.until, {}, interruption()); });
     if (summary.outcome != Outcome::reached_end) {
-      fmt::print("{:<24} {:>10} {}\n", method.name, iterations, name(summary.outcome));
-      return;
+      return {{"rows", ""},
+              {"line",
+               fmt::format("{:<24} {:>10} {}\n", method.name, iterations, name(summary.outcome))}};
     }
-    const double off = cloth.distance(end, exact);
+    const double off = cloth.distance(end, *exact);
     const double change = total_energy(cloth.system(), end) - energy;
-    csv.row(method.name, iterations, seconds, off, change);
-    fmt::print("{:<24} {:>10} {:>9.4f} {:>9.4f} {:>9.4f}\n", method.name, iterations, seconds, off,
-               -change);
+    Csv rows;
+    rows.row(method.name, iterations, seconds, off, change);
+    return {{"rows", rows.text()},
+            {"line", fmt::format("{:<24} {:>10} {:>9.4f} {:>9.4f} {:>9.4f}\n", method.name,
+                                 iterations, seconds, off, -change)}};
+  };
+  const auto add = [&](const Method& method, int iterations) {
+    const nlohmann::json piece = study.piece(fmt::format("run {} {}", method.name, iterations),
+                                             [&] { return made(method, iterations); });
+    csv.rows(piece.at("rows").get<std::string>());
+    fmt::print("{}", piece.at("line").get<std::string>());
   };
   for (const Method& method : methods()) {
     if (!method.takes_iterations) continue;
@@ -204,48 +242,85 @@ void write_run(const Arguments& a, const std::vector<std::string>& command_line)
   }
   for (const int iterations : {1, 2, 3, 5, 10, 20}) add(newton_clamped(), iterations);
   add(newton_exact(), most_newton_iterations);
-  csv.commit(origin_of(command_line, cloth, a));
 }
 
-void write_speed(const Arguments& a, const std::vector<std::string>& command_line) {
-  CsvFile csv(a.out + "/speed.csv",
-              {"nodes", "springs", "iteration_s", "setup_s", "factorization_s"});
-  fmt::print("{:>6} {:>8} {:>13} {:>10} {:>17}\n", "nodes", "springs", "iteration ms", "set-up ms",
-             "factorisation ms");
+// One iteration and what comes before the first, on a cloth of so many nodes along a side.
+nlohmann::json measured_speed(const Arguments& a, int nodes) {
   const Method& method = *find_method("local_global");
   const double s = a.step_size * a.step_size;
-  for (const int nodes : speed_nodes) {
-    const SwingingCloth cloth(nodes, a.stiffness * (nodes - 1) / (standard_nodes - 1.0), 0);
-    const System& system = cloth.system();
-    constexpr int iterations = 10;
-    const auto integrator = make_integrator(
-        method, system, {.step_size = a.step_size, .iterations = iterations, .timed = true});
-    std::vector<double> times;
-    for (int i = 0; i < a.repeats; ++i) {
-      State state = cloth.start;
-      Summary summary;
-      const double all = seconds_of([&] { summary = integrator->advance(state, a.step_size); });
-      times.push_back((all - summary.seconds.factorization) / iterations);
-    }
-    const double setup = median_of(a.repeats, [&] {
-      LaplacianMass matrix(system);
-      matrix.factorize(s);
-    });
-    EffectiveMass newton(system);
-    SymmetricMatrix k = system.stiffness_pattern();
-    const double factorization = median_of(a.repeats, [&] {
-      system.stiffness(cloth.start.q, k);
-      newton.factorize_positive(1, s, k);
-    });
-    const double iteration = median(std::move(times));
-    csv.row(nodes, cloth.drawn.springs.size(), iteration, setup, factorization);
-    fmt::print("{:>6} {:>8} {:>13.4f} {:>10.3f} {:>17.3f}\n", nodes, cloth.drawn.springs.size(),
-               1e3 * iteration, 1e3 * setup, 1e3 * factorization);
+  const SwingingCloth cloth(nodes, a.stiffness * (nodes - 1) / (standard_nodes - 1.0), 0);
+  const System& system = cloth.system();
+  constexpr int iterations = 10;
+  const auto integrator = make_integrator(
+      method, system, {.step_size = a.step_size, .iterations = iterations, .timed = true});
+  std::vector<double> times;
+  for (int i = 0; i < a.repeats; ++i) {
+    State state = cloth.start;
+    Summary summary;
+    const double all = seconds_of([&] { summary = integrator->advance(state, a.step_size); });
+    times.push_back((all - summary.seconds.factorization) / iterations);
   }
-  csv.commit(origin_of(command_line, SwingingCloth(standard_nodes, a.stiffness, 0), a));
+  const double setup = median_of(a.repeats, [&] {
+    LaplacianMass matrix(system);
+    matrix.factorize(s);
+  });
+  EffectiveMass newton(system);
+  SymmetricMatrix k = system.stiffness_pattern();
+  const double factorization = median_of(a.repeats, [&] {
+    system.stiffness(cloth.start.q, k);
+    newton.factorize_positive(1, s, k);
+  });
+  const double iteration = median(std::move(times));
+  Csv rows;
+  rows.row(nodes, cloth.drawn.springs.size(), iteration, setup, factorization);
+  return {{"rows", rows.text()},
+          {"line", fmt::format("{:>6} {:>8} {:>13.4f} {:>10.3f} {:>17.3f}\n", nodes,
+                               cloth.drawn.springs.size(), 1e3 * iteration, 1e3 * setup,
+                               1e3 * factorization)}};
 }
 
-int local_global_program(const Arguments& a, const std::vector<std::string>& command_line) {
+int measure_speed(const CLI::App& app, const Arguments& a, const nlohmann::json& origin) {
+  Study study(app, a.out, {"speed.csv"}, origin.at("scene"));
+  if (const auto status = study.completed()) return *status;
+  CsvFile csv(a.out + "/speed.csv",
+              {"nodes", "springs", "iteration_s", "setup_s", "factorization_s"});
+  study.measure([&] {
+    fmt::print("{:>6} {:>8} {:>13} {:>10} {:>17}\n", "nodes", "springs", "iteration ms",
+               "set-up ms", "factorisation ms");
+    for (const int nodes : speed_nodes) {
+      const nlohmann::json piece =
+          study.piece(fmt::format("speed {}", nodes), [&] { return measured_speed(a, nodes); });
+      csv.rows(piece.at("rows").get<std::string>());
+      fmt::print("{}", piece.at("line").get<std::string>());
+    }
+  });
+  return study.finish({&csv}, origin, done);
+}
+
+int measure_steps(const CLI::App& app, const Arguments& a, const nlohmann::json& origin) {
+  Study study(app, a.out, StepTables::names(), origin.at("scene"));
+  if (const auto status = study.completed()) return *status;
+  StepTables tables(a.out);
+  study.measure([&] {
+    write_step(study, a, tables);
+    write_figure_3(study, a, tables);
+    write_run(study, a, tables.run);
+  });
+  const auto commit = [&](CsvFile& table, const nlohmann::json& own) {
+    nlohmann::json whole = origin;
+    whole.update(own);
+    study.commit(table, whole, done);
+  };
+  commit(tables.convergence, tables.of_step);
+  commit(tables.positions, tables.of_step);
+  commit(tables.stiffness, tables.of_stiffness);
+  commit(tables.resolution, tables.of_resolution);
+  commit(tables.run, nlohmann::json::object());
+  return study.conclude(done);
+}
+
+int local_global_program(const CLI::App& app, const Arguments& a,
+                         const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_within(a.nodes, 3, 400, "--nodes");
   for (const int nodes : a.resolutions) require_within(nodes, 3, 400, "--resolutions");
@@ -262,14 +337,9 @@ int local_global_program(const Arguments& a, const std::vector<std::string>& com
         "--swing {} is not allowed; it is a time in s, finite and at least 0", a.swing));
   }
   require_folder(a.out);
-  if (a.speed) {
-    write_speed(a, command_line);
-    return done;
-  }
-  write_step(a, command_line);
-  write_figure_3(a, command_line);
-  write_run(a, command_line);
-  return done;
+  const SwingingCloth cloth(a.speed ? standard_nodes : a.nodes, a.stiffness, 0);
+  const nlohmann::json origin = origin_of(command_line, cloth, a);
+  return a.speed ? measure_speed(app, a, origin) : measure_steps(app, a, origin);
 }
 
 }  // namespace
@@ -281,7 +351,8 @@ int main(int argc, char** argv) {
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
   qddot::add_threads_option(app);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
-    return qddot::local_global_program(arguments, {argv, argv + argc});
+    return qddot::local_global_program(app, arguments, {argv, argv + argc});
   });
 }

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "experiments/summary_record.hpp"
 #include "integrators/registry.hpp"
 
 namespace qddot {
 
 // What nlohmann::json looks for by these names.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Counts, steps, rejected, force_evaluations,
-                                   stiffness_evaluations, factorizations, solves, newton_iterations,
-                                   indefinite_factorizations, order_sum, order_reductions,
-                                   stability_limited_steps)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, position, velocity, energy)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OnTheWay, energy, momentum, modal_shares)
 

@@ -24,6 +24,7 @@
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/study.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
 
@@ -161,9 +162,15 @@ double rest(const Seconds& shares) {
   return 1 - shares.force - shares.stiffness - shares.factorization - shares.solve;
 }
 
-void compare(Csv& csv, const std::string& scene_name, const Pair& pair, double rtol,
-             const ReducedScene& scene, double until, const Reference& reference,
-             const Effort& effort) {
+// A row of the table, and the line that is printed of it.
+struct Compared {
+  std::string row, line;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Compared, row, line)
+
+Compared compare(const std::string& scene_name, const Pair& pair, double rtol,
+                 const ReducedScene& scene, double until, const Reference& reference,
+                 const Effort& effort) {
   Runs structured(*pair.structured, rtol, scene, until, effort.seconds);
   Runs stock(*pair.stock, rtol, scene, until, effort.seconds);
   structured.once();
@@ -190,6 +197,7 @@ void compare(Csv& csv, const std::string& scene_name, const Pair& pair, double r
   const double seconds = both ? median(structured_times) : nothing;
   const double stock_seconds = both ? median(stock_times) : nothing;
   const double ratio = both ? median(ratios) : nothing;
+  Csv csv;
   csv.row(scene_name, pair.structured->name, rtol, name(outcomes.first), name(outcomes.second),
           seconds, stock_seconds, ratio, errors[0], errors[1], counts.steps, stock_counts.steps,
           counts.newton_iterations, counts.stiffness_evaluations, counts.factorizations,
@@ -197,17 +205,19 @@ void compare(Csv& csv, const std::string& scene_name, const Pair& pair, double r
           s.factorization, s.solve, rest(s), k.force, k.stiffness, k.factorization, k.solve,
           rest(k));
   if (!both) {
-    fmt::print("{:<13} {:>6.0e}  {}, stock {}\n", pair.structured->name, rtol, name(outcomes.first),
-               name(outcomes.second));
-    return;
+    return {std::string(csv.text()),
+            fmt::format("{:<13} {:>6.0e}  {}, stock {}\n", pair.structured->name, rtol,
+                        name(outcomes.first), name(outcomes.second))};
   }
   const auto percent = [](const Seconds& x) {
     return fmt::format("{:2.0f} {:2.0f} {:2.0f} {:2.0f} {:2.0f}", 100 * x.force, 100 * x.stiffness,
                        100 * x.factorization, 100 * x.solve, 100 * rest(x));
   };
-  fmt::print("{:<13} {:>6.0e} {:>9.4f} {:>9.4f} {:>6.2f}  {:.1e} {:.1e} {:>6} {:>5}  {}  {}\n",
-             pair.structured->name, rtol, stock_seconds, seconds, ratio, errors[1], errors[0],
-             counts.steps, counts.factorizations, percent(k), percent(s));
+  return {std::string(csv.text()),
+          fmt::format("{:<13} {:>6.0e} {:>9.4f} {:>9.4f} {:>6.2f}  {:.1e} {:.1e} {:>6} {:>5}  {}  "
+                      "{}\n",
+                      pair.structured->name, rtol, stock_seconds, seconds, ratio, errors[1],
+                      errors[0], counts.steps, counts.factorizations, percent(k), percent(s))};
 }
 
 int stock_sundials(const CLI::App& app, const Arguments& a,
@@ -223,22 +233,30 @@ int stock_sundials(const CLI::App& app, const Arguments& a,
   require_reference_exists(scene, a.scene.name);
   const auto pairs = select_pairs(a.methods, scene, a.scene.name);
   require_folder(a.out);
+  Study study(app, a.out, {"structure.csv"},
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
+  if (const auto status = study.completed()) return *status;
   CsvFile csv(a.out + "/structure.csv", columns);
   nlohmann::json origin = provenance(command_line, drawn, start, scene);
   origin["until"] = until;
-  const Reference reference = reference_for(drawn, start, scene, until, a.out, origin);
-
-  fmt::print("{}, {} unknowns, until {:g} s; shares in %: force K factorisation solve rest\n",
-             drawn.name, scene.system().size(), until);
-  fmt::print("{:<13} {:>6} {:>9} {:>9} {:>6}  {:<15} {:>6} {:>5}  {:<14}  {}\n", "method", "rtol",
-             "stock s", "n x n s", "ratio", "errors", "steps", "fact.", "stock", "n x n");
-  for (const Pair& pair : pairs) {
-    for (const double rtol : a.rtols) {
-      compare(csv, drawn.name, pair, rtol, scene, until, reference, a.effort);
+  study.measure([&] {
+    const Reference reference = reference_for(drawn, start, scene, until, a.out, origin);
+    fmt::print("{}, {} unknowns, until {:g} s; shares in %: force K factorisation solve rest\n",
+               drawn.name, scene.system().size(), until);
+    fmt::print("{:<13} {:>6} {:>9} {:>9} {:>6}  {:<15} {:>6} {:>5}  {:<14}  {}\n", "method", "rtol",
+               "stock s", "n x n s", "ratio", "errors", "steps", "fact.", "stock", "n x n");
+    for (const Pair& pair : pairs) {
+      for (const double rtol : a.rtols) {
+        const std::string name = fmt::format("{} {:.17g}", pair.structured->name, rtol);
+        const Compared compared = study.piece(name, [&] {
+          return nlohmann::json(compare(drawn.name, pair, rtol, scene, until, reference, a.effort));
+        });
+        csv.rows(compared.row);
+        fmt::print("{}", compared.line);
+      }
     }
-  }
-  csv.commit(origin);
-  return done;
+  });
+  return study.finish({&csv}, origin, done);
 }
 
 }  // namespace
@@ -251,6 +269,7 @@ int main(int argc, char** argv) {
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
   qddot::add_threads_option(app);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
     return qddot::stock_sundials(app, arguments, {argv, argv + argc});
   });

@@ -100,24 +100,32 @@ void Study::measure(const std::function<void()>& body) {
   try {
     body();
   } catch (const Interrupted&) {
+    why_ = interrupted();
     show_progress("");
   }
 }
 
-int Study::finish(const std::vector<CsvFile*>& tables, nlohmann::json origin, int status) {
-  const auto why = interrupted();
+void Study::commit(CsvFile& table, nlohmann::json origin, int status) {
   origin["study"] = key_;
-  origin["exit_status"] = why ? why->status : status;
-  origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
-  for (CsvFile* table : tables) table->commit(origin);
-  if (!why) {
+  origin["exit_status"] = why_ ? why_->status : status;
+  origin["interrupted"] = why_ ? nlohmann::json(why_->by) : nullptr;
+  table.commit(origin);
+}
+
+int Study::conclude(int status) {
+  if (!why_) {
     journal_->remove();
     return status;
   }
   fmt::print(stderr,
              "{}: interrupted by {}; {} pieces are kept, and --resume measures what is missing\n",
-             program_, why->by, journal_->size());
-  return why->status;
+             program_, why_->by, journal_->size());
+  return why_->status;
+}
+
+int Study::finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status) {
+  for (CsvFile* table : tables) commit(*table, origin, status);
+  return conclude(status);
 }
 
 }  // namespace qddot

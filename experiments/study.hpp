@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/csv.hpp"
+#include "experiments/interruption.hpp"
 #include "experiments/journal.hpp"
 
 namespace CLI {
@@ -42,15 +43,21 @@ class Study {
   // Runs `body`, which makes pieces and ends early where the program is to end.
   void measure(const std::function<void()>& body);
 
-  // Commits the tables, in whose sidecars `interrupted` says by what the program was ended, or is
-  // null. Returns `status`, or that of the interruption, after a sentence on what to do next.
-  int finish(const std::vector<CsvFile*>& tables, nlohmann::json origin, int status);
+  // Commits a table, whose sidecar says that it is of this study, and in `interrupted` by what that
+  // was ended, or null. `status`: what the program returns if it was not.
+  void commit(CsvFile& table, nlohmann::json origin, int status);
+  // After all tables. Returns `status`, or that of the interruption, of which it says what to do
+  // next.
+  int conclude(int status);
+  // Both, for tables of one origin.
+  int finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status);
 
  private:
   std::string program_, path_;
   nlohmann::json key_;
   std::optional<int> completed_;
   std::unique_ptr<Journal> journal_;
+  std::optional<Interruption> why_;  // measure() ended early
 };
 
 }  // namespace qddot

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "experiments/interruption.hpp"
 #include "integrators/registry.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/scene/generators.hpp"
@@ -24,7 +25,8 @@ Scene draw(int nodes, double stiffness) {
 State moved(const char* method, const System& system, State state, double duration) {
   const double h = 0.5 / frequency_bound(system, state.q);
   const Summary summary = make_integrator(*find_method(method), system, {.step_size = h})
-                              ->advance(state, state.t + duration);
+                              ->advance(state, state.t + duration, {}, interruption());
+  stop_if_interrupted();
   if (summary.outcome != Outcome::reached_end) throw std::runtime_error(summary.message);
   return state;
 }
