@@ -30,7 +30,8 @@ Options:
   --explain                   say why
 """
 
-# Writes ten rows, one each 50 ms, with a journal; a "bad" one counts its last row twice on --resume.
+# Writes ten rows, one each 50 ms, with a journal; a "bad" one counts its last row twice on
+# --resume.
 STUDY = """#!/usr/bin/python3
 import json, os, signal, sys, time
 out, resumed = "results", "--resume" in sys.argv

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 # "  -h,--help   words", "  --until FLOAT=2 ...   words", and the words alone on the next line.
 _LINE = re.compile(
     r"^  (?:-\w,)?(?P<name>--[\w-]+|[a-z]\w*)"
-    r"(?: (?P<kind>[A-Z]{2,}))?(?:=(?P<default>\[[^\]]*\]|\S+))?(?P<several> \.\.\.)?(?:\s+(?P<words>.*))?$"
+    r"(?: (?P<kind>[A-Z]{2,}))?(?:=(?P<default>\[[^\]]*\]|\S+))?"
+    r"(?P<several> \.\.\.)?(?:\s+(?P<words>.*))?$"
 )
 
 

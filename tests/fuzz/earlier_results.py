@@ -49,7 +49,9 @@ def earlier_results(programs, options, place):
 
 
 def spoil_one(random, sandbox):
-    """Writes the scenes of the earlier results, and spoils one of these, mostly; both count as found."""
+    """Writes the scenes of the earlier results, and spoils one of these, mostly; both count as
+    found.
+    """
     write_scenes(sandbox.here)
     sandbox.inputs.update(SCENES)
     folder = os.path.join(sandbox.here, "results")

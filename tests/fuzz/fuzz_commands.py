@@ -1,12 +1,14 @@
 #!/usr/bin/python3
-"""Random command lines of every program, each in a sandbox with limits: nothing may crash, hang or lose.
+"""Random command lines of every program, each in a sandbox with limits: nothing may crash, hang or
+lose.
 
   tests/fuzz/fuzz_commands.py --bin build/bin --count 100000 --jobs 2
   tests/fuzz/fuzz_commands.py --bin build/bin --seed 1 --only 4711 --keep /tmp/kept   (one of them again)
 
-Documented are the statuses 0, 2 (one sentence, no file written), 3 and, after a signal, 130. Inputs and files of
-the user's stay as they are, tables are whole, no control character is printed. A run that takes longer than the
-limit is sent SIGINT and must end in order. Status 1: something was found.
+Documented are the statuses 0, 2 (one sentence, no file written), 3 and, after a signal, 130.
+Inputs and files of the user's stay as they are, tables are whole, no control character is printed.
+A run that takes longer than the limit is sent SIGINT and must end in order. Status 1: something
+was found.
 """
 
 import argparse

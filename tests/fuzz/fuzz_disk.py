@@ -1,17 +1,19 @@
 #!/usr/bin/python3
-"""A full disk at every write: each program with room for only so many bytes, for more and more of them.
+"""A full disk at every write: each program with room for only so many bytes, for more and more of
+them.
 
   tests/fuzz/fuzz_disk.py --bin build/bin
   tests/fuzz/fuzz_disk.py --bin build/bin --way disk --points 40     (a file system of 1 MB; needs root)
 
-Two ways to fail a write. "limit": RLIMIT_FSIZE with SIGXFSZ ignored, so that every write beyond n bytes of a file
-fails with EFBIG, as one on a full disk fails with ENOSPC. This reaches the writes inside glibc's stdio, which no
-preloaded library sees, as they are not called through the linker's table. "disk": a tmpfs of 1 MB, filled but for n
-bytes, where the calls fail that make files and folders, too. n runs from 0 to twice the size of the largest
-file (of all files) that the undisturbed run writes.
+Two ways to fail a write. "limit": RLIMIT_FSIZE with SIGXFSZ ignored, so that every write beyond n
+bytes of a file fails with EFBIG, as one on a full disk fails with ENOSPC. This reaches the writes
+inside glibc's stdio, which no preloaded library sees, as they are not called through the linker's
+table. "disk": a tmpfs of 1 MB, filled but for n bytes, where the calls fail that make files and
+folders, too. n runs from 0 to twice the size of the largest file (of all files) that the
+undisturbed run writes.
 
-Wanted: status 0 with all files whole, or 2 or 3 with one sentence that names a file; results of an earlier run whole
-and as they were or replaced; no .part file left. Status 1: something was found.
+Wanted: status 0 with all files whole, or 2 or 3 with one sentence that names a file; results of an
+earlier run whole and as they were or replaced; no .part file left. Status 1: something was found.
 """
 
 import argparse
@@ -50,7 +52,9 @@ def arguments_of(caller):
 
 
 class Place:
-    """A folder of 1 MB, or one where files may have n bytes; with scenes, and earlier results or none."""
+    """A folder of 1 MB, or one where files may have n bytes; with scenes, and earlier results or
+    none.
+    """
 
     def __init__(self, root, way):
         self.root, self.way = root, way

@@ -1,13 +1,15 @@
 #!/usr/bin/python3
-"""Kills every study at random moments, resumes it, and compares with a run that was never disturbed.
+"""Kills every study at random moments, resumes it, and compares with a run that was never
+disturbed.
 
   tests/fuzz/fuzz_kills.py --bin build/bin --kills 200 --jobs 2
   tests/fuzz/fuzz_kills.py --bin build/bin --kills 3 --study convergence,energy_drift
 
-A trial sends SIGKILL, SIGINT or SIGTERM at a moment that is uniform in the study's duration, one to three times,
-and runs the same command with --resume until it ends. All columns but measured times have to be equal, to the
-digit; no .part file may be left. After SIGINT and SIGTERM the status is 130, what tables there are are whole, and
-each sidecar says "interrupted". Status 1: something was found.
+A trial sends SIGKILL, SIGINT or SIGTERM at a moment that is uniform in the study's duration, one
+to three times, and runs the same command with --resume until it ends. All columns but measured
+times have to be equal, to the digit; no .part file may be left. After SIGINT and SIGTERM the
+status is 130, what tables there are are whole, and each sidecar says "interrupted". Status 1:
+something was found.
 """
 
 import argparse

@@ -3,9 +3,10 @@
 
   tests/fuzz/fuzz_memory.py --bin build/bin --sizes 10 --jobs 2
 
-The least address space in which a program prints its help, and the least in which it does its work, are found by
-bisection; the sizes between are tried. Wanted: status 0, or 2 or 3 with a sentence on memory that has a number in it,
-and files whole or not there at all. Status 1: something was found.
+The least address space in which a program prints its help, and the least in which it does its
+work, are found by bisection; the sizes between are tried. Wanted: status 0, or 2 or 3 with a
+sentence on memory that has a number in it, and files whole or not there at all. Status 1:
+something was found.
 """
 
 import argparse
@@ -21,20 +22,28 @@ from written_tables import faults
 
 MEDIUM = b'until = 0.01\n[generator]\nkind = "cloth"\nnodes = 60\n'
 COMMANDS = {
-    "simulate": "--scene medium.toml --method implicit_euler --step-size 2e-3 --until 0.01 --final results/f.csv"
+    "simulate": "--scene medium.toml --method implicit_euler --step-size 2e-3 --until 0.01"
+    " --final results/f.csv"
     " --trajectory results/t.csv --every 2e-3",
     "equilibrium": "--scene steady.toml --final results/f.csv",
     "modes": "--scene medium.toml --out results --count 3",
-    "work_precision": "--scene small.toml --methods verlet,ida --repeats 1 --until 0.005 --out results",
-    "convergence": "--scene small.toml --methods verlet,implicit_midpoint --until 0.005 --out results",
-    "stability_map": "--scene small.toml --methods verlet --columns 2 --amplitudes 0.1 --until 0.005 --out results",
-    "energy_drift": "--scene small.toml --methods verlet,hht --step-size 1e-4 --until 0.05 --out results",
+    "work_precision": "--scene small.toml --methods verlet,ida --repeats 1 --until 0.005"
+    " --out results",
+    "convergence": "--scene small.toml --methods verlet,implicit_midpoint --until 0.005"
+    " --out results",
+    "stability_map": "--scene small.toml --methods verlet --columns 2 --amplitudes 0.1"
+    " --until 0.005 --out results",
+    "energy_drift": "--scene small.toml --methods verlet,hht --step-size 1e-4 --until 0.05"
+    " --out results",
     "exchange": "--scene fpu --methods verlet --until 10 --h-omega 1 --out results",
-    "local_global": "--nodes 40 --iterations 10 --repeats 1 --stiffnesses 300 --resolutions 21 --swing 0.05 --until 0.05"
+    "local_global": "--nodes 40 --iterations 10 --repeats 1 --stiffnesses 300 --resolutions 21"
+    " --swing 0.05 --until 0.05"
     " --out results",
     "scaling": "--scenes cloth --least-nodes 1000 --most-nodes 20000 --sizes 1 --out results",
-    "crossover": "--nodes 6 --ratios 1,10 --methods verlet,ida --until 0.02 --repeats 1 --out results",
-    "stock_sundials": "--scene small.toml --methods ida --rtol 1e-3 --repeats 1 --until 0.005 --out results",
+    "crossover": "--nodes 6 --ratios 1,10 --methods verlet,ida --until 0.02 --repeats 1"
+    " --out results",
+    "stock_sundials": "--scene small.toml --methods ida --rtol 1e-3 --repeats 1 --until 0.005"
+    " --out results",
     "solvers": "--scene medium.toml --repeats 1 --out results",
     "verdicts": "--seeds 1 --cells 64 --out results",
 }
@@ -60,7 +69,9 @@ def arguments_of(caller):
 
 
 def attempt(argv, place, size):
-    """Runs with `size` bytes of address space in a folder of its own; the run, and faults of its files."""
+    """Runs with `size` bytes of address space in a folder of its own; the run, and faults of its
+    files.
+    """
     folder = tempfile.mkdtemp(dir=place)
     try:
         os.mkdir(os.path.join(folder, "results"))
@@ -82,7 +93,9 @@ def attempt(argv, place, size):
 
 
 def least(argv, place, low, high):
-    """The least size in bytes, within 2 %, from which on the command ends with status 0; None if at none."""
+    """The least size in bytes, within 2 %, from which on the command ends with status 0; None if
+    at none.
+    """
     if attempt(argv, place, high)[0].status != 0:
         return None
     while high > 1.02 * low:
@@ -107,7 +120,9 @@ def wrong(program, ended, spoiled):
 
 
 def sweep(a, program, place):
-    """Lines on one program: what it needs, how runs with less ended, what is wrong; and how much is."""
+    """Lines on one program: what it needs, how runs with less ended, what is wrong; and how much
+    is.
+    """
     argv = [os.path.join(a.bin, program)] + COMMANDS[program].split()
     bare = least(argv[:1] + ["--help"], place, 1 << 20, MOST)
     full = bare and least(argv, place, bare, MOST)

@@ -15,7 +15,9 @@ _TICKS = os.sysconf("SC_CLK_TCK")
 
 @dataclass
 class Run:
-    """How a run ended: `status` as a shell has it, negative for a signal; None if nothing ended it."""
+    """How a run ended: `status` as a shell has it, negative for a signal; None if nothing ended
+    it.
+    """
 
     status: int | None
     out: bytes
@@ -27,7 +29,9 @@ class Run:
 
 
 def limit_this_process(memory=None, file_size=None):
-    """Limits this process and all that it starts: bytes of address space and of a file, no core files."""
+    """Limits this process and all that it starts: bytes of address space and of a file, no core
+    files.
+    """
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if memory:
         resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
@@ -80,7 +84,9 @@ def _cpu_of(pid):
 
 
 def _ended(poll, pid, cpu, wall):
-    """Waits until the process ends, or has had `cpu` s of the processor from now on or `wall` s passed."""
+    """Waits until the process ends, or has had `cpu` s of the processor from now on or `wall` s
+    passed.
+    """
     start, until = _cpu_of(pid), time.monotonic() + wall
     slice_ = cpu
     while True:
@@ -96,7 +102,9 @@ def _ended(poll, pid, cpu, wall):
 
 
 def _pipe():
-    """Ends of a pipe that takes 1 MB before anyone reads: no limit of file sizes is one of what is said."""
+    """Ends of a pipe that takes 1 MB before anyone reads: no limit of file sizes is one of what is
+    said.
+    """
     ends = os.pipe()
     fcntl.fcntl(ends[0], fcntl.F_SETPIPE_SZ, 1 << 20)
     os.set_blocking(ends[1], False)

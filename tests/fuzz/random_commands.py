@@ -50,7 +50,9 @@ class Commands:
         return {"INT": "1", "FLOAT": "0.1"}.get(option.kind, random.choice(PATHS))
 
     def hostile(self, random, option):
-        """A value that may well be refused: of another kind, too large, a path of trouble, spoiled."""
+        """A value that may well be refused: of another kind, too large, a path of trouble,
+        spoiled.
+        """
         kind = random.random()
         if option.kind != "TEXT":
             pool = EDGE_NUMBERS if kind < 0.85 else EDGE_TEXTS

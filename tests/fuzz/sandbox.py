@@ -1,4 +1,5 @@
-"""A fresh folder for one run, with a scene, a user's own files and traps in it, and what a run did to them."""
+"""A fresh folder for one run, with a scene, a user's own files and traps in it, and what a run did
+to them."""
 
 import os
 import shutil
@@ -21,7 +22,9 @@ OWN = {
 
 
 class Sandbox:
-    """The folder `here` of `root`, made anew from `files` (name to bytes) and the folder `earlier`, if any."""
+    """The folder `here` of `root`, made anew from `files` (name to bytes) and the folder
+    `earlier`, if any.
+    """
 
     def __init__(self, root, files, earlier=None):
         self.root, self.here = root, os.path.join(root, "here")

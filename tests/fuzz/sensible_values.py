@@ -1,6 +1,7 @@
 """Values of options by name that should be fine and make runs short."""
 
-# Choices, (low, high) of a logarithmic range, or the name of a rule below; all so that runs take milliseconds.
+# Choices, (low, high) of a logarithmic range, or the name of a rule below; all so that runs take
+# milliseconds.
 SENSIBLE = {
     "--scene": "scene",
     "--methods": "methods",

@@ -7,7 +7,8 @@ import os
 import re
 
 NOT_FINITE = {"nan", "-nan", "+nan", "inf", "-inf", "+inf", "infinity", "-infinity"}
-# Measured times (and memory) and what is computed from them: columns, and tables of who was the fastest.
+# Measured times (and memory) and what is computed from them: columns, and tables of who was the
+# fastest.
 TIMES = re.compile(
     r"^seconds$|_s$|per_second$|^(structured|stock)_(force|stiffness|factorization|solve|rest)$"
     r"|^(ratio|is_at_least|margin|runner_up|timed_runs|gflops)$"
@@ -53,7 +54,9 @@ def json_of(path):
 
 
 def faults(folder, names):
-    """Sentences on files among `names` in `folder` that are not whole: tables, sidecars, leftovers."""
+    """Sentences on files among `names` in `folder` that are not whole: tables, sidecars,
+    leftovers.
+    """
     for name in sorted(names):
         path = os.path.join(folder, name)
         if name.endswith(".part"):
