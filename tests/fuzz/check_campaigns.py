@@ -10,7 +10,7 @@ import fuzz_kills
 import studies
 from command_options import parse_help
 from command_verdict import verdict
-from limited_run import run
+from limited_run import limit_this_process, run
 from random_scenes import random_scene
 from sandbox import Sandbox
 from written_tables import differences, faults, is_time
@@ -164,4 +164,5 @@ class TestScenes(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    limit_this_process()
     unittest.main()

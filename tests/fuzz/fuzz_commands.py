@@ -132,13 +132,16 @@ def work(campaign, next_number, until, results):
     """Does runs until there are none left; sends each result."""
     become_nobody(campaign.bin)
     limit_this_process(int(campaign.a.memory * 2**30), 64 * 2**20)
-    while time.monotonic() < until:
-        with next_number.get_lock():
-            number = next_number.value
-            next_number.value += 1
-        if number >= campaign.a.first + campaign.a.count:
-            break
-        results.put(campaign.do(number))
+    try:
+        while time.monotonic() < until:
+            with next_number.get_lock():
+                number = next_number.value
+                next_number.value += 1
+            if number >= campaign.a.first + campaign.a.count:
+                break
+            results.put(campaign.do(number))
+    except KeyboardInterrupt:
+        pass  # the table is printed by the parent
     results.put(None)
 
 

@@ -24,7 +24,7 @@ import subprocess
 import sys
 import tempfile
 
-from limited_run import run, spelled
+from limited_run import limit_this_process, run, spelled
 from studies import STUDIES, write_scenes
 from written_tables import faults
 
@@ -186,6 +186,7 @@ def sweep(a, program, way):
 
 def main(caller=None):
     a = arguments_of(caller)
+    limit_this_process()
     names = a.programs.split(",") if a.programs else sorted(COMMANDS)
     names = [name for name in names if os.access(os.path.join(a.bin, name), os.X_OK)]
     if not names:

@@ -22,7 +22,7 @@ import sys
 import tempfile
 import time
 
-from limited_run import run, spelled
+from limited_run import limit_this_process, run, spelled
 from studies import LONG_STUDIES, write_scenes
 from written_tables import differences, faults, json_of
 
@@ -163,6 +163,7 @@ def campaign(a, name, place):
 
 def main(caller=None):
     a = arguments_of(caller)
+    limit_this_process()
     names = a.study.split(",") if a.study else sorted(LONG_STUDIES)
     present = [name for name in names if os.access(os.path.join(a.bin, name), os.X_OK)]
     if not present:

@@ -44,13 +44,13 @@ COMMANDS = {
     " --out results",
     "stock_sundials": "--scene small.toml --methods ida --rtol 1e-3 --repeats 1 --until 0.005"
     " --out results",
-    "solvers": "--scene medium.toml --repeats 1 --out results",
+    "solvers": "--scene steady.toml --repeats 1 --out results",
     "verdicts": "--seeds 1 --cells 64 --out results",
 }
 SCENES = {
     "medium.toml": MEDIUM,
     "small.toml": MEDIUM.replace(b"60", b"8"),
-    "steady.toml": b'[generator]\nkind = "cloth"\nnodes = 12\n',
+    "steady.toml": MEDIUM.replace(b"60", b"20"),
 }
 MOST = 4 << 30  # bytes
 

@@ -30,8 +30,9 @@ class Run:
 
 def limit_this_process(memory=None, file_size=None):
     """Limits this process and all that it starts: bytes of address space and of a file, no core
-    files.
+    files. SIGINT is no longer ignored, as it is in what a shell starts in the background.
     """
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if memory:
         resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
