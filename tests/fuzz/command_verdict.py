@@ -24,7 +24,7 @@ def _of_time(argv, run):
         return
     limit = _value_of(argv, "--time-limit")
     if run.asked_to_end:
-        if run.status != 130:
+        if run.status != 130 and not (limit is not None and run.status == 3):  # which came first
             yield f"SIGINT: status {run.status} where 130 is documented", ""
         if limit is not None and 0 < limit <= 1 and run.cpu > limit + 1:
             yield "--time-limit is not kept", f"{limit} s, {run.cpu:.1f} s of processor time"
