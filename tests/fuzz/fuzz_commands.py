@@ -70,7 +70,7 @@ def arguments_of(caller):
         "--memory", type=float, default=2, help="GB of address space that a run may take"
     )
     parser.add_argument(
-        "--limit", type=float, default=2, help="s of processor time before a run is sent SIGINT"
+        "--limit", type=float, default=1, help="s of processor time before a run is sent SIGINT"
     )
     a = parser.parse_args(caller)
     if a.only is not None:

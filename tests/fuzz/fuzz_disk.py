@@ -9,8 +9,7 @@ Two ways to fail a write. "limit": RLIMIT_FSIZE with SIGXFSZ ignored, so that ev
 bytes of a file fails with EFBIG, as one on a full disk fails with ENOSPC. This reaches the writes
 inside glibc's stdio, which no preloaded library sees, as they are not called through the linker's
 table. "disk": a tmpfs of 1 MB, filled but for n bytes, where the calls fail that make files and
-folders, too. n runs from 0 to twice the size of the largest file (of all files) that the
-undisturbed run writes.
+folders, too. n runs from 0 to where the program has room enough.
 
 Wanted: status 0 with all files whole, or 2 or 3 with one sentence that names a file; results of an
 earlier run whole and as they were or replaced; no .part file left. Status 1: something was found.
@@ -69,6 +68,15 @@ class Place:
             )
         os.makedirs(self.here)
         write_scenes(self.here)
+
+    def start(self, files):
+        """Makes the folder of results anew, with these files in it (name to bytes)."""
+        folder = os.path.join(self.here, "results")
+        shutil.rmtree(folder, ignore_errors=True)
+        os.makedirs(folder)
+        for name, data in files.items():
+            with open(os.path.join(folder, name), "wb") as file:
+                file.write(data)
 
     def results(self):
         """Name to bytes of what is in the folder of results."""
@@ -140,7 +148,7 @@ def sweep(a, program, way):
     place = Place(tempfile.mkdtemp(prefix="fuzz_disk."), way)
     argv = [os.path.join(a.bin, program)] + COMMANDS[program].split()
     try:
-        os.makedirs(os.path.join(place.here, "results"))
+        place.start({})
         first = place.run(argv, None)
         if first.status != 0:
             print(
@@ -148,20 +156,19 @@ def sweep(a, program, way):
             )
             return 1
         earlier = place.results()
-        sizes = sorted(map(len, earlier.values()))
-        # Journals that are gone in the end take room, too.
-        full = 2 * (sizes[-1] if way == "limit" else sum(sizes) + 4096 * (2 + len(sizes)))
+        full = 1 << 10
+        while full < 1 << 20:
+            place.start({})
+            if place.run(argv, full).status == 0:
+                break
+            full *= 2
         rooms = sorted(
             {round(full * (k / a.points) ** 2) for k in range(a.points + 1)} | set(range(0, 3))
         )
         bad, statuses = {}, {}
         for room in rooms:
             for there in (True, False):  # once over earlier results, once into a folder without
-                shutil.rmtree(os.path.join(place.here, "results"))
-                os.makedirs(os.path.join(place.here, "results"))
-                for name, data in earlier.items() if there else ():
-                    with open(os.path.join(place.here, "results", name), "wb") as file:
-                        file.write(data)
+                place.start(earlier if there else {})
                 ended = place.run(argv, room)
                 statuses[ended.status] = statuses.get(ended.status, 0) + 1
                 for fault in wrong(place, program, ended, earlier if there else {}):
