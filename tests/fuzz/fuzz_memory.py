@@ -85,7 +85,7 @@ def attempt(argv, place, size):
             "OPENBLAS_NUM_THREADS": "1",
         }
         limited = ["/bin/sh", "-c", f'ulimit -v {size // 1024} && exec "$0" "$@"'] + argv
-        ended = run(limited, folder, environment, 60, 120)
+        ended = run(limited, folder, environment, 20, 60)
         results = os.path.join(folder, "results")
         return ended, list(faults(results, os.listdir(results)))
     finally:
@@ -110,7 +110,9 @@ def least(argv, place, low, high):
 def wrong(program, ended, spoiled):
     """Sentences on what is wrong with a run that had little memory."""
     said = ended.err.decode(errors="replace").strip().split("\n")[-1]
-    if ended.status not in (0, 2, 3):
+    if ended.asked_to_end:
+        yield f"no end in {ended.cpu:.0f} s of processor time; after SIGINT status {ended.status}"
+    elif ended.status not in (0, 2, 3):
         yield f"status {ended.status}: {said[-200:]}"
     elif ended.status and (
         not said.startswith(program + ": ") or "memory" not in said or not re.search(r"\d", said)
