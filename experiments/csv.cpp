@@ -45,10 +45,15 @@ std::string sidecar_of(const std::string& path) {
 CsvFile::CsvFile(const std::string& path, const std::vector<std::string>& header)
     : Csv(header), file_(path, std::string(text()), sidecar_of(path)), sidecar_(sidecar_of(path)) {}
 
-void CsvFile::commit(const nlohmann::json& origin) {
+void CsvFile::complete(const nlohmann::json& origin) {
   flush();
   // A path in a command line may hold bytes that are no UTF-8.
   sidecar_.write(origin.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  file_.complete();
+  sidecar_.complete();
+}
+
+void CsvFile::commit() {
   file_.commit();
   sidecar_.commit();
 }

@@ -65,8 +65,14 @@ class CsvFile : public Csv {
   void flush_if_large() {
     if (text().size() > (1 << 20)) flush();
   }
-  // `origin`: how the table was made (see provenance.hpp).
-  void commit(const nlohmann::json& origin);
+  // Writes all that is left of both. `origin`: how the table was made (see provenance.hpp).
+  void complete(const nlohmann::json& origin);
+  // Lets both appear, which cannot fail for want of space any more.
+  void commit();
+  void commit(const nlohmann::json& origin) {
+    complete(origin);
+    commit();
+  }
 
  private:
   void flush() {

@@ -2,17 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <exception>
 #include <limits>
-#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/interruption.hpp"
 #include "experiments/linear_step.hpp"
+#include "experiments/summary_record.hpp"
 
 namespace qddot {
+
+// What nlohmann::json looks for by this name.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fate, outcome, growth_rate, t_reached, energy_end, energy_max,
+                                   mean_step, counts)
+
 namespace {
 
 Knobs knobs_of(const Cell& cell) {
@@ -24,45 +30,8 @@ Knobs knobs_of(const Cell& cell) {
 
 // What tells two cells apart, whatever others there are.
 std::string name_of(const Cell& cell) {
-  return fmt::format("{} {:.17g} {:.17g} {:.17g}", cell.method->name, cell.row->amplitude,
+  return fmt::format("run {} {:.17g} {:.17g} {:.17g}", cell.method->name, cell.row->amplitude,
                      cell.h_omega, cell.rtol);
-}
-
-nlohmann::json to_json(const std::string& cell, const Fate& f) {
-  const Counts& c = f.counts;
-  return {{"cell", cell},
-          {"outcome", f.outcome},
-          {"numbers", {f.growth_rate, f.t_reached, f.energy_end, f.energy_max, f.mean_step}},
-          {"counts", {c.steps, c.rejected, c.force_evaluations, c.newton_iterations}}};
-}
-
-Fate fate_from(const nlohmann::json& json) {
-  // A number that is not finite is written as null.
-  const auto number = [&](std::size_t i) {
-    const auto& x = json.at("numbers").at(i);
-    return x.is_null() ? std::numeric_limits<double>::quiet_NaN() : x.get<double>();
-  };
-  const auto count = [&](std::size_t i) { return json.at("counts").at(i).get<std::int64_t>(); };
-  Fate f{json.at("outcome"), number(0), number(1), number(2), number(3), number(4)};
-  f.counts.steps = count(0);
-  f.counts.rejected = count(1);
-  f.counts.force_evaluations = count(2);
-  f.counts.newton_iterations = count(3);
-  return f;
-}
-
-// What an interrupted run with this key has left in the file.
-std::map<std::string, Fate> read(const std::string& file, const std::string& key) {
-  std::map<std::string, Fate> found;
-  std::ifstream stream(file);
-  std::string line;
-  if (!std::getline(stream, line) || line != key) return found;
-  while (std::getline(stream, line)) {
-    const auto json = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
-    if (json.is_discarded()) break;  // cut off in the middle
-    found[json.at("cell")] = fate_from(json);
-  }
-  return found;
 }
 
 Fate fate_in(const Cell& cell, const MapSettings& settings) {
@@ -75,15 +44,6 @@ Fate fate_in(const Cell& cell, const MapSettings& settings) {
   } catch (const std::exception&) {  // which cannot leave a thread
     return {.outcome = std::string(name(Outcome::solver_failed))};
   }
-}
-
-// The file with what is known already, whole lines alone, open for more.
-std::ofstream begun(const std::string& file, const std::string& key,
-                    const std::map<std::string, Fate>& known) {
-  std::ofstream stream(file);
-  stream << key << '\n';
-  for (const auto& [cell, fate] : known) stream << to_json(cell, fate).dump() << '\n';
-  return stream;
 }
 
 }  // namespace
@@ -100,30 +60,31 @@ double predicted_growth_rate(const Cell& cell) {
   return largest;
 }
 
-std::vector<Fate> fates(const std::vector<Cell>& cells, const MapSettings& settings,
-                        const std::string& file, const std::string& key,
-                        const std::function<void(std::size_t done)>& progress) {
-  const auto known = read(file, key);
-  std::ofstream kept = begun(file, key, known);
-  std::vector<Fate> all(cells.size());
+std::vector<std::optional<Fate>> fates(Study& study, const std::vector<Cell>& cells,
+                                       const MapSettings& settings,
+                                       const std::function<void(std::size_t done)>& progress) {
+  std::vector<std::optional<Fate>> all(cells.size());
   std::vector<std::size_t> order(cells.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cells[i].h_omega; });
   std::size_t done = 0;
+  std::exception_ptr trouble;
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Cell& cell = cells[order[i]];
-    const std::string name = name_of(cell);
-    const auto found = known.find(name);
-    const bool is_new = found == known.end();
-    const Fate fate = is_new ? fate_in(cell, settings) : found->second;
-    all[order[i]] = fate;
+    try {
+      all[order[i]] =
+          study.piece(name_of(cell), [&] { return nlohmann::json(fate_in(cell, settings)); });
 #pragma omp critical
-    {
-      if (is_new) kept << to_json(name, fate).dump() << std::endl;
       progress(++done);
+    } catch (const Interrupted&) {
+      // The cell is missing.
+    } catch (...) {  // which cannot leave a thread
+#pragma omp critical
+      trouble = std::current_exception();
     }
   }
+  if (trouble) std::rethrow_exception(trouble);
   return all;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <functional>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "experiments/amplitude_rows.hpp"
 #include "experiments/fate.hpp"
+#include "experiments/study.hpp"
 
 namespace qddot {
 
@@ -27,11 +28,11 @@ struct MapSettings {
 // no step on an oscillator.
 double predicted_growth_rate(const Cell& cell);
 
-// Runs all cells on all cores (OpenMP), the long ones first. What is found is kept in `file`, a
-// line a cell, as it comes; those that are there already from a run with the same `key` are not run
-// again. `progress` is called with how many of them are done, from one thread at a time.
-std::vector<Fate> fates(const std::vector<Cell>& cells, const MapSettings& settings,
-                        const std::string& file, const std::string& key,
-                        const std::function<void(std::size_t done)>& progress);
+// Runs all cells on all cores (OpenMP), the long ones first; each is a piece of the study. Nothing
+// stands for those that were not run before the program is to end. `progress` is called with how
+// many are done, from one thread at a time.
+std::vector<std::optional<Fate>> fates(Study& study, const std::vector<Cell>& cells,
+                                       const MapSettings& settings,
+                                       const std::function<void(std::size_t done)>& progress);
 
 }  // namespace qddot

@@ -88,12 +88,6 @@ std::optional<Interruption> wait_for_cause() {
   }
 }
 
-[[noreturn]] void give_up(const Interruption& why) {
-  remove_unfinished();
-  fmt::print(stderr, "ended at once by {}: nothing answered it\n", why.by);
-  std::_Exit(why.status);
-}
-
 }  // namespace
 
 std::stop_token interruption() { return shared().source.get_token(); }
@@ -114,7 +108,7 @@ void wait_for_answer(double seconds) {
   shared().patience = std::max(shared().patience, seconds);
 }
 
-Interruptible::Interruptible() {
+Interruptible::Interruptible(std::string program) : program_(std::move(program)) {
   if (::pipe(shared().pipe.data()) != 0) throw std::runtime_error("no pipe can be opened");
   for (const int signal : {SIGINT, SIGTERM}) catch_signal(signal);
   watcher_ = std::thread([this] { watch(); });
@@ -132,6 +126,12 @@ void Interruptible::end_after(double seconds) {
     shared().limit = now() + seconds;
   }
   tell(wake);
+}
+
+void Interruptible::give_up(const Interruption& why) const {
+  remove_unfinished();
+  fmt::print(stderr, "{}: interrupted by {} with nothing to be saved\n", program_, why.by);
+  std::_Exit(why.status);
 }
 
 void Interruptible::watch() {

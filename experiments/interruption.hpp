@@ -38,7 +38,8 @@ void wait_for_answer(double seconds);
 // interrupted(). Unfinished files go then, what is in journals stays.
 class Interruptible {
  public:
-  Interruptible();
+  // `program` names it where nothing answers.
+  explicit Interruptible(std::string program);
   ~Interruptible();
   Interruptible(const Interruptible&) = delete;
   Interruptible& operator=(const Interruptible&) = delete;
@@ -48,7 +49,9 @@ class Interruptible {
 
  private:
   void watch();
+  [[noreturn]] void give_up(const Interruption& why) const;
 
+  std::string program_;
   std::thread watcher_;
 };
 

@@ -309,7 +309,7 @@ int measure_steps(const CLI::App& app, const Arguments& a, const nlohmann::json&
   const auto commit = [&](CsvFile& table, const nlohmann::json& own) {
     nlohmann::json whole = origin;
     whole.update(own);
-    study.commit(table, whole, done);
+    study.complete(table, whole, done);
   };
   commit(tables.convergence, tables.of_step);
   commit(tables.positions, tables.of_step);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <omp.h>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -68,7 +69,7 @@ std::string in_one_line(const std::string& text) {
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
   const EveryProgram options(app);
   try {
-    Interruptible run;
+    Interruptible run(app.get_name());
     app.parse(argc, argv);
     options.apply(run);
     return body();
@@ -86,6 +87,12 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return complain(app, error.what(), bad_input);
   } catch (const NoReference& error) {
     return complain(app, error.what(), end_not_reached);
+  } catch (const std::system_error& error) {
+    return complain(app,
+                    fmt::format("the system denies what is needed ({}): more memory or "
+                                "threads would do",
+                                error.what()),
+                    end_not_reached);
   } catch (const std::exception& error) {
     return complain(app, error.what(), failed);
   }

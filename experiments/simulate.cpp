@@ -7,6 +7,7 @@
 //   simulate --list-methods
 //   simulate --list-scenes
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -258,9 +259,12 @@ class Output {
         write_node(*final_, i, nodes[i], scene_.dimension());
       }
     }
-    for (auto* file : {final_.get(), trajectory_.get(), energy_.get()}) {
-      if (!file) continue;
-      file->commit(origin);
+    const std::array files = {final_.get(), trajectory_.get(), energy_.get()};
+    for (CsvFile* file : files) {
+      if (file) file->complete(origin);
+    }
+    for (CsvFile* file : files) {
+      if (file) file->commit();
     }
   }
 

@@ -24,10 +24,12 @@
 
 #include "experiments/csv.hpp"
 #include "experiments/direct_solvers.hpp"
+#include "experiments/interruption.hpp"
 #include "experiments/machine_limits.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/study.hpp"
 #include "experiments/timing.hpp"
 #include "src/scene/invalid_input.hpp"
 
@@ -89,17 +91,24 @@ class Contender {
     solves_ = calls_in_a_sample([&] { solver_->solve(b_, x_); });
   }
 
-  void sample() {
-    if (!solved_) return;
-    factorization_.push_back(time_of(factorizations_, [&] { solver_->factorize(s_, k_); }));
-    solve_.push_back(time_of(solves_, [&] { solver_->solve(b_, x_); }));
+  // Seconds of a factorisation and of a solve; none where the matrix is singular to it.
+  std::vector<double> sample() {
+    if (!solved_) return {};
+    return {time_of(factorizations_, [&] { solver_->factorize(s_, k_); }),
+            time_of(solves_, [&] { solver_->solve(b_, x_); })};
+  }
+  void take(const std::vector<double>& sample) {
+    if (sample.empty()) return;
+    factorization_.push_back(sample[0]);
+    solve_.push_back(sample[1]);
   }
 
   void report(Csv& csv, const std::string& scene) const {
     const double nothing = std::numeric_limits<double>::quiet_NaN();
     const auto known = [&](double x) { return x > 0 ? x : nothing; };
-    const double factorization = solved_ ? *std::ranges::min_element(factorization_) : nothing;
-    const double solve = solved_ ? *std::ranges::min_element(solve_) : nothing;
+    const double factorization =
+        has_samples() ? *std::ranges::min_element(factorization_) : nothing;
+    const double solve = has_samples() ? *std::ranges::min_element(solve_) : nothing;
     const double gflops = known(1e-9 * solver_->flops / factorization);
     const double rate = known(2e-9 * solver_->bytes / solve);
     csv.row(scene, b_.size(), name_, analysis_, factorization, solve, gflops, rate,
@@ -115,6 +124,8 @@ class Contender {
   }
 
   double bytes() const { return solver_->bytes; }
+  const std::string& name() const { return name_; }
+  bool has_samples() const { return !factorization_.empty(); }
 
  private:
   // As many calls as take about a millisecond.
@@ -142,7 +153,7 @@ class Contender {
   std::vector<double> factorization_, solve_;
 };
 
-int solvers(const Arguments& a, const std::vector<std::string>& command_line) {
+int solvers(const CLI::App& app, const Arguments& a, const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.step_size, "--step-size", "h in s");
   require_repeats(a.repeats);
@@ -152,6 +163,10 @@ int solvers(const Arguments& a, const std::vector<std::string>& command_line) {
   const ReducedScene scene(start, reductions_of(a.scene));
   const System& system = scene.system();
   require_folder(a.out);
+  Study study(
+      app, a.out, {"solvers.csv"},
+      {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"threads", omp_get_max_threads()}});
+  if (const auto status = study.completed()) return *status;
   CsvFile csv(a.out + "/solvers.csv",
               {"scene", "unknowns", "solver", "analysis_s", "factorization_s", "solve_s", "gflops",
                "gigabytes_per_second", "bytes", "residual"});
@@ -159,28 +174,37 @@ int solvers(const Arguments& a, const std::vector<std::string>& command_line) {
   system.stiffness(scene.initial().q, k);
 
   std::vector<Contender> contenders;
-  for (const auto& kind : kinds)
-    contenders.emplace_back(kind, system, a.step_size * a.step_size, k);
-  for (int i = 0; i < a.repeats; ++i) {
-    for (Contender& contender : contenders) contender.sample();
-  }
+  study.measure([&] {
+    for (const auto& kind : kinds) {
+      stop_if_interrupted();
+      contenders.emplace_back(kind, system, a.step_size * a.step_size, k);
+    }
+    for (int i = 0; i < a.repeats; ++i) {
+      for (std::size_t c = 0; c < contenders.size(); ++c) {
+        const auto sample = study.piece(fmt::format("{} {}", contenders[c].name(), i),
+                                        [&] { return nlohmann::json(contenders[c].sample()); });
+        contenders[c].take(sample);
+      }
+    }
+  });
 
   fmt::print("{}, {} unknowns, {} threads\n", drawn.name, system.size(), omp_get_max_threads());
   fmt::print("{:<13} {:>9} {:>10} {:>9} {:>9} {:>7} {:>9}   {}\n", "ms", "analysis", "factorise",
              "solve", "GFlop/s", "GB/s", "factor MB", "residual");
   for (const Contender& contender : contenders) contender.report(csv, drawn.name);
-  constexpr double look = 0.1;  // how long each of the machine's limits is looked at [s]
-  const double gflops = 1e-9 * product_flops(look), bytes = contenders.front().bytes();
-  const double rate = 1e-9 * reading_rate(bytes, look),
-               nothing = std::numeric_limits<double>::quiet_NaN();
-  csv.row(drawn.name, system.size(), "machine", nothing, nothing, nothing, gflops, rate, bytes,
-          nothing);
-  fmt::print("{:<43} {:>9.1f} {:>7.1f}\n", "one thread of the machine", gflops, rate);
+  if (!contenders.empty()) {
+    constexpr double look = 0.1;  // how long each of the machine's limits is looked at [s]
+    const double gflops = 1e-9 * product_flops(look), bytes = contenders.front().bytes();
+    const double rate = 1e-9 * reading_rate(bytes, look),
+                 nothing = std::numeric_limits<double>::quiet_NaN();
+    csv.row(drawn.name, system.size(), "machine", nothing, nothing, nothing, gflops, rate, bytes,
+            nothing);
+    fmt::print("{:<43} {:>9.1f} {:>7.1f}\n", "one thread of the machine", gflops, rate);
+  }
   nlohmann::json origin = provenance(command_line, drawn, start, scene);
   origin["step_size"] = a.step_size;
   origin["threads"] = omp_get_max_threads();
-  csv.commit(origin);
-  return done;
+  return study.finish({&csv}, origin, done);
 }
 
 }  // namespace
@@ -192,7 +216,8 @@ int main(int argc, char** argv) {
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
   qddot::add_threads_option(app);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
-    return qddot::solvers(arguments, {argv, argv + argc});
+    return qddot::solvers(app, arguments, {argv, argv + argc});
   });
 }

@@ -13,11 +13,9 @@
 //     (modal_step.hpp): predicted by 1, and measured by exciting the mode.
 //  3. map.csv: the fate of whole runs over h w_max and amplitude (fate.hpp). Amplitude a starts at
 //     q_rest + a (q - q_rest), a v: 1 is the scene itself, small ones are linear. With --vary it is
-//     a parameter of the generator. For its time a method has --cell-limit; an interrupted map goes
-//     on where it was.
+//     a parameter of the generator. For its time a method has --cell-limit.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -31,6 +29,7 @@
 #include "experiments/chosen_steps.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/fate_map.hpp"
+#include "experiments/interruption.hpp"
 #include "experiments/linear_limit.hpp"
 #include "experiments/linear_step.hpp"
 #include "experiments/modal_table.hpp"
@@ -38,6 +37,7 @@
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/study.hpp"
 #include "src/scene/invalid_input.hpp"
 #include "src/scene/settle.hpp"
 
@@ -113,7 +113,8 @@ std::vector<AmplitudeRow> rows_of(const Arguments& a, const Scene& start,
   if (!rest) return {};
   auto rows = scaled_rows(start, *rest, a.amplitudes, reductions);
   if (rows.size() < a.amplitudes.size()) {
-    fmt::print(stderr, "stability_map: {} of {} amplitudes are left out, at which nothing moves\n",
+    fmt::print(stderr,
+               "stability_map: warning: {} of {} amplitudes are left out, at which nothing moves\n",
                a.amplitudes.size() - rows.size(), a.amplitudes.size());
   }
   return rows;
@@ -135,14 +136,16 @@ struct Limit {
   double difference() const { return (measured - predicted) / predicted; }
 };
 
-std::vector<Limit> limits_of(const std::vector<const Method*>& methods) {
-  std::vector<Limit> limits;
+void add_limits(Study& study, const std::vector<const Method*>& methods,
+                std::vector<Limit>& limits) {
   for (const Method* method : methods) {
     if (!has_linear_step(*method)) continue;
     show_progress("limit of " + method->name);
-    limits.push_back({method, linear_limit(*method), measured_limit(*method)});
+    const nlohmann::json limit = study.piece("limit " + method->name, [&] {
+      return nlohmann::json{linear_limit(*method), measured_limit(*method)};
+    });
+    limits.push_back({method, limit.at(0), limit.at(1)});
   }
-  return limits;
 }
 
 void tabulate(Csv& csv, const std::vector<Limit>& limits, double omega_max) {
@@ -164,7 +167,7 @@ void tabulate_linear(Csv& csv, const std::vector<const Method*>& methods) {
   }
 }
 
-void tabulate_adaptive(Csv& csv, const std::vector<const Method*>& methods) {
+void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>& methods) {
   for (const Method* method : methods) {
     if (method->knob != Knob::rtol || method->needs_split || method->name.ends_with("_klu")) {
       continue;
@@ -172,10 +175,16 @@ void tabulate_adaptive(Csv& csv, const std::vector<const Method*>& methods) {
     for (const double rtol : tolerances) {
       for (const double omega : fast_frequencies) {
         show_progress(fmt::format("steps of {} at rtol {:g}", method->name, rtol));
-        const ChosenSteps s = chosen_steps(*method, rtol, omega);
-        csv.row(method->name, rtol, omega, name(s.outcome), s.mean_h_omega, s.rejected,
-                s.fast_energy, s.energy_error, s.counts.steps, s.counts.rejected,
-                s.counts.stability_limited_steps);
+        const auto row =
+            study.piece(fmt::format("steps {} {:g} {:g}", method->name, rtol, omega), [&] {
+              const ChosenSteps s = chosen_steps(*method, rtol, omega);
+              Csv csv_row;
+              csv_row.row(method->name, rtol, omega, name(s.outcome), s.mean_h_omega, s.rejected,
+                          s.fast_energy, s.energy_error, s.counts.steps, s.counts.rejected,
+                          s.counts.stability_limited_steps);
+              return nlohmann::json(csv_row.text());
+            });
+        csv.rows(row.get<std::string>());
       }
     }
   }
@@ -213,10 +222,13 @@ std::vector<Cell> cells_of(const Arguments& a, const std::vector<const Method*>&
   return cells;
 }
 
-void tabulate(Csv& csv, const std::vector<Cell>& cells, const std::vector<Fate>& all) {
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+using Fates = std::vector<std::optional<Fate>>;
+
+void tabulate(Csv& csv, const std::vector<Cell>& cells, const Fates& all) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i]) continue;
     const Cell& cell = cells[i];
-    const Fate& fate = all[i];
+    const Fate& fate = *all[i];
     const double h = fate.mean_step, omega = cell.row->omega_max;
     const bool is_fixed = cell.method->knob == Knob::step_size;
     csv.row(cell.method->name, is_fixed ? cell.h_omega / omega : h,
@@ -244,12 +256,13 @@ void print(const std::vector<Limit>& limits) {
 }
 
 // How many runs of each method came to which end.
-void print(const std::vector<Cell>& cells, const std::vector<Fate>& all) {
+void print(const std::vector<Cell>& cells, const Fates& all) {
   std::vector<const Method*> order;
   std::map<const Method*, std::map<std::string, int>> counts;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i]) continue;
     if (!counts.contains(cells[i].method)) order.push_back(cells[i].method);
-    ++counts[cells[i].method][all[i].outcome];
+    ++counts[cells[i].method][all[i]->outcome];
   }
   for (const Method* method : order) {
     fmt::print("{:<24}", method->name);
@@ -263,7 +276,7 @@ std::optional<Scene> at_rest(const Scene& start, const std::string& source) {
   try {
     return settled(start, source);
   } catch (const InvalidInput& why) {
-    fmt::print(stderr, "stability_map: {}; its modes are left out\n", why.what());
+    fmt::print(stderr, "stability_map: warning: {}; its modes are left out\n", why.what());
     return {};
   }
 }
@@ -281,6 +294,9 @@ int stability_map(const CLI::App& app, const Arguments& a,
   const std::optional<Scene> rest = at_rest(start, a.scene.name);
   const auto rows = rows_of(a, start, rest);
   require_folder(a.out);
+  Study study(app, a.out, {"limits.csv", "linear.csv", "adaptive.csv", "modal.csv", "map.csv"},
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
+  if (const auto status = study.completed()) return *status;
   CsvFile limits_csv(a.out + "/limits.csv",
                      {"method", "h_limit_predicted", "h_limit_measured", "h_omega_limit_predicted",
                       "h_omega_limit_measured", "relative_difference"});
@@ -297,27 +313,29 @@ int stability_map(const CLI::App& app, const Arguments& a,
                    "rejected", "knob", "value", "omega_max", "buckling_rate"});
 
   const double omega_max = omega_max_of(scene);
-  const auto limits = limits_of(methods);
-  tabulate(limits_csv, limits, omega_max);
-  tabulate_linear(linear_csv, methods);
-  tabulate_adaptive(adaptive_csv, methods);
-  if (rest) {
-    tabulate_modes(modal_csv, methods, ReducedScene(*rest, Reductions::all_directions()),
-                   a.step_size);
-  }
-  const auto cells = cells_of(a, followed(a, methods), rows);
-  const std::string partial = a.out + "/map.partial";
-  const nlohmann::json key = {{"scene", content_hash(drawn)},
-                              {"code", code_hash()},
-                              {"vary", a.vary},
-                              {"until", until},
-                              {"tolerated", a.tolerated},
-                              {"cell_limit", a.cell_limit},
-                              {"no_reduce", a.scene.no_reduce}};
-  const auto all =
-      fates(cells, {until, a.tolerated, a.cell_limit}, partial, key.dump(), [&](std::size_t count) {
-        show_progress(fmt::format("map: {} of {} runs", count, cells.size()));
+  std::vector<Limit> limits;
+  std::vector<Cell> cells;
+  Fates all;
+  study.measure([&] {
+    add_limits(study, methods, limits);
+    tabulate_linear(linear_csv, methods);
+    tabulate_adaptive(study, adaptive_csv, methods);
+    if (rest) {
+      const auto modes = study.piece("modes", [&] {
+        Csv table;
+        tabulate_modes(table, methods, ReducedScene(*rest, Reductions::all_directions()),
+                       a.step_size);
+        return nlohmann::json(table.text());
       });
+      modal_csv.rows(modes.get<std::string>());
+    }
+    cells = cells_of(a, followed(a, methods), rows);
+    all = fates(study, cells, {until, a.tolerated, a.cell_limit}, [&](std::size_t count) {
+      show_progress(fmt::format("map: {} of {} runs", count, cells.size()));
+    });
+    if (std::ranges::any_of(all, [](const auto& fate) { return !fate; })) stop_if_interrupted();
+  });
+  tabulate(limits_csv, limits, omega_max);
   tabulate(map_csv, cells, all);
   show_progress("");
 
@@ -326,13 +344,10 @@ int stability_map(const CLI::App& app, const Arguments& a,
   origin["omega_max"] = omega_max;
   origin["tolerated"] = a.tolerated;
   origin["vary"] = a.vary;
-  for (CsvFile* file : {&limits_csv, &linear_csv, &adaptive_csv, &modal_csv, &map_csv}) {
-    file->commit(origin);
-  }
-  std::filesystem::remove(partial);
   print(limits);
   print(cells, all);
-  return done;
+  return study.finish({&limits_csv, &linear_csv, &adaptive_csv, &modal_csv, &map_csv}, origin,
+                      done);
 }
 
 }  // namespace
@@ -342,6 +357,7 @@ int main(int argc, char** argv) {
   CLI::App app("Measures where each method is stable, and compares with theory.", "stability_map");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&]() -> int {
     try {
       return qddot::stability_map(app, arguments, {argv, argv + argc});

@@ -105,14 +105,16 @@ void Study::measure(const std::function<void()>& body) {
   }
 }
 
-void Study::commit(CsvFile& table, nlohmann::json origin, int status) {
+void Study::complete(CsvFile& table, nlohmann::json origin, int status) {
   origin["study"] = key_;
   origin["exit_status"] = why_ ? why_->status : status;
   origin["interrupted"] = why_ ? nlohmann::json(why_->by) : nullptr;
-  table.commit(origin);
+  table.complete(origin);
+  complete_.push_back(&table);
 }
 
 int Study::conclude(int status) {
+  for (CsvFile* table : complete_) table->commit();
   if (!why_) {
     journal_->remove();
     return status;
@@ -124,7 +126,7 @@ int Study::conclude(int status) {
 }
 
 int Study::finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status) {
-  for (CsvFile* table : tables) commit(*table, origin, status);
+  for (CsvFile* table : tables) complete(*table, origin, status);
   return conclude(status);
 }
 

@@ -43,11 +43,11 @@ class Study {
   // Runs `body`, which makes pieces and ends early where the program is to end.
   void measure(const std::function<void()>& body);
 
-  // Commits a table, whose sidecar says that it is of this study, and in `interrupted` by what that
-  // was ended, or null. `status`: what the program returns if it was not.
-  void commit(CsvFile& table, nlohmann::json origin, int status);
-  // After all tables. Returns `status`, or that of the interruption, of which it says what to do
-  // next.
+  // Completes a table, whose sidecar says that it is of this study, and in `interrupted` by what
+  // that was ended, or null. `status`: what the program returns if it was not.
+  void complete(CsvFile& table, nlohmann::json origin, int status);
+  // Lets all tables appear. Returns `status`, or that of the interruption, of which it says what to
+  // do next.
   int conclude(int status);
   // Both, for tables of one origin.
   int finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status);
@@ -58,6 +58,7 @@ class Study {
   std::optional<int> completed_;
   std::unique_ptr<Journal> journal_;
   std::optional<Interruption> why_;  // measure() ended early
+  std::vector<CsvFile*> complete_;
 };
 
 }  // namespace qddot

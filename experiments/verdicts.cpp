@@ -17,10 +17,12 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/csv.hpp"
+#include "experiments/interruption.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/sample_steps.hpp"
+#include "experiments/study.hpp"
 #include "experiments/synthetic_errors.hpp"
 #include "experiments/timing.hpp"
 #include "src/scene/invalid_input.hpp"
@@ -118,9 +120,10 @@ Tally tally(const SyntheticKind& kind, const Arguments& a) {
   std::vector<Trend> trends(static_cast<std::size_t>(a.seeds));
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t seed = 0; seed < trends.size(); ++seed) {
-    trends[seed] = synthetic_trend(kind, seed, a.cells);
+    if (!interrupted()) trends[seed] = synthetic_trend(kind, seed, a.cells);
   }
   Tally result;
+  stop_if_interrupted();
   for (const Trend& trend : trends) result.add(kind, trend);
   result.walk /= a.seeds;
   return result;
@@ -138,38 +141,22 @@ void print(const SyntheticKind& kind, const Tally& tally, int seeds) {
              judged["uncertain"] * percent, judged["wrong"] * percent, words);
 }
 
-int verdicts(const Arguments& a, const std::vector<std::string>& command_line) {
-  const auto begin = std::chrono::steady_clock::now();
-  require_given(a.out, "--out", "the folder for the results");
-  require_within(a.seeds, 1, most_seeds, "--seeds");
-  require_within(a.cells, 8, 1 << 20, "--cells");
-  const std::vector<SyntheticKind> kinds = chosen_kinds(a.kinds);
-  require_folder(a.out);
-  CsvFile confusion(a.out + "/confusion.csv", {"kind", "verdict", "count", "part", "judgement"});
-  CsvFile coverage(a.out + "/coverage.csv",
-                   {"kind", "what", "said", "held", "part", "part_low", "part_high"});
-
-  fmt::print("{} runs of each kind; percent of them judged\n{:<34} {:>6} {:>9} {:>6}   {}\n",
-             a.seeds, "kind", "right", "uncertain", "wrong", "verdicts");
-  std::vector<Tally> tallies;
-  for (const SyntheticKind& kind : kinds) {
-    show_progress(kind.name);
-    tallies.push_back(tally(kind, a));
-    show_progress("");
-    const Tally& own = tallies.back();
-    print(kind, own, a.seeds);
-    for (const auto& [verdict, count] : own.verdicts) {
-      confusion.row(kind.name, verdict_name(verdict), count, static_cast<double>(count) / a.seeds,
-                    judgement(kind, verdict));
-    }
-    for (const auto& [what, c] : own.coverage) {
-      const Interval part = c.interval();
-      coverage.row(kind.name, what, c.said, c.held, part.value, part.low, part.high);
-    }
+void tabulate(Csv& confusion, Csv& coverage, const SyntheticKind& kind, const Tally& own,
+              int seeds) {
+  for (const auto& [verdict, count] : own.verdicts) {
+    confusion.row(kind.name, verdict_name(verdict), count, static_cast<double>(count) / seeds,
+                  judgement(kind, verdict));
   }
+  for (const auto& [what, c] : own.coverage) {
+    const Interval part = c.interval();
+    coverage.row(kind.name, what, c.said, c.held, part.value, part.low, part.high);
+  }
+}
+
+void print_coverage(const std::vector<SyntheticKind>& kinds, const std::vector<Tally>& tallies) {
   fmt::print("\n{:<34} {:<18} {:>6} {:>8}   {}\n", "what is said with 95 %", "", "said", "holds",
              "95 % interval of that");
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
     for (const auto& [what, c] : tallies[i].coverage) {
       const Interval part = c.interval();
       fmt::print("{:<34} {:<18} {:>6} {:>6.1f} %   {:.1f} to {:.1f}\n", kinds[i].name, what, c.said,
@@ -179,16 +166,48 @@ int verdicts(const Arguments& a, const std::vector<std::string>& command_line) {
       fmt::print("{:<34} size over the true one: {:.3f}\n", kinds[i].name, tallies[i].walk);
     }
   }
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Coverage, said, held)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tally, verdicts, coverage, walk)
+
+int verdicts(const CLI::App& app, const Arguments& a,
+             const std::vector<std::string>& command_line) {
+  const auto begin = std::chrono::steady_clock::now();
+  require_given(a.out, "--out", "the folder for the results");
+  require_within(a.seeds, 1, most_seeds, "--seeds");
+  require_within(a.cells, 8, 1 << 20, "--cells");
+  const std::vector<SyntheticKind> kinds = chosen_kinds(a.kinds);
+  require_folder(a.out);
+  Study study(app, a.out, {"confusion.csv", "coverage.csv"}, {});
+  if (const auto status = study.completed()) return *status;
+  CsvFile confusion(a.out + "/confusion.csv", {"kind", "verdict", "count", "part", "judgement"});
+  CsvFile coverage(a.out + "/coverage.csv",
+                   {"kind", "what", "said", "held", "part", "part_low", "part_high"});
+
+  fmt::print("{} runs of each kind; percent of them judged\n{:<34} {:>6} {:>9} {:>6}   {}\n",
+             a.seeds, "kind", "right", "uncertain", "wrong", "verdicts");
+  std::vector<Tally> tallies;
+  study.measure([&] {
+    for (const SyntheticKind& kind : kinds) {
+      show_progress(kind.name);
+      const Tally own = study.piece(kind.name, [&] { return nlohmann::json(tally(kind, a)); });
+      show_progress("");
+      print(kind, own, a.seeds);
+      tabulate(confusion, coverage, kind, own, a.seeds);
+      tallies.push_back(own);
+    }
+  });
+  print_coverage(kinds, tallies);
 
   nlohmann::json origin = provenance(command_line);
   origin["seeds"] = a.seeds;
   origin["cells"] = a.cells;
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
     if (kinds[i].walk) origin["walk_size"][kinds[i].name] = tallies[i].walk;
   }
   origin["seconds"] = seconds_since(begin);
-  for (CsvFile* file : {&confusion, &coverage}) file->commit(origin);
-  return done;
+  return study.finish({&confusion, &coverage}, origin, done);
 }
 
 }  // namespace
@@ -198,7 +217,8 @@ int main(int argc, char** argv) {
   CLI::App app("Finds out how often the verdicts of energy_drift are right.", "verdicts");
   qddot::Arguments arguments;
   qddot::declare(app, arguments);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
-    return qddot::verdicts(arguments, {argv, argv + argc});
+    return qddot::verdicts(app, arguments, {argv, argv + argc});
   });
 }

@@ -28,27 +28,29 @@ WholeFile::WholeFile(const std::string& path, const std::string& beginning,
 }
 
 WholeFile::~WholeFile() {
-  if (!file_) return;
-  std::remove(beside_.c_str());
-  forget_unfinished(beside_);
-  std::fclose(file_);
+  if (!beside_.empty()) {
+    std::remove(beside_.c_str());
+    forget_unfinished(beside_);
+  }
+  if (file_) std::fclose(file_);
+  if (lock_ >= 0) ::close(lock_);
 }
 
 void WholeFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno);
 }
 
+void WholeFile::complete() {
+  if (!file_) return;
+  lock_ = ::dup(::fileno(file_));
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(errno);
+}
+
 void WholeFile::commit() {
-  // The lock is held until the file has its name, so that nobody takes it for a stale one.
-  const int lock = ::dup(::fileno(file_));
-  const bool is_written = std::fclose(std::exchange(file_, nullptr)) == 0;
-  const int error = errno;
-  const bool is_whole = is_written && std::rename(beside_.c_str(), path_.c_str()) == 0;
-  const int reason = is_written ? errno : error;
-  if (!is_whole) std::remove(beside_.c_str());
+  complete();
+  if (std::rename(beside_.c_str(), path_.c_str()) != 0) fail(errno);
   forget_unfinished(beside_);
-  if (lock >= 0) ::close(lock);
-  if (!is_whole) fail(reason);
+  beside_.clear();
 }
 
 void WholeFile::fail(int error) const {

@@ -26,15 +26,19 @@ class WholeFile {
   WholeFile& operator=(const WholeFile&) = delete;
 
   const std::string& path() const { return path_; }
-  // Both throw CannotWrite.
+  // All throw CannotWrite.
   void write(std::string_view text);
+  // Nothing more is to be written: the disk holds it all.
+  void complete();
+  // Gives it its name, after complete().
   void commit();
 
  private:
   [[noreturn]] void fail(int error) const;
 
   std::string path_, beside_;
-  std::FILE* file_;
+  std::FILE* file_;  // none once it is complete
+  int lock_ = -1;    // held until the file has its name, so that nobody takes it for a stale one
 };
 
 }  // namespace qddot

@@ -16,6 +16,7 @@
 //     processor's.
 //  4. bench.csv holds every point, ratios.csv the ratios with the runs they are of.
 #include <charconv>
+#include <exception>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
@@ -25,14 +26,21 @@
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/ratio_table.hpp"
 #include "experiments/catalogue.hpp"
+#include "experiments/interruption.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scene_choice.hpp"
+#include "experiments/study.hpp"
 #include "integrators/registry.hpp"
 #include "src/scene/invalid_input.hpp"
 
 namespace qddot::bench {
+
+// What nlohmann::json looks for by this name.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Measured, solver, force, unknowns, knob, value, outcome, error,
+                                   seconds, timed, steps, force_evaluations)
+
 namespace {
 
 const std::vector<double> accuracies = {1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
@@ -124,19 +132,29 @@ std::vector<std::unique_ptr<Peer>> selected_peers(const std::vector<std::string>
   return peers;
 }
 
-std::vector<Sweep> sweeps_of(const Problem& problem,
-                             const std::vector<std::unique_ptr<Peer>>& peers, const Arguments& a) {
+// Points that are pieces of the study.
+Recall recall_by(Study& study, std::string prefix) {
+  return [&study, prefix = std::move(prefix)](const std::string& name, const auto& take) {
+    return study.piece(prefix + name, [&] { return nlohmann::json(take()); })
+        .template get<Measured>();
+  };
+}
+
+// Adds the sweeps to `sweeps` as they come.
+void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
+                const std::vector<std::unique_ptr<Peer>>& peers, const Arguments& a,
+                std::vector<Sweep>& sweeps) {
   const auto report = [](const Measured& p) {
     show_progress(fmt::format("{} ({}) {:.1e}: {} {:.1e} in {:.3g} s", p.solver, p.force, p.value,
                               name(p.outcome), p.error, p.seconds));
   };
-  std::vector<Sweep> sweeps;
   for (const bool smallest : {true, false}) {
+    const Recall recall = recall_by(study, prefix + (smallest ? "reduced " : "as drawn "));
     Pace own = a.pace;
     own.enough = accuracies.back() / 30;  // a peer's run may be better than it need be
     for (const std::string& method : a.methods) {
       const auto solver = our_method(method, smallest);
-      sweeps.push_back(sweep(*solver, ForceKind::ours, problem, own, report));
+      sweeps.push_back(sweep(*solver, ForceKind::ours, problem, own, recall, report));
       Sweep& last = sweeps.back();
       last.is_ours = true;
       last.is_smallest = smallest;
@@ -151,28 +169,37 @@ std::vector<Sweep> sweeps_of(const Problem& problem,
   }
   Pace theirs = a.pace;
   theirs.enough = accuracies.back();
+  const Recall recall = recall_by(study, prefix);
   for (const auto& peer : peers) {
     for (const ForceKind force : peer->forces()) {
-      sweeps.push_back(sweep(*peer, force, problem, theirs, report));
+      sweeps.push_back(sweep(*peer, force, problem, theirs, recall, report));
     }
   }
-  show_progress("");
-  return sweeps;
 }
 
-void compare(const Entry& entry, const std::vector<std::unique_ptr<Peer>>& peers,
+// Throws Interrupted, once what was measured of the scene is in the tables.
+void compare(Study& study, const Entry& entry, const std::vector<std::unique_ptr<Peer>>& peers,
              const Arguments& a, nlohmann::json origin, CsvFile& points, CsvFile& table) {
   const Scene start = started(entry.drawn, entry.choice);
   const std::string folder = fmt::format("{}/{}_{:g}", a.out, entry.drawn.name, entry.until);
   require_folder(folder);
   show_progress("making the reference ...");
   const Problem problem(entry.drawn, start, entry.until, folder, origin);
-  const auto sweeps = sweeps_of(problem, peers, a);
+  std::vector<Sweep> sweeps;
+  const std::string prefix = fmt::format("{} {:.17g} ", content_hash(entry.drawn), entry.until);
+  std::exception_ptr end;
+  try {
+    add_sweeps(study, prefix, problem, peers, a, sweeps);
+  } catch (const Interrupted&) {
+    end = std::current_exception();
+  }
+  show_progress("");
   for (const Sweep& sweep : sweeps) {
     for (const Measured& point : sweep.points) {
       point_row(points, entry.drawn.name, entry.until, sweep, point);
     }
   }
+  if (end) std::rethrow_exception(end);  // ratios would be of a part of the points
   for (const bool smallest : {true, false}) {
     const auto all = ratios(sweeps, smallest, accuracies);
     for (const Ratio& ratio : all) {
@@ -185,7 +212,7 @@ void compare(const Entry& entry, const std::vector<std::unique_ptr<Peer>>& peers
   }
 }
 
-int bench(const Arguments& a, const std::vector<std::string>& command_line) {
+int bench(const CLI::App& app, const Arguments& a, const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.pace.limit, "--point-limit", "the seconds a run may take");
   require_repeats(a.pace.repeats);
@@ -197,6 +224,10 @@ int bench(const Arguments& a, const std::vector<std::string>& command_line) {
   std::vector<Entry> entries;
   for (const std::string& word : a.scenes) entries.push_back(entry_of(word));
   require_folder(a.out);
+  nlohmann::json about = nlohmann::json::array();
+  for (const Entry& entry : entries) about.push_back({content_hash(entry.drawn), entry.until});
+  Study study(app, a.out, {"bench.csv", "ratios.csv"}, about);
+  if (const auto status = study.completed()) return *status;
   CsvFile points(a.out + "/bench.csv", point_columns());
   CsvFile table(a.out + "/ratios.csv", ratio_columns());
   const auto peers = selected_peers(a.peers);
@@ -205,14 +236,17 @@ int bench(const Arguments& a, const std::vector<std::string>& command_line) {
   origin.erase("scene");
   origin["scenes"] = nlohmann::json::array();
   for (const Entry& entry : entries) {
-    nlohmann::json own = provenance(command_line, entry.drawn);
-    own["until"] = entry.until;
-    origin["scenes"].push_back({{"scene", own.at("scene")}, {"until", entry.until}});
-    compare(entry, peers, a, own, points, table);
+    origin["scenes"].push_back(
+        {{"scene", provenance(command_line, entry.drawn).at("scene")}, {"until", entry.until}});
   }
-  points.commit(origin);
-  table.commit(origin);
-  return done;
+  study.measure([&] {
+    for (const Entry& entry : entries) {
+      nlohmann::json own = provenance(command_line, entry.drawn);
+      own["until"] = entry.until;
+      compare(study, entry, peers, a, own, points, table);
+    }
+  });
+  return study.finish({&points, &table}, origin, done);
 }
 
 }  // namespace
@@ -223,7 +257,8 @@ int main(int argc, char** argv) {
                "bench");
   qddot::bench::Arguments arguments;
   qddot::bench::declare(app, arguments);
+  qddot::add_resume_option(app);
   return qddot::run_program(app, argc, argv, [&] {
-    return qddot::bench::bench(arguments, {argv, argv + argc});
+    return qddot::bench::bench(app, arguments, {argv, argv + argc});
   });
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "experiments/timing.hpp"
 
 namespace qddot::bench {
@@ -35,27 +37,38 @@ Run timed(Peer& peer, ForceKind force, const Problem& problem, double value, con
   return run;
 }
 
+// One point of the ladder.
+Measured measured(Peer& peer, ForceKind force, const Problem& problem, double value,
+                  const Pace& pace) {
+  const Run run = timed(peer, force, problem, value, pace);
+  Measured point{.solver = peer.name(),
+                 .force = force_name(force),
+                 .unknowns = problem.scene.system().size(),
+                 .knob = peer.knob(),
+                 .value = value,
+                 .outcome = run.outcome,
+                 .seconds = run.seconds,
+                 .steps = run.steps,
+                 .force_evaluations = run.force_evaluations};
+  if (point.is_good()) {
+    point.error = problem.error(run.end);
+    point.timed = run.timed;
+  }
+  return point;
+}
+
 }  // namespace
 
 Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
-            const std::function<void(const Measured&)>& report) {
+            const Recall& recall, const std::function<void(const Measured&)>& report) {
   Sweep all{.is_stock_implicit = peer.is_stock_implicit()};
   double best = std::numeric_limits<double>::infinity();
   int idle = 0;
   for (const double value : peer.ladder(problem)) {
-    const Run run = timed(peer, force, problem, value, pace);
-    Measured point{.solver = peer.name(),
-                   .force = force_name(force),
-                   .unknowns = problem.scene.system().size(),
-                   .knob = peer.knob(),
-                   .value = value,
-                   .outcome = run.outcome,
-                   .seconds = run.seconds,
-                   .steps = run.steps,
-                   .force_evaluations = run.force_evaluations};
+    const std::string name = fmt::format("{} {} {:.17g}", peer.name(), force_name(force), value);
+    const Measured point =
+        recall(name, [&] { return measured(peer, force, problem, value, pace); });
     if (point.is_good()) {
-      point.error = problem.error(run.end);
-      point.timed = run.timed;
       idle = point.error > 0.8 * best ? idle + 1 : 0;
       best = std::min(best, point.error);
     }
