@@ -142,7 +142,8 @@ def work(campaign, next_number, until, results):
             results.put(campaign.do(number))
     except KeyboardInterrupt:
         pass  # the table is printed by the parent
-    results.put(None)
+    finally:
+        results.put(None)
 
 
 class Report:

@@ -117,28 +117,40 @@ def _all_of(descriptor):
         return file.read()
 
 
+def _started(argv, folder, environment, out, err):
+    """The process; waits up to a minute for a program that is being built anew."""
+    for seconds_left in range(60, -1, -1):
+        try:
+            # SIGXFSZ stays ignored as it is in Python: to write too much is an error, no signal.
+            return subprocess.Popen(
+                argv,
+                cwd=folder,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=err,
+                restore_signals=False,
+                start_new_session=True,
+            )
+        except (PermissionError, FileNotFoundError):
+            if seconds_left == 0:
+                raise
+            time.sleep(1)
+
+
 def run(
     argv, folder, environment, cpu, wall, patience=5, stop_after=None, stop_signal=signal.SIGINT
 ):
     """Runs `argv` in `folder` for at most `cpu` s of processor time or `wall` s.
 
-    After that, or after `stop_after` s, sends `stop_signal` and waits for the end as long as `patience` (processor
-    time) or four times that, before the process is killed and the status is None.
+    After that, or after `stop_after` s, sends `stop_signal` and waits for the end as long as
+    `patience` (processor time) or four times that, before the process is killed and the status is
+    None.
     """
     started = time.monotonic()
     out, err = _pipe(), _pipe()
     try:
-        # SIGXFSZ stays ignored as it is in Python: to write too much is an error and not a signal.
-        process = subprocess.Popen(
-            argv,
-            cwd=folder,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=out[1],
-            stderr=err[1],
-            restore_signals=False,
-            start_new_session=True,
-        )
+        process = _started(argv, folder, environment, out[1], err[1])
     finally:
         os.close(out[1]), os.close(err[1])
     poll, descriptor = select.poll(), os.pidfd_open(process.pid)
