@@ -194,6 +194,7 @@ def main(caller=None):
         next_number, results = multiprocessing.Value("q", a.first), multiprocessing.Queue()
         workers = [
             multiprocessing.Process(
+                daemon=True,
                 target=work, args=(campaign, next_number, started + a.seconds, results)
             )
             for _ in range(a.jobs)
@@ -207,7 +208,9 @@ def main(caller=None):
             if result:
                 report.add(*result)
                 if a.keep and result[4]:
-                    shutil.move(os.path.join(campaign.place, f"kept{result[0]}"), a.keep)
+                    to = os.path.join(a.keep, f"kept{result[0]}")
+                    shutil.rmtree(to, ignore_errors=True)
+                    shutil.move(os.path.join(campaign.place, f"kept{result[0]}"), to)
     except KeyboardInterrupt:
         print("interrupted")
     finally:

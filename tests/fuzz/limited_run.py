@@ -153,6 +153,9 @@ def run(
         process = _started(argv, folder, environment, out[1], err[1])
     finally:
         os.close(out[1]), os.close(err[1])
+    # So that it ends even if nobody is left to end it.
+    last = int(cpu + patience) + 2
+    resource.prlimit(process.pid, resource.RLIMIT_CPU, (last, last))
     poll, descriptor = select.poll(), os.pidfd_open(process.pid)
     poll.register(descriptor, select.POLLIN)
     asked, to_end, ended = False, 0.0, False
