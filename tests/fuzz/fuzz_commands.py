@@ -194,8 +194,7 @@ def main(caller=None):
         next_number, results = multiprocessing.Value("q", a.first), multiprocessing.Queue()
         workers = [
             multiprocessing.Process(
-                daemon=True,
-                target=work, args=(campaign, next_number, started + a.seconds, results)
+                daemon=True, target=work, args=(campaign, next_number, started + a.seconds, results)
             )
             for _ in range(a.jobs)
         ]
