@@ -15,6 +15,7 @@ namespace qddot {
 namespace {
 
 constexpr int most_levels = 12;
+constexpr double most_steps = 1e15;          // that double precision tells apart
 constexpr std::int64_t most_samples = 1000;  // for the scales
 
 // One way of computing the motion, finer with each level.
@@ -32,6 +33,7 @@ std::optional<Solution> resolved(const ReducedScene& scene, const char* name, do
                                  double coarsest, int level, double seconds) {
   const double w = frequency_bound(scene.system(), scene.initial().q);
   const double least = std::max(16.0, std::ceil(until * w / coarsest * std::exp2(level)));
+  if (!(least < most_steps)) return {};
   const auto samples = std::min(static_cast<std::int64_t>(least), most_samples);
   // A whole number of steps from one sample to the next.
   const double h =

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "src/analysis/natural_modes.hpp"
 #include "src/scene/generators.hpp"
@@ -15,14 +17,23 @@ namespace {
 
 constexpr int modes_predicted = 48;
 
-// The scene as a generator draws it with its parameter `vary` set.
-Scene drawn_with(const std::string& name, const std::string& vary, double value) {
+// Throws InvalidInput unless there is a generator of that name with that parameter.
+void require_parameter(const std::string& name, const std::string& vary) {
   const Generator* generator = find_generator(name);
   if (!generator) {
     throw InvalidInput(fmt::format(
         "--vary {}: scene {} is not a generator's, whose parameters can be varied", vary, name));
   }
-  return generate(*generator, {{vary, value}}, name);
+  std::vector<std::string> names;
+  for (const GeneratorParameter& parameter : generator->parameters) names.push_back(parameter.name);
+  if (std::ranges::find(names, vary) != names.end()) return;
+  throw InvalidInput(fmt::format("--vary {}: it is not a parameter of generator {}; allowed are {}",
+                                 vary, name, fmt::join(names, ", ")));
+}
+
+// The scene as a generator draws it with its parameter `vary` set.
+Scene drawn_with(const std::string& name, const std::string& vary, double value) {
+  return generate(*find_generator(name), {{vary, value}}, name);
 }
 
 // The scene with each node moved from its place at rest to `amplitude` times its distance from it,
@@ -63,6 +74,29 @@ bool moves(const AmplitudeRow& row) {
   return row.omega_max > 0 && row.scene->energy(row.scene->initial()) > row.rest_energy;
 }
 
+// The rows of all values whose scenes can be and move.
+std::vector<AmplitudeRow> rows_where_possible(const std::vector<double>& values, const auto& make,
+                                              std::vector<std::string>* left_out) {
+  std::vector<AmplitudeRow> rows;
+  for (const double value : values) {
+    std::string why;
+    try {
+      AmplitudeRow row = make(value);
+      if (moves(row)) {
+        rows.push_back(std::move(row));
+        continue;
+      }
+      why = fmt::format("amplitude {:g}: nothing moves", value);
+    } catch (const InvalidInput& error) {
+      why = error.what();
+    } catch (const std::runtime_error& error) {  // numbers that overflow
+      why = fmt::format("amplitude {:g}: {}", value, error.what());
+    }
+    if (left_out) left_out->push_back(why);
+  }
+  return rows;
+}
+
 }  // namespace
 
 double omega_max_of(const ReducedScene& scene) {
@@ -72,25 +106,31 @@ double omega_max_of(const ReducedScene& scene) {
 
 std::vector<AmplitudeRow> scaled_rows(const Scene& start, const Scene& rest,
                                       const std::vector<double>& amplitudes,
-                                      const Reductions& reductions) {
-  std::vector<AmplitudeRow> rows;
-  for (const double amplitude : amplitudes) {
-    rows.push_back(
-        row_of(amplitude, scaled(start, rest, amplitude), energy_at_rest(rest), reductions));
-  }
-  std::erase_if(rows, [](const AmplitudeRow& row) { return !moves(row); });
-  return rows;
+                                      const Reductions& reductions,
+                                      std::vector<std::string>* left_out) {
+  return rows_where_possible(
+      amplitudes,
+      [&](double amplitude) {
+        return row_of(amplitude, scaled(start, rest, amplitude), energy_at_rest(rest), reductions);
+      },
+      left_out);
 }
 
 std::vector<AmplitudeRow> varied_rows(const std::string& generator, const std::string& vary,
                                       const std::vector<double>& values,
-                                      const Reductions& reductions) {
-  std::vector<AmplitudeRow> rows;
-  for (const double value : values) {
-    const Scene scene = drawn_with(generator, vary, value);
-    rows.push_back(row_of(value, scene, energy_at_rest(settled(scene, generator)), reductions));
-  }
-  std::erase_if(rows, [](const AmplitudeRow& row) { return !moves(row); });
+                                      const Reductions& reductions,
+                                      std::vector<std::string>* left_out) {
+  require_parameter(generator, vary);
+  std::vector<std::string> reasons;
+  auto rows = rows_where_possible(
+      values,
+      [&](double value) {
+        const Scene scene = drawn_with(generator, vary, value);
+        return row_of(value, scene, energy_at_rest(settled(scene, generator)), reductions);
+      },
+      &reasons);
+  if (rows.empty() && !reasons.empty()) throw InvalidInput(reasons.front());
+  if (left_out) *left_out = std::move(reasons);
   return rows;
 }
 

@@ -25,15 +25,19 @@ double omega_max_of(const ReducedScene& scene);
 
 // The scene with each node moved from its place at rest to each of the amplitudes times its
 // distance from it, velocities likewise: 1 is `start` itself. Without the rows in which nothing
-// moves or vibrates.
+// moves or vibrates, and those whose scene cannot be: `left_out`, if any, gets the reason of each,
+// a sentence.
 std::vector<AmplitudeRow> scaled_rows(const Scene& start, const Scene& rest,
                                       const std::vector<double>& amplitudes,
-                                      const Reductions& reductions);
+                                      const Reductions& reductions,
+                                      std::vector<std::string>* left_out = nullptr);
 
 // The scene that the generator of that name draws with its parameter `vary` at each of the values.
-// Throws InvalidInput where there is none, or a scene has no equilibrium. Rows as above.
+// Throws InvalidInput where there is no such generator or parameter, or no value is possible. Rows
+// as above; a scene without an equilibrium is left out as well.
 std::vector<AmplitudeRow> varied_rows(const std::string& generator, const std::string& vary,
                                       const std::vector<double>& values,
-                                      const Reductions& reductions);
+                                      const Reductions& reductions,
+                                      std::vector<std::string>* left_out = nullptr);
 
 }  // namespace qddot

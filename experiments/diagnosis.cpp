@@ -28,6 +28,10 @@ constexpr std::size_t most_named = 3;
 constexpr double same = 0.5;
 // What a growth of the energy is told from; and beyond this its size says nothing any more.
 constexpr double largest_growth = 10, countless = 1e6;
+// No motion that a scene means is as fast [m/s].
+constexpr double largest_speed = 1e15;
+// Lanczos' method is not waited for in scenes of more unknowns: a lower bound has to do.
+constexpr Index most_searched = 6000;
 
 bool has_own_step(const Method& method) { return has_linear_step(method) && method.order > 0; }
 
@@ -145,6 +149,21 @@ std::optional<bool> holds(const Method& method, const Knobs& knobs, const Reduce
   return summary.outcome == Outcome::reached_end && largest - energy <= same * (energy - lowest);
 }
 
+// That forces of the start itself bring nodes to speeds that no scene means; empty where not.
+std::string extreme_start(const ReducedScene& scene) {
+  const Vec& mass = scene.system().mass();
+  Vec f(mass.size());
+  scene.system().force(scene.initial().q, f);
+  const double a = (mass.array() > 0).select(f.cwiseQuotient(mass), 0).lpNorm<Eigen::Infinity>();
+  const double speed = std::sqrt(a * with_tolerance_scales({}, scene).length);
+  if (f.allFinite() && speed < largest_speed) return "";
+  return fmt::format(
+      "the forces of the start accelerate a node by {:.3g} m/s^2, before any step: look for "
+      "extreme "
+      "rest lengths, stiffnesses or masses in the scene",
+      a);
+}
+
 }  // namespace
 
 std::string step_warning(const Method& method, const Knobs& knobs, const ReducedScene& scene) {
@@ -153,7 +172,8 @@ std::string step_warning(const Method& method, const Knobs& knobs, const Reduced
   const Vec& q = scene.initial().q;
   const double limit = linear_limit(method), h = knobs.step_size;
   if (h * frequency_bound(system, q) <= limit) return "";
-  const double w = largest_frequency(system, q);
+  const double w =
+      system.size() > most_searched ? frequency_at_least(system, q) : largest_frequency(system, q);
   if (h * w <= limit) return "";
   if (limit == 0) {
     return fmt::format(
@@ -181,9 +201,11 @@ std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedSce
                       double until, const Summary& summary, double seconds) {
   constexpr std::array diagnosed = {Outcome::diverged, Outcome::not_finite,
                                     Outcome::indefinite_matrix, Outcome::newton_failed};
-  if (!has_own_step(method) || std::ranges::find(diagnosed, summary.outcome) == diagnosed.end()) {
-    return "";
+  const bool is_diagnosed = std::ranges::find(diagnosed, summary.outcome) != diagnosed.end();
+  if (is_diagnosed || summary.outcome == Outcome::step_too_small) {
+    if (const std::string extreme = extreme_start(scene); !extreme.empty()) return extreme;
   }
+  if (!has_own_step(method) || !is_diagnosed) return "";
   const auto begin = std::chrono::steady_clock::now();
   const auto left = [&] { return seconds - seconds_since(begin); };
   const double h = knobs.step_size;

@@ -25,6 +25,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/drift_record.hpp"
 #include "experiments/drift_run.hpp"
@@ -92,7 +93,7 @@ struct Horizon {
 Horizon horizon_of(const CLI::App& app, const Arguments& a, const ReducedScene& scene) {
   Horizon h{a.step_size, a.until};
   if (app.count("--step-size") > 0) {
-    require_positive(a.step_size, "--step-size", "h in s");
+    require_step_size(a.step_size, "--step-size");
   } else {
     h.step_size = standard_resolution / fastest_frequency(scene);
     if (!std::isfinite(h.step_size)) {
@@ -240,7 +241,7 @@ int energy_drift(const CLI::App& app, const Arguments& a,
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.method_limit, "--method-limit", "the seconds a method may take");
   require_options(app, a.options);
-  for (const double rtol : a.rtols) require_positive(rtol, "--rtol", "a relative tolerance");
+  for (const double rtol : a.rtols) require_rtol(rtol, "--rtol");
   const Scene drawn = load(a.scene);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));

@@ -53,9 +53,13 @@ double predicted_growth_rate(const Cell& cell) {
   if (!has_linear_step(*cell.method)) return none;
   const double h = cell.h_omega / cell.row->omega_max;
   double largest = -std::numeric_limits<double>::infinity();
-  for (const Mode& mode : cell.row->modes) {
-    const LinearStep step = linear_step(*cell.method, h * mode.omega);
-    largest = std::max(largest, std::log(step.spectral_radius()) / h);
+  try {
+    for (const Mode& mode : cell.row->modes) {
+      const LinearStep step = linear_step(*cell.method, h * mode.omega);
+      largest = std::max(largest, std::log(step.spectral_radius()) / h);
+    }
+  } catch (const std::exception&) {  // a step so long that its numbers overflow
+    return none;
   }
   return largest;
 }

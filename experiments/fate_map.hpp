@@ -25,7 +25,7 @@ struct MapSettings {
 
 // The largest rate [1/s] at which linear theory lets one of the modes grow, or, where all decay,
 // the smallest decay as a negative one; no number for a method that chooses its steps, or that has
-// no step on an oscillator.
+// no step on an oscillator, or whose step is too long for numbers.
 double predicted_growth_rate(const Cell& cell);
 
 // Runs all cells on all cores (OpenMP), the long ones first; each is a piece of the study. Nothing

@@ -1,14 +1,23 @@
 #include "experiments/front.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include <fmt/format.h>
 
 #include "experiments/judgement.hpp"
+#include "experiments/linear_step.hpp"
 #include "experiments/reference_words.hpp"
+#include "src/analysis/largest_frequency.hpp"
 
 namespace qddot {
 namespace {
+
+// A step that is nearer to its limit is warned of.
+constexpr double small_margin = 0.15;
+// Lanczos' method is not waited for in larger systems: a lower bound has to do.
+constexpr Index most_searched = 6000;
 
 void keep_faster(const Point*& fastest, const Point& point) {
   if (!fastest || point.time < fastest->time) fastest = &point;
@@ -44,6 +53,23 @@ std::string rival(const FrontRow& row) {
                      other->time / row.fastest->time);
 }
 
+// A sentence for each step that the front names and that stands on the edge.
+std::vector<std::string> small_margins(const std::vector<FrontRow>& front) {
+  std::vector<std::string> sentences;
+  for (const FrontRow& row : front) {
+    if (!(row.stability_margin < small_margin)) continue;
+    const double percent = 100 * row.stability_margin;
+    const std::string sentence = fmt::format(
+        "{} at {} is {:.2g} % {} its limit of stability, w_max at the start: motion raises that, "
+        "and "
+        "a longer run may blow up; take half of the step there",
+        row.fastest->method->name, knob_in_words(*row.fastest), std::abs(percent),
+        percent < 0 ? "above" : "below");
+    if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(sentence);
+  }
+  return sentences;
+}
+
 }  // namespace
 
 std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
@@ -64,6 +90,27 @@ std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
     rows.push_back(row);
   }
   return rows;
+}
+
+void add_stability_margins(std::vector<FrontRow>& rows, const ReducedScene& scene) {
+  const System& system = scene.system();
+  const auto has_limit = [](const FrontRow& row) {
+    if (!row.fastest || !has_linear_step(*row.fastest->method)) return false;
+    const double limit = linear_limit(*row.fastest->method);
+    return limit > 0 && std::isfinite(limit);
+  };
+  if (std::ranges::none_of(rows, has_limit)) return;
+  double w = 0;
+  try {
+    w = system.size() > most_searched ? frequency_at_least(system, scene.initial().q)
+                                      : largest_frequency(system, scene.initial().q);
+  } catch (const std::exception&) {  // it was not found, and so no margin is known
+    return;
+  }
+  for (FrontRow& row : rows) {
+    if (!has_limit(row) || w == 0) continue;
+    row.stability_margin = 1 - row.fastest->value * w / linear_limit(*row.fastest->method);
+  }
 }
 
 void print_front(const std::string& scene, double until, const std::vector<FrontRow>& front,
@@ -99,6 +146,7 @@ void print_front(const std::string& scene, double until, const std::vector<Front
       fmt::print("{:<9.0e} {}\n", row.accuracy, why_empty(row, reference));
     }
   }
+  for (const std::string& warning : small_margins(front)) fmt::print("{}\n", warning);
   if (has_doubts)
     fmt::print("? known to within {:.1e} alone, which the reference itself may be off\n",
                certified(reference));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,13 +17,20 @@ struct FrontRow {
   const Point* fastest = nullptr;
   const Point* fastest_hand_written = nullptr;
   const Point* fastest_sundials = nullptr;
+  // How far the fastest's step stays below the limit of an explicit method of fixed steps,
+  // 1 - h / (limit / w_max), w_max at the start; no number for other methods. Motion may raise
+  // w_max, so that a longer run blows up where little is left.
+  double stability_margin = std::numeric_limits<double>::quiet_NaN();
 };
 
 // Rows for the accuracies 1e-1, 1e-2, ... 1e-9; pointers into `points`.
 std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
                                                const Reference& reference);
 
-// Prints the rows as a table for people.
+// Finds the margins of the rows on the scene, whose largest frequency is looked for once.
+void add_stability_margins(std::vector<FrontRow>& rows, const ReducedScene& scene);
+
+// Prints the rows as a table for people, with a warning of small stability margins.
 void print_front(const std::string& scene, double until, const std::vector<FrontRow>& front,
                  const Reference& reference);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -51,7 +50,9 @@ Solved solve(const Method& method, const SwingingCloth& cloth, double h, int mos
       const double all =
           seconds_of([&] { summary = integrator->advance(step.end, cloth.start.t + h); });
       if (summary.outcome != Outcome::reached_end) {
-        throw std::runtime_error(fmt::format("{}: {}", method.name, summary.message));
+        solved.failure =
+            fmt::format("{} at {} iterations: {}", method.name, iterations, summary.message);
+        return solved;
       }
       const double constant = method.needs_laplacian ? summary.seconds.factorization : 0;
       if (i < 0) continue;
@@ -86,6 +87,24 @@ Comparison::Comparison(const SwingingCloth& on, double h, int most, int repeats)
       converged = step.end;
     }
   }
+}
+
+double iterations_of_comparison(int most, int repeats) {
+  double sum = 0;
+  for (const Method* method : solvers()) {
+    const int own = method->needs_laplacian ? most : std::min(most, most_newton_iterations);
+    for (const int count : iteration_counts(own)) sum += count;
+  }
+  return sum * (repeats > 1 ? repeats + 1 : 1);
+}
+
+double seconds_of_iterations(const SwingingCloth& cloth, double h, double iterations) {
+  constexpr int some = 10;
+  const auto integrator = make_integrator(*find_method("local_global"), cloth.system(),
+                                          {.step_size = h, .iterations = some});
+  State state = cloth.start;
+  const double seconds = seconds_of([&] { integrator->advance(state, cloth.start.t + h); });
+  return seconds / some * iterations;
 }
 
 double Comparison::relative_error(const Step& step) const {

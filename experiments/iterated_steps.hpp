@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "experiments/swinging_cloth.hpp"
@@ -22,11 +23,12 @@ struct Solved {
   const Method* method = nullptr;
   double analysis = INFINITY, factorization = INFINITY;  // s; the latter of a constant matrix
   std::vector<Step> steps{};                             // from none on
+  std::string failure{};  // why a step of more iterations than these is not there; mostly empty
 };
 
 // Steps of h [s] of the cloth by all methods that take a number of iterations, and by Newton's with
 // K as it is and clamped, for numbers of them up to `most`; and the lowest energy that any came to.
-// Throws std::runtime_error where a step fails.
+// A solver whose step fails is left at the iterations before.
 struct Comparison {
   Comparison(const SwingingCloth& on, double h, int most, int repeats);
   // Of the energy above its minimum, what is left of that of the prediction.
@@ -37,5 +39,12 @@ struct Comparison {
   double first = 0, least = 0;  // [J]
   State converged{};
 };
+
+// About how long all comparisons and runs of the program take together [s], with the time of one
+// iteration on the cloth measured: `iterations` of them.
+double seconds_of_iterations(const SwingingCloth& cloth, double h, double iterations);
+
+// How many iterations, of all solvers, a Comparison makes.
+double iterations_of_comparison(int most, int repeats);
 
 }  // namespace qddot

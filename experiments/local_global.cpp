@@ -22,6 +22,7 @@
 //  speed.csv        --speed alone: one iteration, set-up, and what one of Newton's iterations
 //                   takes to assemble and factorise, for 33, 65 and 101 nodes
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -29,10 +30,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/interruption.hpp"
 #include "experiments/iterated_steps.hpp"
 #include "experiments/newton.hpp"
+#include "experiments/pace.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/study.hpp"
@@ -50,6 +53,8 @@ constexpr int standard_nodes = 33;
 constexpr double standard_stiffness = 1200;
 constexpr int speed_nodes[] = {33, 65, 101};
 constexpr int most_iterations_of_figure_3 = 100;
+constexpr double most_steps_of_run = 1e6;
+constexpr std::array iterations_of_runs = {1, 2, 3, 5, 10, 20, 50, 100, 200};
 
 struct Arguments {
   std::string out;
@@ -138,9 +143,14 @@ nlohmann::json compare_steps(const Arguments& a) {
                  : fmt::format("{:<24} {:>10}\n", solved.method->name,
                                fmt::format("> {}", solved.steps.back().iterations)));
   }
+  std::vector<std::string> failures;
+  for (const Solved& solved : comparison.all) {
+    if (!solved.failure.empty()) failures.push_back(solved.failure);
+  }
   return {{"convergence", convergence.text()},
           {"positions", positions.text()},
           {"lines", lines},
+          {"failures", failures},
           {"setup", setups(comparison)},
           {"step_error", own}};
 }
@@ -164,6 +174,7 @@ struct StepTables {
 
   CsvFile convergence, positions, stiffness, resolution, run;
   // What their sidecars have of their own.
+  bool all_held = true;  // whether no solver failed
   nlohmann::json of_step = nlohmann::json::object(), of_stiffness = nlohmann::json::object(),
                  of_resolution = nlohmann::json::object();
 };
@@ -173,6 +184,10 @@ void write_step(Study& study, const Arguments& a, StepTables& tables) {
   tables.convergence.rows(step.at("convergence").get<std::string>());
   tables.positions.rows(step.at("positions").get<std::string>());
   fmt::print("{}", step.at("lines").get<std::string>());
+  for (const auto& failure : step.at("failures")) {
+    fmt::print(stderr, "local_global: {}\n", failure.get<std::string>());
+    tables.all_held = false;
+  }
   tables.of_step = {{"setup", step.at("setup")}, {"step_error", step.at("step_error")}};
 }
 
@@ -238,7 +253,7 @@ void write_run(Study& study, const Arguments& a, CsvFile& csv) {
   };
   for (const Method& method : methods()) {
     if (!method.takes_iterations) continue;
-    for (const int iterations : {1, 2, 3, 5, 10, 20, 50, 100, 200}) add(method, iterations);
+    for (const int iterations : iterations_of_runs) add(method, iterations);
   }
   for (const int iterations : {1, 2, 3, 5, 10, 20}) add(newton_clamped(), iterations);
   add(newton_exact(), most_newton_iterations);
@@ -279,6 +294,39 @@ nlohmann::json measured_speed(const Arguments& a, int nodes) {
                                1e3 * factorization)}};
 }
 
+// Throws InvalidInput for what would take steps without end; says on stderr what takes more than a
+// minute.
+void require_affordable(const Arguments& a) {
+  const double steps = a.until / a.step_size;
+  if (!(steps <= most_steps_of_run)) {
+    throw InvalidInput(fmt::format(
+        "--step-size {:g}: the runs of {:g} s (--until) are {:.3g} steps; allowed are up to {:g}",
+        a.step_size, a.until, steps, most_steps_of_run));
+  }
+  require_reachable(a.nodes, a.stiffness, a.step_size, "--step-size");
+  require_reachable(a.nodes, a.stiffness, a.until, "--until");
+  double sizes = 0;
+  for (const double stiffness : a.stiffnesses) {
+    require_reachable(a.nodes, stiffness, a.swing, "--swing");
+    sizes += 1;
+  }
+  for (const int nodes : a.resolutions) {
+    const double part = (nodes - 1) / static_cast<double>(a.nodes - 1);
+    require_reachable(nodes, a.stiffness * part, a.swing, "--swing");
+    sizes += part * part;
+  }
+  double of_runs = 0;
+  for (const int iterations : iterations_of_runs) of_runs += 4 * iterations;
+  const double iterations =
+      iterations_of_comparison(a.iterations, a.repeats) +
+      sizes * iterations_of_comparison(std::min(a.iterations, most_iterations_of_figure_3), 1) +
+      steps * of_runs;
+  const double seconds =
+      seconds_of_iterations(SwingingCloth(a.nodes, a.stiffness, 0), a.step_size, iterations);
+  if (seconds > 60)
+    fmt::print(stderr, "local_global: this takes about {}\n", duration_in_words(seconds));
+}
+
 int measure_speed(const CLI::App& app, const Arguments& a, const nlohmann::json& origin) {
   Study study(app, a.out, {"speed.csv"}, origin.at("scene"));
   if (const auto status = study.completed()) return *status;
@@ -306,17 +354,18 @@ int measure_steps(const CLI::App& app, const Arguments& a, const nlohmann::json&
     write_figure_3(study, a, tables);
     write_run(study, a, tables.run);
   });
+  const ExitStatus status = tables.all_held ? done : end_not_reached;
   const auto commit = [&](CsvFile& table, const nlohmann::json& own) {
     nlohmann::json whole = origin;
     whole.update(own);
-    study.complete(table, whole, done);
+    study.complete(table, whole, status);
   };
   commit(tables.convergence, tables.of_step);
   commit(tables.positions, tables.of_step);
   commit(tables.stiffness, tables.of_stiffness);
   commit(tables.resolution, tables.of_resolution);
   commit(tables.run, nlohmann::json::object());
-  return study.conclude(done);
+  return study.conclude(status);
 }
 
 int local_global_program(const CLI::App& app, const Arguments& a,
@@ -330,12 +379,13 @@ int local_global_program(const CLI::App& app, const Arguments& a,
   require_within(a.iterations, 1, 100000, "--iterations");
   require_repeats(a.repeats);
   require_positive(a.stiffness, "--stiffness", "a stiffness in N/m");
-  require_positive(a.step_size, "--step-size", "h in s");
   require_positive(a.until, "--until", "the length of the runs in s");
   if (!(std::isfinite(a.swing) && a.swing >= 0)) {
     throw InvalidInput(fmt::format(
         "--swing {} is not allowed; it is a time in s, finite and at least 0", a.swing));
   }
+  require_step_size(a.step_size, "--step-size", a.swing + a.until);
+  if (!a.speed) require_affordable(a);
   require_folder(a.out);
   const SwingingCloth cloth(a.speed ? standard_nodes : a.nodes, a.stiffness, 0);
   const nlohmann::json origin = origin_of(command_line, cloth, a);

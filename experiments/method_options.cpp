@@ -13,6 +13,8 @@
 namespace qddot {
 namespace {
 
+constexpr int most_iterations = 100000;  // a step
+
 template <class T>
 void require_that(bool is_allowed, const char* option, const T& value, const std::string& what) {
   if (!is_allowed) {
@@ -30,7 +32,8 @@ void require_values(const CLI::App& app, const MethodOptions& o, int highest_ord
                  fmt::format("a whole number from 1 to {}", highest_order));
   }
   if (app.count("--iterations") > 0) {
-    require_that(o.iterations >= 1, "--iterations", o.iterations, "a whole number above 0");
+    require_that(o.iterations >= 1 && o.iterations <= most_iterations, "--iterations", o.iterations,
+                 fmt::format("a whole number from 1 to {}", most_iterations));
   }
   if (app.count("--solve-tolerance") > 0) {
     require_that(o.solve_tolerance > 0 && o.solve_tolerance < 1, "--solve-tolerance",

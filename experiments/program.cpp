@@ -11,6 +11,7 @@
 
 #include "experiments/build_info.hpp"
 #include "experiments/interruption.hpp"
+#include "experiments/memory.hpp"
 #include "experiments/overwriting.hpp"
 #include "experiments/reference.hpp"
 #include "experiments/whole_file.hpp"
@@ -87,12 +88,10 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return complain(app, error.what(), bad_input);
   } catch (const NoReference& error) {
     return complain(app, error.what(), end_not_reached);
-  } catch (const std::system_error& error) {
-    return complain(app,
-                    fmt::format("the system denies what is needed ({}): more memory or "
-                                "threads would do",
-                                error.what()),
-                    end_not_reached);
+  } catch (const std::bad_alloc&) {
+    return complain(app, out_of_memory(), end_not_reached);
+  } catch (const std::system_error& error) {  // no thread can be started
+    return complain(app, out_of_memory(), end_not_reached);
   } catch (const std::exception& error) {
     return complain(app, error.what(), failed);
   }

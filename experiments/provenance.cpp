@@ -69,7 +69,7 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,
                           const Scene& start, const ReducedScene& reduced) {
   nlohmann::json origin = provenance(command_line, drawn);
-  const Explanation e = explain(start, reduced);
+  const Explanation e = explain(start, reduced, at_a_glance);
   nlohmann::json reductions = nlohmann::json::array();
   for (const Finding& finding : e.findings) {
     reductions.push_back({{"name", name(finding.reduction)}, {"what", finding.what}});

@@ -17,7 +17,8 @@ nlohmann::json provenance(const std::vector<std::string>& command_line);
 // The same with the scene and its content hash.
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn);
 
-// The same with what was left out of the scene and what is left: see Explanation. `start`: the
+// The same with what was left out of the scene and what is left: see Explanation, whose eigenvalues
+// are null for scenes that are not at_a_glance. `start`: the
 // scene as it starts.
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,
                           const Scene& start, const ReducedScene& reduced);

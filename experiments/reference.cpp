@@ -4,9 +4,14 @@
 #include <cmath>
 #include <optional>
 
+#include <fmt/format.h>
+
+#include "experiments/deadline.hpp"
+#include "experiments/pace.hpp"
 #include "experiments/reference_rounding.hpp"
 #include "experiments/reference_ways.hpp"
 #include "experiments/refinement.hpp"
+#include "integrators/registry.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/analysis/linear_motion.hpp"
 
@@ -14,6 +19,31 @@ namespace qddot {
 namespace {
 
 constexpr Index largest_modal_size = 2000;  // a dense eigenproblem of a few seconds
+
+// Throws NoReference where so many steps of order 8, timed on a few, take twice as long as they may
+// [s]; says on stderr where making the reference is likely to take all its time.
+void require_affordable(const ReducedScene& scene, double until, double steps, double seconds) {
+  constexpr double tried = 16, refinements = 8;
+  State state = scene.initial();
+  const double h = until / steps;
+  const auto integrator =
+      make_integrator(*find_method("kahan_li8"), scene.system(), {.step_size = h});
+  const auto begin = std::chrono::steady_clock::now();
+  const Deadline deadline(seconds);
+  integrator->advance(state, tried * h, {}, deadline.token());
+  const double expected = seconds_since(begin) / tried * steps;
+  if (expected > 2 * seconds) {
+    throw NoReference(
+        fmt::format("no reference: to t = {:g} s it takes {:.2g} steps of order 8 at the least, "
+                    "about {}, and {} "
+                    "are allowed: ask for an earlier end (--until)",
+                    until, steps, duration_in_words(expected), duration_in_words(seconds)));
+  }
+  if (expected * refinements > seconds) {
+    fmt::print(stderr, "making the reference takes some {}\n",
+               duration_in_words(std::max(4 * seconds, 60.0)));
+  }
+}
 
 // A composition, as fine as it gets, and what a rounding of the start does to it.
 class Composed {
@@ -23,6 +53,7 @@ class Composed {
     // Steps that resolve the fastest frequency at the start: h w = 2, 1, 1/2, ...
     const double bound = frequency_bound(scene.system(), scene.initial().q);
     const double coarsest = std::max(16.0, std::ceil(until * bound / 2));
+    require_affordable(scene, until, coarsest, seconds);
     finest_ = refined(
         scene, seconds,
         [&](int level) {

@@ -97,7 +97,9 @@ Reference reference_from_json(const nlohmann::json& json);
 void require_reference_exists(const ReducedScene& scene, const std::string& source);
 
 // The reference of the scene at `until` that `folder`/reference.json holds, if it was made of the
-// same scene content by the same code; else a new one, which is written there with `origin`. It is
+// same scene content by the same code, its checksum is right and its end has the energy of the
+// start; else a new one, which is written there with `origin`. A file that is not as it was written
+// is said to be, on stderr. It is
 // as good as can be, or good to the position error `needed` where that is given. `start` is the
 // drawn scene as its motion starts, and `scene` the reduction of that.
 Reference reference_for(const Scene& drawn, const Scene& start, const ReducedScene& scene,

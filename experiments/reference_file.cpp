@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/interruption.hpp"
+#include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/reference.hpp"
 #include "experiments/whole_file.hpp"
@@ -35,8 +37,10 @@ Vec vector(const nlohmann::json& json) {
 
 double digits(double certified) { return std::floor(-std::log10(certified) * 10) / 10; }
 
+// The file's contents; null where there is no regular file, whatever a pipe would have to say.
 nlohmann::json read(const std::string& file) {
-  if (std::filesystem::is_directory(file)) return {};
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return nullptr;
   std::ifstream stream(file);
   return nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
 }
@@ -89,14 +93,56 @@ std::optional<OutOfSymmetry> out_of_symmetry_from_json(const nlohmann::json& jso
                        json.at("lyapunov")};
 }
 
-bool fits(const Reference& reference, const ReducedScene& scene) {
+std::string written(const nlohmann::json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+// Of all that is stored but itself, as 16 hexadecimal digits: 64-bit FNV-1a of its compact form, in
+// which numbers are exact and keys in order.
+std::string checksum(nlohmann::json json) {
+  json.erase("checksum");
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : written(json, -1)) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x00000100000001b3ULL;
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+// Whether the end has the energy that the start has, which the exact motion keeps, to what is
+// certified and what another machine may round otherwise.
+bool keeps_energy(const Reference& r, const ReducedScene& scene) {
+  const State& start = scene.initial();
+  const double kinetic = scene.kinetic(start), potential = scene.potential(start);
+  const double rounded = 64 * std::numeric_limits<double>::epsilon() *
+                         (r.scales.kinetic + kinetic + std::abs(potential));
+  const double tolerated = r.certified.energy * r.scales.kinetic + rounded;
+  return std::abs(kinetic + potential - r.energy) <= tolerated &&
+         std::abs(scene.energy(r.end) - r.energy) <= tolerated;
+}
+
+bool fits(const Reference& reference, const ReducedScene& scene, double until) {
   const Index n = scene.system().size();
   const std::size_t nodes = scene.expand(scene.initial()).size();
-  return reference.end.q.size() == n && reference.end.v.size() == n &&
+  return reference.end.t == until && reference.end.q.size() == n && reference.end.v.size() == n &&
          reference.certified.position > 0 &&
-         std::ranges::all_of(reference.scales.parts, [&](const PartScale& part) {
-           return std::ranges::all_of(part.nodes, [&](std::size_t i) { return i < nodes; });
-         });
+         std::ranges::all_of(reference.scales.parts,
+                             [&](const PartScale& part) {
+                               return std::ranges::all_of(part.nodes,
+                                                          [&](std::size_t i) { return i < nodes; });
+                             }) &&
+         keeps_energy(reference, scene);
+}
+
+// The reference that the file holds, if it is whole and that of the scene at `until`.
+std::optional<Reference> stored(const nlohmann::json& json, const ReducedScene& scene,
+                                double until) {
+  if (!json.contains("checksum") || json["checksum"] != checksum(json)) return {};
+  try {
+    Reference reference = reference_from_json(json);
+    if (fits(reference, scene, until)) return reference;
+  } catch (const nlohmann::json::exception&) {  // written by somebody else
+  }
+  return {};
 }
 
 // Throws Interrupted where the program is to end: what was made meanwhile may be poorer for it.
@@ -179,14 +225,16 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
                         {"until", until},
                         {"source_hash", code_hash()}};
   if (needed) key["needed"] = *needed;
-  const nlohmann::json stored = read(file);
-  if (stored.is_object() && stored.value("key", nlohmann::json()) == key) {
-    try {
-      Reference reference = reference_from_json(stored);
-      if (fits(reference, scene)) return reference;
-    } catch (const nlohmann::json::exception&) {
-      // A file that somebody else wrote or cut short: made anew below.
-    }
+  const nlohmann::json found = read(file);
+  if (found.is_object() && found.value("key", nlohmann::json()) == key) {
+    if (auto reference = stored(found, scene, until)) return *reference;
+  }
+  const bool is_of_others = found.is_object() && found.value("key", nlohmann::json()) != key;
+  if (!found.is_null() && !is_of_others) {
+    fmt::print(stderr,
+               "{}: it is not as it was written (its checksum or its numbers are wrong): the "
+               "reference is made anew\n",
+               in_one_line(file));
   }
   WholeFile whole(file);
   const Reference reference = made(scene, start, until, needed);
@@ -195,7 +243,10 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
   json["key"] = key;
   json["scene"] = drawn.name;
   json["until"] = until;
-  whole.write(json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  // Numbers that are not finite are null when read again, and text is what can be written.
+  json = nlohmann::json::parse(written(json, -1));
+  json["checksum"] = checksum(json);
+  whole.write(written(json, 1) + "\n");
   whole.commit();
   return reference;
 }

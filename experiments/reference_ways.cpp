@@ -14,6 +14,8 @@ namespace qddot {
 namespace {
 
 constexpr std::int64_t longest_path = 100;
+// Looks at a run for its scales; a list of more times would cost more than it shows.
+constexpr std::int64_t most_looks = 1'000'000;
 constexpr double safety = 2;
 
 // Moves q and v on by `until` [s], in units of `length` [m] and `speed` [m/s]; false where the
@@ -67,13 +69,15 @@ std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method
   const auto integrator = make_integrator(method, scene.system(), knobs);
   Solution solution{.end = initial};
   const Deadline deadline(seconds);
-  const std::int64_t stride = (samples + longest_path - 1) / longest_path;
+  const std::int64_t apart = (samples + most_looks - 1) / most_looks;
+  const std::int64_t looks = (samples + apart - 1) / apart;
+  const std::int64_t stride = (looks + longest_path - 1) / longest_path;
   std::int64_t seen = 0;
   Observer each{{}, [&](const State& state) {
                   extend(solution.scales, scene, state);
-                  if (++seen % stride == 0 || seen == samples) solution.path.push_back(state);
+                  if (++seen % stride == 0 || seen == looks) solution.path.push_back(state);
                 }};
-  for (std::int64_t i = 1; i < samples; ++i) {
+  for (std::int64_t i = apart; i < samples; i += apart) {
     each.times.push_back(until * static_cast<double>(i) / static_cast<double>(samples));
   }
   each.times.push_back(until);

@@ -21,8 +21,8 @@ struct Solution {
 };
 
 // The motion from `initial` by a method with these knobs. Its scales are those seen at the ends of
-// `samples` equal parts of the time; about a hundred of these are its path. Nothing where it does
-// not reach the end in so many seconds.
+// `samples` equal parts of the time, or of some of them where they are more than a million; about a
+// hundred of these are its path. Nothing where it does not reach the end in so many seconds.
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
                                  const Knobs& knobs, const State& initial, double until,
                                  std::int64_t samples, double seconds);

@@ -30,6 +30,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/machine_limits.hpp"
 #include "experiments/memory.hpp"
@@ -95,7 +96,7 @@ void declare(CLI::App& app, Arguments& a) {
 
 void require_options(const CLI::App& app, const Arguments& a) {
   require_given(a.out, "--out", "the folder for the results");
-  require_positive(a.step_size, "--step-size", "h in s");
+  require_step_size(a.step_size, "--step-size");
   require_positive(a.point_limit, "--point-limit", "the seconds a step may take");
   require_within(a.sizes, 1, 20, "--sizes");
   if (app.count("--memory-limit") > 0) {
@@ -137,7 +138,7 @@ std::vector<Solver> select_solvers(const std::vector<std::string>& names) {
 // The methods, all of which step by an h and can be used on the scene, with each solver where they
 // have use for one.
 std::vector<SolvedMethod> select(const SizedScenes& scenes, const Arguments& a) {
-  const ReducedScene smallest(scenes.draw(a.least_nodes), reductions_of(a.choice));
+  const ReducedScene smallest(scenes.draw(least_nodes_allowed), reductions_of(a.choice));
   const auto solvers = select_solvers(a.solvers);
   std::vector<SolvedMethod> selected;
   for (const Method* method : select_methods(a.methods, smallest, scenes.name)) {
@@ -199,7 +200,7 @@ void write_roofline(Csv& csv, const ScalingRun& run, double peak) {
 nlohmann::json origin_of(const std::vector<std::string>& command_line, const Arguments& a,
                          const ScalingRun& run) {
   nlohmann::json origin =
-      provenance(command_line, find_sized_scenes(a.scenes.front()).draw(a.least_nodes));
+      provenance(command_line, find_sized_scenes(a.scenes.front()).draw(least_nodes_allowed));
   origin.erase("scene");
   origin["scenes"] = nlohmann::json::array();
   for (const ScalingSize& size : run.sizes()) {

@@ -14,6 +14,7 @@
 #include "integrators/registry.hpp"
 #include "src/algebra/effective_mass.hpp"
 #include "src/analysis/frequency_bound.hpp"
+#include "src/scene/scene_limits.hpp"
 
 namespace qddot {
 namespace {
@@ -155,7 +156,12 @@ bool ScalingRun::fits(const SizedScenes& scenes, const std::string& method,
     if (method.empty()) bytes += expected_bytes(costs_, scenes, method, phase, nodes);
   }
   if (!method.empty()) bytes = expected_bytes(costs_, scenes, method, "step", nodes);
-  bytes = memory * bytes + allocated_memory();
+  bytes *= memory;
+  if (method.empty() && bytes == 0) {  // the first size, of which nothing is measured
+    const auto count = [](double x) { return static_cast<std::size_t>(x); };
+    bytes = memory_of({count(nodes), count(scenes.springs_a_node * nodes)});
+  }
+  bytes += allocated_memory();
   const auto refuse = [&](const std::string& why) {
     left_out_.push_back({scenes.name, method, nodes, why});
     return false;

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "experiments/catalogue.hpp"
+#include "experiments/memory.hpp"
 #include "experiments/overwriting.hpp"
 #include "experiments/program.hpp"
 #include "integrators/registry.hpp"
@@ -38,10 +39,12 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
 
 Scene load(const SceneChoice& choice) {
   require_given(choice.name, "--scene", "a generator's name or a scene file");
-  return load_scene(choice.name, [](const std::string& path) {
-    protect_input(path);
-    return read_text(path);
-  });
+  return load_scene(choice.name,
+                    [](const std::string& path) {
+                      protect_input(path);
+                      return read_text(path);
+                    },
+                    {.bytes = free_memory()});
 }
 
 Scene started(const Scene& drawn, const SceneChoice& choice) {

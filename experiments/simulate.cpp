@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/aside.hpp"
 #include "experiments/catalogue.hpp"
 #include "experiments/csv.hpp"
@@ -25,6 +26,7 @@
 #include "experiments/method_options.hpp"
 #include "experiments/node_table.hpp"
 #include "experiments/overwriting.hpp"
+#include "experiments/pace.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/samples.hpp"
@@ -176,8 +178,8 @@ Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& metho
     throw InvalidInput(
         fmt::format("{} is missing; {} needs it, greater than 0", wanted, method.name));
   }
-  if (fixed) require_positive(a.step_size, "--step-size", "h in s");
-  if (!fixed) require_positive(a.rtol, "--rtol", "a relative tolerance");
+  if (fixed) require_step_size(a.step_size, "--step-size");
+  if (!fixed) require_rtol(a.rtol, "--rtol");
   if (app.count("--atol") > 0) require_positive(a.atol, "--atol", "an absolute tolerance");
   require_options(app, a.options, method);
   return {.step_size = a.step_size,
@@ -320,24 +322,32 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   require_distinct_outputs(app, a);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  if (method.knob == Knob::step_size) require_step_size(a.step_size, "--step-size", until);
   const Scene start = started(drawn, a.scene);
   Reductions reductions = reductions_of(a.scene);
   // Springs in series are one in tension only: who takes the node between them need not care.
   if (method.accepts_massless) reductions = reductions.without(Reduction::massless);
   const ReducedScene scene(start, reductions);
   require_fit(method, scene, a.scene.name);
+  const Knobs scaled = with_tolerance_scales(knobs, scene);
+  require_atol(scaled);
 
   WrittenScene written_scene(a.written_scene_path);
   Output output(a, scene, until);
   written_scene.commit(drawn);
   State state = scene.initial();
   output.see(state);
-  const auto integrator =
-      make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene));
+  const auto warn = [](const std::string& warning) {
+    if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
+  };
+  warn(tolerance_warning(scaled));
+  const auto integrator = make_integrator(method, scene.system(), scaled);
   Summary summary;
   wait_for_answer(patience_with_a_step);
-  const double seconds = seconds_of(
-      [&] { summary = integrator->advance(state, until, output.observer(), interruption()); });
+  const double seconds = seconds_of([&] {
+    const Pace pace("simulate", *integrator, until);
+    summary = integrator->advance(state, until, output.observer(), interruption());
+  });
   const auto why = summary.outcome == Outcome::over_budget ? interrupted() : std::nullopt;
 
   if (output.is_asked_for()) {
@@ -357,9 +367,6 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
                summary.t_reached, until);
     return why->status;
   }
-  const auto warn = [](const std::string& warning) {
-    if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
-  };
   if (summary.outcome != Outcome::diverged) warn(growth_warning(method, summary));
   if (summary.outcome == Outcome::reached_end) {
     warn(step_warning(method, knobs, scene));

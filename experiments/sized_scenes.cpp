@@ -32,10 +32,10 @@ double linear(double n) { return n; }
 
 const std::vector<SizedScenes>& sized_scenes() {
   static const std::vector<SizedScenes> all = {
-      {"chain", chain, linear, linear, [](double n) { return n * n; }},
-      {"cloth", cloth, [](double n) { return n * std::sqrt(n); },
+      {"chain", chain, 1, linear, linear, [](double n) { return n * n; }},
+      {"cloth", cloth, 6, [](double n) { return n * std::sqrt(n); },
        [](double n) { return n * std::log(n); }, [](double n) { return n * std::sqrt(n); }},
-      {"lattice", lattice, [](double n) { return n * n; },
+      {"lattice", lattice, 13, [](double n) { return n * n; },
        [](double n) { return n * std::cbrt(n); }, [](double n) { return n * std::cbrt(n); }}};
   return all;
 }

@@ -12,6 +12,7 @@ struct SizedScenes {
   std::string name;
   // About that many nodes, at least 2; the cloth is square and the lattice a cube.
   Scene (*draw)(double nodes);
+  double springs_a_node;  // at most
   // What factorising a matrix of its graph takes, and what its factors hold, up to a constant, with
   // the best order of elimination (George, SIAM J. Numer. Anal. 10:2, 1973, in the plane; Lipton,
   // Rose and Tarjan, SIAM J. Numer. Anal. 16:2, 1979, in space).

@@ -22,6 +22,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/direct_solvers.hpp"
 #include "experiments/interruption.hpp"
@@ -155,7 +156,7 @@ class Contender {
 
 int solvers(const CLI::App& app, const Arguments& a, const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
-  require_positive(a.step_size, "--step-size", "h in s");
+  require_step_size(a.step_size, "--step-size");
   require_repeats(a.repeats);
   const auto kinds = select_solvers(a.solvers);
   const Scene drawn = load(a.scene);

@@ -25,6 +25,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/amplitude_rows.hpp"
 #include "experiments/chosen_steps.hpp"
 #include "experiments/csv.hpp"
@@ -109,13 +110,15 @@ void require(const Arguments& a) {
 std::vector<AmplitudeRow> rows_of(const Arguments& a, const Scene& start,
                                   const std::optional<Scene>& rest) {
   const Reductions reductions = reductions_of(a.scene);
-  if (!a.vary.empty()) return varied_rows(a.scene.name, a.vary, a.amplitudes, reductions);
-  if (!rest) return {};
-  auto rows = scaled_rows(start, *rest, a.amplitudes, reductions);
-  if (rows.size() < a.amplitudes.size()) {
-    fmt::print(stderr,
-               "stability_map: warning: {} of {} amplitudes are left out, at which nothing moves\n",
-               a.amplitudes.size() - rows.size(), a.amplitudes.size());
+  std::vector<std::string> left_out;
+  std::vector<AmplitudeRow> rows;
+  if (!a.vary.empty()) {
+    rows = varied_rows(a.scene.name, a.vary, a.amplitudes, reductions, &left_out);
+  } else if (rest) {
+    rows = scaled_rows(start, *rest, a.amplitudes, reductions, &left_out);
+  }
+  for (const std::string& why : left_out) {
+    fmt::print(stderr, "stability_map: warning: {}; its row is left out\n", in_one_line(why));
   }
   return rows;
 }
@@ -287,7 +290,7 @@ int stability_map(const CLI::App& app, const Arguments& a,
   require(a);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);
-  if (app.count("--step-size") > 0) require_positive(a.step_size, "--step-size", "h in s");
+  if (app.count("--step-size") > 0) require_step_size(a.step_size, "--step-size");
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   const auto methods = select_methods(a.methods, scene, a.scene.name);

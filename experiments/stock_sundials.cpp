@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/deadline.hpp"
 #include "experiments/measurement.hpp"
@@ -224,7 +225,7 @@ int stock_sundials(const CLI::App& app, const Arguments& a,
                    const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
-  for (const double rtol : a.rtols) require_positive(rtol, "--rtol", "a relative tolerance");
+  for (const double rtol : a.rtols) require_rtol(rtol, "--rtol");
   require_repeats(a.effort.repeats);
   const Scene drawn = load(a.scene);
   const double until = horizon(a.until, app.count("--until") > 0, drawn);

@@ -1,15 +1,22 @@
 #include "experiments/swinging_cloth.hpp"
 
 #include <algorithm>
-#include <stdexcept>
+#include <cmath>
+
+#include <fmt/format.h>
 
 #include "experiments/interruption.hpp"
+#include "experiments/reference.hpp"
 #include "integrators/registry.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/scene/generators.hpp"
+#include "src/scene/invalid_input.hpp"
 
 namespace qddot {
 namespace {
+
+constexpr double share_of_limit = 0.5;  // h w of the true motion's steps
+constexpr double most_steps = 1e7;
 
 Scene draw(int nodes, double stiffness) {
   return generate(*find_generator("cloth"),
@@ -23,15 +30,31 @@ Scene draw(int nodes, double stiffness) {
 
 // The motion over `duration` by a quarter of the longest stable step of Verlet's.
 State moved(const char* method, const System& system, State state, double duration) {
-  const double h = 0.5 / frequency_bound(system, state.q);
+  const double h = share_of_limit / frequency_bound(system, state.q);
   const Summary summary = make_integrator(*find_method(method), system, {.step_size = h})
                               ->advance(state, state.t + duration, {}, interruption());
   stop_if_interrupted();
-  if (summary.outcome != Outcome::reached_end) throw std::runtime_error(summary.message);
+  if (summary.outcome != Outcome::reached_end) {
+    throw NoReference(fmt::format("the cloth's own motion ends at {:.4g} s: {}", summary.t_reached,
+                                  summary.message));
+  }
   return state;
 }
 
 }  // namespace
+
+void require_reachable(int nodes, double stiffness, double duration, const std::string& option) {
+  // Gershgorin's bound at a node within: 4 k, 4 k/2 and 4 k/10 pull at it, as much at its
+  // neighbours, and its mass is 1/nodes^2.
+  const double w = nodes * std::sqrt(2 * (4 + 2 + 0.4) * stiffness);
+  const double longest = most_steps * share_of_limit / w;
+  if (duration <= longest) return;
+  throw InvalidInput(
+      fmt::format("{} {:g} is not allowed; it is at most {:.3g} s, after which the motion of a "
+                  "cloth of {} x {} "
+                  "nodes and {:g} N/m takes more than {:g} steps",
+                  option, duration, longest, nodes, nodes, stiffness, most_steps));
+}
 
 SwingingCloth::SwingingCloth(int nodes, double stiffness, double swing)
     : drawn(draw(nodes, stiffness)),

@@ -62,17 +62,18 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
 }
 
-const std::vector<std::string> front_columns = {"scene", "accuracy",       "method", "knob",
-                                                "value", "error_position", "time_s", "judged_by"};
+const std::vector<std::string> front_columns = {"scene",  "accuracy",  "method",
+                                                "knob",   "value",     "error_position",
+                                                "time_s", "judged_by", "stability_margin"};
 
 void tabulate(Csv& csv, const std::string& scene, const std::vector<FrontRow>& front,
               const char* judge) {
   for (const FrontRow& row : front) {
     if (const Point* p = row.fastest) {
       csv.row(scene, row.accuracy, p->method->name, knob_name(p->method->knob), p->value,
-              p->errors.position, p->time, judge);
+              p->errors.position, p->time, judge, row.stability_margin);
     } else {
-      csv.row(scene, row.accuracy, "", "", "", "", "", judge);
+      csv.row(scene, row.accuracy, "", "", "", "", "", judge, "");
     }
   }
 }
@@ -129,7 +130,8 @@ int work_precision(const CLI::App& app, const Arguments& a,
 
   if (reference) {
     const std::vector<Point> points = from_coarse_to_fine(taken);
-    const auto front = fastest_at_each_accuracy(points, *reference);
+    auto front = fastest_at_each_accuracy(points, *reference);
+    add_stability_margins(front, scene);
     for (const Point& point : points)
       point_row(points_csv, drawn.name, point, reference->certified.position);
     tabulate(front_csv, drawn.name, front, judged_by(*reference));

@@ -84,7 +84,9 @@ double EnergyGrowth::factor(const State& state) {
   own = std::max(own, start_ - lowest_ahead(system_, q_, q_of_kinetic_, v_of_kinetic_));
   const double unsure = rounding();
   if (gained <= unsure + 4 * epsilon * std::abs(most_)) return 1;
-  return std::min(1 + gained / std::max(own, unsure), largest);
+  const double growth = 1 + gained / std::max(own, unsure);
+  // An energy beyond all numbers at the start says nothing.
+  return std::isnan(growth) ? 1 : std::min(growth, largest);
 }
 
 }  // namespace qddot

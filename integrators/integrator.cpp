@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -135,6 +136,11 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
   double growth = 1;
   try {
     outcome = run(state, t_end, observer);
+  } catch (const std::bad_alloc&) {
+    outcome = Outcome::solver_failed;
+    explain(
+        "memory ran out: take a scene of fewer nodes, or a method or solver that factorises "
+        "nothing (verlet; conjugate gradients)");
   } catch (const std::exception& error) {
     outcome = Outcome::solver_failed;
     explain(error.what());
@@ -193,6 +199,7 @@ void Integrator::take_over(Integrator& other) {
 }
 
 void Integrator::set_out(const State& state) {
+  reached_ = state.t;
   if (system_.parts().empty()) {  // else each part looks after itself
     growth_.start(state);
     if (system_.has_massless()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -144,6 +145,9 @@ class Integrator {
   Summary advance(State& state, double t_end, const Observer& observer = {},
                   std::stop_token stop = {});
 
+  // The time [s] that the run has come to, for another thread to look at while it goes on.
+  virtual double reached() const { return reached_.load(std::memory_order_relaxed); }
+
  protected:
   // Called once a run, before start(): for what steps a method, whatever its formula.
   virtual void begin(const State&) {}
@@ -167,7 +171,10 @@ class Integrator {
   // not (not_finite, diverged, went_slack).
   Outcome judge(const State& from, const State& to);
   // To be called with each state that is accepted.
-  void note(const State& state) { growth_.note(state); }
+  void note(const State& state) {
+    growth_.note(state);
+    reached_.store(state.t, std::memory_order_relaxed);
+  }
   // Becomes a part of another's run: ends no later and is stopped with it.
   void join(const Integrator& run);
   // Takes over what another has done since it was last asked, and what it has to say of it.
@@ -225,7 +232,8 @@ class Integrator {
   EnergyGrowth growth_;
   std::unique_ptr<MasslessBalance> balance_;  // where there are massless nodes
   bool has_begun_ = false;
-  double slack_at_ = 0;  // [s], where went_slack
+  std::atomic<double> reached_ = 0;  // [s]
+  double slack_at_ = 0;              // [s], where went_slack
   std::int64_t failed_step_ = 0;
 };
 

@@ -70,6 +70,12 @@ Outcome Parts::run_piece(Piece& piece, double t_end) {
   return outcome;
 }
 
+double Parts::reached() const {
+  double sum = 0;
+  for (const Piece& piece : pieces_) sum += piece.integrator->reached();
+  return pieces_.empty() ? 0 : sum / static_cast<double>(pieces_.size());
+}
+
 double Parts::growth_of(Piece& piece) {
   return std::max(piece.growth, piece.integrator->energy_growth(piece.state));
 }

@@ -17,6 +17,9 @@ class Parts final : public Integrator {
  public:
   Parts(const Method& method, const System& system, const Knobs& knobs);
 
+  // The mean over the parts, which run one after another.
+  double reached() const override;
+
  private:
   struct Piece {
     Index first;  // of its unknowns

@@ -1,6 +1,8 @@
 #include "integrators/sundials/stepper.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -185,6 +187,7 @@ Outcome Stepper::step_aside(State& state, double t) {
 
 Outcome Stepper::take_one(State& state, double t_stop) {
   if (must_stop()) return Outcome::over_budget;
+  t_stop_ = t_stop;
   double t = state.t;
   const int flag = take_step(t_stop, t);
   if (parked_) std::rethrow_exception(parked_);
@@ -200,8 +203,11 @@ Outcome Stepper::take_one(State& state, double t_stop) {
   return Outcome::reached_end;
 }
 
-Cause Stepper::named_cause(int flag) {
+Cause Stepper::named_cause(int flag, double t) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const Cause cause = cause_of(flag);
+  const bool has_time = t_stop_ - t > 4 * epsilon * std::max(std::abs(t), std::abs(t_stop_));
+  if (cause == Cause::end_too_close && has_time) return Cause::accuracy;
   if (is_finite_) return cause;
   if (cause == Cause::convergence || cause == Cause::fast_steps) return Cause::force;
   if (cause == Cause::force && counts().force_evaluations == 1) return Cause::first_force;

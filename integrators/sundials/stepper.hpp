@@ -100,7 +100,7 @@ class Stepper : public Integrator {
                            void* self);
 
   // The run ends at t [s] because of what the library's flag says, or for this reason.
-  Outcome failure(int flag, double t) { return failure(named_cause(flag), flag_name(flag), t); }
+  Outcome failure(int flag, double t) { return failure(named_cause(flag, t), flag_name(flag), t); }
   Outcome failure(Cause cause, const std::string& flag, double t);
 
  private:
@@ -112,8 +112,9 @@ class Stepper : public Integrator {
   Outcome step_aside(State& state, double t);
   Outcome take_one(State& state, double t_stop);
   // What the flag says, but for forces that are not finite: a library may call these a failure to
-  // converge or of its small steps, and the first one a failure of later ones.
-  Cause named_cause(int flag);
+  // converge or of its small steps, and the first one a failure of later ones; and that the end is
+  // too close, with time left, is what weights beyond all numbers make of the first step.
+  Cause named_cause(int flag, double t);
 
   const System& implicit_part_;
   Context context_;
@@ -128,6 +129,7 @@ class Stepper : public Integrator {
   std::unique_ptr<Stepper> aside_;
   Counts beside_;  // what the library counted of the steps aside
   std::exception_ptr parked_;
+  double t_stop_ = 0;      // [s] of the step at hand
   bool is_finite_ = true;  // what the last callback computed
   std::string said_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <Eigen/Eigenvalues>
 
@@ -17,19 +18,24 @@ constexpr double relative_error = 1e-4;
 // Lanczos' basis would be the whole space.
 constexpr Index most_dense = 40;
 
+// -M^-1/2 K M^-1/2 over the square of the bound: no eigenvalue is above 1. A massless unknown has
+// no stiffness here.
+SymmetricMatrix scaled(const System& system, const Vec& q, double bound) {
+  SymmetricMatrix k = system.stiffness_pattern();
+  system.stiffness(q, k);
+  const Vec scale =
+      (system.mass().array() > 0)
+          .select(system.mass().cwiseSqrt().cwiseInverse() / bound, Vec::Zero(k.rows()));
+  k = -(scale.asDiagonal() * k * scale.asDiagonal());
+  return k;
+}
+
 }  // namespace
 
 double largest_frequency(const System& system, const Vec& q) {
   const double bound = frequency_bound(system, q);
   if (bound == 0 || std::isinf(bound)) return bound;
-  SymmetricMatrix k = system.stiffness_pattern();
-  system.stiffness(q, k);
-  // -M^-1/2 K M^-1/2 over the square of the bound: no eigenvalue is above 1. A massless unknown has
-  // no stiffness here.
-  const Vec scale =
-      (system.mass().array() > 0)
-          .select(system.mass().cwiseSqrt().cwiseInverse() / bound, Vec::Zero(k.rows()));
-  k = -(scale.asDiagonal() * k * scale.asDiagonal());
+  const SymmetricMatrix k = scaled(system, q, bound);
   if (k.rows() <= most_dense) {
     const Eigen::MatrixXd dense(k);
     const double top = dense.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
@@ -37,6 +43,38 @@ double largest_frequency(const System& system, const Vec& q) {
   }
   const auto apply = [&](const Vec& x, Vec& y) { y = k.selfadjointView<Eigen::Lower>() * x; };
   return bound * std::sqrt(std::max(leading_value(apply, k.rows(), relative_error), 0.0));
+}
+
+double frequency_at_least(const System& system, const Vec& q) {
+  const double bound = frequency_bound(system, q);
+  if (bound == 0 || std::isinf(bound)) return bound;
+  const SymmetricMatrix k = scaled(system, q, bound);
+  // Lanczos' three terms, from a random vector; rounding makes no value larger.
+  const Index steps = std::min<Index>(30, k.rows());
+  Vec before = Vec::Zero(k.rows()), now(k.rows());
+  std::minstd_rand random(1);
+  for (double& x : now) x = static_cast<double>(random()) / random.max() - 0.5;
+  now.normalize();
+  Vec diagonal(steps), beside = Vec::Zero(steps);
+  Index taken = 0;
+  for (double last = 0; taken < steps; ++taken) {
+    Vec next = k.selfadjointView<Eigen::Lower>() * now - last * before;
+    diagonal[taken] = next.dot(now);
+    next -= diagonal[taken] * now;
+    last = next.norm();
+    if (!(last > 1e-12)) {
+      ++taken;
+      break;
+    }
+    beside[taken] = last;
+    before = now;
+    now = next / last;
+  }
+  if (!diagonal.head(taken).allFinite()) return 0;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal.head(taken), beside.head(taken - 1),
+                                Eigen::EigenvaluesOnly);
+  return bound * std::sqrt(std::max(solver.eigenvalues().maxCoeff(), 0.0));
 }
 
 }  // namespace qddot

@@ -11,4 +11,7 @@ namespace qddot {
 // stiffness. Throws std::runtime_error where the iteration does not converge.
 double largest_frequency(const System& system, const Vec& q);
 
+// A lower bound of w_max [rad/s], mostly within some percent, for 30 products with K and no more.
+double frequency_at_least(const System& system, const Vec& q);
+
 }  // namespace qddot

@@ -16,9 +16,6 @@
 namespace qddot {
 namespace {
 
-// Beyond that the factorisations take more than about a second.
-constexpr Index largest_examined = 100000;
-
 void find_fastest(Explanation& explanation, const ReducedScene& all) {
   try {
     const State& start = all.initial();
@@ -100,7 +97,8 @@ std::string left_out_sentence(const Explanation& e) {
 
 }  // namespace
 
-Explanation explain(const Scene& scene, const ReducedScene& reduced) {
+Explanation explain(const Scene& scene, const ReducedScene& reduced,
+                    const ExplanationLimits& limits) {
   const System& system = reduced.system();
   const Vec& q = reduced.initial().q;
   Explanation e;
@@ -113,8 +111,9 @@ Explanation explain(const Scene& scene, const ReducedScene& reduced) {
         return is_stiff(spring.law, scene.stiff_above);
       }));
   e.omega_bound = frequency_bound(system, q);
-  e.omega_max = lanczos(system, q);
-  e.is_examined = e.drawn_unknowns <= largest_examined;
+  e.omega_max = e.drawn_unknowns <= limits.frequency ? lanczos(system, q)
+                                                     : std::numeric_limits<double>::quiet_NaN();
+  e.is_examined = e.drawn_unknowns <= limits.examined;
   if (!e.is_examined || e.unknowns == 0) return e;
   const ReducedScene all(scene, Reductions::all_directions());
   try {

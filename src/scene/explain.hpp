@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct Explanation {
   std::size_t stiff_springs = 0;  // of the springs as drawn, where the scene names stiff ones
   // At the start, of the system that is left:
   double omega_bound = 0;  // w_max is at most that [rad/s], by Gershgorin; infinite without mass
-  double omega_max = 0;    // by Lanczos, to about 1e-4; NaN where that does not converge
+  double omega_max = 0;    // by Lanczos, to about 1e-4; NaN where it was not found
   // At the start, in all directions in which the nodes may move:
   int unstable = 0;           // directions in which V falls: K is indefinite if there are any
   int flat = 0;               // in which V is flat within rounding (see CurvatureSigns),
@@ -28,9 +29,18 @@ struct Explanation {
   bool is_examined = true;    // false: too large for that, or K overflows
 };
 
+// In how large scenes, in unknowns as drawn, directions are examined and w_max is looked for; in
+// larger ones they stay unknown. As they are, all takes some seconds.
+struct ExplanationLimits {
+  Index examined = 100'000, frequency = std::numeric_limits<Index>::max();
+};
+// What takes a tenth of a second: for sidecars, which are written beside every run.
+inline constexpr ExplanationLimits at_a_glance{6000, 6000};
+
 // `scene`: as it starts, and reduced. Never throws for what a scene holds, as each sidecar needs
 // it.
-Explanation explain(const Scene& scene, const ReducedScene& reduced);
+Explanation explain(const Scene& scene, const ReducedScene& reduced,
+                    const ExplanationLimits& limits = {});
 
 // In some lines, each ended by a line feed.
 std::string in_words(const Explanation& explanation, const Scene& scene);

@@ -102,6 +102,21 @@ Scene generated(const Table& table, const SceneLimits& limits) {
   return generate(*generator, values, table.place(), limits);
 }
 
+// Throws InvalidInput unless the nodes come from one of what they may come from.
+void require_one_origin(const Table& file) {
+  std::vector<std::string> given;
+  for (const auto& [key, written] : {std::pair("nodes", "[[nodes]]"), std::pair("mesh", "[mesh]"),
+                                     std::pair("generator", "[generator]")}) {
+    if (file.has(key)) given.emplace_back(written);
+  }
+  if (given.size() == 1) return;
+  constexpr const char* allowed = "allowed is exactly one of [[nodes]], [mesh] and [generator]";
+  if (given.empty())
+    throw InvalidInput(fmt::format("{}: a scene needs nodes; {}", file.place(), allowed));
+  throw InvalidInput(fmt::format("{}: {} each make a scene of their own; {}", file.place(),
+                                 fmt::join(given, " and "), allowed));
+}
+
 bool starts_at_equilibrium(const Table& file) {
   if (!file.has("start")) return false;
   const std::string start = file.text("start");
@@ -117,10 +132,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
                   const TextSource& read) {
   const toml::table content = parse(text, path);
   const Table file(content, path);
-  if (file.has("nodes") + file.has("mesh") + file.has("generator") != 1)
-    throw InvalidInput(fmt::format(
-        "{}: a scene needs nodes; allowed is exactly one of [[nodes]], [mesh] and [generator]",
-        path));
+  require_one_origin(file);
   Scene scene;
   if (file.has("generator")) {
     file.allow_keys({"name", "until", "start", "stiff_above", "generator"});
@@ -145,13 +157,14 @@ Scene read_scene(const std::string& path) {
   return parse_scene(read_text(path), path, std::filesystem::path(path).parent_path());
 }
 
-Scene load_scene(const std::string& name_or_path, const TextSource& read) {
+Scene load_scene(const std::string& name_or_path, const TextSource& read,
+                 const SceneLimits& limits) {
   if (const Generator* generator = find_generator(name_or_path))
-    return generate(*generator, {}, name_or_path);
+    return generate(*generator, {}, name_or_path, limits);
   std::error_code ignored;
   if (std::filesystem::exists(name_or_path, ignored)) {
     return parse_scene(read(name_or_path), name_or_path,
-                       std::filesystem::path(name_or_path).parent_path(), {}, read);
+                       std::filesystem::path(name_or_path).parent_path(), limits, read);
   }
   throw InvalidInput(fmt::format("{}: it is neither a file nor a generator; allowed are {}",
                                  name_or_path, generator_names()));

@@ -23,6 +23,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
 // The scene that a user names on a command line: a generator's name, else a file's path.
 // Throws InvalidInput as read_scene does, and for a name that is neither. All files are read by
 // `read`.
-Scene load_scene(const std::string& name_or_path, const TextSource& read = read_text);
+Scene load_scene(const std::string& name_or_path, const TextSource& read = read_text,
+                 const SceneLimits& limits = {});
 
 }  // namespace qddot

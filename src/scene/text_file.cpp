@@ -16,10 +16,13 @@ namespace qddot {
 std::string read_text(const std::string& path) {
   const auto refuse = [&](const std::string& what) {
     throw InvalidInput(
-        fmt::format("{}: {}; allowed are readable files of up to 256 MB", path, what));
+        fmt::format("{}: {}; allowed are readable regular files of up to 256 MB", path, what));
   };
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) refuse("this is a folder");
+  // A pipe may never be written to, and a device never end.
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    refuse("this is a pipe, a socket or a device");
   std::ifstream in(path, std::ios::binary);
   if (!in) refuse(fmt::format("the file cannot be opened ({})", std::strerror(errno)));
 

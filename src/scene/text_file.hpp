@@ -10,7 +10,7 @@ namespace qddot {
 inline constexpr std::size_t most_bytes = 256'000'000;
 
 // The whole of a file that the user named. Throws InvalidInput, in a sentence that starts with
-// `path`, where it cannot be read or is too large.
+// `path`, where it is no regular file, cannot be read or is too large.
 std::string read_text(const std::string& path);
 
 // Gives the text of a file as read_text does, which may keep its files elsewhere than on a disk.

@@ -82,6 +82,22 @@ BOOST_AUTO_TEST_CASE(a_run_whose_energy_grew_by_orders_is_warned_of_whatever_the
   }
 }
 
+BOOST_AUTO_TEST_CASE(numbers_beyond_all_measure_are_named_and_no_instability) {
+  const Folder folder;
+  for (const char* rest_length : {"1e30", "1e200"}) {
+    const std::string scene = folder.write(
+        "long.toml",
+        fmt::format(
+            "dimension = 2\nuntil = 1\n"
+            "nodes = [{{position = [0, 0], pinned = true}}, {{position = [1, 0], mass = 1}}]\n"
+            "springs = [{{nodes = [0, 1], stiffness = 100, rest_length = {}}}]\n",
+            rest_length));
+    const Exit result = simulate({"--scene", scene, "--method", "verlet", "--step-size", "0.01"});
+    BOOST_TEST(complains(result, 3, "simulate", {"extreme rest lengths"}), result.err);
+    BOOST_TEST(!contains(result.err, {"instability"}), result.err);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(explicit_euler_is_told_apart_since_no_step_holds) {
   const Exit result = simulate({"--scene", "oscillator", "--method", "explicit_euler",
                                 "--step-size", "0.1", "--until", "100"});

@@ -6,6 +6,7 @@
 #include "experiments/front.hpp"
 #include "experiments/judgement.hpp"
 #include "integrators/registry.hpp"
+#include "src/scene/generators.hpp"
 
 using namespace qddot;
 
@@ -50,6 +51,20 @@ BOOST_AUTO_TEST_CASE(the_fastest_point_that_is_accurate_enough_is_taken) {
                                                 &points[3], &points[3], &points[4],
                                                 &points[4], nullptr,    nullptr};
   for (std::size_t i = 0; i < 9; ++i) BOOST_TEST(rows[i].fastest == expected[i], "row " << i);
+}
+
+BOOST_AUTO_TEST_CASE(the_margin_of_stability_is_that_of_the_step_against_the_limit) {
+  // w = 10 rad/s: verlet's limit is 0.2 s, and h = 0.1 s half of it; rk4's sqrt(8)/10 s.
+  const ReducedScene scene(generate(*find_generator("oscillator"), {}, "oscillator"));
+  const std::vector<Point> points = {point("verlet", 5e-2, 1), point("rk4", 5e-4, 2),
+                                     point("implicit_midpoint", 5e-6, 3), point("ida", 5e-8, 4)};
+  auto rows = front_of(points);
+  add_stability_margins(rows, scene);
+  BOOST_TEST(rows[0].stability_margin == 0.5, boost::test_tools::tolerance(1e-9));
+  BOOST_TEST(rows[2].stability_margin == 1 - 1 / std::sqrt(8), boost::test_tools::tolerance(1e-9));
+  BOOST_TEST(std::isnan(rows[4].stability_margin));  // implicit,
+  BOOST_TEST(std::isnan(rows[6].stability_margin));  // of adaptive steps,
+  BOOST_TEST(std::isnan(rows[8].stability_margin));  // and none at all
 }
 
 BOOST_AUTO_TEST_CASE(beyond_the_horizon_the_energy_on_the_way_counts) {

@@ -39,6 +39,17 @@ void check_refused(const Words& words, const Words& fragments) {
 
 BOOST_AUTO_TEST_SUITE(local_global)
 
+BOOST_AUTO_TEST_CASE(what_would_run_without_end_is_refused) {
+  check_refused({"--step-size", "1e-300", "--out", "OUT"}, {"--step-size", "at least"});
+  check_refused({"--step-size", "1e300", "--out", "OUT"}, {"--step-size", "not allowed"});
+  check_refused({"--step-size", "1e6", "--out", "OUT"}, {"--step-size", "at most", "1e+07 steps"});
+  check_refused({"--step-size", "1e-8", "--out", "OUT"}, {"--step-size", "5e+07 steps"});
+  check_refused({"--until", "1e300", "--out", "OUT"}, {"--step-size 0.01", "at least"});
+  check_refused({"--until", "1e4", "--step-size", "1", "--out", "OUT"}, {"--until", "at most"});
+  check_refused({"--swing", "1e6", "--out", "OUT"}, {"--swing", "at most"});
+  check_refused({"--iterations", "1000000000", "--out", "OUT"}, {"--iterations", "100000"});
+}
+
 BOOST_AUTO_TEST_CASE(one_step_is_tabulated_by_solver_and_iteration) {
   const Table table = read_csv(small().file("convergence.csv"));
   BOOST_TEST(table.header == "solver,iteration,seconds,relative_error");

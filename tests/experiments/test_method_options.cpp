@@ -165,7 +165,8 @@ BOOST_AUTO_TEST_CASE(options_of_how_steps_are_solved_are_refused_where_they_mean
   struct {
     const char *option, *method, *good, *bad, *allowed, *other;
   } const cases[] = {
-      {"--iterations", "local_global", "3", "0", "a whole number above 0", "implicit_euler"},
+      {"--iterations", "local_global", "3", "0", "a whole number from 1", "implicit_euler"},
+      {"--iterations", "local_global", "3", "1000000000", "to 100000", "implicit_euler"},
       {"--solve-tolerance", "implicit_euler", "1e-8", "1", "between 0 and 1", "local_global"},
       {"--solve-tolerance", "bdf2", "0.1", "0", "between 0 and 1", "verlet"},
       {"--spectral-radius", "hht", "0", "1.5", "from 0 to 1", "trapezoidal"},

@@ -358,6 +358,18 @@ BOOST_AUTO_TEST_CASE(where_time_is_up_the_nearest_two_say_how_far_they_differ) {
   BOOST_TEST(off <= slack * agreed.certified.position + tight);
 }
 
+BOOST_AUTO_TEST_CASE(an_end_too_late_is_refused_with_what_it_would_take) {
+  // w = 10 rad/s: 5e10 steps at the least, of which a core takes some millions a second.
+  const ReducedScene scene(load_scene("pendulum"));
+  for (const double until : {1e9, 1e300}) {
+    const auto start = std::chrono::steady_clock::now();
+    BOOST_CHECK_EXCEPTION(make_reference(scene, until, 5), NoReference, [](const auto& error) {
+      return std::string(error.what()).find("earlier end (--until)") != std::string::npos;
+    });
+    BOOST_TEST(seconds_since(start) < 5);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_massless_node_has_no_reference) {
   Scene scene{.name = "massless", .dimension = 1};
   scene.nodes = {{.pinned = true}, {.position = {1, 0, 0}}};

@@ -1,9 +1,13 @@
 #include <cmath>
+#include <fstream>
+#include <sys/stat.h>
 
 #include <boost/test/unit_test.hpp>
 #include <nlohmann/json.hpp>
 
+#include "experiments/overwriting.hpp"
 #include "experiments/reference.hpp"
+#include "src/scene/invalid_input.hpp"
 #include "src/scene/scene_file.hpp"
 #include "tests/experiments/process.hpp"
 
@@ -124,6 +128,42 @@ BOOST_AUTO_TEST_CASE(what_the_file_keeps_is_what_was_made) {
   const Reference again = kept("orbit", until, folder);
   BOOST_TEST(again.seconds == made.seconds);  // no other making takes as long to the last bit
   BOOST_TEST((again.end.q == made.end.q && again.end.v == made.end.v));
+}
+
+BOOST_AUTO_TEST_CASE(a_file_that_is_not_as_it_was_written_is_not_believed) {
+  const Folder folder;
+  const Reference made = kept("oscillator", until, folder);
+  const std::string file = folder / "reference.json", whole = read_all(file);
+  const auto spoiled = [&](const char* what, double value) {
+    nlohmann::json json = nlohmann::json::parse(whole);
+    (std::string(what) == "q" ? json["q"][0] : json[what]) = value;
+    return json;
+  };
+  for (nlohmann::json json : {spoiled("q", made.end.q[0] + 0.01), spoiled("certified_position", 1),
+                              spoiled("energy", 2), spoiled("t", until / 2)}) {
+    std::ofstream(file) << json;
+    const Reference again = kept("oscillator", until, folder);
+    BOOST_TEST(again.end.q[0] == made.end.q[0]);
+    BOOST_TEST(again.certified.position == made.certified.position);
+    BOOST_TEST(again.energy == made.energy);
+  }
+  // Cut short, of another program, or without a checksum.
+  for (const std::string& text : {whole.substr(0, whole.size() / 2), std::string("[]"), [&] {
+                                    nlohmann::json json = nlohmann::json::parse(whole);
+                                    json.erase("checksum");
+                                    return json.dump();
+                                  }()}) {
+    std::ofstream(file) << text;
+    allow_replacing();
+    BOOST_TEST(kept("oscillator", until, folder).end.q[0] == made.end.q[0]);
+    BOOST_TEST(nlohmann::json::parse(read_all(file)).contains("checksum"));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_pipe_in_the_place_of_the_file_is_refused) {
+  const Folder folder;
+  BOOST_TEST_REQUIRE(mkfifo((folder / "reference.json").c_str(), 0600) == 0);
+  BOOST_CHECK_THROW(kept("oscillator", until, folder), InvalidInput);
 }
 
 BOOST_AUTO_TEST_CASE(negative_control_another_motion_has_another_file) {

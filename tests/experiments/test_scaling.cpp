@@ -190,6 +190,15 @@ BOOST_AUTO_TEST_CASE(what_would_take_too_much_is_left_out_and_said_to_be) {
   BOOST_TEST(origin["left_out"][0]["scene"] == "lattice");
 }
 
+BOOST_AUTO_TEST_CASE(a_first_scene_that_does_not_fit_is_not_drawn) {
+  const Folder folder;
+  const Exit result =
+      run("scaling", {"--scenes", "cloth", "--least-nodes", "1e6", "--most-nodes", "1e6",
+                      "--memory-limit", "0.1", "--time-limit", "20", "--out", folder / "out"});
+  BOOST_TEST(result.status == 0, result.err);
+  BOOST_TEST(contains(result.out, {"left out: cloth", "GB, more than 0.1 GB"}), result.out);
+}
+
 BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
   check_refused({}, {"--out", "missing"});
   check_refused({"--scenes", "chain,rope", "--out", "OUT"}, {"rope", "chain, cloth, lattice"});

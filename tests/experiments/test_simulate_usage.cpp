@@ -82,6 +82,41 @@ BOOST_AUTO_TEST_CASE(numbers_must_be_finite_and_positive) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(tolerances_and_steps_that_cannot_mean_anything_are_refused) {
+  for (const char* rtol : {"1", "2.5", "1e300", "1e-16", "1e-30"}) {
+    check_value_refused("--rtol", rtol, {"--rtol", "not allowed", "from 1e-15", "below 1"});
+  }
+  // The oscillator measures 1 m, and goes at up to 10 m/s.
+  for (const char* atol : {"10", "1e300", "1e-31", "1e-300"}) {
+    check_value_refused("--atol", atol, {"--atol", "not allowed", "below 10"});
+  }
+  // A second holds no more than 1e15 steps.
+  for (const char* h : {"9e-16", "1e-300"}) {
+    check_value_refused("--step-size", h, {"--step-size", "not allowed", "at least 1e-15"});
+  }
+  check_value_refused("--step-size", "1e200", {"--step-size", "not allowed", "1e+150"});
+}
+
+BOOST_AUTO_TEST_CASE(tolerances_that_hardly_mean_anything_are_warned_of) {
+  const auto run_at = [](const char* rtol, const char* atol) {
+    return run("simulate", {"--scene", "oscillator", "--method", "ida", "--until", "0.01", "--rtol",
+                            rtol, "--atol", atol});
+  };
+  BOOST_TEST(run_at("0.1", "1e-6").err == "");
+  BOOST_TEST(contains(run_at("0.2", "1e-6").err, {"simulate: warning: --rtol 0.2", "hardly"}));
+  BOOST_TEST(
+      contains(run_at("1e-15", "1e-6").err, {"simulate: warning: --rtol 1e-15", "rounding"}));
+  BOOST_TEST(contains(run_at("1e-6", "2").err, {"simulate: warning: --atol 2", "positions, 1 m"}));
+}
+
+BOOST_AUTO_TEST_CASE(a_long_run_says_how_long_it_will_take) {
+  // 2e11 steps, minutes at the very least.
+  const Exit result = run("simulate", {"--scene", "pendulum", "--method", "verlet", "--step-size",
+                                       "1e-11", "--time-limit", "2.5"});
+  BOOST_TEST(result.status == 3);
+  BOOST_TEST(contains(result.err, {"simulate: t = ", "the run will take about "}), result.err);
+}
+
 BOOST_AUTO_TEST_CASE(what_is_no_number_is_named) {
   for (const char* option : numeric_options) {
     for (const char* value : {"text", "1,5", "1e-3x", "--final", "1 2"}) {

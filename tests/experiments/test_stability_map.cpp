@@ -47,6 +47,30 @@ BOOST_AUTO_TEST_CASE(limits_are_predicted_and_measured_in_seconds) {
   BOOST_TEST(contains(result.out, {"verlet", "2.828427125", "grows at every h", "none"}));
 }
 
+BOOST_AUTO_TEST_CASE(a_cell_whose_numbers_overflow_is_an_outcome) {
+  const Folder folder;
+  const Exit result = run_map(folder, with(small, {"--methods", "verlet,implicit_euler", "--low",
+                                                   "1", "--high", "1e300", "--columns", "2"}));
+  BOOST_TEST_REQUIRE(result.status == 0, result.err);
+  const Table map = table(folder, "map.csv");
+  BOOST_TEST_REQUIRE(map.rows.size() == 4u);
+  BOOST_TEST(map.text(0, "outcome") == "bounded");
+  BOOST_TEST(map.text(1, "outcome") != "bounded");
+  BOOST_TEST(map.text(1, "predicted_growth_rate") == "");
+}
+
+BOOST_AUTO_TEST_CASE(an_amplitude_that_cannot_be_leaves_its_row_out) {
+  const Folder folder;
+  const std::vector<std::string> varied = {"--scene",   "strut",  "--vary",    "compression",
+                                           "--methods", "verlet", "--columns", "2"};
+  const Exit some = run_map(folder, with(varied, {"--amplitudes", "0.5,1e9"}));
+  BOOST_TEST_REQUIRE(some.status == 0, some.err);
+  BOOST_TEST(contains(some.err, {"compression = 1000000000", "its row is left out"}), some.err);
+  BOOST_TEST(table(folder, "map.csv").rows.size() == 2u);
+  check_refused("stability_map", with(varied, {"--amplitudes", "1e9,2", "--out", "OUT"}),
+                {"compression = 1000000000", "not allowed"});
+}
+
 BOOST_AUTO_TEST_CASE(the_map_has_a_row_for_each_run_and_theory_beside_it) {
   const Folder folder;
   const Exit result = run_map(folder, with(small, {"--methods", "verlet,implicit_euler,ida",

@@ -101,6 +101,17 @@ BOOST_AUTO_TEST_CASE(more_digits_than_there_are_are_refused) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_tolerance_of_nearly_zero_is_not_called_an_end_too_close) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  for (const Method& method : methods_of(Family::sundials, Knob::rtol)) {
+    BOOST_TEST_CONTEXT(method.name) {
+      const Run r = run(method, *system, p.initial, 1e-3, {.rtol = 1e-4, .atol = 1e-300});
+      BOOST_TEST(!says(r, Cause::end_too_close, method), r.summary.message);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(an_end_below_rounding_is_refused) {
   Problem p = hammock(2);
   p.initial.t = 1e9;

@@ -43,6 +43,17 @@ BOOST_AUTO_TEST_CASE(it_counts_unknowns_and_gives_the_stable_step) {
   BOOST_TEST(contains(in_words(e, scene), "0.4 s"));
 }
 
+BOOST_AUTO_TEST_CASE(a_glance_at_a_large_scene_looks_for_no_eigenvalues) {
+  for (const double nodes : {10., 60.}) {
+    const Scene scene = draw("cloth", {{"nodes", nodes}});
+    const Explanation glance = explain(scene, ReducedScene(scene), at_a_glance);
+    const bool is_small = 3 * nodes * nodes <= 6000;
+    BOOST_TEST(glance.is_examined == is_small);
+    BOOST_TEST(std::isfinite(glance.omega_max) == is_small);
+    BOOST_TEST(glance.omega_bound > 0);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_strut_that_may_buckle_out_of_its_line_is_told_so) {
   const Explanation e = explained(strut(-0.1));
   BOOST_TEST(e.unknowns == 1);  // on the line, and mirrored: the middle one stays

@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <string>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -111,6 +112,16 @@ BOOST_AUTO_TEST_CASE(a_file_is_read_as_its_text) {
   const Scene read = read_scene(folder.write("bare.toml", with(two_links, "name", "#")));
   BOOST_TEST(read.name == "bare");
   BOOST_TEST(content_hash(read) == content_hash(parsed(two_links)));
+}
+
+BOOST_AUTO_TEST_CASE(only_regular_files_are_opened) {
+  const Folder folder;
+  const std::string pipe = folder / "pipe.toml";
+  BOOST_TEST_REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  for (const std::string& path : {pipe, std::string("/dev/zero")}) {
+    const std::string refusal = refusal_of([&] { load_scene(path); });
+    BOOST_TEST(names_all(refusal, {path, "pipe", "regular files"}), refusal);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(unreadable_paths_are_named) {

@@ -35,6 +35,13 @@ void check_limits(const std::string& text, std::size_t nodes, std::size_t spring
 
 BOOST_AUTO_TEST_SUITE(scene_limits)
 
+BOOST_AUTO_TEST_CASE(a_scene_that_does_not_fit_into_memory_is_refused_before_it_is_drawn) {
+  const std::string million = "[generator]\nkind = \"cloth\"\nnodes = 1000\n";
+  const std::string refusal = refusal_within({.bytes = 1e9}, million);
+  BOOST_TEST(names_all(refusal, {"1000000 nodes", "GB of memory", "1 GB are free"}), refusal);
+  BOOST_TEST(refusal_within({.bytes = 1e9}, "[generator]\nkind = \"cloth\"\n") == "");
+}
+
 BOOST_AUTO_TEST_CASE(every_generator_knows_its_size_before_it_draws) {
   for (const Generator& generator : generators()) {
     GeneratorValues values;

@@ -113,6 +113,8 @@ BOOST_AUTO_TEST_CASE(malformed_meshes_are_named) {
 BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
       {"", {"needs nodes", "exactly one"}},
+      {"nodes = []\n[generator]\nkind = \"cloth\"",
+       {"[[nodes]] and [generator]", "each make a scene", "exactly one"}},
       {"dimension = 1\n[[nodes]]\nposition = [0]\nmass = 1\n[[nodes]]\nposition = [1e200]\n"
        "mass = 1\n[[springs]]\nnodes = [0, 1]\nstiffness = 1\n",
        {"springs[0].rest_length", "inf", "finite numbers from 0"}},

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "integrators/integrator.hpp"
+
+namespace qddot {
+
+// A duration [s] for people, from "5.2 s" to "3.1e+05 years".
+std::string duration_in_words(double seconds);
+
+// That a run which has come to `t` of `until` [s] in so many seconds takes more than a minute in
+// all, and how long; empty where it takes less.
+std::string pace_in_words(double t, double until, double seconds);
+
+// Says once on stderr how long a run will take, where its pace after a second, or a few, lets one
+// expect more than a minute. A sleeping thread looks; the run only notes its time.
+class Pace {
+ public:
+  // Of `integrator`, which must outlive this, from time 0 to `until` [s].
+  Pace(std::string program, const Integrator& integrator, double until);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread watcher_;  // last: starts when all else is there, and joins first
+};
+
+}  // namespace qddot
