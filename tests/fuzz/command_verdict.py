@@ -62,6 +62,8 @@ def _of_files(argv, run, sandbox):
             yield "something outside the folder changed", name
         elif inside in sandbox.inputs or inside in ("link.toml", "$x.toml"):
             yield "an input was changed", inside
+        elif inside == "dangling":
+            continue  # a link to nowhere, which holds nothing
         elif not inside.startswith("results/") and not forced:
             yield "a user's own file was changed", inside
     for name in files + folders:
