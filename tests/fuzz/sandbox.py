@@ -1,0 +1,103 @@
+"""A fresh folder for one run, with a scene, a user's own files and traps in it, and what a run did
+to them."""
+
+import os
+import shutil
+import stat
+
+OWN = {
+    "end.json": b'{"mine": true}\n',
+    "end.csv": b"my,own\n1,2\n",
+    "notes.txt": b"mine\n",
+    "mine/points.csv": b"my,own\n1,2\n",
+    "mine/points.json": b"[1]\n",
+    "mine/summary.csv": b"my,own\n3,4\n",
+    "mine/reference.json": b'{"mine": 1}\n',
+    "mine/map.json": b"{}\n",
+    "empty.toml": b"",
+    "-dash.toml": b"dimension = 1\n",
+    "locked.toml": b"dimension = 1\n",
+    "body.obj": b"v 0 0 0\n",
+}
+
+
+class Sandbox:
+    """The folder `here` of `root`, made anew from `files` (name to bytes) and the folder
+    `earlier`, if any.
+    """
+
+    def __init__(self, root, files, earlier=None):
+        self.root, self.here = root, os.path.join(root, "here")
+        for folder in ("home", "here/mine", "here/folder", "here/sub", "here/locked"):
+            os.makedirs(os.path.join(root, folder))
+        for name, data in (OWN | files | {"$x.toml": files.get("scene.toml", b"")}).items():
+            with open(os.path.join(self.here, name), "wb") as file:
+                file.write(data)
+        for name, target in [
+            ("link.toml", "scene.toml"),
+            ("loop", "loop"),
+            ("dangling", "nowhere/file"),
+            ("zero", "/dev/zero"),
+            ("full", "/dev/full"),
+            ("fifo.obj", "fifo"),
+            ("folder.mesh", "folder"),
+            ("locked.obj", "locked.toml"),
+            ("zero.obj", "/dev/zero"),
+            ("zero.msh", "/dev/zero"),
+            ("loop.mesh", "loop"),
+        ]:
+            os.symlink(target, os.path.join(self.here, name))
+        os.mkfifo(os.path.join(self.here, "fifo"))
+        os.chmod(os.path.join(self.here, "locked.toml"), 0)
+        os.chmod(os.path.join(self.here, "locked"), 0o500)
+        if earlier:
+            shutil.copytree(earlier, os.path.join(self.here, "results"))
+        self.inputs = set(files)
+        self.notice()
+
+    def notice(self):
+        """Takes what is there now as what was there before the run."""
+        self.before = self._state()
+
+    @property
+    def environment(self):
+        home = os.path.join(self.root, "home")
+        return {
+            "PATH": "/usr/bin:/bin",
+            "HOME": home,
+            "TMPDIR": home,
+            "XDG_CACHE_HOME": home,
+            "LC_ALL": "C.UTF-8",
+            "OMP_NUM_THREADS": "1",
+            "OPENBLAS_NUM_THREADS": "1",
+        }
+
+    def _state(self):
+        state = {}
+        for folder, _, names in os.walk(self.root):
+            state[os.path.relpath(folder, self.root)] = "folder"
+            for name in names:
+                path = os.path.join(folder, name)
+                mode = os.lstat(path).st_mode
+                if stat.S_ISREG(mode) and mode & 0o400:
+                    with open(path, "rb") as file:
+                        content = file.read()
+                else:
+                    content = os.readlink(path) if stat.S_ISLNK(mode) else stat.S_IFMT(mode)
+                state[os.path.relpath(path, self.root)] = content
+        return state
+
+    def changes(self):
+        """Names of new files, of new folders and of what was there before and is not as it was."""
+        after = self._state()
+        new = [name for name in after if name not in self.before]
+        files = [name for name in new if after[name] != "folder"]
+        return (
+            files,
+            [n for n in new if after[n] == "folder"],
+            [n for n, was in self.before.items() if after.get(n) != was],
+        )
+
+    def remove(self):
+        os.chmod(os.path.join(self.here, "locked"), 0o700)
+        shutil.rmtree(self.root, ignore_errors=True)
