@@ -12,7 +12,7 @@
 #include "experiments/node_table.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
-#include "src/scene/scene_file.hpp"
+#include "experiments/scene_choice.hpp"
 #include "src/scene/settle.hpp"
 
 namespace qddot {
@@ -45,7 +45,7 @@ int equilibrium(const CLI::App& app, const Arguments& a,
                 const std::vector<std::string>& command_line) {
   require_given(a.scene, "--scene", "a generator's name or a scene file");
   if (app.count("--final") > 0) require_given(a.final_path, "--final", "the name of a CSV file");
-  const Scene drawn = load_scene(a.scene);
+  const Scene drawn = load(a.scene);
   const ReducedScene scene(drawn, Reductions::all_directions());
   std::unique_ptr<CsvFile> csv;
   if (!a.final_path.empty()) {

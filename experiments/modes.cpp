@@ -17,12 +17,12 @@
 #include "experiments/csv.hpp"
 #include "experiments/program.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scene_choice.hpp"
 #include "src/analysis/curvature_signs.hpp"
 #include "src/analysis/frequency_bound.hpp"
 #include "src/analysis/largest_frequency.hpp"
 #include "src/analysis/natural_modes.hpp"
 #include "src/scene/invalid_input.hpp"
-#include "src/scene/scene_file.hpp"
 #include "src/scene/settle.hpp"
 
 namespace qddot {
@@ -134,7 +134,7 @@ int modes(const Arguments& a, const std::vector<std::string>& command_line) {
     throw InvalidInput(
         fmt::format("--count {} is not allowed; it is a number from 1 to {}", a.count, most_modes));
   }
-  const Scene drawn = load_scene(a.scene);
+  const Scene drawn = load(a.scene);
   const bool at_equilibrium = is_at_equilibrium(a, drawn);
   const ReducedScene scene(at_equilibrium ? settled(drawn, a.scene) : drawn,
                            Reductions::all_directions());

@@ -1,6 +1,8 @@
 #include "experiments/scene_choice.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -37,7 +39,15 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
 
 Scene load(const SceneChoice& choice) {
   require_given(choice.name, "--scene", "a generator's name or a scene file");
-  return load_scene(choice.name);
+  return load(choice.name);
+}
+
+Scene load(const std::string& name) {
+  Scene scene = load_scene(name);
+  for (const std::string& warning : scene.warnings) {
+    fmt::print(stderr, "{}: warning: {}\n", program_invocation_short_name, warning);
+  }
+  return scene;
 }
 
 Scene started(const Scene& drawn, const SceneChoice& choice) {
