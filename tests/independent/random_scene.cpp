@@ -235,6 +235,7 @@ void shuffle(Scene& scene, Chance& chance) {
 // at times, which may be pinned.
 Scene falling(Chance& chance, int dimension) {
   const std::size_t variant = chance.below(5);
+  if (variant == 2) dimension = std::max(dimension, 2);  // joints on a line are another matter
   Scene scene{.dimension = dimension};
   if (variant == 0) {
     scene = straight_chain(chance, dimension, 3 + chance.below(5));
