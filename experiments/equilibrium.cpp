@@ -45,7 +45,7 @@ int equilibrium(const CLI::App& app, const Arguments& a,
                 const std::vector<std::string>& command_line) {
   require_given(a.scene, "--scene", "a generator's name or a scene file");
   if (app.count("--final") > 0) require_given(a.final_path, "--final", "the name of a CSV file");
-  const Scene drawn = load({.name = a.scene, .no_reduce = {}});
+  const Scene drawn = load(a.scene);
   const ReducedScene scene(drawn, Reductions::all_directions());
   std::unique_ptr<CsvFile> csv;
   if (!a.final_path.empty()) {

@@ -31,6 +31,11 @@ std::vector<std::size_t> all_of(const std::vector<Node>& nodes) {
   return all;
 }
 
+// The nodes as what is integrated moves them; where nothing is, as they move.
+std::vector<Node> measured(const ReducedScene& scene, const State& state) {
+  return scene.system().size() > 0 ? scene.expand_beside_falls(state) : scene.expand(state);
+}
+
 std::vector<PartScale> parts_of(const ReducedScene& scene, const std::vector<Node>& start) {
   std::vector<PartScale> parts;
   for (auto& nodes : scene.nodes_by_part()) {
@@ -73,7 +78,7 @@ double Scales::speed_of(const PartScale& part) const {
 }
 
 void extend(Scales& scales, const ReducedScene& scene, const State& state) {
-  const auto start = scene.expand(scene.initial()), now = scene.expand(state);
+  const auto start = measured(scene, scene.initial()), now = measured(scene, state);
   if (scales.parts.empty()) scales.parts = parts_of(scene, start);
   for (PartScale& part : scales.parts) {
     part.displacement =
@@ -83,7 +88,9 @@ void extend(Scales& scales, const ReducedScene& scene, const State& state) {
     scales.displacement = std::max(scales.displacement, part.displacement);
     scales.speed = std::max(scales.speed, part.speed);
   }
-  scales.kinetic = std::max(scales.kinetic, scene.kinetic(state));
+  scales.kinetic =
+      std::max(scales.kinetic,
+               scene.system().size() > 0 ? scene.system().kinetic(state.v) : scene.kinetic(state));
 }
 
 double position_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,
@@ -94,7 +101,7 @@ double position_error(const std::vector<Node>& nodes, const std::vector<Node>& r
 
 Errors errors_between(const ReducedScene& scene, const State& state, const State& reference,
                       double energy, const Scales& scales) {
-  const auto nodes = scene.expand(state), expected = scene.expand(reference);
+  const auto nodes = measured(scene, state), expected = measured(scene, reference);
   return {position_error(nodes, expected, scales),
           largest_error(nodes, expected, &Node::velocity, scales, scales.speed, &Scales::speed_of),
           divided(std::abs(scene.energy(state) - energy), scales.kinetic)};

@@ -18,12 +18,14 @@ struct PartScale {
   bool is_at_rest() const;
 };
 
-// What errors are measured against: magnitudes of a motion over its run. Nodes in free flight count
-// only where nothing else moves: their motion is closed form and has no error.
+// What errors are measured against: magnitudes of a motion over its run. What moves in closed form
+// counts only where nothing else moves, as it has no error: neither nodes in free flight and parts
+// that rest in their fall, nor the common fall of a part without pins, which is measured in the
+// frame that falls with it.
 struct Scales {
   double displacement = 0;  // largest |x - x(0)| of a node [m]
   double speed = 0;         // largest |v| of a node [m/s]
-  double kinetic = 0;       // largest kinetic energy [J]
+  double kinetic = 0;       // largest kinetic energy of what is integrated [J]
   // Of each part of the scene; empty where all nodes are measured by the scales above.
   std::vector<PartScale> parts{};
 

@@ -134,7 +134,7 @@ int modes(const Arguments& a, const std::vector<std::string>& command_line) {
     throw InvalidInput(
         fmt::format("--count {} is not allowed; it is a number from 1 to {}", a.count, most_modes));
   }
-  const Scene drawn = load({.name = a.scene, .no_reduce = {}});
+  const Scene drawn = load(a.scene);
   const bool at_equilibrium = is_at_equilibrium(a, drawn);
   const ReducedScene scene(at_equilibrium ? settled(drawn, a.scene) : drawn,
                            Reductions::all_directions());

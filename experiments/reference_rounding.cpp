@@ -55,7 +55,7 @@ RoundingRun::RoundingRun(const ReducedScene& scene, const Solution& composed, do
   const State& initial = scene.initial();
   const double kinetic = scene.kinetic(initial), potential = scene.potential(initial);
   effect_.energy =
-      errors_between(scene, start_, start_, kinetic + potential, scales_).energy +
+      errors_between(scene, start_, start_, scene.energy(initial), scales_).energy +
       (scales_.kinetic > 0 ? epsilon * (kinetic + std::abs(potential)) / scales_.kinetic : 0);
   const Vec lengths = by_unknown(scene, scales_, reach);
   for (Index i = 0; i < lengths.size(); ++i) {

@@ -1,6 +1,8 @@
 #include "experiments/scene_choice.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -39,12 +41,20 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
 
 Scene load(const SceneChoice& choice) {
   require_given(choice.name, "--scene", "a generator's name or a scene file");
-  return load_scene(choice.name,
-                    [](const std::string& path) {
-                      protect_input(path);
-                      return read_text(path);
-                    },
-                    {.bytes = free_memory()});
+  return load(choice.name);
+}
+
+Scene load(const std::string& name) {
+  Scene scene = load_scene(name,
+                           [](const std::string& path) {
+                             protect_input(path);
+                             return read_text(path);
+                           },
+                           {.bytes = free_memory()});
+  for (const std::string& warning : scene.warnings) {
+    fmt::print(stderr, "{}: warning: {}\n", program_invocation_short_name, in_one_line(warning));
+  }
+  return scene;
 }
 
 Scene started(const Scene& drawn, const SceneChoice& choice) {

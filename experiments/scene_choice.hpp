@@ -24,7 +24,9 @@ struct SceneChoice {
 // Adds --scene and --no-reduce.
 void add_scene_options(CLI::App& app, SceneChoice& choice);
 
-// The scene of that name. Throws InvalidInput where there is none or it is wrong.
+// The scene of that name, a generator's or a file's; its warnings are printed to standard error.
+// Throws InvalidInput where there is none or it is wrong.
+Scene load(const std::string& name);
 Scene load(const SceneChoice& choice);
 
 // The scene as its motion starts: moved to its equilibrium where it says so. Throws InvalidInput

@@ -34,7 +34,7 @@ double largest_acceleration(const System& system, const Vec& q) {
 }  // namespace
 
 Knobs with_tolerance_scales(Knobs knobs, const ReducedScene& scene) {
-  const auto nodes = scene.expand(scene.initial());
+  const auto nodes = scene.expand_beside_falls(scene.initial());
   const double length = extent(nodes);
   knobs.length = length > 0 ? length : 1;
   const double a = largest_acceleration(scene.system(), scene.initial().q);

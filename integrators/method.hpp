@@ -30,9 +30,9 @@ struct Method {
   Family family = Family::hand_written;
   Knob knob = Knob::step_size;
   bool implicit = false;
-  // Of explicit methods: on q'' = -w^2 q the motion grows where h w is above it, by theory; 0 where
-  // it does so at every h. Implicit ones have none (linear_limit below).
-  double stability_limit = 2;
+  // To be declared for explicit methods of fixed steps: on q'' = -w^2 q the motion grows where h w
+  // is above it, by theory; 0 where it does so at every h. Others have none (linear_limit below).
+  std::optional<double> stability_limit{};
   // Solves with M - h^2 K(q_n) once a step, whatever its signs: where compressed springs make it
   // singular a step may go anywhere.
   bool linearly_implicit = false;
@@ -56,10 +56,9 @@ struct Method {
 };
 
 // The largest h w at which the method of fixed steps does not let q'' = -w^2 q grow; infinite for
-// implicit ones, which are A-stable, and for the exact motion.
+// implicit ones, which are A-stable, for the exact motion, and where no limit is known.
 inline double linear_limit(const Method& method) {
-  const bool has_one = !method.implicit && method.order > 0;
-  return has_one ? method.stability_limit : std::numeric_limits<double>::infinity();
+  return method.stability_limit.value_or(std::numeric_limits<double>::infinity());
 }
 
 // Whether the system's forces are divided into stiff and soft ones, in each of its parts that has

@@ -20,6 +20,7 @@ Method position_verlet() {
               "Tuckerman, Berne and Martyna, J. Chemical Physics 97 (1992) 1990-2001, "
               "position Verlet",
           .order = 2,
+          .stability_limit = 2,
           .symplectic = true,
           .takes_compensation = true,
           .make = create_splitting<position_verlet_splitting>};

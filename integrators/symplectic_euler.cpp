@@ -38,6 +38,7 @@ Method symplectic_euler() {
   return {.name = "symplectic_euler",
           .summary = "kick, then drift; energy error stays bounded below h = 2/w_max",
           .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.9",
+          .stability_limit = 2,
           .symplectic = true,
           .takes_compensation = true,
           .make = create<SymplecticEuler>};

@@ -42,6 +42,7 @@ Method verlet() {
           .summary = "velocity Verlet; one force a step, energy error bounded below h = 2/w_max",
           .source = "Hairer, Lubich, Wanner, Acta Numerica 12 (2003) 399-450, eq. 1.5",
           .order = 2,
+          .stability_limit = 2,
           .symplectic = true,
           .takes_compensation = true,
           .make = create<Verlet>};

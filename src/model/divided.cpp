@@ -110,6 +110,14 @@ bool Divided::stiffness_is_constant() const {
                              [](const auto& part) { return part->stiffness_is_constant(); });
 }
 
+bool Divided::is_linear_at(const Vec& q) const {
+  bool is_linear = true;
+  for_each(parts_, q, [&](const System& part, const Vec& own, Index) {
+    is_linear = is_linear && part.is_linear_at(own);
+  });
+  return is_linear;
+}
+
 bool Divided::holds_at(const Vec& q) const {
   bool holds = true;
   for_each(parts_, q,

@@ -21,6 +21,7 @@ class Divided final : public System {
   void material_stiffness(const Vec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override;
+  bool is_linear_at(const Vec& q) const override;
   HasLaplacian has_laplacian() const override;
   void laplacian(SymmetricMatrix& l) const override;
   bool holds_at(const Vec& q) const override;

@@ -18,6 +18,22 @@ template <int law_vectors>
   }
 }
 
+// The force of one slot's springs on a line: there l is |d|, and neither root nor division is
+// needed; 0 where d = 0, as in spring.hpp.
+template <int law_vectors>
+[[gnu::always_inline]] inline Lanes force_on_line(Lanes d, const double* law) {
+  const Lanes stiffness = load(law);
+  if constexpr (law_vectors == 1) {
+    return stiffness * d;
+  } else {
+    const Lanes rest_length = load(law + lanes);
+    const Lanes s = d - (d > 0 ? rest_length : -rest_length);
+    Lanes force = s * stiffness;
+    if constexpr (law_vectors == 3) force = s * (stiffness + load(law + 2 * lanes) * (s * s));
+    return d != 0 ? force : Lanes{};
+  }
+}
+
 // f = offset + sum of a slice's rows.
 template <int D>
 [[gnu::always_inline]] inline void put(const SpringsByNode<D>& springs, int slice,
@@ -46,8 +62,12 @@ void sum_forces_of(const SpringsByNode<D>& springs, const Vec& q, const Vec& off
     Lanes sum[D] = {};
     springs.template for_slots<law_vectors>(
         slice, positions, [&](int, const Lanes(&d)[D], Lanes l2, const double* law) {
-          const Lanes ratio = tension_by_length<law_vectors>(l2, law);
-          for (int a = 0; a < D; ++a) sum[a] += ratio * d[a];
+          if constexpr (D == 1) {
+            sum[0] += force_on_line<law_vectors>(d[0], law);
+          } else {
+            const Lanes ratio = tension_by_length<law_vectors>(l2, law);
+            for (int a = 0; a < D; ++a) sum[a] += ratio * d[a];
+          }
         });
     put(springs, slice, sum, offset, f);
   });

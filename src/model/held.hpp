@@ -24,6 +24,7 @@ class Held final : public System {
   void material_stiffness(const Vec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
+  bool is_linear_at(const Vec& q) const override { return system_->is_linear_at(q); }
   HasLaplacian has_laplacian() const override { return system_->has_laplacian(); }
   void laplacian(SymmetricMatrix& l) const override;
   bool holds_at(const Vec& q) const override { return system_->holds_at(q); }

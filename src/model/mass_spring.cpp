@@ -5,13 +5,13 @@
 #include <stdexcept>
 
 #include "src/model/block_pattern.hpp"
+#include "src/model/directions.hpp"
 #include "src/model/force_kernel.hpp"
 #include "src/model/in_tension.hpp"
 #include "src/model/kinks.hpp"
 #include "src/model/layout.hpp"
 #include "src/model/network_halves.hpp"
 #include "src/model/nodal_loads.hpp"
-#include "src/model/offsets.hpp"
 #include "src/model/springs_by_node.hpp"
 #include "src/model/stiffness_kernel.hpp"
 
@@ -56,15 +56,12 @@ class MassSpring final : public System, public Kinks {
 
   double potential(const Vec& q) const override {
     double v = constant_energy_ - weight_.dot(q);
-    const double* offset = offsets_.empty() ? nullptr : offsets_.data();
-    for_all(q, [&](const SpringLaw& law, const Point& d) {
-      v += offset ? law.energy(d[0] - *offset++) : spring_energy(law, d);
-    });
+    for_all(q, [&](const SpringLaw& law, const Point& d) { v += spring_energy(law, d); });
     return v;
   }
 
   void force(const Vec& q, Vec& f) const override {
-    if (by_node_) return qddot::sum_forces(*by_node_, q, constant_force_, f);
+    if (by_node_) return qddot::sum_forces(*by_node_, q, weight_, f);
     sum_forces(
         [&](const auto& spring) { return spring_force(spring.law, between(q, spring)); },
         [&](const auto& spring) { return spring_force(spring.law, edge_between(q, spring)); }, f);
@@ -103,6 +100,16 @@ class MassSpring final : public System, public Kinks {
 
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override { return linear_; }
+  bool is_linear_at(const Vec& q) const override {
+    if (!linear_ || !keeps_directions()) return linear_;
+    const signed char* direction = directions_.data();
+    bool all = true;
+    for_all(q, [&](const SpringLaw&, const Point& d) {
+      const int own = *direction++;
+      all = all & (own == 0 || own * d[0] > 0);
+    });
+    return all;
+  }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
 
   HasLaplacian has_laplacian() const override { return has_laplacian_; }
@@ -132,24 +139,22 @@ class MassSpring final : public System, public Kinks {
       : System(masses(network, layout)),
         layout_(layout),
         weight_(weights(network, layout)),
-        constant_force_(weight_),
         constant_energy_(network.constant_energy) {
     BlockPattern<D> pattern(layout_);
     for (const auto& link : network.links) pattern.join(link.i, link.j);
     for (const auto& link : network.image_links) pattern.join(link.i, link.j);
     pattern_ = pattern.make();
-    for (const auto& [i, j, law, holds, stiff, offset] : network.links) {
+    for (const auto& [i, j, law, holds, stiff, direction] : network.links) {
       take_link({i, j, pattern.place(i, j), Point::Ones(), law}, holds, true);
     }
-    for (const auto& [i, j, mirror, law, holds, stiff, offset] : network.image_links) {
+    for (const auto& [i, j, mirror, law, holds, stiff, direction] : network.image_links) {
       const Point signs = Eigen::Map<const Point>(mirror.data());
       take_link({i, j, pattern.place(i, j), signs, law}, holds, false);
     }
-    for (const auto& [i, place, law, holds, stiff, offset] : network.anchors) {
+    for (const auto& [i, place, law, holds, stiff, direction] : network.anchors) {
       take_anchor({i, Eigen::Map<const Point>(place.data()), law}, holds);
     }
-    offsets_ = offsets(network, layout_);
-    if constexpr (D == 1) add_pulls(network, layout_, constant_force_);
+    directions_ = directions(network, layout_);
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
       by_node_.emplace(network, layout_);
@@ -158,7 +163,7 @@ class MassSpring final : public System, public Kinks {
     linear_ = network.uses_constant_stiffness;
     const Vec anywhere = Vec::Zero(size());
     for_all(anywhere, [&](const SpringLaw& law, const Point&) {
-      linear_ &= law.is_linear();
+      linear_ &= law.is_linear() || keeps_directions();
       if (law.quartic > 0) has_laplacian_ = HasLaplacian::yes;
       kinks_ += turns_over(law);
     });
@@ -177,7 +182,10 @@ class MassSpring final : public System, public Kinks {
     }
   }
 
-  static bool turns_over(const SpringLaw& law) { return D == 1 && law.rest_length > 0; }
+  bool keeps_directions() const { return !directions_.empty(); }
+  bool turns_over(const SpringLaw& law) const {
+    return D == 1 && law.rest_length > 0 && !keeps_directions();
+  }
 
   void take_link(const EdgeLink& link, Holds holds, bool is_plain) {
     if (holds == Holds::in_tension) in_tension_.add({link.i, link.j, link.mirror, link.law});
@@ -204,7 +212,7 @@ class MassSpring final : public System, public Kinks {
   // springs that go through the layout, edge_on_i(spring).
   template <class OnI, class EdgeOnI>
   [[gnu::always_inline]] void sum_forces(const OnI& on_i, const EdgeOnI& edge_on_i, Vec& f) const {
-    f = constant_force_;
+    f = weight_;
     for (const Link& link : links_) {
       const Point force = on_i(link);
       f.segment<D>(link.i) += force;
@@ -367,8 +375,7 @@ class MassSpring final : public System, public Kinks {
   std::vector<Anchor> edge_anchors_;             // likewise, by nodes
   InTension<D> in_tension_;                      // once more, those that hold in tension only
   Vec weight_;                                   // M g + load [N]
-  Vec constant_force_;                           // and what offsets pull
-  std::vector<double> offsets_;  // [m], of all springs in the order of for_all; empty where none
+  std::vector<signed char> directions_;  // of all springs in the order of for_all; empty where none
   double constant_energy_;
   bool linear_ = false;
   Index kinks_ = 0;

@@ -10,9 +10,10 @@ namespace qddot {
 
 // A network over the free nodes alone, numbered 0 ... N-1; what is pinned enters as points.
 //
-// In one dimension a spring of rest length zero and without quartic term may have an offset r [m]:
-// V = 1/2 k (d - r)^2 with d the difference of its ends, signed. So a spring of rest length |r|
-// acts for as long as its ends do not pass through each other.
+// In one dimension all springs may have a direction s = +-1: the sign that the difference d of
+// their ends is known to keep in the network's motion. Their forces k (s d - l0) s are linear in d
+// for as long as it does, and K counts as constant. Nothing else depends on it: energies and forces
+// are those of the springs' laws, whatever d is.
 struct Network {
   // A spring between two different free nodes.
   struct Link {
@@ -20,7 +21,7 @@ struct Network {
     SpringLaw law;
     Holds holds = Holds::always;
     bool stiff = false;
-    double offset = 0;
+    int direction = 0;
   };
   // A spring between node i and the mirror image of node j, diag(mirror) x_j with entries 1 and -1;
   // i = j is a spring that crosses the mirror at a right angle.
@@ -30,7 +31,7 @@ struct Network {
     SpringLaw law;
     Holds holds = Holds::always;
     bool stiff = false;
-    double offset = 0;
+    int direction = 0;
   };
   // A spring between a free node and a fixed point [m].
   struct Anchor {
@@ -39,7 +40,7 @@ struct Network {
     SpringLaw law;
     Holds holds = Holds::always;
     bool stiff = false;
-    double offset = 0;
+    int direction = 0;
   };
 
   int dimension = 3;                                  // D = 1, 2 or 3
@@ -64,10 +65,9 @@ enum class Forces { spring_by_spring, by_vectors, whichever_is_faster };
 // The network as a System with an unknown for each of the D N coordinates that may move, in order:
 //   V(q) = constant + sum over springs of V_spring - sum over nodes of (m g + load).x,
 // f and K sums over springs (see spring.hpp). K's pattern is made once: a block for each node
-// and for each pair of nodes that a link joins. K is constant where every law is linear.
-// Forces add up k d and the constant -k r, energies the squares of d - r: the former lose no more
-// than rounding a position does, the latter would lose all digits where strains are small. Throws
-// std::invalid_argument on an offset in two dimensions or three, or beside a rest length.
+// and for each pair of nodes that a link joins. K is constant where every law is linear or every
+// spring keeps a direction. Throws std::invalid_argument on directions in two dimensions or three,
+// beside a quartic term, or of some springs that have a rest length and not of all.
 std::unique_ptr<System> make_mass_spring(const Network& network,
                                          Forces forces = Forces::whichever_is_faster);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <complex>
+#include <type_traits>
 
 #include <Eigen/Core>
 
@@ -70,6 +71,10 @@ Real spring_energy(const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d) {
 template <class Real, int D>
 [[gnu::always_inline]] inline Eigen::Matrix<Real, D, 1> spring_force(
     const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d) {
+  if constexpr (D == 1 && std::is_same_v<Real, double>) {  // n is a sign: nothing to divide by
+    const double tension = law.tension(std::abs(d[0]));
+    return Eigen::Matrix<Real, D, 1>(d[0] > 0 ? tension : d[0] < 0 ? -tension : 0);
+  }
   const Real l = spring_length(d);
   return d * (std::abs(l) > 0 ? law.tension(l) / l : Real(0));
 }

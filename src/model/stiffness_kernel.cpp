@@ -18,14 +18,14 @@ constexpr int entry(int a, int b) {
 }
 
 // Of one slot's springs: tau', and tau/l as it counts in B, given by `counted` from tau/l, l and
-// l0.
+// l0. On a line B is tau' alone, which is K's to the last bit at every q where tau' is constant.
 struct Slopes {
   Lanes along, across, inverse_length;
 };
-template <int law_vectors, class Counted>
+template <int D, int law_vectors, class Counted>
 [[gnu::always_inline]] inline Slopes slopes(Lanes l2, const double* law, const Counted& counted) {
   const Lanes stiffness = load(law);
-  if constexpr (law_vectors == 1) {
+  if constexpr (law_vectors == 1 || (D == 1 && law_vectors == 2)) {
     return {stiffness, stiffness, Lanes{}};
   } else {
     const Lanes l = square_root(l2), rest_length = load(law + lanes), s = l - rest_length;
@@ -35,6 +35,7 @@ template <int law_vectors, class Counted>
       along = stiffness + 3 * quartic;
       tension = s * (stiffness + quartic);
     }
+    if constexpr (D == 1) return {along, along, Lanes{}};
     const Lanes one_by_l = 1 / l, inverse_length = l > 0 ? one_by_l : Lanes{};
     const Lanes across = l > 0 ? counted(tension * inverse_length, rest_length) : along;
     return {along, across, inverse_length};
@@ -94,11 +95,11 @@ StiffnessKernel<D>::StiffnessKernel(const Network& network, const Layout<D>& lay
   // How many links each block has.
   std::vector<int> count(pattern.nonZeros());
   const auto is_full = [&](int i, int j) { return layout.is_full(i) && layout.is_full(j); };
-  for (const auto& [i, j, law, holds, stiff, offset] : network.links) {
+  for (const auto& [i, j, law, holds, stiff, direction] : network.links) {
     if (is_full(i, j)) ++count[block_of(pattern, layout, i, j)];
   }
   int full = 0;
-  for (const auto& [i, j, law, holds, stiff, offset] : network.links) {
+  for (const auto& [i, j, law, holds, stiff, direction] : network.links) {
     if (!is_full(i, j)) continue;
     if (count[block_of(pattern, layout, i, j)] > 1) links_left_out_.push_back(full);
     ++full;
@@ -184,7 +185,7 @@ void StiffnessKernel<D>::write(const SpringsByNode<D>& springs, const Vec& q,
     Lanes own[triangle<D>] = {};
     springs.template for_slots<law_vectors>(
         slice, positions, [&](int slot, const Lanes(&d)[D], Lanes l2, const double* law) {
-          const Slopes slope = slopes<law_vectors>(l2, law, counted);
+          const Slopes slope = slopes<D, law_vectors>(l2, law, counted);
           Lanes block[triangle<D>];
           for (int b = 0; b < D; ++b) {
             const Lanes n = d[b] * slope.inverse_length;

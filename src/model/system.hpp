@@ -70,8 +70,11 @@ class System {
   // where b = a, and f keeps linear and angular momentum as a force does (Gonzalez, Journal of
   // Nonlinear Science 6 (1996) 449-467, spring by spring). a, b: n, f sized by the caller.
   virtual void mean_force(const Vec& a, const Vec& b, Vec& f) const = 0;
-  // True only where K is the same at every q, so that the motion is linear.
+  // True only where K is the same at every q of the motion, so that that is linear.
   virtual bool stiffness_is_constant() const = 0;
+  // Whether q, which may lie where no motion comes to, is one of the places between which f is
+  // linear: f(b) = f(a) + K (b - a) for any two of them, and all that lie between. q: n.
+  virtual bool is_linear_at(const Vec&) const { return stiffness_is_constant(); }
 
   // L [N/m]: what -K is, everywhere, when all springs have rest length zero and nothing quartic.
   // Into `l`, of the pattern of stiffness_pattern(); to be called where has_laplacian() says so.

@@ -23,7 +23,10 @@ Reader reader_for(const std::filesystem::path& file) {
                   file.string(), ending));
 }
 
-bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && c != '\n'; }
+// Lines end with a line feed, a carriage return, or both, as each system writes them.
+bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+
+bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && !is_line_end(c); }
 
 void keep_distinct(std::vector<std::array<std::size_t, 2>>& edges) {
   for (auto& [i, j] : edges) {
@@ -39,9 +42,9 @@ void keep_distinct(std::vector<std::array<std::size_t, 2>>& edges) {
 
 std::string_view Words::in_line() {
   while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
-  if (at_ < text_.size() && text_[at_] == '#') at_ = std::min(text_.find('\n', at_), text_.size());
+  if (at_ < text_.size() && text_[at_] == '#') pass_line();
   const std::size_t start = at_;
-  while (at_ < text_.size() && text_[at_] != '\n' && !is_blank(text_[at_])) ++at_;
+  while (at_ < text_.size() && !is_line_end(text_[at_]) && !is_blank(text_[at_])) ++at_;
   return text_.substr(start, at_ - start);
 }
 
@@ -51,13 +54,14 @@ std::string_view Words::next() {
   return word;
 }
 
+void Words::pass_line() {
+  while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
+}
+
 bool Words::next_line() {
-  at_ = text_.find('\n', at_);
-  if (at_ == text_.npos) {
-    at_ = text_.size();
-    return false;
-  }
-  ++at_;
+  pass_line();
+  if (at_ == text_.size()) return false;
+  at_ += text_.substr(at_, 2) == "\r\n" ? 2 : 1;
   ++line_;
   return true;
 }
@@ -96,14 +100,15 @@ std::vector<std::array<std::size_t, 2>> opposite_vertices(const Mesh& mesh) {
       sides.push_back({std::min(i, j), std::max(i, j), k});
   }
   std::sort(sides.begin(), sides.end());
+  // A triangle may be given twice, as for two groups.
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
 
   std::vector<std::array<std::size_t, 2>> pairs;
   const auto edge = [](const auto& side) { return std::pair(side[0], side[1]); };
   for (auto first = sides.begin(); first != sides.end();) {
     const auto last = std::find_if(first, sides.end(),
                                    [&](const auto& side) { return edge(side) != edge(*first); });
-    if (last - first == 2 && first[0][2] != first[1][2])
-      pairs.push_back({first[0][2], first[1][2]});
+    if (last - first == 2) pairs.push_back({first[0][2], first[1][2]});
     first = last;
   }
   return pairs;

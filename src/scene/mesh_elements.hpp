@@ -14,18 +14,19 @@ struct Element {
   std::string_view name;
   std::string_view medit_section;  // empty where it is passed over
   int gmsh_type;
+  int dimension;
   std::size_t corners;
   std::string_view edges;
 };
 inline constexpr std::array<Element, 8> elements{{
-    {"line", "Edges", 1, 2, "01"},
-    {"triangle", "Triangles", 2, 3, "01 12 20"},
-    {"quadrangle", "Quadrilaterals", 3, 4, "01 12 23 30"},
-    {"tetrahedron", "Tetrahedra", 4, 4, "01 02 03 12 13 23"},
-    {"hexahedron", "Hexahedra", 5, 8, "01 12 23 30 45 56 67 74 04 15 26 37"},
-    {"prism", "Prisms", 6, 6, "01 12 20 34 45 53 03 14 25"},
-    {"pyramid", "Pyramids", 7, 5, "01 12 23 30 04 14 24 34"},
-    {"point", "", 15, 1, ""},
+    {"line", "Edges", 1, 1, 2, "01"},
+    {"triangle", "Triangles", 2, 2, 3, "01 12 20"},
+    {"quadrangle", "Quadrilaterals", 3, 2, 4, "01 12 23 30"},
+    {"tetrahedron", "Tetrahedra", 4, 3, 4, "01 02 03 12 13 23"},
+    {"hexahedron", "Hexahedra", 5, 3, 8, "01 12 23 30 45 56 67 74 04 15 26 37"},
+    {"prism", "Prisms", 6, 3, 6, "01 12 20 34 45 53 03 14 25"},
+    {"pyramid", "Pyramids", 7, 3, 5, "01 12 23 30 04 14 24 34"},
+    {"point", "", 15, 0, 1, ""},
 }};
 inline constexpr std::size_t most_corners = 8;
 

@@ -10,7 +10,8 @@
 
 namespace qddot {
 
-// The words of a mesh file and the line that the last one stands in. A '#' ends its line.
+// The words of a mesh file and the line that the last one stands in. Lines end with LF, CR LF or CR
+// alone; a '#' ends its line's words.
 class Words {
  public:
   // Both must outlive this.
@@ -36,6 +37,8 @@ class Words {
   double number(std::string_view field, std::string_view word) const;
 
  private:
+  void pass_line();  // to its end
+
   std::string_view text_;
   const std::string& file_;
   std::size_t at_ = 0;

@@ -37,6 +37,8 @@ class GmshReader {
         has_blocks_ ? read_node_blocks() : read_node_list();
       else if (section == "$Elements")
         has_blocks_ ? read_element_blocks() : read_element_list();
+      else if (section == "$MeshFormat")
+        words_.refuse("section", section, "is one $MeshFormat, first in the file");
       else
         pass_over(section);
     }
@@ -89,9 +91,10 @@ class GmshReader {
   }
 
   void read_node_blocks() {
-    const std::size_t blocks = read_block_header("nodes");
+    const BlockHeader header = read_block_header("node");
     std::vector<Tag> tags;
-    for (std::size_t block = 0; block < blocks; ++block) {
+    TagRange range;
+    for (std::size_t block = 0; block < header.blocks; ++block) {
       const int dimension = whole<int>("dimension of the entity", 0, 3);
       whole<int>("tag of the entity");
       const bool parametric = whole<int>("parametric", 0, 1) == 1;
@@ -99,12 +102,14 @@ class GmshReader {
       for (std::size_t left = count("number of nodes"); left > 0; --left)
         tags.push_back(tag("node tag"));
       for (const Tag node : tags) {
+        range.take(node);
         add_node(node);
         for (int k = 0; parametric && k < dimension; ++k)
           words_.number("parameter of a node", words_.next());
       }
     }
     expect("$EndNodes", words_.next());
+    check("node", header, range);
   }
 
   void add_node(Tag node) {
@@ -127,25 +132,59 @@ class GmshReader {
   }
 
   void read_element_blocks() {
-    const std::size_t blocks = read_block_header("elements");
-    for (std::size_t block = 0; block < blocks; ++block) {
-      whole<int>("dimension of the entity", 0, 3);
+    const BlockHeader header = read_block_header("element");
+    TagRange range;
+    for (std::size_t block = 0; block < header.blocks; ++block) {
+      const int dimension = whole<int>("dimension of the entity", 0, 3);
       whole<int>("tag of the entity");
       const Element& element = element_of_type();
+      if (element.dimension != dimension)
+        words_.refuse("element type", fmt::format("{} ({})", element.gmsh_type, element.name),
+                      fmt::format("are those of the entity's dimension, {}", dimension));
       for (std::size_t left = count("number of elements"); left > 0; --left) {
-        tag("element tag");
+        range.take(tag("element tag"));
         read_corners(element);
       }
     }
     expect("$EndElements", words_.next());
+    check("element", header, range);
   }
 
-  // The number of blocks; the numbers behind it follow from the blocks.
-  std::size_t read_block_header(std::string_view what) {
+  // What a section of blocks says of itself before they come.
+  struct BlockHeader {
+    std::size_t blocks, entries;
+    Tag least, largest;
+    int line;
+  };
+  struct TagRange {
+    std::size_t count = 0;
+    Tag least = std::numeric_limits<Tag>::max(), largest = 0;
+
+    void take(Tag tag) {
+      ++count;
+      least = std::min(least, tag);
+      largest = std::max(largest, tag);
+    }
+  };
+
+  BlockHeader read_block_header(std::string_view what) {
     const std::size_t blocks = count("number of blocks");
-    count(fmt::format("number of {}", what));
-    for (const char* field : {"least tag", "largest tag"}) tag(field);
-    return blocks;
+    const std::size_t entries = count(fmt::format("number of {}s", what));
+    const Tag least = tag(fmt::format("least {} tag", what));
+    return {blocks, entries, least, tag(fmt::format("largest {} tag", what)), words_.line()};
+  }
+
+  // That the blocks hold what their header says.
+  void check(std::string_view what, const BlockHeader& header, const TagRange& range) {
+    const auto compare = [&](const std::string& field, std::uint64_t said, std::uint64_t is) {
+      if (said != is)
+        words_.refuse(field, std::to_string(said), fmt::format("is {}, as in the blocks", is),
+                      header.line);
+    };
+    compare(fmt::format("number of {}s", what), header.entries, range.count);
+    if (range.count == 0) return;  // tags of nothing may be any
+    compare(fmt::format("least {} tag", what), header.least, range.least);
+    compare(fmt::format("largest {} tag", what), header.largest, range.largest);
   }
 
   const Element& element_of_type() {

@@ -15,17 +15,19 @@ class MeditReader {
   Mesh read() {
     if (const auto word = words_.next(); word != "MeshVersionFormatted")
       words_.refuse("first word", word, "is MeshVersionFormatted");
+    whole("MeshVersionFormatted", 0, 9);
+    // The content of a section that has no edges is passed over up to the next keyword; that of any
+    // other ends where its count says, so that a number behind it is one too many.
+    bool passes_over = false;
+    std::string_view section = "MeshVersionFormatted";
     for (auto word = words_.next(); !word.empty() && word != "End"; word = words_.next()) {
-      const auto element =
-          std::find_if(elements.begin(), elements.end(),
-                       [&](const Element& candidate) { return candidate.medit_section == word; });
-      if (word == "Dimension")
-        dimension_ = whole(word, 2, 3);
-      else if (word == "Vertices")
-        read_vertices();
-      else if (element != elements.end())
-        read_elements(*element);
-      // Any other word is the keyword or content of a section that has no edges: passed over.
+      if (number_in<double>(word)) {
+        if (!passes_over)
+          words_.refuse(section, word, "is no more than its count says: next comes a keyword");
+        continue;
+      }
+      section = word;
+      passes_over = !read_section(word);
     }
     // Elements may come before the vertices, so what they name is known only now.
     if (largest_ > mesh_.vertices.size())
@@ -35,6 +37,29 @@ class MeditReader {
   }
 
  private:
+  // Whether it is one that is read.
+  bool read_section(std::string_view keyword) {
+    const auto element =
+        std::find_if(elements.begin(), elements.end(),
+                     [&](const Element& candidate) { return candidate.medit_section == keyword; });
+    const bool is_read =
+        keyword == "Dimension" || keyword == "Vertices" || element != elements.end();
+    if (!is_read) return false;
+    if (std::ranges::find(seen_, keyword) != seen_.end())
+      words_.refuse("section", keyword, "is each section once");
+    seen_.push_back(keyword);
+    if (keyword == "Dimension") {
+      if (!mesh_.vertices.empty())
+        words_.refuse("section", keyword, "is Dimension before Vertices");
+      dimension_ = whole(keyword, 2, 3);
+    } else if (keyword == "Vertices") {
+      read_vertices();
+    } else {
+      read_elements(*element);
+    }
+    return true;
+  }
+
   std::size_t whole(std::string_view field, std::size_t low, std::size_t high) {
     const auto word = words_.next();
     const auto value = number_in<std::size_t>(word);
@@ -78,7 +103,8 @@ class MeditReader {
   Words words_;
   Mesh mesh_;
   std::size_t dimension_ = 3;
-  std::size_t largest_ = 0;  // of all indices, counted from 1
+  std::vector<std::string_view> seen_;  // sections
+  std::size_t largest_ = 0;             // of all indices, counted from 1
   int largest_line_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "src/scene/invalid_input.hpp"
@@ -52,14 +53,62 @@ void add_springs(const std::vector<std::array<std::size_t, 2>>& pairs, double st
   }
 }
 
+// Leaves out the vertices at which no edge ends; the others keep their order. Returns how many.
+std::size_t leave_out_unused(Mesh& mesh) {
+  std::vector<bool> is_used(mesh.vertices.size(), false);
+  for (const auto& edge : mesh.edges) is_used[edge[0]] = is_used[edge[1]] = true;
+  std::vector<std::size_t> number(mesh.vertices.size());
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    number[i] = used;
+    if (is_used[i]) mesh.vertices[used++] = mesh.vertices[i];
+  }
+  const std::size_t unused = mesh.vertices.size() - used;
+  if (unused == 0) return 0;
+  mesh.vertices.resize(used);
+  const auto renumber = [&](auto& all) {
+    for (auto& corners : all) {
+      for (std::size_t& corner : corners) corner = number[corner];
+    }
+  };
+  renumber(mesh.edges);
+  // One that names a corner twice may have corners at which no edge ends: it has no area.
+  std::erase_if(mesh.triangles, [&](const auto& corners) {
+    return std::ranges::any_of(corners, [&](std::size_t corner) { return !is_used[corner]; });
+  });
+  renumber(mesh.triangles);
+  return unused;
+}
+
+std::string unused_sentence(const std::string& file, std::size_t unused) {
+  return fmt::format("{}: {} {} left out; nodes are numbered without {}", file,
+                     unused == 1 ? "1 vertex that no edge uses"
+                                 : fmt::format("{} vertices that no edge uses", unused),
+                     unused == 1 ? "is" : "are", unused == 1 ? "it" : "them");
+}
+
+std::string in_words(const Eigen::Vector3d& x) {
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x[0], x[1], x[2]);
+}
+
 void pin(const Table& box, std::vector<Node>& nodes) {
   box.allow_keys({"min", "max"});
   const Eigen::Vector3d low = box.vector("min", 3), high = box.vector("max", 3);
   if ((low.array() > high.array()).any()) box.refuse("max", "arrays that are nowhere below min");
+  bool catches_any = false;
+  Eigen::AlignedBox3d mesh;
   for (Node& node : nodes) {
     const auto x = node.position.array();
-    node.pinned |= (low.array() <= x && x <= high.array()).all();
+    const bool is_inside = (low.array() <= x && x <= high.array()).all();
+    node.pinned |= is_inside;
+    catches_any |= is_inside;
+    mesh.extend(node.position);
   }
+  if (!catches_any)
+    box.fail("min", fmt::format(
+                        "the box {} to {} holds no vertex of the mesh, which with its scale spans "
+                        "{} to {}; allowed are boxes that hold one",
+                        in_words(low), in_words(high), in_words(mesh.min()), in_words(mesh.max())));
 }
 
 }  // namespace
@@ -71,7 +120,12 @@ void add_mesh(const Table& table, const std::filesystem::path& folder, const Tex
   const double scale = table.number_or(1, "scale", positive);
   const double stiffness = table.number("stiffness", not_negative);
   const double bending_stiffness = table.number_or(0, "bending_stiffness", not_negative);
-  const Mesh mesh = read_file(table, folder, read);
+  Mesh mesh = read_file(table, folder, read);
+  const std::string file = shown(table.text("file"));
+  if (mesh.edges.empty())
+    table.fail("file", fmt::format("{} has no edge; allowed are meshes with some", file));
+  if (const std::size_t unused = leave_out_unused(mesh); unused > 0)
+    scene.warnings.push_back(unused_sentence(file, unused));
   const auto bending = bending_pairs(table, mesh);
   const SceneSize size{mesh.vertices.size(), mesh.edges.size() + bending.size()};
   require_within(limits, size, table.place());

@@ -31,7 +31,9 @@ std::vector<bool> on_lines(const std::vector<Node>& nodes, const std::vector<Spr
   std::vector<bool> is_on_line(nodes.size(), dimension == 1);
   if (dimension == 1) return is_on_line;
   for (const Component& component : components_of(nodes, springs)) {
-    if (frame_of(make_body(component, nodes, springs, gravity), dimension).dimension > 1) continue;
+    Body body = make_body(component, nodes, springs, gravity);
+    let_fall(body);  // whether that is left out or not, no part leaves a line by falling
+    if (frame_of(body, dimension).dimension > 1) continue;
     for (const std::size_t node : component.nodes) is_on_line[node] = true;
   }
   return is_on_line;
@@ -97,16 +99,20 @@ std::vector<Component> ReducedScene::divide(const std::vector<Spring>& springs,
     for (const auto& joint : series.joints) is_condensed[joint.node] = true;
   }
   std::vector<Component> components;
+  std::vector<std::size_t> flying;
   for (Component& component : components_of(nodes_, springs)) {
     const std::size_t first = component.nodes.front();
     if (is_condensed[first]) continue;  // on no spring any more
     if (component.springs.empty() && reductions.has(Reduction::free_flight)) {
-      flying_.push_back(first);
+      const bool is_heavy = nodes_[first].mass > 0;
+      flying_.push_back({first, nodes_[first].velocity,
+                         is_heavy ? gravity_ : Eigen::Vector3d(Eigen::Vector3d::Zero())});
+      flying.push_back(first);
     } else {
       components.push_back(std::move(component));
     }
   }
-  if (!flying_.empty()) report(Reduction::free_flight, flying_sentence(flying_));
+  if (!flying.empty()) report(Reduction::free_flight, flying_sentence(flying));
   if (!reductions.has(Reduction::parts)) return joined(components);
   if (components.size() > 1) report(Reduction::parts, parts_sentence(components.size()));
   return components;
@@ -117,9 +123,9 @@ void ReducedScene::build(const std::vector<Component>& components,
   std::vector<std::unique_ptr<System>> systems;
   Index n = 0;
   for (const Component& component : components) {
-    Body body = make_body(component, nodes_, springs, gravity_);
-    body.offers_split = stiff_above_.has_value();
-    Part& part = parts_.emplace_back(faithful_part(body, reductions));
+    const std::optional<Body> body = body_of(component, springs, reductions);
+    if (!body) continue;
+    Part& part = parts_.emplace_back(faithful_part(*body, reductions));
     systems.push_back(part.take_system());
     static_energy_ += part.energy_of_origin();
     n += part.initial().q.size();
@@ -132,6 +138,9 @@ void ReducedScene::build(const std::vector<Component>& components,
     initial_.v.segment(at, own) = part.initial().v;
     at += own;
   }
+  const auto falling = static_cast<std::size_t>(
+      std::ranges::count_if(parts_, [](const Part& part) { return part.fall().moves(); }));
+  if (falling + resting_ > 0) report(Reduction::falling, falling_sentence(falling, resting_));
   for (Finding& finding : findings_of(parts_, systems, dimension_)) {
     findings_.push_back(std::move(finding));
   }
@@ -142,6 +151,21 @@ void ReducedScene::build(const std::vector<Component>& components,
   } else {
     system_ = std::make_unique<Divided>(std::move(systems));
   }
+}
+
+std::optional<Body> ReducedScene::body_of(const Component& component,
+                                          const std::vector<Spring>& springs,
+                                          const Reductions& reductions) {
+  Body body = make_body(component, nodes_, springs, gravity_);
+  body.offers_split = stiff_above_.has_value();
+  if (!reductions.has(Reduction::falling)) return body;
+  let_fall(body);
+  if (!rests(body)) return body;
+  ++resting_;
+  for (const std::size_t node : body.nodes) {
+    flying_.push_back({node, body.fall.velocity, body.fall.gravity});
+  }
+  return {};
 }
 
 Part ReducedScene::faithful_part(const Body& body, Reductions reductions) {
@@ -164,7 +188,7 @@ void ReducedScene::check(const Scene& scene) const {
   for (const Part& part : parts_) {
     for (const std::size_t node : part.nodes()) ++places[node];
   }
-  for (const std::size_t node : flying_) ++places[node];
+  for (const Flying& flying : flying_) ++places[flying.node];
   for (const Series& series : series_) {
     for (const auto& joint : series.joints) ++places[joint.node];
   }
@@ -187,23 +211,27 @@ void ReducedScene::check(const Scene& scene) const {
     throw defect(energy_instead_of(potential(initial_), p.value));
 }
 
-Node ReducedScene::flying(std::size_t node, double t) const {
-  Node moved = nodes_[node];
-  const Eigen::Vector3d g = moved.mass > 0 ? gravity_ : Eigen::Vector3d::Zero();
-  moved.position += t * moved.velocity + (0.5 * t * t) * g;
-  moved.velocity += t * g;
-  return moved;
+std::vector<Node> ReducedScene::expand(const State& state) const { return expand(state, true); }
+
+std::vector<Node> ReducedScene::expand_beside_falls(const State& state) const {
+  return expand(state, false);
 }
 
-std::vector<Node> ReducedScene::expand(const State& state) const {
+std::vector<Node> ReducedScene::expand(const State& state, bool falls) const {
   std::vector<Node> nodes = nodes_;
   Index at = 0;
   for (const Part& part : parts_) {
     const Index n = part.initial().q.size();
-    part.expand(state.q.segment(at, n), state.v.segment(at, n), nodes);
+    const Fall fall = falls ? part.fall() : Fall{};
+    part.expand(state.q.segment(at, n), state.v.segment(at, n), fall.displacement(state.t),
+                fall.velocity_at(state.t), nodes);
     at += n;
   }
-  for (const std::size_t node : flying_) nodes[node] = flying(node, state.t);
+  for (const Flying& flying : flying_) {
+    Node& node = nodes[flying.node];
+    if (falls) node.position += flying.displacement(state.t);
+    node.velocity = falls ? flying.velocity_at(state.t) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  }
   for (const Series& series : series_) series.place(nodes);
   return nodes;
 }
@@ -234,19 +262,52 @@ std::vector<std::size_t> ReducedScene::massless_nodes() const {
   return massless;
 }
 
+template <class Action>
+void ReducedScene::for_falling(const State& state, const Action& action) const {
+  Index at = 0;
+  for (const Part& part : parts_) {
+    const Index n = part.initial().q.size();
+    if (part.fall().moves()) {
+      action(part.fall(), part.moments(state.q.segment(at, n), state.v.segment(at, n)));
+    }
+    at += n;
+  }
+}
+
 double ReducedScene::kinetic(const State& state) const {
   double energy = system_->kinetic(state.v);
-  for (const std::size_t i : flying_) {
-    energy += 0.5 * nodes_[i].mass * flying(i, state.t).velocity.squaredNorm();
+  for (const Flying& flying : flying_) {
+    energy += 0.5 * nodes_[flying.node].mass * flying.velocity_at(state.t).squaredNorm();
   }
+  for_falling(state, [&](const Fall& fall, const Part::Moments& moments) {
+    const Eigen::Vector3d v = fall.velocity_at(state.t);
+    energy += moments.momentum.dot(v) + 0.5 * fall.mass * v.squaredNorm();
+  });
   return energy;
 }
 
 double ReducedScene::potential(const State& state) const {
   double energy = system_->potential(state.q) + static_energy_;
-  for (const std::size_t i : flying_) {
-    energy -= nodes_[i].mass * gravity_.dot(flying(i, state.t).position);
+  for (const Flying& flying : flying_) {
+    const Node& node = nodes_[flying.node];
+    energy -= node.mass * gravity_.dot(node.position + flying.displacement(state.t));
   }
+  for_falling(state, [&](const Fall& fall, const Part::Moments& moments) {
+    energy -= fall.gravity.dot(moments.first + fall.mass * fall.displacement(state.t));
+  });
+  return energy;
+}
+
+double ReducedScene::energy(const State& state) const {
+  double energy = total_energy(*system_, state) + static_energy_;
+  for (const Flying& flying : flying_) {
+    const Node& node = nodes_[flying.node];
+    energy += node.mass * (0.5 * flying.velocity.squaredNorm() - gravity_.dot(node.position));
+  }
+  for_falling(state, [&](const Fall& fall, const Part::Moments& moments) {
+    energy += moments.momentum.dot(fall.velocity_at(state.t)) +
+              0.5 * fall.mass * fall.velocity.squaredNorm() - fall.gravity.dot(moments.first);
+  });
   return energy;
 }
 

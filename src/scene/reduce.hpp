@@ -22,6 +22,7 @@ namespace qddot {
 //   free_flight         a node on no spring obeys x'' = g: x = x0 + v0 t + 1/2 g t^2 (one without
 //                       mass as well without g)
 //   parts               no force couples what no spring joins: each is a system of its own
+//   falling             what nothing is pinned to falls as a whole, see reduce/fall.hpp
 //   dimension, mirror   see reduce/frame.hpp, reduce/mirror.hpp and, for the system,
 //   reduce/part.hpp constant_stiffness  springs of rest length zero; on a line, see
 //   reduce/straight.hpp
@@ -45,12 +46,17 @@ class ReducedScene {
   // The scene's, which its nodes have.
   int dimension() const { return dimension_; }
 
-  // Positions [m] and velocities [m/s] of all nodes of the scene in `state`; pinned ones rest.
+  // Positions [m] and velocities [m/s] of all nodes of the scene in `state`; pinned ones rest. What
+  // moves in closed form is where it is at state.t.
   std::vector<Node> expand(const State& state) const;
+  // The same without what moves in closed form: parts as seen from the frames that fall with them,
+  // other nodes at rest where they started. What is integrated can be measured by that alone.
+  std::vector<Node> expand_beside_falls(const State& state) const;
   // Energies [J] of all nodes and springs of the scene; weights of pinned nodes do not count.
   double kinetic(const State& state) const;
   double potential(const State& state) const;
-  double energy(const State& state) const { return kinetic(state) + potential(state); }
+  // The sum of both, without the rounding of what cancels in it where something falls.
+  double energy(const State& state) const;
 
   // Nodes without mass that have unknowns, ascending: most methods cannot take them.
   std::vector<std::size_t> massless_nodes() const;
@@ -63,14 +69,28 @@ class ReducedScene {
   std::vector<std::vector<std::size_t>> nodes_by_part() const;
 
  private:
-  // Where a node in free flight is at time t [s].
-  Node flying(std::size_t node, double t) const;
+  // A node that moves in closed form, x = x0 + v0 t + 1/2 g t^2: by itself, or in a part that rests
+  // in the frame that falls with it.
+  struct Flying {
+    std::size_t node;
+    Eigen::Vector3d velocity, gravity;  // v0 [m/s], g [m/s^2]
+
+    Eigen::Vector3d displacement(double t) const { return t * velocity + (0.5 * t * t) * gravity; }
+    Eigen::Vector3d velocity_at(double t) const { return velocity + t * gravity; }
+  };
+  std::vector<Node> expand(const State& state, bool falls) const;
+  // Calls action(part, its q, its v) for each part that falls as a whole.
+  template <class Action>
+  void for_falling(const State& state, const Action& action) const;
 
   // Each step of the reduction, in order.
   void leave_out_pins();
   void merge(std::vector<Spring>& springs);
   void condense(std::vector<Spring>& springs);
   std::vector<Component> divide(const std::vector<Spring>& springs, const Reductions& reductions);
+  // The body of a component as its motion is integrated; nothing where it rests in its fall.
+  std::optional<Body> body_of(const Component& component, const std::vector<Spring>& springs,
+                              const Reductions& reductions);
   void leave_out_static_springs(const std::vector<Spring>& springs);
   void build(const std::vector<Component>& components, const std::vector<Spring>& springs,
              const Reductions& reductions);
@@ -88,7 +108,8 @@ class ReducedScene {
   Eigen::Vector3d gravity_;
   std::optional<double> stiff_above_;
   std::vector<Series> series_;
-  std::vector<std::size_t> flying_;
+  std::vector<Flying> flying_;
+  std::size_t resting_ = 0;  // parts that rest in their fall
   std::vector<Part> parts_;
   std::unique_ptr<System> system_;
   double static_energy_ = 0;  // of springs between pinned nodes, and of the parts' origins

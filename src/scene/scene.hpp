@@ -43,6 +43,8 @@ struct Scene {
   // Springs with more stiffness [N/m] are the stiff ones, for methods that take their forces apart
   // from the others' (System::split); none are named where it is missing. Changes no motion.
   std::optional<double> stiff_above{};
+  // What the user should know of how the scene was read: sentences. Changes no motion.
+  std::vector<std::string> warnings{};
 };
 
 // Whether a spring of that law is one of the stiff ones of a scene.

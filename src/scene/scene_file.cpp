@@ -1,8 +1,11 @@
 #include "src/scene/scene_file.hpp"
 
+#include <algorithm>
 #include <cctype>
+#include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "src/scene/generators.hpp"
 #include "src/scene/invalid_input.hpp"
@@ -125,6 +128,28 @@ bool starts_at_equilibrium(const Table& file) {
   return start == "equilibrium";
 }
 
+// Nodes whose motion nothing decides: no mass, no pin, and no spring that pulls.
+void warn_of_loose_nodes(Scene& scene) {
+  std::vector<bool> is_held(scene.nodes.size(), false);
+  for (const Spring& spring : scene.springs) {
+    if (spring.law.stiffness == 0 && spring.law.quartic == 0) continue;
+    for (const std::size_t node : spring.nodes) is_held[node] = true;
+  }
+  std::vector<std::size_t> loose;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    if (!scene.nodes[i].pinned && scene.nodes[i].mass == 0 && !is_held[i]) loose.push_back(i);
+  }
+  if (loose.empty()) return;
+  constexpr std::size_t most = 8;
+  const std::span listed(loose.data(), std::min(most, loose.size()));
+  scene.warnings.push_back(fmt::format(
+      "node{} {}{} {} neither a mass nor a spring that pulls, so that nothing decides {} motion: "
+      "{} the drawn velocity for ever, without weight",
+      loose.size() == 1 ? "" : "s", fmt::join(listed, ", "), loose.size() > most ? ", ..." : "",
+      loose.size() == 1 ? "has" : "have", loose.size() == 1 ? "its" : "their",
+      loose.size() == 1 ? "it keeps" : "they keep"));
+}
+
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::string& path,
@@ -150,6 +175,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
   if (file.has("stiff_above")) scene.stiff_above = file.number("stiff_above", positive);
   scene.starts_at_equilibrium = starts_at_equilibrium(file);
   validate(scene, path);
+  warn_of_loose_nodes(scene);
   return scene;
 }
 

@@ -54,6 +54,14 @@ Method heun() {
   return method;
 }
 
+// Whether the limit that the registry has of a method is the one that its steps show.
+bool declares_its_limit(const Method& method) {
+  const double declared = linear_limit(method), measured = measured_limit(method);
+  if (declared == 0 || std::isinf(declared)) return measured == declared;
+  // Bisection to 1e-12, and a radius above 1 by no more than 1e-12.
+  return std::abs(measured / declared - 1) < 1e-10;
+}
+
 // Of bdf2 on y' = i w y, 3 z^2 - 4 z + 1 = 2 i x z^2 with x = h w, and of its conjugate.
 double bdf2_radius(double x) {
   const Complex a(3, -2 * x), root = std::sqrt(16. - 4. * a);
@@ -130,20 +138,34 @@ BOOST_AUTO_TEST_CASE(a_step_beyond_all_numbers_grows_beyond_all_bounds) {
   BOOST_CHECK_THROW(step_of("ida", 1), std::invalid_argument);
 }
 
-BOOST_AUTO_TEST_CASE(measured_limits_are_theory_s) {
+BOOST_AUTO_TEST_CASE(measured_limits_are_the_declared_ones) {
   for (const Method& method : methods()) {
     if (!has_linear_step(method)) continue;
-    BOOST_TEST_CONTEXT(method.name) {
-      const double predicted = linear_limit(method), measured = measured_limit(method);
-      if (predicted == 0 || std::isinf(predicted)) {
-        BOOST_TEST(measured == predicted);
-      } else {
-        // Bisection to 1e-12, and a radius above 1 by no more than 1e-12.
-        BOOST_TEST(std::abs(measured / predicted - 1) < 1e-10);
-      }
-    }
+    BOOST_TEST_CONTEXT(method.name) { BOOST_TEST(declares_its_limit(method)); }
   }
   BOOST_TEST(std::abs(measured_limit(method_named("rk4")) - std::sqrt(8)) < 1e-10);
+}
+
+BOOST_AUTO_TEST_CASE(
+    exactly_explicit_methods_of_fixed_steps_declare_a_limit_and_there_is_no_default) {
+  for (const Method& method : methods()) {
+    // Whatever has no step error is stable at every h.
+    const bool needs_one = has_linear_step(method) && !method.implicit && method.order > 0;
+    BOOST_TEST_CONTEXT(method.name) { BOOST_TEST(method.stability_limit.has_value() == needs_one); }
+  }
+  BOOST_TEST(!Method{}.stability_limit.has_value());
+  BOOST_TEST(std::isinf(linear_limit(Method{})));  // nobody is told that a step is above it
+}
+
+BOOST_AUTO_TEST_CASE(a_wrong_or_missing_limit_is_found) {
+  Method method = method_named("rk4");
+  for (const std::optional<double> wrong :
+       {std::optional<double>(2), std::optional<double>(0), std::optional<double>(2.8284),
+        std::optional<double>(), std::optional<double>(INFINITY)}) {
+    method.stability_limit = wrong;
+    BOOST_TEST(!declares_its_limit(method));
+  }
+  BOOST_TEST(!declares_its_limit(heun()));  // which says that it is Verlet's
 }
 
 BOOST_AUTO_TEST_CASE(limits_hold_from_both_sides) {

@@ -66,7 +66,7 @@ total_mass = 2.0
 min = [-1, -1, -1]
 max = [1, 1, 0.5]
 [[mesh.pin]]
-min = [0.5, 0, 0]
+min = [0, 0, 0]
 max = [0.5, 9, 9]
 )"},
       {"medit.toml",

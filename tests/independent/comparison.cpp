@@ -107,11 +107,17 @@ void compare_state(const ReducedScene& reduced, const PlainModel<long double>& m
   reduced.system().force(state.q, f);
   const auto fast = reduced.expand({state.t, state.q, w});
   const auto still = reduced.expand({state.t, state.q, Vec::Zero(n)});
+  // In the frame that falls with a part its nodes have no weight.
+  std::vector<bool> has_weight(nodes.size(), true);
+  for (const Part& part : reduced.parts()) {
+    for (const std::size_t node : part.nodes()) has_weight[node] = !part.fall().moves();
+  }
   long double power = 0, fastest = w.norm();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       const long double own = fast[i].velocity[c] - still[i].velocity[c];
-      power += plain.force[3 * i + static_cast<std::size_t>(c)] * own;
+      const long double weight = has_weight[i] ? 0 : nodes[i].mass * model.scene().gravity[c];
+      power += (plain.force[3 * i + static_cast<std::size_t>(c)] - weight) * own;
       fastest = std::max(fastest, std::abs(own));
     }
   }

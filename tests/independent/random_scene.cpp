@@ -230,6 +230,44 @@ void shuffle(Scene& scene, Chance& chance) {
   }
 }
 
+// Without pins and thrown as a whole, under gravity in any direction: about its centre of mass it
+// moves anyhow, in a plane, along a line, with massless joints, or not at all. Beside another part
+// at times, which may be pinned.
+Scene falling(Chance& chance, int dimension) {
+  const std::size_t variant = chance.below(5);
+  if (variant == 2) dimension = std::max(dimension, 2);  // joints on a line are another matter
+  Scene scene{.dimension = dimension};
+  if (variant == 0) {
+    scene = straight_chain(chance, dimension, 3 + chance.below(5));
+  } else if (variant == 1) {
+    add_network(scene, chance, 3 + chance.below(4), std::min(dimension, 2));
+  } else if (variant == 2) {
+    scene = jointed(chance, dimension);
+  } else {
+    add_network(scene, chance, 2 + chance.below(6), dimension);
+  }
+  for (Node& node : scene.nodes) {
+    node.pinned = false;
+    if (variant == 3) node.velocity.setZero();
+  }
+  if (variant == 3) {
+    for (Spring& spring : scene.springs) {
+      const auto [i, j] = spring.nodes;
+      spring.law.rest_length = (scene.nodes[j].position - scene.nodes[i].position).norm();
+    }
+  }
+  if (chance.is(0.5)) move(scene, chance.rotation(dimension), chance.vector(dimension, 2));
+  const Vector3d thrown = chance.is(0.8) ? chance.vector(dimension, 3) : Vector3d::Zero();
+  for (Node& node : scene.nodes) node.velocity += thrown;
+  scene.gravity = chance.is(0.8) ? chance.vector(dimension, 9.81) : Vector3d::Zero();
+  if (chance.is(0.3)) {
+    const std::size_t first = scene.nodes.size();
+    add_network(scene, chance, 1 + chance.below(3), dimension);
+    scene.nodes[first].pinned = chance.is(0.5);
+  }
+  return scene;
+}
+
 // Some vibrations of the stiffest spring between the lightest nodes.
 double some_vibrations(const Scene& scene, Chance& chance) {
   double fastest = 1;
@@ -297,6 +335,8 @@ Scene of_kind(const std::string& kind, Chance& chance) {
   } else if (kind == "massless") {
     scene = jointed(chance, space);
     pull(scene, chance);
+  } else if (kind == "falling") {
+    scene = falling(chance, dimension == 1 && chance.is(0.7) ? space : dimension);
   } else if (kind == "far") {
     add_network(scene, chance, 3 + chance.below(4), dimension);
     pin_some(scene, chance, 0.2);
@@ -315,7 +355,7 @@ Scene of_kind(const std::string& kind, Chance& chance) {
 RandomScene random_scene(std::uint64_t seed) {
   constexpr std::array<const char*, 11> kinds = {
       "network", "mirrored",     "coincident", "straight", "nearly straight", "planar",
-      "parts",   "zero lengths", "massless",   "far",      "network"};
+      "parts",   "zero lengths", "massless",   "far",      "falling"};
   Chance chance(seed);
   RandomScene random{{}, kinds[seed % kinds.size()]};
   random.scene = of_kind(random.kind, chance);

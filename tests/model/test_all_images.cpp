@@ -47,15 +47,15 @@ struct Whole {
       return law;
     };
     for (int s = 0; s < images; ++s) {
-      for (const auto& [i, j, law, holds, stiff, offset] : half.links) {
+      for (const auto& [i, j, law, holds, stiff, direction] : half.links) {
         network.links.push_back({images * i + s, images * j + s, share(law), holds});
       }
-      for (const auto& [i, j, mirror, law, holds, stiff, offset] : half.image_links) {
+      for (const auto& [i, j, mirror, law, holds, stiff, direction] : half.image_links) {
         int turned = 0;
         for (int d = 0; d < dimension; ++d) turned |= mirror[d] < 0 ? 1 << d : 0;
         network.links.push_back({images * i + s, images * j + (s ^ turned), share(law), holds});
       }
-      for (const auto& [i, point, law, holds, stiff, offset] : half.anchors) {
+      for (const auto& [i, point, law, holds, stiff, direction] : half.anchors) {
         network.anchors.push_back(
             {images * i + s, signs(s).cwiseProduct(point), share(law), holds});
       }

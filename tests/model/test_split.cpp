@@ -193,24 +193,6 @@ BOOST_AUTO_TEST_CASE(either_may_be_without_springs) {
   });
 }
 
-BOOST_AUTO_TEST_CASE(what_an_offset_pulls_is_its_springs_and_loads_are_soft) {
-  Network network{.dimension = 1, .gravity = {3, 0, 0}, .node_mass = Vec::Ones(2)};
-  network.links = {{0, 1, {.stiffness = 100}, Holds::always, true, 0.5},
-                   {0, 1, {.stiffness = 8}, Holds::always, false, -1}};
-  network.offers_split = true;
-  network.load = Vec{{-50, 70}};
-  const auto whole = make_mass_spring(network);
-  const Split& split = *whole->split();
-  const Vec q{{1, 3}};
-  // On the first: weight 3, load -50, springs 100 (2 - 0.5) and 8 (2 + 1), without any rounding.
-  BOOST_TEST((force_at(*whole, q) == Vec{{3 - 50 + 150 + 24, 3 + 70 - 150 - 24}}));
-  BOOST_TEST((force_at(*split.stiff, q) == Vec{{150, -150}}));
-  BOOST_TEST((force_at(*split.soft, q) == Vec{{3 - 50 + 24, 3 + 70 - 24}}));
-  BOOST_TEST(split.stiff->potential(q) == 50 * 1.5 * 1.5);
-  BOOST_TEST(split.soft->potential(q) == 4 * 3. * 3 - (3 - 50) * 1 - (3 + 70) * 3);
-  BOOST_TEST(adds_up(*whole, *split.stiff, *split.soft, q));
-}
-
 BOOST_AUTO_TEST_CASE(each_says_of_its_own_springs_whether_k_is_constant_and_the_system_holds) {
   Network network{.dimension = 1, .node_mass = Vec::Ones(2)};
   network.anchors = {{0, {0, 0, 0}, {10, 1}, Holds::in_tension, true},

@@ -98,6 +98,27 @@ BOOST_AUTO_TEST_CASE(negative_indices_count_from_the_last_vertex_so_far) {
   BOOST_TEST((mesh.edges == Pairs{{0, 1}, {0, 2}, {1, 2}, {3, 4}, {3, 6}, {4, 5}, {5, 6}}));
 }
 
+BOOST_AUTO_TEST_CASE(line_ends_of_every_system_give_the_same_mesh) {
+  const std::string faces = square + "# a comment\nf 1 2 3\n\nf 1 3 4\n";
+  for (const auto& [name, text] : {std::pair("a.obj"s, faces), std::pair("a.mesh"s, glued)}) {
+    const Mesh plain = parse_mesh(text, name);
+    BOOST_TEST(plain.edges.size() > 4);
+    for (const char* line_end : {"\r", "\r\n"}) {
+      std::string other;
+      for (const char c : text) other += c == '\n' ? line_end : std::string(1, c);
+      const Mesh mesh = parse_mesh(other, name);
+      BOOST_TEST((mesh.vertices == plain.vertices));
+      BOOST_TEST((mesh.edges == plain.edges));
+      BOOST_TEST((mesh.triangles == plain.triangles));
+    }
+  }
+  // Lines count alike.
+  for (const std::string line_end : {"\n", "\r", "\r\n"}) {
+    BOOST_TEST(names_all(refusal("a.obj", "v 0 0 0" + line_end + line_end + "v 1 x 0"),
+                         {"a.obj:3:", "vertex", "x"}));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(vertices_are_read_exactly) {
   const Mesh mesh = obj("v 0.1 -2.5e-3 +3\nv 1 2 3 1.0\nv 1 2 3 .5 .5 .5");
   BOOST_TEST((mesh.vertices[0] == Eigen::Vector3d(0.1, -2.5e-3, 3)));
@@ -154,10 +175,11 @@ BOOST_AUTO_TEST_CASE(a_prism_and_a_pyramid_on_one_face) {
 
 BOOST_AUTO_TEST_CASE(bending_pairs_lie_opposite_to_shared_edges) {
   BOOST_TEST((opposite_vertices(obj(square + "f 1 2 3\nf 1 3 4")) == Pairs{{1, 3}}));
-  // A boundary, a triangle given twice and an edge of three triangles bend nothing.
+  // A boundary and an edge of three triangles bend nothing; a triangle given twice is one.
   BOOST_TEST(opposite_vertices(obj(square + "f 1 2 3\nf 3 2 1")).empty());
   BOOST_TEST(opposite_vertices(obj(square + "v 5 5 5\nf 1 2 3\nf 1 2 4\nf 1 2 5")).empty());
   BOOST_TEST(opposite_vertices(obj(square + "f 1 2 3 4")).empty());
+  BOOST_TEST((opposite_vertices(obj(square + "f 1 2 3\nf 3 2 1\nf 1 3 4")) == Pairs{{1, 3}}));
 }
 
 BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
@@ -204,6 +226,34 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
     BOOST_CHECK_MESSAGE(names_all(message, {name, "allowed"}) && message.size() < 400,
                         text.substr(0, 80) << " gives: " << message);
   }
+}
+
+BOOST_AUTO_TEST_CASE(medit_files_that_contradict_themselves_are_refused) {
+  struct Spoiled {
+    std::string old_part, new_part;
+    std::vector<std::string> fragments;
+  };
+  for (const auto& [old_part, new_part, fragments] : std::vector<Spoiled>{
+           {"Vertices\n5", "Vertices\n4", {":10:", "Vertices", "0", "count"}},
+           {"Vertices\n5", "Vertices\n6", {":11:", "Vertices", "Corners", "finite"}},
+           {"Triangles 1", "Triangles 0", {":16:", "Triangles", "1", "count"}},
+           {"Triangles 1", "Triangles 2", {":17:", "Triangles", "Tetrahedra", "whole"}},
+           {"Tetrahedra\n2", "Tetrahedra\n1", {":20:", "Tetrahedra", "1", "count"}},
+           {"Tetrahedra\n2", "Tetrahedra\n3", {":21:", "Tetrahedra", "End", "whole"}},
+           {"1 2 3 7", "1 2 3 4 7", {":16:", "Triangles", "7", "count"}},
+           {"Dimension 3", "Dimension 2", {"Vertices", "count"}},
+           {"Dimension 3", "Dimension 3 3", {":3:", "Dimension", "3", "count"}},
+           {"Formatted 2", "Formatted two", {":1:", "MeshVersionFormatted", "two", "whole"}},
+           {"Formatted 2", "Formatted", {":3:", "MeshVersionFormatted", "Dimension", "whole"}},
+           {"End\n", "Vertices 0\nEnd\n", {":21:", "Vertices", "once"}},
+           {"End\n", "Triangles 1\n1 2 3 0\n", {":21:", "Triangles", "once"}},
+           {"End\n", "Dimension 3\n", {":21:", "Dimension", "once"}}}) {
+    const std::string message = refusal("a.mesh", with(glued, old_part, new_part));
+    BOOST_CHECK_MESSAGE(names_all(message, fragments) && names_all(message, {"a.mesh:", "allowed"}),
+                        new_part << " gives: " << message);
+  }
+  BOOST_TEST(names_all(refusal("a.mesh", "MeshVersionFormatted 1 Vertices 1 0 0 0 0 Dimension 2"),
+                       {"Dimension", "before Vertices"}));
 }
 
 BOOST_AUTO_TEST_CASE(messages_name_line_value_and_range) {

@@ -162,7 +162,20 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
       {new_format, "3 5 2", "2 5 2", {":20:", "section", "1", "$EndNodes"}},
       {new_format, "1 3 1 1\n2 7 8", "1 3 1 1\n2 7 9", {":29:", "line", "9", "tags"}},
       {new_format, "2 1 3 1\n", "2 1 10 1\n", {":30:", "element type", "10", "3 (quadrangle)"}},
-      {new_format, "2 1 3 1\n", "2 1 3 1000000000\n", {"quadrangle"}}};
+      {new_format, "2 1 3 1\n", "2 1 3 1000000000\n", {"quadrangle"}},
+      {new_format, "3 5 2", "3 6 2", {":9:", "number of nodes", "6", "5, as in the blocks"}},
+      {new_format, "3 5 2", "3 5 1", {":9:", "least node tag", "1", "2, as in the blocks"}},
+      {new_format, "2 1000000000000\n", "2 1000000000001\n", {":9:", "largest node tag"}},
+      {new_format, "4 4 1 9", "4 3 1 9", {":25:", "number of elements", "3", "4, as in"}},
+      {new_format, "4 4 1 9", "4 4 2 9", {":25:", "least element tag", "2", "1, as in"}},
+      {new_format, "4 4 1 9", "4 4 1 8", {":25:", "largest element tag", "8", "9, as in"}},
+      {new_format, "4 4 1 9", "3 4 1 9", {"section", "$EndElements"}},
+      {new_format, "2 1 2 1\n", "3 1 2 1\n", {"element type", "2 (triangle)", "dimension, 3"}},
+      {old_format, "$Elements\n4", "$Elements\n3", {":21:", "section", "4", "$EndElements"}},
+      {old_format, "$Elements\n4", "$Elements\n5", {":22:", "element tag", "$EndElements"}},
+      {old_format, "$EndNodes\n", "", {":15:", "section", "$Elements", "$EndNodes"}},
+      {old_format, "$EndElements\n", "", {":22:", "section", "$NodeData", "$EndElements"}},
+      {old_format, "$NodeData", "$MeshFormat", {":23:", "section", "first in the file"}}};
   for (const auto& [good, old_part, new_part, fragments] : cases) {
     const std::string message = refusal(with(good, old_part, new_part));
     BOOST_CHECK_MESSAGE(names_all(message, fragments) && names_all(message, {"a.msh:", "allowed"}),
@@ -171,6 +184,19 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
   }
   BOOST_TEST(names_all(refusal(""), {"a.msh:1:", "$MeshFormat"}));
   BOOST_TEST(names_all(refusal("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"), {"no vertices"}));
+}
+
+BOOST_AUTO_TEST_CASE(line_ends_of_every_system_give_the_same_mesh) {
+  for (const std::string& text : {old_format, new_format}) {
+    const Mesh plain = gmsh(text);
+    for (const char* line_end : {"\r", "\r\n"}) {
+      std::string other;
+      for (const char c : text) other += c == '\n' ? line_end : std::string(1, c);
+      const Mesh mesh = gmsh(other);
+      BOOST_TEST((mesh.vertices == plain.vertices));
+      BOOST_TEST((mesh.edges == plain.edges));
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_vast_count_takes_no_memory) {

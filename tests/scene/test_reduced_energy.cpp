@@ -46,6 +46,16 @@ Scene hanging_line(double length) {
   return scene;
 }
 
+// Two masses on a spring, thrown under gravity askew to it; along the line between them they
+// vibrate.
+Scene thrown_pair() {
+  Scene scene{.dimension = 3, .gravity = {1, -9, 2}};
+  scene.nodes = {{.position = {1, 2, 0}, .velocity = {3, -1, 2}, .mass = 0.3},
+                 {.position = {1, 2, -1}, .velocity = {3, -1, 3}, .mass = 0.7}};
+  scene.springs = {{{0, 1}, {90, 0.8}}};
+  return scene;
+}
+
 // Unknowns: pins, planes and mirrors by hand.
 std::vector<Case> cases() {
   const Eigen::Vector3d shift(3, -2, 7);
@@ -68,6 +78,7 @@ std::vector<Case> cases() {
       {"two mirrors in space", turned(square(), some_rotation(), shift), Reduction::mirror, 2},
       {"straight line", hanging_line(0.9), Reduction::constant_stiffness, 2},
       {"no rest lengths", hanging_line(0), Reduction::constant_stiffness, 2},
+      {"falling", thrown_pair(), Reduction::falling, 2},
   };
 }
 
@@ -124,7 +135,7 @@ BOOST_AUTO_TEST_CASE(energies_are_those_of_all_nodes_and_springs) {
         // rest lengths known to eps of the place, k l eps.
         BOOST_TEST(std::abs(reduced.potential(state) - v) < 1e-13 * (std::abs(v) + 1e5), name);
         BOOST_TEST(std::abs(reduced.kinetic(state) - t) < 100 * eps * (t + 1), name);
-        BOOST_TEST(reduced.energy(state) == reduced.kinetic(state) + reduced.potential(state));
+        BOOST_TEST(std::abs(reduced.energy(state) - t - v) < 1e-13 * (t + std::abs(v) + 1e5), name);
       }
     }
   }
@@ -135,9 +146,11 @@ BOOST_AUTO_TEST_CASE(force_and_stiffness_are_derivatives_of_the_scenes_own_poten
     BOOST_TEST_CONTEXT(name) {
       const ReducedScene reduced(scene);
       const State state = moved(reduced, 0.02, 3);
+      Scene pulling = scene;  // in a frame that falls nothing has weight
+      if (has(reduced, Reduction::falling)) pulling.gravity.setZero();
       const auto v = [&](const Vec& q) {
         const State at{0, q, state.v};
-        return Vec::Constant(1, potential_by_hand(scene, reduced.expand(at)));
+        return Vec::Constant(1, potential_by_hand(pulling, reduced.expand(at)));
       };
       const auto f = [&](const Vec& q) { return force_at(reduced.system(), q); };
       const Vec slope = finite_difference_jacobian(v, state.q, 1e-3).transpose();

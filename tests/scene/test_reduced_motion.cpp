@@ -137,4 +137,27 @@ BOOST_AUTO_TEST_CASE(negative_control_another_stiffness_is_another_motion) {
              10 * round_off);
 }
 
+BOOST_AUTO_TEST_CASE(a_growing_run_of_a_row_turns_springs_over_as_the_drawn_one_does) {
+  Scene row{.dimension = 1};
+  for (std::size_t i = 0; i < 9; ++i) {
+    row.nodes.push_back({.position = {0.1 * static_cast<double>(i), 0, 0},
+                         .velocity = {i == 4 ? 0.5 : 0, 0, 0},
+                         .mass = 0.1,
+                         .pinned = i == 0});
+    if (i > 0) row.springs.push_back({{i - 1, i}, {1e4, 0.1}});
+  }
+  const Reductions drawn = Reductions().without(Reduction::constant_stiffness);
+  BOOST_TEST(ReducedScene(row).parts().front().is_straightened());
+  for (const char* method : {"explicit_euler", "verlet", "rk4"}) {
+    const auto end = end_of(row, {}, 20 * 0.004, 0.004, method);  // h w = 2.5
+    bool has_turned = false;
+    for (std::size_t i = 1; i < 9; ++i) {
+      has_turned = has_turned || end[i].position.x() < end[i - 1].position.x();
+    }
+    BOOST_TEST(has_turned == (method != std::string("rk4")));  // which is stable there
+    // The same forces to the bit.
+    BOOST_TEST(farthest(end, end_of(row, drawn, 20 * 0.004, 0.004, method)) == 0, method);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
 
 #include "src/scene/generators.hpp"
 #include "tests/folder.hpp"
@@ -159,6 +160,40 @@ BOOST_AUTO_TEST_CASE(a_mesh_becomes_nodes_springs_and_pins) {
       parsed(with(mesh_scene, "stiffness = 10", "stiffness = 10\nbending_stiffness = 3"));
   BOOST_TEST_REQUIRE(stiff.springs.size() == 12);
   BOOST_TEST(stiff.springs[11].law.stiffness == 3);
+}
+
+BOOST_AUTO_TEST_CASE(unused_vertices_of_a_mesh_are_left_out_and_counted) {
+  // Before, between and after those of the tetrahedron.
+  const std::string stray =
+      "v 7 7 7\nv 0 0 0\nv 1 0 0\nv 8 8 8\nv 0 1 0\nv 0 0 1\nv 9 9 9\n"
+      "f 2 3 5\nf 2 3 6\nf 3 5 6\nf 2 5 6\n";
+  const auto read = [&](const std::string& mesh) {
+    return parse_scene(with(mesh_scene, "stiffness = 10", "stiffness = 10\nbending_stiffness = 3"),
+                       "a.toml", "", {}, [&](const std::string&) { return mesh; });
+  };
+  const Scene clean = read(tetrahedron), scene = read(stray);
+  BOOST_TEST(scene.nodes.size() == 4);
+  BOOST_TEST(content_hash(scene) == content_hash(clean));  // total_mass is that of the used ones
+  BOOST_TEST(clean.warnings.empty());
+  BOOST_TEST_REQUIRE(scene.warnings.size() == 1);
+  BOOST_TEST(names_all(scene.warnings[0], {"m.obj", "3 vertices", "no edge", "left out"}));
+  BOOST_TEST(
+      names_all(read(tetrahedron + "v 5 5 5\n").warnings.at(0), {"1 vertex", "is left out"}));
+  BOOST_TEST(names_all(refusal_of([&] { read("v 0 0 0\nv 1 0 0\n"); }),
+                       {"mesh.file", "no edge", "allowed"}));
+}
+
+BOOST_AUTO_TEST_CASE(nodes_whose_motion_nothing_decides_are_named) {
+  const std::string massless = with(two_links, "mass = 2", "mass = 0");
+  BOOST_TEST(parsed(massless).warnings.empty());  // its spring decides
+  const std::string loose = with(with(massless, "1000.0", "0"), "quartic = 7.0", "quartic = 0");
+  BOOST_TEST_REQUIRE(parsed(loose).warnings.size() == 1);
+  BOOST_TEST(names_all(parsed(loose).warnings[0], {"node 1 ", "neither a mass nor a spring"}));
+  BOOST_TEST(parsed(with(loose, "mass = 0\n", "mass = 1\n")).warnings.empty());
+  std::string many = "dimension = 1\n";
+  for (int i = 0; i < 12; ++i) many += fmt::format("[[nodes]]\nposition = [{}]\nmass = 0\n", i);
+  BOOST_TEST(
+      names_all(parsed(many).warnings.at(0), {"nodes 0, 1, 2,", "7, ... have", "they keep"}));
 }
 
 BOOST_AUTO_TEST_CASE(generators_and_files_are_named_alike) {

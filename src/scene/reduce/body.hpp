@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "src/scene/reduce/components.hpp"
+#include "src/scene/reduce/fall.hpp"
 #include "src/scene/scene.hpp"
 
 namespace qddot {
@@ -23,6 +24,7 @@ struct Body {
   std::vector<Spring> springs{};          // between numbers of this body
   Eigen::Vector3d gravity =
       Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
+  Fall fall{};                  // the frame that v and gravity are seen from, see let_fall
   bool offers_split = false;    // whether its system is to have a split() by stiff springs
 };
 

@@ -50,7 +50,8 @@ std::vector<bool> joints_of(const Body& body) {
 
 }  // namespace
 
-Part::Part(const Body& body, int dimension, const Reductions& reductions) : origin_(body.origin) {
+Part::Part(const Body& body, int dimension, const Reductions& reductions)
+    : origin_(body.origin), fall_(body.fall) {
   Frame frame{.dimension = dimension};
   if (reductions.has(Reduction::dimension)) frame = frame_of(body, dimension);
   mirrors_.frame = frame;
@@ -95,6 +96,7 @@ Part::Part(const Body& body, int dimension, const Reductions& reductions) : orig
     energy_of_origin_ -= body.mass[i] * body.gravity.dot(origin_);
     if (i >= body.free) continue;
     nodes_.push_back(body.nodes[i]);
+    masses_.push_back(body.mass[i]);
     images_.push_back({number, half.images[i].signs});
   }
   network.links.reserve(half.springs.size());
@@ -129,12 +131,23 @@ Part::Motion Part::motion(std::size_t i, const Eigen::Ref<const Vec>& q,
 }
 
 void Part::expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v,
+                  const Eigen::Vector3d& displacement, const Eigen::Vector3d& velocity,
                   std::vector<Node>& nodes) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Motion now = motion(i, q, v);
-    nodes[nodes_[i]].position = origin_ + now.x;
-    nodes[nodes_[i]].velocity = now.v;
+    nodes[nodes_[i]].position = origin_ + now.x + displacement;
+    nodes[nodes_[i]].velocity = now.v + velocity;
   }
+}
+
+Part::Moments Part::moments(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v) const {
+  Moments sums{fall_.mass * origin_, Eigen::Vector3d::Zero()};
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Motion now = motion(i, q, v);
+    sums.first += masses_[i] * now.x;
+    sums.momentum += masses_[i] * now.v;
+  }
+  return sums;
 }
 
 }  // namespace qddot

@@ -42,9 +42,20 @@ class Part {
   // Whether it is springs of some rest length on a line that make K constant (see straight.hpp).
   bool is_straightened() const { return is_straightened_; }
 
-  // Sets positions and velocities of its nodes among those of the scene from its unknowns.
+  // The frame that falls with it, if nothing is pinned to it: all else is as seen from there.
+  const Fall& fall() const { return fall_; }
+
+  // Sets positions and velocities of its nodes among those of the scene from its unknowns, all
+  // moved by `displacement` [m] and `velocity` [m/s].
   void expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v,
+              const Eigen::Vector3d& displacement, const Eigen::Vector3d& velocity,
               std::vector<Node>& nodes) const;
+  // S = sum m y [kg m] in the scene's coordinates and P = sum m y' [kg m/s] of its nodes (see
+  // Fall).
+  struct Moments {
+    Eigen::Vector3d first, momentum;
+  };
+  Moments moments(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v) const;
 
   // In which way, with both numbers, it is not `body` at the start: nodes, masses, positions,
   // velocities and energies are compared, up to what rounding and the tolerances of its reductions
@@ -78,8 +89,10 @@ class Part {
   Mirrors mirrors_;
   Eigen::Vector3d origin_;
   double energy_of_origin_ = 0;
+  Fall fall_;
   std::vector<std::size_t> nodes_;
-  std::vector<Image> images_;     // of the nodes
+  std::vector<double> masses_;    // of the nodes [kg]
+  std::vector<Image> images_;     // likewise
   std::vector<Unknowns> layout_;  // of the originals
   std::unique_ptr<System> system_;
   State initial_;

@@ -18,11 +18,12 @@ enum class Reduction {
   dimension,           // a motion in a plane or on a line has two coordinates or one
   mirror,              // of a motion that is its own mirror image, one half is enough
   constant_stiffness,  // K is the same everywhere, and is factorised once
+  falling,             // what nothing is pinned to falls in closed form as a whole
 };
 
-inline constexpr std::array<std::string_view, 8> reduction_names = {
-    "pins",  "duplicates", "massless", "free_flight",
-    "parts", "dimension",  "mirror",   "constant_stiffness"};
+inline constexpr std::array<std::string_view, 9> reduction_names = {
+    "pins",      "duplicates", "massless",           "free_flight", "parts",
+    "dimension", "mirror",     "constant_stiffness", "falling"};
 
 constexpr std::string_view name(Reduction reduction) {
   return reduction_names[static_cast<std::size_t>(reduction)];

@@ -55,14 +55,13 @@ std::vector<double> coordinates(const Network& network, const Vec& q) {
 
 // The network in which each spring keeps the direction in which it lies at `x`. `springs` are all
 // of its springs, in their order.
-Network with_offsets(Network network, const std::vector<LineSpring>& springs,
-                     const std::vector<double>& x) {
+Network with_directions(Network network, const std::vector<LineSpring>& springs,
+                        const std::vector<double>& x) {
   auto spring = springs.begin();
   const auto keep_direction = [&](auto& drawn) {
     for (auto& one : drawn) {
-      const double l0 = one.law.rest_length;
-      one.offset = spring++->difference(x) < 0 ? -l0 : l0;
-      one.law.rest_length = 0;
+      const bool is_backwards = spring++->difference(x) < 0;
+      if (one.law.rest_length > 0) one.direction = is_backwards ? -1 : 1;
     }
   };
   keep_direction(network.links);
@@ -89,7 +88,7 @@ std::optional<Network> straightened(const Network& network, const Vec& q, const 
   const auto springs = springs_of(network);
   if (!may_be_straightened(springs)) return {};
   const auto x = coordinates(network, q);
-  Network straight = with_offsets(network, springs, x);
+  Network straight = with_directions(network, springs, x);
   const auto system = make_mass_spring(straight);
   SymmetricMatrix k = system->stiffness_pattern();
   system->stiffness(q, k);

@@ -77,6 +77,26 @@ std::string flying_sentence(const std::vector<std::size_t>& nodes) {
                      listed(nodes), nodes.size() == 1 ? "s" : "");
 }
 
+std::string falling_sentence(std::size_t falling, std::size_t resting) {
+  std::vector<std::string> sentences;
+  if (falling > 0) {
+    const bool one = falling == 1;
+    sentences.push_back(fmt::format(
+        "{} without pins fall{} as a whole in closed form: gravity is left out, and what is "
+        "integrated is {} motion about {}",
+        counted(falling, "part"), one ? "s" : "", one ? "its" : "their",
+        one ? "the centre of mass" : "the centres of mass"));
+  }
+  if (resting > 0) {
+    const bool one = resting == 1;
+    sentences.push_back(fmt::format(
+        "{} without pins {} at rest about {}, every spring at its rest length, and {} no unknowns",
+        counted(resting, "part"), one ? "is" : "are",
+        one ? "its centre of mass" : "their centres of mass", one ? "has" : "have"));
+  }
+  return fmt::format("{}", fmt::join(sentences, "; "));
+}
+
 std::string parts_sentence(std::size_t parts) {
   return fmt::format("{} that no spring joins, each integrated by itself", counted(parts, "part"));
 }
@@ -106,7 +126,9 @@ std::vector<Finding> findings_of(const std::vector<Part>& parts,
       [&](const Part& part) {
         const Frame& frame = part.mirrors().frame;
         return fmt::format(
-            "positions, velocities and gravity lie in the {}: {} coordinate{} a node",
+            "{} lie in the {}: {} coordinate{} a node",
+            part.fall().moves() ? "positions, and velocities about the centre of mass,"
+                                : "positions, velocities and gravity",
             subspace(part, dimension), frame.dimension, frame.dimension == 1 ? "" : "s");
       });
   add(
@@ -118,9 +140,10 @@ std::vector<Finding> findings_of(const std::vector<Part>& parts,
           planes.push_back(
               plane(mirrors.frame.axes.col(d), part.origin() + mirrors.frame.origin, dimension));
         }
-        return fmt::format("the scene is its own mirror image in the {}: {} of {} move freely",
-                           fmt::join(planes, " and the "), part.originals(),
-                           counted(part.nodes().size(), "node"));
+        return fmt::format(
+            "{} is its own mirror image in the {}: {} of {} move freely",
+            part.fall().moves() ? "the motion about the centre of mass" : "the scene",
+            fmt::join(planes, " and the "), part.originals(), counted(part.nodes().size(), "node"));
       });
   const auto constant = static_cast<std::size_t>(
       std::ranges::count(systems, true, [](const auto& s) { return s->stiffness_is_constant(); }));

@@ -1,4 +1,4 @@
-// Springs on a line that keep their direction: V = 1/2 k (d - r)^2.
+// Springs on a line that are known to keep their direction: f is linear while they do.
 #include <cmath>
 #include <stdexcept>
 
@@ -30,17 +30,11 @@ Line line(int count, double strain, bool has_mirror) {
   }
   const auto k = [](int i) { return 100. + 10 * i; };
   for (int i = 0; i + 1 < count; ++i) {
-    line.network.links.push_back(
-        {i, i + 1, {.stiffness = k(i)}, Holds::always, false, x[i + 1] - x[i] - strain});
-    line.network.image_links.push_back({i + 1,
-                                        i,
-                                        {-1, 1, 1},
-                                        {.stiffness = k(i)},
-                                        Holds::always,
-                                        false,
-                                        -x[i] - x[i + 1] - strain});
-    line.network.anchors.push_back(
-        {i, {-2, 0, 0}, {.stiffness = k(i)}, Holds::always, false, -2 - x[i] - strain});
+    const auto law = [&](double length) { return SpringLaw{k(i), length - strain}; };
+    line.network.links.push_back({i, i + 1, law(x[i + 1] - x[i]), Holds::always, false, 1});
+    line.network.image_links.push_back(
+        {i + 1, i, {-1, 1, 1}, law(x[i] + x[i + 1]), Holds::always, false, -1});
+    line.network.anchors.push_back({i, {-2, 0, 0}, law(2 + x[i]), Holds::always, false, -1});
   }
   line.q = Vec::Map(x.data() + (has_mirror ? 1 : 0), count - (has_mirror ? 1 : 0));
   return line;
@@ -48,7 +42,7 @@ Line line(int count, double strain, bool has_mirror) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(offsets)
+BOOST_AUTO_TEST_SUITE(directions)
 
 BOOST_AUTO_TEST_CASE(energies_of_small_strains_keep_their_digits) {
   // 20 nodes are summed by vectors, 4 spring by spring.
@@ -57,11 +51,11 @@ BOOST_AUTO_TEST_CASE(energies_of_small_strains_keep_their_digits) {
       const auto [network, q] = line(count, 1e-9, has_mirror);
       const auto system = make_mass_spring(network);
       BOOST_TEST(system->stiffness_is_constant());
-      // Differences of positions, and of these and the offsets, are without rounding.
+      // Differences of positions, and of these and the rest lengths, are without rounding.
       const auto x = [&](int i) { return has_mirror ? (i == 0 ? 0 : q[i - 1]) : q[i]; };
       double v = 0;
       const auto add = [&](const auto& spring, double d) {
-        v += 0.5 * spring.law.stiffness * std::pow(d - spring.offset, 2);
+        v += 0.5 * spring.law.stiffness * std::pow(std::abs(d) - spring.law.rest_length, 2);
       };
       for (const auto& link : network.links) add(link, x(link.j) - x(link.i));
       for (const auto& link : network.image_links) add(link, -x(link.j) - x(link.i));
@@ -95,14 +89,40 @@ BOOST_AUTO_TEST_CASE(force_and_stiffness_are_its_derivatives) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(what_cannot_have_an_offset_is_refused) {
+BOOST_AUTO_TEST_CASE(all_is_as_without_directions_wherever_the_nodes_are) {
+  for (const int count : {4, 20}) {
+    for (const bool has_mirror : {false, true}) {
+      auto [network, q] = line(count, 0.3, has_mirror);
+      const auto directed = make_mass_spring(network);
+      for (auto& link : network.links) link.direction = 0;
+      for (auto& link : network.image_links) link.direction = 0;
+      for (auto& anchor : network.anchors) anchor.direction = 0;
+      const auto drawn = make_mass_spring(network);
+      BOOST_TEST(!drawn->stiffness_is_constant());
+      BOOST_TEST(!drawn->is_linear_at(q));
+      BOOST_TEST(directed->is_linear_at(q));
+      const Eigen::MatrixXd k = dense(stiffness_at(*directed, q));
+      Vec turned = q;
+      for (Index i = 0; i < q.size(); ++i) turned[i] *= i % 2 == 0 ? 1 : -3;
+      BOOST_TEST(!directed->is_linear_at(turned));
+      for (const Vec& at : {q, turned}) {
+        BOOST_TEST((force_at(*directed, at) == force_at(*drawn, at)));
+        BOOST_TEST(directed->potential(at) == drawn->potential(at));
+        BOOST_TEST((dense(stiffness_at(*directed, at)) == k));  // as on a line it is
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_have_a_direction_is_refused) {
   Network plane{.dimension = 2, .node_mass = Vec::Ones(2)};
-  plane.links = {{0, 1, {.stiffness = 1}, Holds::always, false, 0.5}};
+  plane.links = {{0, 1, {.stiffness = 1}, Holds::always, false, 1}};
   BOOST_CHECK_THROW(make_mass_spring(plane), std::invalid_argument);
   Network line{.dimension = 1, .node_mass = Vec::Ones(2)};
-  line.links = {{0, 1, {.stiffness = 1, .rest_length = 1}, Holds::always, false, 0.5}};
+  line.links = {{0, 1, {.stiffness = 1, .quartic = 1}, Holds::always, false, 1}};
   BOOST_CHECK_THROW(make_mass_spring(line), std::invalid_argument);
-  line.links = {{0, 1, {.stiffness = 1, .quartic = 1}, Holds::always, false, 0.5}};
+  line.links = {{0, 1, {.stiffness = 1, .rest_length = 1}, Holds::always, false, 1},
+                {0, 1, {.stiffness = 1, .rest_length = 2}}};
   BOOST_CHECK_THROW(make_mass_spring(line), std::invalid_argument);
 }
 
