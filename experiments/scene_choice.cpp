@@ -51,6 +51,7 @@ Scene load(const std::string& name) {
                              return read_text(path);
                            },
                            {.bytes = free_memory()});
+  scene.name = in_one_line(scene.name);  // it reaches terminals and tables
   for (const std::string& warning : scene.warnings) {
     fmt::print(stderr, "{}: warning: {}\n", program_invocation_short_name, in_one_line(warning));
   }

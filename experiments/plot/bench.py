@@ -11,6 +11,7 @@ from pathlib import Path
 
 from matplotlib.lines import Line2D
 
+from names import shown
 from sheet import Sheet
 from style import COOL, FAINT, FRONT, INK, WARM, decades, power_of_ten, seconds, use_style, widened
 
@@ -144,7 +145,7 @@ def main(folder):
             PANEL_HEIGHT,
         )
         draw_scene(axes, points)
-        style_axes(axes, f"{scene}, {until:g} s", column == 0, row == rows - 1)
+        style_axes(axes, f"{shown(scene)}, {until:g} s", column == 0, row == rows - 1)
     for ending in ("png", "svg"):
         sheet.save(Path(folder) / f"bench.{ending}")
 

@@ -10,6 +10,7 @@ from matplotlib.text import Text
 
 from chart import move_label
 from labels import Ink, line_label, place_labels
+from names import shown
 from sheet import Sheet
 from style import COOL, FAINT, GRID, INK, MARKERS, WARM, Family, Look, number, power_of_ten
 from style import short_names
@@ -175,7 +176,7 @@ class DampingSheet:
     def draw(self):
         """Everything."""
         scene = self.origin.get("scene", {}).get("name", "the scene")
-        title = f"{scene}: what methods do to vibrations, by linear theory and measured"
+        title = f"{shown(scene)}: what methods do to vibrations, by linear theory and measured"
         self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
         words = (
             "killed: loses nine tenths of its amplitude in a period; lives: keeps half of it for "

@@ -19,6 +19,7 @@ from matplotlib.text import Text
 from chart import move_label
 from drift_table import FATES, draw_table, label, optional, table_height
 from labels import Ink, line_label, place_labels
+from names import shown
 from sheet import Sheet
 from style import FAINT, GRID, INK, number, power_of_ten, use_style
 
@@ -279,7 +280,7 @@ def main(folder):
     panels = TOP + PANEL_HEIGHT + 0.65 + (DOWN - 0.1 + TOLERANCE_HEIGHT if has_tolerances else 0)
     sheet = Sheet(WIDTH, max(panels, TOP + table_height(rows)))
     until, h = origin["until"], origin["step_size"]
-    title = f"{origin['scene']['name']}: where the energy goes"
+    title = f"{shown(origin['scene']['name'])}: where the energy goes"
     sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center", color=INK)
     words = (
         f"{number(until / h)} steps of h = {number(h)} s, to t = {number(until)} s; "

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
+from names import shown
 from sheet import Sheet
 from style import COOL, FAINT, GRID, INK, WARM, number, use_style
 
@@ -145,6 +146,8 @@ def main(folder):
     courses, summary = read(folder)
     origin = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     runs = [run for run in summary if run[0] != "reference"]
+    if not runs:
+        sys.exit(f"exchange.py: {folder} has no run to draw")
     methods = list(dict.fromkeys(method for method, _ in runs))
     steps = list(dict.fromkeys(step for _, step in runs))
     reference = next(course for run, course in courses.items() if run[0] == "reference")
@@ -155,7 +158,7 @@ def main(folder):
     height = first + len(methods) * (PANEL_HEIGHT + DOWN) - DOWN + BOTTOM
     sheet = Sheet(width, height)
     panels = Panels(sheet, reference, origin["until"])
-    title = f"{origin['scene']['name']}: which method lets stiff springs exchange their energy?"
+    title = f"{shown(origin['scene']['name'])}: which method lets stiff springs exchange their energy?"
     sheet.text(0.2, 0.3, title, size=15, weight="bold", va="center", color=INK)
     words = (
         f"energies of stiff springs over time, in parts of their sum at the start; "
@@ -179,6 +182,8 @@ def main(folder):
         work = forces(method, summary)
         sheet.text(start - 0.35, middle + 0.11, work, size=8.5, color=FAINT, **place)
         for i, step in enumerate(steps):
+            if (method, step) not in summary:
+                continue  # the study was interrupted before
             left = start + i * (PANEL_WIDTH + ACROSS)
             axes = panels.axes(left, top, PANEL_WIDTH, PANEL_HEIGHT, row + 1 == len(methods))
             axes.tick_params(labelleft=i == 0)

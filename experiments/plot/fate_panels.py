@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from fates import OUTCOMES, color_of, panels_of, sections_of
+from names import shown
 from sheet import Sheet
 from style import FAINT, INK, number, power_of_ten, short_names
 
@@ -230,7 +231,7 @@ class FateSheet:
         """Title, subtitle and the key."""
         scene = self.origin.get("scene", {}).get("name", "the scene")
         until, tolerated = self.origin.get("until"), self.origin.get("tolerated")
-        title = f"{scene}: what becomes of a run, by method, step size and amplitude"
+        title = f"{shown(scene)}: what becomes of a run, by method, step size and amplitude"
         self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
         length = f"each cell one run of {number(until)} s or 100 steps" if until else ""
         across = f"to the right h ω_max{self.fastest()}"

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.collections import LineCollection
 
+from names import shown
 from sheet import Sheet
 from style import COOL, FAINT, INK, WARM, number, use_style
 
@@ -151,7 +152,7 @@ def main(folder):
     height = TOP + rows * (tall + TITLE + GAP)
     sheet = Sheet(2 * SIDE + COLUMNS * PANEL + (COLUMNS - 1) * GAP, height)
     place = {"drawn": "as drawn", "equilibrium": "at equilibrium"}[origin["at"]]
-    title = f"{origin['scene']['name']}: natural modes {place}"
+    title = f"{shown(origin['scene']['name'])}: natural modes {place}"
     sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center", color=INK)
     words = [f"modes of finite frequency: {origin['finite_modes']}"]
     if origin["unstable_directions"] > 0:

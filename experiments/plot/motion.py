@@ -22,6 +22,7 @@ from matplotlib.text import Text
 
 from chart import move_label
 from labels import Ink, place_labels
+from names import shown
 from sheet import Sheet
 from style import FAINT, Look, assign_looks, family_look, use_style
 
@@ -235,7 +236,7 @@ def main(view, scene, h, until, out):
     runs = [simulate("exact", EXACT_LOOK, EXACT, scene, fine, every, end)]
     runs += [simulate(name, looks[name], name, scene, step, step, end) for name in METHODS]
     sheet = Sheet(WIDTH, HEIGHT)
-    title = f"{scene}: {len(METHODS)} methods at one step size, h = {h} s"
+    title = f"{shown(scene)}: {len(METHODS)} methods at one step size, h = {h} s"
     sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
     exact = f"exact: {EXACT} at h / {EXACT_STEPS}"
     sheet.text(0.15, 0.54, exact, size=10, color=FAINT, va="center")

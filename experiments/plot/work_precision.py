@@ -16,6 +16,7 @@ import measurements
 import quantities
 from band import draw_band
 from chart import BACKGROUND, MATTERS, NEAR, Chart
+from names import shown
 from sheet import Sheet
 from style import FAINT, assign_looks, number, seconds, use_style
 
@@ -151,7 +152,7 @@ def draw(views, reference, fallback_scene):
     strip_top = header + sum(map(panel_height, views)) + HEADING * len(more)
     sheet = Sheet(WIDTH, strip_top + failures.strip_height(failed))
     scene = reference.scene or (main.runs[0].scene if main.runs else "") or fallback_scene
-    draw_header(sheet, scene, main.quantity, reference)
+    draw_header(sheet, shown(scene), main.quantity, reference)
     draw_key(sheet, header - KEY, looks, draw_panel(sheet, header, main, looks))
     top = header + panel_height(main)
     for view in more:

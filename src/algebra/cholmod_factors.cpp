@@ -1,10 +1,12 @@
 #include "src/algebra/cholmod_factors.hpp"
 
+#include <atomic>
 #include <cmath>
+#include <new>
 #include <numeric>
 #include <omp.h>
-#include <new>
 #include <stdexcept>
+#include <sys/mman.h>
 
 #include <suitesparse/cholmod.h>
 
@@ -115,8 +117,19 @@ class CholmodFactors : public Factors {
     return factor;
   }
 
+  // OpenBLAS maps a buffer at its first dense product and, where that fails, tries for ever. Throws
+  // std::bad_alloc where the address space that is left does not hold one.
+  static void require_buffer() {
+    constexpr std::size_t buffer = std::size_t{128} << 20;  // its BUFFER_SIZE on x86-64
+    void* place = ::mmap(nullptr, buffer, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (place == MAP_FAILED) throw std::bad_alloc();
+    ::munmap(place, buffer);
+  }
+
   // Whether the numeric factorisation ran through every pivot.
   bool numeric(cholmod_factor* factor) {
+    static std::atomic<bool> has_buffer = false;
+    if (!has_buffer) require_buffer();
     current_ = factor;
     // CHOLMOD asks for 4 threads whatever OMP_NUM_THREADS says; parts this small only wait for
     // each other in them.
@@ -127,6 +140,7 @@ class CholmodFactors : public Factors {
     if (common_.status < CHOLMOD_OK) {
       throw std::bad_alloc();
     }
+    has_buffer = true;
     return factor->minor >= factor->n;
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -29,29 +30,48 @@ struct Exit {
   std::string out, err;
 };
 
-// Runs one of the programs to its end.
-inline Exit run(const std::string& program, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), PROGRAM_FOLDER "/" + program);
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  std::FILE *out = std::tmpfile(), *err = std::tmpfile();
-  const pid_t child = fork();
-  if (child == 0) {
-    dup2(fileno(out), STDOUT_FILENO);
-    dup2(fileno(err), STDERR_FILENO);
-    execv(argv[0], argv.data());
-    _exit(127);
+// One of the programs, running.
+class Started {
+ public:
+  Started(const std::string& program, std::vector<std::string> arguments)
+      : out_(std::tmpfile()), err_(std::tmpfile()) {
+    arguments.insert(arguments.begin(), PROGRAM_FOLDER "/" + program);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    child_ = fork();
+    if (child_ == 0) {
+      dup2(fileno(out_), STDOUT_FILENO);
+      dup2(fileno(err_), STDERR_FILENO);
+      execv(argv[0], argv.data());
+      _exit(127);
+    }
   }
-  int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child) throw std::runtime_error("no process");
-  const auto take = [](std::FILE* file) {
+
+  // Sends it a signal, if any, and waits for its end. To be called once.
+  Exit end(int signal = 0) {
+    int status = 0;
+    if (child_ > 0 && signal != 0) kill(child_, signal);
+    if (child_ < 0 || waitpid(child_, &status, 0) != child_) throw std::runtime_error("no process");
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), take(out_),
+            take(err_)};
+  }
+
+ private:
+  static std::string take(std::FILE* file) {
     std::string text(static_cast<std::size_t>(lseek(fileno(file), 0, SEEK_END)), '\0');
     if (pread(fileno(file), text.data(), text.size(), 0) != std::ssize(text)) text.clear();
     std::fclose(file);
     return text;
-  };
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), take(out), take(err)};
+  }
+
+  std::FILE *out_, *err_;
+  pid_t child_ = -1;
+};
+
+// Runs one of the programs to its end.
+inline Exit run(const std::string& program, std::vector<std::string> arguments) {
+  return Started(program, std::move(arguments)).end();
 }
 
 inline bool contains(const std::string& text, const std::vector<std::string>& fragments) {

@@ -44,7 +44,7 @@ const Course& oscillator() {
   return course;
 }
 
-constexpr Effort short_runs{.seconds = 0.1, .repeats = 1};
+const Effort short_runs{.seconds = 0.1, .repeats = 1};
 
 bool reached(const Point& point) { return point.outcome == Outcome::reached_end; }
 
