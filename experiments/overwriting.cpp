@@ -32,12 +32,12 @@ std::string beginning_of(const std::string& path, std::size_t most) {
   return text;
 }
 
-// Whether it is one of qddot's JSON files: each says by what command and compiler it was made.
+// Whether it is one of qddot's JSON files: each says of which sources the program was made.
 bool is_own_json(const std::string& path) {
   constexpr std::size_t enough = 1 << 20;  // even with a long command line
   const std::string text = beginning_of(path, enough);
-  return text.starts_with('{') && text.find("\"command_line\"") != text.npos &&
-         text.find("\"compiler\"") != text.npos;
+  return text.starts_with('{') && (text.find("\"source_hash\"") != text.npos ||
+                                   text.find("\"certified_position\"") != text.npos);
 }
 
 std::string signature_of(std::string_view text) {

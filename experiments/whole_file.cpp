@@ -48,9 +48,12 @@ void WholeFile::complete() {
 
 void WholeFile::commit() {
   complete();
-  if (std::rename(beside_.c_str(), path_.c_str()) != 0) fail(errno);
+  const bool has_name = std::rename(beside_.c_str(), path_.c_str()) == 0;
+  const int error = errno;
+  if (!has_name) std::remove(beside_.c_str());
   forget_unfinished(beside_);
   beside_.clear();
+  if (!has_name) fail(error);
 }
 
 void WholeFile::fail(int error) const {

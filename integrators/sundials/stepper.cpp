@@ -188,6 +188,7 @@ Outcome Stepper::step_aside(State& state, double t) {
 Outcome Stepper::take_one(State& state, double t_stop) {
   if (must_stop()) return Outcome::over_budget;
   t_stop_ = t_stop;
+  is_finite_ = true;
   double t = state.t;
   const int flag = take_step(t_stop, t);
   if (parked_) std::rethrow_exception(parked_);

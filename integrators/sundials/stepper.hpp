@@ -76,8 +76,9 @@ class Stepper : public Integrator {
   int guarded(Body body) noexcept {
     if (parked_) return -1;
     try {
-      is_finite_ = body();
-      return is_finite_ ? 0 : 1;
+      const bool is_finite = body();
+      is_finite_ = is_finite_ && is_finite;
+      return is_finite ? 0 : 1;
     } catch (...) {
       parked_ = std::current_exception();
       return -1;
@@ -130,7 +131,7 @@ class Stepper : public Integrator {
   Counts beside_;  // what the library counted of the steps aside
   std::exception_ptr parked_;
   double t_stop_ = 0;      // [s] of the step at hand
-  bool is_finite_ = true;  // what the last callback computed
+  bool is_finite_ = true;  // all that callbacks have computed in the step at hand
   std::string said_;
 };
 

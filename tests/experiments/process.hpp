@@ -74,6 +74,9 @@ inline Exit run(const std::string& program, std::vector<std::string> arguments) 
   return Started(program, std::move(arguments)).end();
 }
 
+// What simulate says of a run, but for the time that it took.
+inline std::string untimed(const Exit& run) { return run.out.substr(0, run.out.rfind(", in ")); }
+
 inline bool contains(const std::string& text, const std::vector<std::string>& fragments) {
   for (const std::string& fragment : fragments) {
     if (text.find(fragment) == text.npos) return false;

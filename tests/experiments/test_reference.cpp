@@ -297,7 +297,10 @@ BOOST_AUTO_TEST_CASE(a_push_out_of_a_stable_symmetry_does_nothing) {
   const Reference made = make_reference(ReducedScene(stretched), 0.7, seconds, &stretched);
   BOOST_TEST_REQUIRE(made.out_of_symmetry.has_value());
   BOOST_TEST(std::isinf(made.out_of_symmetry->horizon));
-  BOOST_TEST(made.out_of_symmetry->effect < 1e-11);
+  // It is a rounding of the start, whose effect is seen in one run as well; two runs of thousands
+  // of steps add theirs.
+  BOOST_TEST(made.out_of_symmetry->effect < 10 * made.rounding_effect);
+  BOOST_TEST(made.rounding_effect < 1e-10);
   BOOST_TEST(!made.is_only_symmetric());
 }
 

@@ -230,7 +230,7 @@ BOOST_AUTO_TEST_CASE(a_tolerance_beyond_rounding_is_not_reached) {
   for (const char* method : {"ida", "arkode_dirk2"}) {
     const Folder folder;
     const Exit result = run("simulate", {"--scene", "oscillator", "--method", method, "--rtol",
-                                         "1e-30", "--final", folder / "f.csv"});
+                                         "1e-15", "--atol", "1e-29", "--final", folder / "f.csv"});
     BOOST_TEST(complains(result, 3, "simulate", {"of 2 s reached", "raise --rtol"}), result.err);
     BOOST_TEST(read_csv(folder / "f.csv").value(1, "x") == 1);
   }
@@ -246,7 +246,7 @@ BOOST_AUTO_TEST_CASE(after_millions_of_steps_samples_still_land_on_steps) {
   words[3] = folder / "seen.csv";
   words.insert(words.end(), {"--energy", folder / "e.csv", "--every", "0.005"});
   const Exit seen = run("simulate", words);
-  BOOST_TEST(alone.out == seen.out);  // as many steps
+  BOOST_TEST(untimed(alone) == untimed(seen));  // as many steps
   BOOST_TEST(read_all(folder / "alone.csv") == read_all(folder / "seen.csv"));
 }
 

@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_CASE(points_and_runs_come_back_whole) {
   run.energy.drift = {1, 2, 3};
   run.energy.slow_period = infinity;
   run.energy.colour = Colour::undecided;
-  run.linear = Trend{.walk = 4};
+  run.linear.emplace().walk = 4;
   run.path = {{0, 1, 2}, {3, 4, 5}};
   run.summary.message = "why";
   const DriftRun again =

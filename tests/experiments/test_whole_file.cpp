@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(files_that_qddot_did_not_write_stay) {
   folder.write("empty.csv", "");
   BOOST_TEST(refusal(folder / "empty.csv") == "");
   BOOST_CHECK_NO_THROW(WholeFile(folder / "mine.csv", "a,b\n"));
-  folder.write("end.json", "{\"command_line\": [], \"compiler\": \"\"}");
+  folder.write("end.json", "{\"source_hash\": 1}");
   BOOST_TEST(refusal(folder / "end.json") == "");
   BOOST_CHECK_NO_THROW(WholeFile(folder / "mine.csv", "x\n", folder / "end.json"));
   folder.write("s.toml", signed_text("name = 'a'\n"));

@@ -37,7 +37,7 @@ inline const std::string mesh_scene =
     "stiffness = 10\n"
     "total_mass = 8\n"
     "[[mesh.pin]]\n"
-    "min = [-1, -1, 2]\n"
+    "min = [-1, -1, 0.3]\n"
     "max = [1, 1, 3]\n";
 
 // Reads a text as if it stood in the file a.toml, beside the meshes m.obj, a tetrahedron, q.obj, a
