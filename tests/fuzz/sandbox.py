@@ -14,7 +14,7 @@ OWN = {
     "mine/summary.csv": b"my,own\n3,4\n",
     "mine/reference.json": b'{"mine": 1}\n',
     "mine/map.json": b"{}\n",
-    "empty.toml": b"",
+    "empty.toml": b"# mine\n",
     "-dash.toml": b"dimension = 1\n",
     "locked.toml": b"dimension = 1\n",
     "body.obj": b"v 0 0 0\n",
