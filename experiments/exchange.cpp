@@ -35,6 +35,7 @@
 #include "experiments/csv.hpp"
 #include "experiments/deadline.hpp"
 #include "experiments/energy_exchange.hpp"
+#include "experiments/exchange_words.hpp"
 #include "experiments/measurement.hpp"
 #include "experiments/program.hpp"
 #include "experiments/progress.hpp"
@@ -54,10 +55,6 @@ namespace {
 constexpr double reference_h_omega = 0.1, reference_rtol = 1e-12;
 constexpr double longest_run = 60;  // [s] of wall time
 constexpr double periods_of_mean = 40;
-// Of the tempo, the misfit and the sum from start to end: beyond these something is wrong.
-constexpr double tempo_tolerance = 1.1, most_misfit = 0.1, most_change = 0.1, most_level = 2;
-// Parts of the sum that are an exchange and that are none.
-constexpr double some_exchange = 0.1, no_exchange = 0.02;
 
 struct Arguments {
   SceneChoice scene;
@@ -198,38 +195,6 @@ CertifiedCourse reference_of(Study& study, const Excitation& excitation) {
         std::max(reference.certified, apart.lpNorm<Eigen::Infinity>() / excitation.sum);
   }
   return reference;
-}
-
-// By how much a tempo is not 1: "14 % too slowly", "2.3 times too fast".
-std::string off_by(double tempo) {
-  const char* where = tempo > 1 ? "too fast" : "too slowly";
-  const double factor = std::max(tempo, 1 / tempo);
-  return factor < 2 ? fmt::format("{:.0f} % {}", 100 * std::abs(tempo - 1), where)
-                    : fmt::format("{:.1f} times {}", factor, where);
-}
-
-std::string verdict_on(const Summary& summary) {
-  const bool blows_up =
-      summary.outcome == Outcome::diverged || summary.outcome == Outcome::not_finite;
-  return fmt::format("{} at t = {:.3g} s", blows_up ? "blows up" : name(summary.outcome),
-                     summary.t_reached);
-}
-
-std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& reference) {
-  const double kept = c.last / c.first;
-  if (kept < 1 - most_change)
-    return c.last < 0.005 ? "damps: nothing left"
-                          : fmt::format("damps: {:.0f} % of the energy left", 100 * c.last);
-  if (kept > 1 + most_change) return fmt::format("gains energy: {:.3g} times as much", c.last);
-  if (c.level > most_level || c.level < 1 / most_level)
-    return fmt::format("holds {:.2g} times the energy", c.level);
-  if (reference.exchanged < some_exchange)
-    return c.distance <= most_misfit ? "as it should: no exchange so far" : "exchanges wrongly";
-  if (c.exchanged <= no_exchange) return "no exchange";
-  if (c.misfit > most_misfit) return "exchanges wrongly";
-  if (c.tempo > tempo_tolerance || c.tempo < 1 / tempo_tolerance)
-    return "exchanges " + off_by(c.tempo);
-  return "exchanges as it should";
 }
 
 void write_course(CsvFile& csv, const std::string& method, double h, double h_omega,

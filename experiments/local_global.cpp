@@ -34,6 +34,7 @@
 #include "experiments/csv.hpp"
 #include "experiments/interruption.hpp"
 #include "experiments/iterated_steps.hpp"
+#include "experiments/iteration_tables.hpp"
 #include "experiments/newton.hpp"
 #include "experiments/pace.hpp"
 #include "experiments/program.hpp"
@@ -154,30 +155,6 @@ nlohmann::json compare_steps(const Arguments& a) {
           {"setup", setups(comparison)},
           {"step_error", own}};
 }
-
-// Tables that appear together when all that there is to measure has been, or was interrupted.
-struct StepTables {
-  explicit StepTables(const std::string& folder)
-      : convergence(folder + "/convergence.csv",
-                    {"solver", "iteration", "seconds", "relative_error"}),
-        positions(folder + "/positions.csv",
-                  {"solver", "iteration", "seconds", "distance_to_converged", "step_error"}),
-        stiffness(folder + "/stiffness.csv",
-                  {"stiffness", "solver", "iteration", "seconds", "relative_error"}),
-        resolution(folder + "/resolution.csv",
-                   {"nodes", "solver", "iteration", "seconds", "relative_error"}),
-        run(folder + "/run.csv",
-            {"solver", "iterations", "seconds", "position_error", "energy_change"}) {}
-  static std::vector<std::string> names() {
-    return {"convergence.csv", "positions.csv", "stiffness.csv", "resolution.csv", "run.csv"};
-  }
-
-  CsvFile convergence, positions, stiffness, resolution, run;
-  // What their sidecars have of their own.
-  bool all_held = true;  // whether no solver failed
-  nlohmann::json of_step = nlohmann::json::object(), of_stiffness = nlohmann::json::object(),
-                 of_resolution = nlohmann::json::object();
-};
 
 void write_step(Study& study, const Arguments& a, StepTables& tables) {
   const nlohmann::json step = study.piece("step", [&] { return compare_steps(a); });

@@ -389,16 +389,10 @@ class MassSpring final : public System, public Kinks {
 }  // namespace
 
 std::unique_ptr<System> make_mass_spring(const Network& network, Forces forces) {
-  switch (network.dimension) {
-    case 1:
-      return std::make_unique<MassSpring<1>>(network, forces);
-    case 2:
-      return std::make_unique<MassSpring<2>>(network, forces);
-    case 3:
-      return std::make_unique<MassSpring<3>>(network, forces);
-    default:
-      throw std::invalid_argument("a network has 1, 2 or 3 dimensions");
-  }
+  if (network.dimension == 1) return std::make_unique<MassSpring<1>>(network, forces);
+  if (network.dimension == 2) return std::make_unique<MassSpring<2>>(network, forces);
+  if (network.dimension == 3) return std::make_unique<MassSpring<3>>(network, forces);
+  throw std::invalid_argument("a network has 1, 2 or 3 dimensions");
 }
 
 }  // namespace qddot
