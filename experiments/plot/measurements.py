@@ -189,6 +189,15 @@ def displacements(scales):
     return (min(lengths, default=whole), max(lengths, default=whole))
 
 
+def interrupted_by(path):
+    """What ended the study of the table before it was complete, as the table's sidecar says."""
+    try:
+        with open(f"{path.removesuffix('.csv')}.json", encoding="utf-8") as file:
+            return json.load(file).get("interrupted")
+    except (OSError, ValueError, AttributeError):
+        return None
+
+
 def read_reference(path):
     """What the file says of the reference solution; a file that is not there says nothing."""
     try:

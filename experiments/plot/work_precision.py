@@ -42,23 +42,32 @@ def axes_height(runs):
     return 4.35 + 0.08 * max(0, methods - ROOMY_METHODS)
 
 
-def draw_header(sheet, scene, quantity, reference):
-    """Title and subtitle; and what the motion itself leaves unknown."""
+def draw_header(sheet, scene, quantity, reference, sentences):
+    """Title and subtitle; and what a reader must know before the errors."""
     end = "T" if reference.until is None else f"T = {number(reference.until)} s"
     title = f"{scene}: time of a run against {quantity.title} {end}"
     sheet.text(MARGIN, 0.25, title, size=14, weight="bold", va="center")
     sheet.text(MARGIN, 0.54, quantity.subtitle, size=10, color=FAINT, va="center")
-    for line, words in enumerate(warnings(reference)):
+    for line, words in enumerate(sentences):
         top = 0.83 + HORIZON * line
         sheet.text(MARGIN, top, words, size=10, color=WARNING, va="center")
 
 
-def warnings(reference):
-    """What a reader must know of the motion before its errors; two lines each."""
+def warnings(reference, interruption):
+    """What a reader must know of the study and the motion before its errors; two lines each."""
     return [
+        *([interruption_in_words(interruption)] if interruption else []),
         *([horizon_in_words(reference)] if reference.horizon else []),
         *([symmetry_in_words(reference)] if reference.symmetric_until is not None else []),
     ]
+
+
+def interruption_in_words(interruption):
+    """That points are missing, and how they are measured."""
+    return (
+        f"The study was interrupted by {interruption}: points are missing.\n"
+        "The same command with --resume measures them."
+    )
 
 
 def symmetry_in_words(reference):
@@ -143,16 +152,17 @@ def panel_height(view):
     return band_height(view) + axes_height(view.runs) + AXIS_TEXT
 
 
-def draw(views, reference, fallback_scene):
+def draw(views, reference, interruption, fallback_scene):
     """The whole picture of one view and more below it as a sheet."""
     main, *more = views
     looks = assign_looks({run.method: run.family for run in main.runs})
     failed = failures.failing(measurements.sweeps(main.runs))
-    header = HEADER + HORIZON * len(warnings(reference))
+    sentences = warnings(reference, interruption)
+    header = HEADER + HORIZON * len(sentences)
     strip_top = header + sum(map(panel_height, views)) + HEADING * len(more)
     sheet = Sheet(WIDTH, strip_top + failures.strip_height(failed))
     scene = reference.scene or (main.runs[0].scene if main.runs else "") or fallback_scene
-    draw_header(sheet, shown(scene), main.quantity, reference)
+    draw_header(sheet, shown(scene), main.quantity, reference, sentences)
     draw_key(sheet, header - KEY, looks, draw_panel(sheet, header, main, looks))
     top = header + panel_height(main)
     for view in more:
@@ -188,8 +198,10 @@ def main(arguments):
     use_style()
     try:
         reference = measurements.read_reference(os.path.join(directory, "reference.json"))
+        interruption = measurements.interrupted_by(os.path.join(directory, "points.csv"))
         for name, views in pictures(directory, reference):
-            sheet = draw(views, reference, os.path.basename(os.path.abspath(directory)))
+            folder = os.path.basename(os.path.abspath(directory))
+            sheet = draw(views, reference, interruption, folder)
             for extension in ("png", "svg"):
                 sheet.save(os.path.join(directory, f"{name}.{extension}"))
     except measurements.BadInput as error:
