@@ -232,13 +232,13 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
     if (auto reference = stored(found, scene, until)) return *reference;
   }
   const bool is_of_others = found.is_object() && found.value("key", nlohmann::json()) != key;
+  WholeFile whole(file);
   if (!found.is_null() && !is_of_others) {
     fmt::print(stderr,
                "{}: it is not as it was written (its checksum or its numbers are wrong): the "
                "reference is made anew\n",
                in_one_line(file));
   }
-  WholeFile whole(file);
   const Reference reference = made(scene, start, until, needed);
   nlohmann::json json = origin;
   json.update(to_json(reference));

@@ -83,7 +83,7 @@ Below by_decomposition(const SymmetricMatrix& k, const Vec& e) {
   const Vec scale = e.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd dense = -Eigen::MatrixXd(scale.asDiagonal() * k * scale.asDiagonal());
   const Vec values = dense.selfadjointView<Eigen::Lower>().eigenvalues();
-  if (!values.allFinite()) throw std::runtime_error("the eigenvalues of K were not found");
+  if (!values.allFinite()) throw std::domain_error("the eigenvalues of K were not found");
   return {static_cast<int>((values.array() < -1).count()),
           static_cast<int>((values.array() < 1).count())};
 }
@@ -116,7 +116,7 @@ CurvatureSigns curvature_signs(const System& system, const Vec& q) {
   if (system.size() == 0) return {};
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
-  if (!k.coeffs().allFinite()) throw std::runtime_error("the stiffness matrix is not finite");
+  if (!k.coeffs().allFinite()) throw std::domain_error("the stiffness matrix is not finite");
   Vec e = rounding_of_rows(system, q, k);
   if (!e.allFinite()) throw std::domain_error("the stiffness matrix overflows");
   const double largest = e.maxCoeff();
