@@ -17,12 +17,12 @@ std::string step_warning(const Method& method, const Knobs& knobs, const Reduced
 // holds may come near that: at h w = 1.9 energies swing by 1/(1 - (h w)^2/4) = 10.
 std::string growth_warning(const Method& method, const Summary& summary);
 
-// Of any method that forces of the start are beyond all measure. Why a run of fixed steps that
-// failed with `summary` did so, and what would have held, in a few sentences: at which step; the
-// limit that it crossed (h w_max over the motion so long as its energy was still about the same, or
-// h times the rate at which compressed springs push to the side); and by trying, the largest of
-// h/2, h/4, ... and the methods at this h that hold, for some `seconds` at most. Empty for other
-// methods and outcomes.
+// Says of any method that the forces of the start are beyond all measure. Says why a run of fixed
+// steps that failed with `summary` did so, and what would have held, in a few sentences: at which
+// step; the limit that it crossed (h w_max over the motion so long as its energy was still about
+// the same, or h times the rate at which compressed springs push to the side); and by trying, the
+// largest of h/2, h/4, ... and the methods at this h that hold, for some `seconds` at most. Empty
+// for other methods and outcomes.
 std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedScene& scene,
                       double until, const Summary& summary, double seconds);
 

@@ -28,7 +28,7 @@ class Look {
   void at(const State& state) {
     const Vec& mass = scene_.system().mass();
     scene_.system().force(state.q, f_);
-    // Of what is integrated: a fall in closed form has no error.
+    // What is integrated alone counts: a fall in closed form has no error.
     const bool is_integrated = scene_.system().size() > 0;
     const double kinetic = is_integrated ? scene_.system().kinetic(state.v) : scene_.kinetic(state);
     const double potential = scene_.energy(state) - kinetic;

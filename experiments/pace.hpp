@@ -21,7 +21,7 @@ std::string pace_in_words(double t, double until, double seconds);
 // expect more than a minute. A sleeping thread looks; the run only notes its time.
 class Pace {
  public:
-  // Of `integrator`, which must outlive this, from time 0 to `until` [s].
+  // `integrator` must outlive this and runs from time 0 to `until` [s].
   Pace(std::string program, const Integrator& integrator, double until);
 
  private:

@@ -90,6 +90,8 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return complain(app, error.what(), end_not_reached);
   } catch (const std::domain_error& error) {  // what is asked for does not exist for the scene
     return complain(app, error.what(), end_not_reached);
+  } catch (const std::range_error& error) {  // numbers of the scene overflow on the way to it
+    return complain(app, error.what(), end_not_reached);
   } catch (const std::bad_alloc&) {
     return complain(app, out_of_memory(), end_not_reached);
   } catch (const std::system_error&) {  // no thread can be started

@@ -99,8 +99,8 @@ std::string written(const nlohmann::json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// Of all that is stored but itself, as 16 hexadecimal digits: 64-bit FNV-1a of its compact form, in
-// which numbers are exact and keys in order.
+// The checksum of all that is stored but itself, as 16 hexadecimal digits: 64-bit FNV-1a of the
+// compact form, in which numbers are exact and keys in order.
 std::string checksum(nlohmann::json json) {
   json.erase("checksum");
   std::uint64_t hash = 0xcbf29ce484222325ULL;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 #include <new>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 

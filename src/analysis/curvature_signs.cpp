@@ -83,7 +83,7 @@ Below by_decomposition(const SymmetricMatrix& k, const Vec& e) {
   const Vec scale = e.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd dense = -Eigen::MatrixXd(scale.asDiagonal() * k * scale.asDiagonal());
   const Vec values = dense.selfadjointView<Eigen::Lower>().eigenvalues();
-  if (!values.allFinite()) throw std::domain_error("the eigenvalues of K were not found");
+  if (!values.allFinite()) throw std::range_error("the eigenvalues of K were not found");
   return {static_cast<int>((values.array() < -1).count()),
           static_cast<int>((values.array() < 1).count())};
 }
@@ -116,9 +116,9 @@ CurvatureSigns curvature_signs(const System& system, const Vec& q) {
   if (system.size() == 0) return {};
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
-  if (!k.coeffs().allFinite()) throw std::domain_error("the stiffness matrix is not finite");
+  if (!k.coeffs().allFinite()) throw std::range_error("the stiffness matrix is not finite");
   Vec e = rounding_of_rows(system, q, k);
-  if (!e.allFinite()) throw std::domain_error("the stiffness matrix overflows");
+  if (!e.allFinite()) throw std::range_error("the stiffness matrix overflows");
   const double largest = e.maxCoeff();
   if (largest == 0) return {.negative = 0, .flat = static_cast<int>(system.size())};
   // Where no spring pulls at all, any other number does.

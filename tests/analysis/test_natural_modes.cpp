@@ -272,7 +272,7 @@ BOOST_AUTO_TEST_CASE(largest_frequency_is_just_below_the_true_one_and_the_bound)
   for (const Case& c : cases) {
     const double truth = std::sqrt(all_squares(c).maxCoeff());
     const double found = largest_frequency(*c.system, c.q);
-    // Of 30 products there is no theorem, but values crowd at the end: within a tenth.
+    // No theorem bounds 30 products, but values crowd at the end: within a tenth.
     const double at_least = frequency_at_least(*c.system, c.q);
     BOOST_TEST(at_least <= found * (1 + 1e-3));
     BOOST_TEST(at_least >= 0.9 * found);

@@ -15,8 +15,8 @@ std::string pinned_sentence(std::size_t pins);
 std::string merged_sentence(std::size_t gone, std::size_t left);
 std::string condensed_sentence(const std::vector<std::size_t>& nodes, std::size_t series);
 std::string flying_sentence(const std::vector<std::size_t>& nodes);
-// Of what nothing is pinned to: `falling` parts are integrated about their centres of mass,
-// `resting` ones are at rest about theirs.
+// Parts without pins: `falling` ones are integrated about their centres of mass, `resting` ones are
+// at rest about theirs.
 std::string falling_sentence(std::size_t falling, std::size_t resting);
 std::string parts_sentence(std::size_t parts);
 // Of a reduction that was left out of a part since it made it another one, and how.
