@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <stdexcept>
 
 #include <Eigen/SparseCholesky>
@@ -79,6 +80,7 @@ class KluSolver final : public DirectSolver {
         y_(2 * system.size()) {
     klu_l_defaults(&common_);
     symbolic_ = klu_l_analyze(2 * system.size(), starts_.data(), rows_.data(), &common_);
+    if (common_.status == KLU_OUT_OF_MEMORY) throw std::bad_alloc();
     if (!symbolic_) throw std::runtime_error("KLU could not analyse the matrix");
   }
   ~KluSolver() override {
