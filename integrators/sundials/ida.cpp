@@ -12,6 +12,7 @@
 // zero, 0 = (K v)_massless. The start is made consistent to rounding: massless nodes go downhill to
 // where their springs balance, the others held.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -31,8 +32,8 @@ namespace {
 
 using namespace sundials;
 
-// Of the energy, in tolerances.
-constexpr double lost_by_tolerance = 10;
+// How many times as far as errors of the tolerance alone may move massless nodes.
+constexpr double most_moved_by_errors = 2;
 // A massless node that moves so many times as fast as those with mass is hardly held by anything.
 constexpr double most_times_as_fast = 1e8;
 
@@ -96,10 +97,12 @@ class Ida final : public Stepper {
     const auto has_failed = [&] { return flag == IDA_CONV_FAIL || flag == IDA_ERR_FAIL; };
     if (massless_ && has_failed()) {
       // Where springs hardly hold a massless node, Newton's iteration may fail from positions that
-      // are good to the tolerance, however short the step. No more energy than that is to be lost:
-      // more of it shows that the balance is another one, to which nodes would jump.
-      const double energy = total_energy(system(), {t, Halves(y()).q, Halves(y()).v});
-      is_lost_ = make_consistent(t, lost_by_tolerance * rtol() * std::abs(energy)) < 0;
+      // are good to the tolerance, however short the step. About to lose its balance, a node is
+      // held along one direction s by a force like k L (m - (s/L)^2): it stands at s = L m^(1/2),
+      // and positions that are off by rtol L change m by rtol. If it is to move farther, then the
+      // balance is another one, to which it would jump.
+      const double farthest = most_moved_by_errors * std::sqrt(rtol()) * knobs().length;
+      is_lost_ = make_consistent(t, farthest) < 0;
       if (is_lost_) return flag;
       flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
       is_lost_ = has_failed();
@@ -115,12 +118,12 @@ class Ida final : public Stepper {
   }
 
   // Brings massless nodes to where their forces balance, with y' as it is then: 0, or a flag where
-  // they do not, or only with so much less energy [J].
-  int make_consistent(double t_start, double most_lost = std::numeric_limits<double>::infinity()) {
+  // they do not, or only farther away than this along some axis [m].
+  int make_consistent(double t_start, double farthest = std::numeric_limits<double>::infinity()) {
     Halves at(y());
     const Equilibrium balance = find_equilibrium(*massless_, at.q, knobs().length);
     if (balance.outcome != Equilibrium::Outcome::reached) return IDA_CONV_FAIL;
-    if (system().potential(at.q) - system().potential(balance.q) > most_lost) return IDA_CONV_FAIL;
+    if ((balance.q - at.q).lpNorm<Eigen::Infinity>() > farthest) return IDA_CONV_FAIL;
     at.q = balance.q;
     if (is_loose()) return IDA_CONV_FAIL;
     follow();
