@@ -6,6 +6,9 @@ namespace qddot {
 namespace {
 
 constexpr double eps = 0x1p-52;
+// Below the smallest normal number a product is off by up to this, whatever its size; a term of a
+// sum takes some products.
+constexpr double underflow = 8 * 0x1p-1074;
 
 }  // namespace
 
@@ -28,13 +31,14 @@ BoundedEnergy potential_of(std::span<const Spring> springs, const std::vector<Ei
     const double energy = law.energy(l);
     sum.value += energy;
     sum.error +=
-        (std::abs(law.tension(l)) + 0.5 * law.tangent(law.rest_length + strained) * off) * off;
+        (std::abs(law.tension(l)) + 0.5 * law.tangent(law.rest_length + strained) * off) * off +
+        underflow * (1 + strained * strained);
     sizes += energy;
   }
   const double farthest = largest_coordinate(x), pull = gravity.norm();
   for (std::size_t i = 0; i < x.size(); ++i) {
     sum.value -= mass[i] * gravity.dot(x[i]);
-    sum.error += mass[i] * pull * tolerances.place;
+    sum.error += mass[i] * pull * tolerances.place + underflow * (1 + pull) * (1 + farthest);
     sizes += 4 * mass[i] * pull * farthest;
   }
   sum.error += (rounding + static_cast<double>(springs.size() + x.size()) * eps) * sizes;
@@ -47,7 +51,7 @@ BoundedEnergy kinetic_of(const std::vector<Eigen::Vector3d>& v, const std::vecto
   const double off = tolerances.speed;
   for (std::size_t i = 0; i < v.size(); ++i) {
     sum.value += 0.5 * mass[i] * v[i].squaredNorm();
-    sum.error += mass[i] * (v[i].norm() + 0.5 * off) * off;
+    sum.error += mass[i] * (v[i].norm() + 0.5 * off) * off + underflow * (1 + v[i].squaredNorm());
   }
   sum.error += (rounding + static_cast<double>(v.size()) * eps) * sum.value;
   return sum;
