@@ -104,6 +104,10 @@ class TestVerdict(unittest.TestCase):
 
     def test_files(self):
         self.assertIn("an input was changed", self.kinds("echo >> scene.toml"))
+        forced = ["--force", "--final", "sub/../scene.toml"]
+        self.assertNotIn("an input was changed", self.kinds("echo >> scene.toml", forced))
+        forced += ["--scene=link.toml"]
+        self.assertIn("an input was changed", self.kinds("echo >> scene.toml", forced))
         self.assertIn("a user's own file", self.kinds("echo > end.json"))
         self.assertNotIn("a user's own file", self.kinds("echo '{}' > end.json", ["--force"]))
         self.assertIn("outside", self.kinds("echo > $HOME/x"))
