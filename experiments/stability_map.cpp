@@ -161,6 +161,7 @@ void tabulate(Csv& csv, const std::vector<Limit>& limits, double omega_max) {
 void tabulate_linear(Csv& csv, const std::vector<const Method*>& methods) {
   const int points = static_cast<int>(std::log10(largest_h_omega / least_h_omega)) * linear_points;
   for (const Method* method : methods) {
+    stop_if_interrupted();
     if (!has_linear_step(*method)) continue;
     for (const double h_omega : spaced(least_h_omega, largest_h_omega, points + 1)) {
       const LinearStep step = linear_step(*method, h_omega);

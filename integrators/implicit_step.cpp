@@ -80,7 +80,7 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
     if (last > 0) rate = size / last;
     // One correction tells nothing, but that the last stage was like this one.
     if (iteration == 0 && !are_new && size <= 2 * last_missed_) rate = last_rate_;
-    const bool is_exact = is_linear && compression_.kept() == 1 && is_linear_up_to(q);
+    const bool is_exact = is_linear && compression_.kept() == 1 && is_linear_along(q);
     const double missed = (u_ - start_ + p_).lpNorm<Eigen::Infinity>();
     const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * missed;
     const bool is_rounding =
@@ -107,13 +107,11 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
 }
 
 // Whether f is linear where the residual was taken and where the correction leads to.
-bool ImplicitStep::is_linear_up_to(const Vec& q) {
-  const System& whole = system();
-  if (!whole.is_linear_at(q)) return false;
+bool ImplicitStep::is_linear_along(const Vec& q) {
   x_ = q + u_;
-  if (!whole.is_linear_at(x_)) return false;
+  if (!system().is_linear_at(x_)) return false;
   x_ += p_;
-  return whole.is_linear_at(x_);
+  return system().is_linear_at(x_);
 }
 
 // r = M (u - u*) - s f.

@@ -47,7 +47,7 @@ class ImplicitStep : public FixedStep {
   // Whether f is the gradient of a potential, so that there is a g to decrease.
   virtual bool is_minimisation() const { return true; }
 
-  bool is_linear_up_to(const Vec& q);
+  bool is_linear_along(const Vec& q);
   void residual(const Vec& q, double s);
   // With twice the compression that the last factors have, where that works, or with as much.
   Outcome factorize(const Vec& q, double s);
