@@ -30,8 +30,15 @@ constexpr double same = 0.5;
 constexpr double largest_growth = 10, countless = 1e6;
 // No motion that a scene means is as fast [m/s].
 constexpr double largest_speed = 1e15;
-// Lanczos' method is not waited for in scenes of more unknowns: a lower bound has to do.
-constexpr Index most_searched = 6000;
+// Lanczos' method is not waited for in scenes of more unknowns: a lower bound has to do. Nor are
+// implicit methods tried in scenes so large that their factors take seconds, and gigabytes.
+constexpr Index most_searched = 6000, most_factorized = 100000;
+
+bool is_searched(const System& system) { return system.size() <= most_searched; }
+// w_max at q [rad/s], or a lower bound.
+double fastest(const System& system, const Vec& q) {
+  return is_searched(system) ? largest_frequency(system, q) : frequency_at_least(system, q);
+}
 
 bool has_own_step(const Method& method) { return has_linear_step(method) && method.order > 0; }
 
@@ -76,16 +83,17 @@ class EnergyWatch {
   bool is_same_ = true;
 };
 
-// Where the run was last known to be what it should, and the fastest vibration until then.
+// Where the run was last known to be what it should, and the fastest vibration until then, or what
+// it is at least; how fast compressed springs push to the side, or zero where that is not searched.
 struct Before {
   double t = 0, omega = 0, t_of_omega = 0, buckling = 0;
 };
 Before before_failure(const Method& method, const Knobs& knobs, const ReducedScene& scene,
                       double t_end, double seconds) {
   const auto pushed = [&](const Vec& q) {
-    return method.implicit ? buckling_rate(scene.system(), q) : 0;
+    return method.implicit && is_searched(scene.system()) ? buckling_rate(scene.system(), q) : 0;
   };
-  Before before{.omega = largest_frequency(scene.system(), scene.initial().q),
+  Before before{.omega = fastest(scene.system(), scene.initial().q),
                 .buckling = pushed(scene.initial().q)};
   EnergyWatch watch(scene);
   const auto see = [&](const State& state) {
@@ -94,7 +102,7 @@ Before before_failure(const Method& method, const Knobs& knobs, const ReducedSce
     if (watch.see(state)) before.t = state.t;
     if (!counts) return;
     before.buckling = std::max(before.buckling, pushed(state.q));
-    const double omega = largest_frequency(scene.system(), state.q);
+    const double omega = fastest(scene.system(), state.q);
     if (omega > before.omega) {
       before.omega = omega;
       before.t_of_omega = state.t;
@@ -104,7 +112,8 @@ Before before_failure(const Method& method, const Knobs& knobs, const ReducedSce
   return before;
 }
 
-std::string crossed(const Method& method, double h, const Before& before, Outcome outcome) {
+std::string crossed(const Method& method, double h, const Before& before, bool is_known,
+                    Outcome outcome) {
   const double limit = linear_limit(method);
   const auto when = [](double t) {
     return t == 0 ? std::string("at the start") : fmt::format("at t = {:.3g} s", t);
@@ -117,9 +126,10 @@ std::string crossed(const Method& method, double h, const Before& before, Outcom
   }
   if (h * before.omega > limit) {
     return fmt::format(
-        "h w_max is {:.3g} {} (w_max = {:.4g} rad/s), above {}'s limit of {:.5g}/w_max = {:.4g} s",
-        h * before.omega, when(before.t_of_omega), before.omega, method.name, limit,
-        limit / before.omega);
+        "h w_max is {}{:.3g} {} (w_max = {:.4g} rad/s), above {}'s limit of {:.5g}/w_max = {:.4g} "
+        "s",
+        is_known ? "" : "at least ", h * before.omega, when(before.t_of_omega), before.omega,
+        method.name, limit, limit / before.omega);
   }
   if (method.implicit && before.buckling * h > 0.1) {
     return fmt::format(
@@ -127,7 +137,7 @@ std::string crossed(const Method& method, double h, const Before& before, Outcom
         "1/h; M - h^2 K is indefinite where that is above 1",
         before.buckling, before.buckling * h);
   }
-  if (outcome == Outcome::newton_failed) return "";
+  if (outcome == Outcome::newton_failed || !is_known) return "";
   return fmt::format(
       "no linear limit was crossed (h w_max was {:.3g} at most): this is a nonlinear "
       "instability",
@@ -176,8 +186,7 @@ std::string step_warning(const Method& method, const Knobs& knobs, const Reduced
   const Vec& q = scene.initial().q;
   const double limit = linear_limit(method), h = knobs.step_size;
   if (h * frequency_bound(system, q) <= limit) return "";
-  const double w =
-      system.size() > most_searched ? frequency_at_least(system, q) : largest_frequency(system, q);
+  const double w = fastest(system, q);
   if (h * w <= limit) return "";
   if (limit == 0) {
     return fmt::format(
@@ -218,7 +227,7 @@ std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedSce
   if (summary.outcome == Outcome::diverged && before.t < summary.t_reached) {
     words += fmt::format(", its energy no longer right after t = {:.3g} s", before.t);
   }
-  const std::string why = crossed(method, h, before, summary.outcome);
+  const std::string why = crossed(method, h, before, is_searched(scene.system()), summary.outcome);
   if (!why.empty()) words += "; " + why;
 
   std::vector<std::string> remedies;
@@ -236,7 +245,8 @@ std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedSce
   std::vector<std::string> others;
   for (const Method& other : methods()) {
     if (!has_own_step(other) || other.family != Family::hand_written || &other == &method ||
-        !applies_to(other, scene.system()) || others.size() == most_named) {
+        !applies_to(other, scene.system()) || others.size() == most_named ||
+        (other.implicit && scene.system().size() > most_factorized)) {
       continue;
     }
     if (holds(other, knobs, scene, until, std::min(left(), seconds / 8)).value_or(false)) {
