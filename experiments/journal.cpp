@@ -1,18 +1,21 @@
 #include "experiments/journal.hpp"
 
+#include <algorithm>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
 #include <boost/crc.hpp>
 #include <fmt/format.h>
 
+#include "experiments/overwriting.hpp"
 #include "experiments/whole_file.hpp"
 #include "src/scene/invalid_input.hpp"
 
@@ -21,6 +24,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
+constexpr std::string_view signature = "qddot journal 1\n";
 constexpr std::size_t head = 8;  // of a record
 
 std::uint32_t checksum(const std::uint8_t* bytes, std::size_t size) {
@@ -40,16 +44,20 @@ std::uint32_t get(const std::uint8_t* bytes) {
 }
 
 struct Contents {
+  bool is_own = false;  // a journal, or the beginning of one
   nlohmann::json key;
   std::map<std::string, nlohmann::json> pieces;
-  std::size_t whole = 0;  // bytes of whole records
+  std::size_t whole = 0;  // bytes up to the end of the last whole record
 };
 
 Contents read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const Bytes bytes{std::istreambuf_iterator<char>(file), {}};
-  Contents contents;
-  for (std::size_t at = 0; at + head <= bytes.size();) {
+  const std::string_view beginning(reinterpret_cast<const char*>(bytes.data()),
+                                   std::min(bytes.size(), signature.size()));
+  Contents contents{.is_own = signature.starts_with(beginning)};
+  if (!contents.is_own) return contents;
+  for (std::size_t at = signature.size(); at + head <= bytes.size();) {
     const std::size_t size = get(&bytes[at]);
     const std::uint8_t* record = bytes.data() + at + head;
     if (size > bytes.size() - at - head || get(&bytes[at + 4]) != checksum(record, size)) break;
@@ -95,22 +103,31 @@ Journal::Journal(const std::string& path, const nlohmann::json& key, bool goes_o
                                    path, std::strerror(errno)));
   }
   try {
+    struct stat status {};
+    if (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
+      throw InvalidInput(fmt::format("{}: is no file; allowed is another folder", path));
+    }
     if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
       throw InvalidInput(fmt::format(
           "{}: another process is writing it; allowed is another folder, or to wait", path));
     }
-    Contents contents;
-    if (goes_on) contents = read(path);
-    if (contents.whole > 0 && contents.key != key) {
+    Contents contents = read(path);
+    if (!contents.is_own) require_replaceable(path);
+    if (goes_on && contents.whole > 0 && contents.key != key) {
       throw InvalidInput(
           fmt::format("--resume: {} is of another study: {}; allowed are the same scene, code and "
                       "options, or no --resume",
                       path, difference(contents.key, key)));
     }
-    pieces_ = std::move(contents.pieces);
+    if (goes_on) {
+      pieces_ = std::move(contents.pieces);
+    } else {
+      dropped_ = contents.pieces.size();
+      contents.whole = 0;
+    }
     if (::ftruncate(file_, static_cast<off_t>(contents.whole)) != 0)
       throw CannotWrite(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
-    if (contents.whole == 0) append(key);
+    if (contents.whole == 0) append({signature.begin(), signature.end()}, key);
   } catch (...) {
     ::close(file_);
     throw;
@@ -132,13 +149,12 @@ std::optional<nlohmann::json> Journal::find(const std::string& name) const {
 
 void Journal::keep(const std::string& name, const nlohmann::json& value) {
   const std::lock_guard lock(mutex_);
-  append({name, value});
+  append({}, {name, value});
   pieces_[name] = value;
 }
 
-void Journal::append(const nlohmann::json& record) {
+void Journal::append(std::vector<std::uint8_t> bytes, const nlohmann::json& record) {
   const Bytes cbor = nlohmann::json::to_cbor(record);
-  Bytes bytes;
   put(bytes, static_cast<std::uint32_t>(cbor.size()));
   put(bytes, checksum(cbor.data(), cbor.size()));
   bytes.insert(bytes.end(), cbor.begin(), cbor.end());
@@ -152,7 +168,5 @@ void Journal::append(const nlohmann::json& record) {
 }
 
 void Journal::remove() { ::unlink(path_.c_str()); }
-
-std::size_t Journal::pieces_in(const std::string& path) { return read(path).pieces.size(); }
 
 }  // namespace qddot

@@ -65,8 +65,7 @@ Study::Study(const CLI::App& app, const std::string& folder, const std::vector<s
             {"code", code_hash()},
             {"processor", processor()}}) {
   const bool resumes = app.count("--resume") > 0;
-  const bool is_begun = std::filesystem::exists(path_);
-  if (resumes && !is_begun) {
+  if (resumes && !std::filesystem::exists(path_)) {
     std::vector<std::string> paths;
     for (const std::string& table : tables) paths.push_back(folder + "/" + table);
     completed_ = status_of(paths, key_);
@@ -75,15 +74,14 @@ Study::Study(const CLI::App& app, const std::string& folder, const std::vector<s
       return;
     }
   }
-  const std::size_t before = is_begun && !resumes ? Journal::pieces_in(path_) : 0;
   journal_ = std::make_unique<Journal>(path_, key_, resumes);
   wait_for_answer(patience);
   if (journal_->size() > 0) {
     fmt::print(stderr, "{}: {} pieces are kept from before\n", program_, journal_->size());
-  } else if (before > 0) {
+  } else if (journal_->dropped() > 0) {
     fmt::print(stderr,
                "{}: {} pieces of an interrupted run are measured anew (--resume keeps them)\n",
-               program_, before);
+               program_, journal_->dropped());
   }
 }
 

@@ -39,6 +39,16 @@ BOOST_AUTO_TEST_CASE(a_step_above_the_limit_is_named_with_what_holds) {
   BOOST_TEST(contains(result.err, {"at this h ", "implicit_euler"}), result.err);
 }
 
+BOOST_AUTO_TEST_CASE(of_a_large_scene_w_max_is_told_from_below) {
+  const Folder folder;
+  const std::string scene =
+      folder.write("large.toml", "[generator]\nkind = 'cloth'\nnodes = 80\n");  // 9597 unknowns
+  const Exit result =
+      simulate({"--scene", scene, "--method", "verlet", "--step-size", "0.01", "--until", "1"});
+  BOOST_TEST(complains(result, 3, "simulate", {"h w_max is at least ", "verlet's limit of 2"}),
+             result.err);
+}
+
 BOOST_AUTO_TEST_CASE(the_step_it_failed_in_is_the_one_after_the_last_that_was_taken) {
   const Exit result = simulate(
       {"--scene", "oscillator", "--method", "verlet", "--step-size", "0.4", "--until", "100"});

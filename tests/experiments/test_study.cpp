@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <sys/stat.h>
 
 #include <CLI/CLI.hpp>
 #include <boost/test/unit_test.hpp>
@@ -99,7 +100,7 @@ BOOST_AUTO_TEST_CASE(a_journal_that_was_cut_anywhere_keeps_its_whole_pieces) {
     }
   }
   // A bit that has changed ends what is believed as well.
-  for (std::size_t at = 0; at < whole.size(); at += 7) {
+  for (std::size_t at = whole.find('\n') + 1; at < whole.size(); at += 7) {
     std::string spoiled = whole;
     spoiled[at] = static_cast<char>(spoiled[at] ^ 4);
     folder.write("map.journal", spoiled);
@@ -128,6 +129,20 @@ BOOST_AUTO_TEST_CASE(without_resume_all_is_measured_anew) {
   { Case(folder, "").piece("p", 1); }
   Case again(folder, "");
   BOOST_TEST(again.piece("p", 2).second);
+}
+
+BOOST_AUTO_TEST_CASE(a_file_of_somebody_else_is_neither_read_nor_replaced) {
+  const Folder folder;
+  for (const char* own : {"my notes\n", "qddot journal 2\n"}) {
+    folder.write("map.journal", own);
+    for (const char* options : {"", "--resume"})
+      BOOST_TEST(contains(refusal(folder, options), {"map.journal", "--force"}));
+    BOOST_TEST((read_all(folder / "map.journal") == own));
+  }
+  std::filesystem::remove(folder / "map.journal");
+  BOOST_TEST_REQUIRE(::mkfifo((folder / "map.journal").c_str(), 0600) == 0);
+  for (const char* options : {"", "--resume"})
+    BOOST_TEST(contains(refusal(folder, options), {"map.journal", "is no file"}));
 }
 
 BOOST_AUTO_TEST_CASE(two_at_once_in_one_folder_are_refused) {

@@ -7,7 +7,7 @@ disturbed.
 
 A trial sends SIGKILL, SIGINT or SIGTERM at a moment that is uniform in the study's duration, one
 to three times, and runs the same command with --resume until it ends. All columns but measured
-times have to be equal, to the digit; no .part file may be left. After SIGINT and SIGTERM the
+times have to be equal, to the digit; no .part file may be left at the end. After SIGINT and SIGTERM the
 status is 130, what tables there are are whole, and each sidecar says "interrupted". Status 1:
 something was found.
 """
@@ -116,6 +116,13 @@ class Study:
             if ended.status != 130:
                 found.append(f"{which.name}: status {ended.status}, 130 is documented")
             names = os.listdir(results) if os.path.isdir(results) else []
+            # What an earlier kill left goes when a run first writes there, which this one may not
+            # have come to.
+            names = [
+                n
+                for n in names
+                if not (n.endswith(".part") and os.path.join(results, n) in before)
+            ]
             found += [f"after {which.name}: {fault}" for fault in faults(results, names)]
             found += [
                 f"after {which.name}: {name} says nothing of it"
