@@ -47,6 +47,7 @@ class DiscreteGradient final : public ImplicitStep {
     k.coeffs() /= 2;
   }
   bool is_minimisation() const override { return false; }
+  bool knows_start() const override { return true; }
 
   Vec a_{system().size()};  // the mean of the last step, which predicts the next
   Vec x_{system().size()};

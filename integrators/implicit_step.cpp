@@ -26,6 +26,7 @@ ImplicitStep::ImplicitStep(const Method& method, const System& system, const Kno
       free_(system.size()),
       u_(system.size()),
       tolerance_(knobs.solve_tolerance > 0 ? knobs.solve_tolerance : solve_tolerance),
+      kinks_(dynamic_cast<const Kinks*>(&system)),
       x_(system.size()),
       f_(system.size()),
       r_(system.size()),
@@ -35,6 +36,10 @@ ImplicitStep::ImplicitStep(const Method& method, const System& system, const Kno
       k_(system.stiffness_pattern()),
       matrix_(system, knobs.solver) {
   matrix_.set_tolerance(linear_share * tolerance_);
+  if (kinks_ && kinks_->kinks() == 0) kinks_ = nullptr;
+  if (!kinks_) return;
+  length_.resize(kinks_->kinks());
+  other_length_.resize(kinks_->kinks());
 }
 
 void ImplicitStep::start(const State&) {
@@ -78,8 +83,10 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
     const double size = p_.lpNorm<Eigen::Infinity>(), place = (q + u_).lpNorm<Eigen::Infinity>();
     double rate = 1;
     if (last > 0) rate = size / last;
-    // One correction tells nothing, but that the last stage was like this one.
-    if (iteration == 0 && !are_new && size <= 2 * last_missed_) rate = last_rate_;
+    // One correction tells nothing, but that the last stage was like this one; beyond a kink none
+    // was.
+    const bool may_be_like_last = iteration == 0 && !are_new && size <= 2 * last_missed_;
+    if (may_be_like_last && !is_linear && !crosses_kink(q)) rate = last_rate_;
     const bool is_exact = is_linear && compression_.kept() == 1 && is_linear_along(q);
     const double missed = (u_ - start_ + p_).lpNorm<Eigen::Infinity>();
     const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * missed;
@@ -108,10 +115,24 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
 
 // Whether f is linear where the residual was taken and where the correction leads to.
 bool ImplicitStep::is_linear_along(const Vec& q) {
+  if (knows_start() && !system().is_linear_at(q)) return false;
   x_ = q + u_;
   if (!system().is_linear_at(x_)) return false;
   x_ += p_;
   return system().is_linear_at(x_);
+}
+
+bool ImplicitStep::crosses_kink(const Vec& q) {
+  if (!kinks_) return false;
+  kinks_->kink_lengths(q, length_);
+  const auto has_other_signs = [&] {
+    kinks_->kink_lengths(x_, other_length_);
+    return (length_.array() * other_length_.array() <= 0).any();
+  };
+  x_ = q + u_;
+  if (has_other_signs()) return true;
+  x_ += p_;
+  return has_other_signs();
 }
 
 // r = M (u - u*) - s f.

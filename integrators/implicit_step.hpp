@@ -3,6 +3,7 @@
 #include "integrators/compression.hpp"
 #include "integrators/fixed_step.hpp"
 #include "src/algebra/effective_mass.hpp"
+#include "src/model/kinks.hpp"
 
 namespace qddot {
 
@@ -46,8 +47,13 @@ class ImplicitStep : public FixedStep {
   virtual void stage_stiffness(const Vec& q, const Vec& u, double compression, SymmetricMatrix& k);
   // Whether f is the gradient of a potential, so that there is a g to decrease.
   virtual bool is_minimisation() const { return true; }
+  // Whether a stage's f knows forces at q itself, which then have to be linear as well.
+  virtual bool knows_start() const { return false; }
 
   bool is_linear_along(const Vec& q);
+  // Whether f has a kink (kinks.hpp) between q, where the residual was taken, and where the
+  // correction leads to.
+  bool crosses_kink(const Vec& q);
   void residual(const Vec& q, double s);
   // With twice the compression that the last factors have, where that works, or with as much.
   Outcome factorize(const Vec& q, double s);
@@ -58,7 +64,8 @@ class ImplicitStep : public FixedStep {
   double objective(const Vec& q, double s);
 
   const double tolerance_;
-  Vec x_, f_, r_, p_, before_, start_;
+  const Kinks* kinks_;  // none where f has no kinks
+  Vec x_, f_, r_, p_, before_, start_, length_, other_length_;
   SymmetricMatrix k_;
   EffectiveMass matrix_;
   double factorized_s_ = 0;  // of the factors at hand; 0: none
