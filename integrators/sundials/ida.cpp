@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <random>
 
 #include <fmt/format.h>
 #include <ida/ida.h>
@@ -25,6 +26,7 @@
 #include "src/algebra/effective_mass.hpp"
 #include "src/analysis/curvature_signs.hpp"
 #include "src/analysis/equilibrium.hpp"
+#include "src/analysis/stability.hpp"
 #include "src/model/held.hpp"
 
 namespace qddot {
@@ -58,6 +60,8 @@ class Ida final : public Stepper {
     std::vector<bool> has_mass;
     for (const double mass : system.mass()) has_mass.push_back(mass > 0);
     massless_.emplace(std::shared_ptr<const System>(std::shared_ptr<void>(), &system), has_mass);
+    tolerated_ = clone(atol());
+    check(IDAWFtolerances(ida(), weights), "IDAWFtolerances");
   }
 
  private:
@@ -67,7 +71,7 @@ class Ida final : public Stepper {
     load(state);
     orders_ = {};
     earlier_ = {};
-    is_lost_ = false;
+    is_lost_ = is_rough_ = false;
     is_consistent_ = !system().has_massless();
     set_rate_of_masses();
     check(IDAReInit(ida(), state.t, y(), rate_.get()), "IDAReInit");
@@ -92,6 +96,10 @@ class Ida final : public Stepper {
     if (!is_consistent_) {
       if (const int flag = make_consistent(t); flag < 0) return flag;
       is_consistent_ = true;
+      N_VScale(1, atol(), tolerated_->get());
+      Halves at(tolerated_->get());
+      set_massless(at.q, Vec::Constant(system().size(), most_rounded()));
+      tolerate_rounding();
     }
     int flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
     const auto has_failed = [&] { return flag == IDA_CONV_FAIL || flag == IDA_ERR_FAIL; };
@@ -101,13 +109,13 @@ class Ida final : public Stepper {
       // held along one direction s by a force like k L (m - (s/L)^2): it stands at s = L m^(1/2),
       // and positions that are off by rtol L change m by rtol. If it is to move farther, then the
       // balance is another one, to which it would jump.
-      const double farthest = most_moved_by_errors * std::sqrt(rtol()) * knobs().length;
-      is_lost_ = make_consistent(t, farthest) < 0;
+      is_lost_ = make_consistent(t, farthest_by_errors()) < 0;
       if (is_lost_) return flag;
       flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
       is_lost_ = has_failed();
     }
     if (flag < 0 || !massless_) return flag;
+    if (is_rough_) tolerate_rounding();
     set_massless(Halves(y()).v, Halves(rate_.get()).q);
     is_lost_ = !(massless_speed() < most_times_as_fast * (moving_speed() + knobs().speed));
     if (is_lost_) return IDA_CONV_FAIL;
@@ -149,20 +157,80 @@ class Ida final : public Stepper {
     return signs.negative + signs.flat > (system().mass().array() > 0).count();
   }
 
-  // Gives massless nodes the velocity in which their forces stay balanced: the other nodes', times
-  // so large a mass that they keep theirs to rounding, (a M - K) x = a M v.
+  // Factors a M - K with so large an a [1/s^2] that in a solution the other nodes keep what is
+  // given for them to rounding; NaN where that is singular.
+  double hold_masses(EffectiveMass& heavy, const SymmetricMatrix& k) const {
+    const double stiffest = k.coeffs().cwiseAbs().maxCoeff();
+    const double heaviest = system().mass().maxCoeff();  // 0 where there are no other nodes
+    const double a = heaviest > 0 ? 1e18 * stiffest / heaviest : 0;
+    const bool is_singular = heavy.factorize(a, 1, k) == EffectiveMass::Definiteness::singular;
+    return is_singular ? std::numeric_limits<double>::quiet_NaN() : a;
+  }
+
+  // Gives massless nodes the velocity in which their forces stay balanced, (a M - K) x = a M v.
   void follow() {
     Halves at(y());
     SymmetricMatrix k = system().stiffness_pattern();  // for Newton's matrix keeps the one it is of
     stiffness(at.q, k);
-    const double stiffest = k.coeffs().cwiseAbs().maxCoeff();
-    const double heaviest = system().mass().maxCoeff();  // 0 where there are no other nodes
-    const double a = heaviest > 0 ? 1e18 * stiffest / heaviest : 0;
     EffectiveMass heavy(system());
-    if (heavy.factorize(a, 1, k) == EffectiveMass::Definiteness::singular) return;
+    const double a = hold_masses(heavy, k);
+    if (std::isnan(a)) return;
     Vec x;
     heavy.solve(a * system().mass().cwiseProduct(at.v), x);
     set_massless(at.v, x);
+  }
+
+  // How far errors of the tolerance alone may move a massless node [m].
+  double farthest_by_errors() const {
+    return most_moved_by_errors * std::sqrt(rtol()) * knobs().length;
+  }
+
+  // Two places at the bottom of a potential that are nearer to each other than this [m] differ in
+  // it by its rounding: k s^2 = eps k L^2.
+  double most_rounded() const {
+    return std::sqrt(std::numeric_limits<double>::epsilon()) * knobs().length;
+  }
+
+  // Positions of massless nodes are known no better than to where forces that are off by rounding
+  // balance, (a M - K) x = +-rounding. Where springs hardly hold a node at the start, that may be
+  // more than the tolerance, and no step would be short enough: so it is tolerated, and less and
+  // less as they come to hold it.
+  void tolerate_rounding() {
+    constexpr double roundings = 4 * std::numeric_limits<double>::epsilon();
+    const Vec q = Halves(y()).q;
+    SymmetricMatrix k = system().stiffness_pattern();
+    stiffness(q, k);
+    EffectiveMass heavy(system());
+    const bool is_known = !std::isnan(hold_masses(heavy, k));
+    const Vec stiffness_of = row_sums(k);
+    Vec error(system().size()), x;
+    Vec moved = Vec::Constant(system().size(), is_known ? 0 : most_rounded());
+    std::minstd_rand random(1);
+    for (int i = 0; i < 3 && is_known; ++i) {
+      for (Index j = 0; j < system().size(); ++j) {
+        const double size = system().mass()[j] == 0 ? stiffness_of[j] : 0;
+        error[j] = (random() % 2 == 0 ? 1 : -1) * roundings * size * q.lpNorm<Eigen::Infinity>();
+      }
+      heavy.solve(error, x);
+      moved = moved.cwiseMax(x.cwiseAbs());
+    }
+    is_rough_ = false;
+    Halves tolerated(tolerated_->get());
+    const Halves least(atol());
+    for (Index j = 0; j < system().size(); ++j) {
+      if (system().mass()[j] > 0) continue;
+      tolerated.q[j] = std::min(tolerated.q[j], std::max(moved[j], least.q[j]));
+      is_rough_ = is_rough_ || tolerated.q[j] > least.q[j];
+    }
+  }
+
+  // What IDA divides errors by, 1/w = rtol |y| + what is tolerated.
+  static int weights(N_Vector y, N_Vector w, void* user) {
+    const auto& self = *static_cast<const Ida*>(static_cast<const Stepper*>(user));
+    N_VAbs(y, w);
+    N_VLinearSum(self.rtol(), w, 1, self.tolerated_->get(), w);
+    N_VInv(w, w);
+    return 0;
   }
 
   // Gives v the entries of `values` that belong to massless nodes.
@@ -251,11 +319,13 @@ class Ida final : public Stepper {
   }
 
   Orders orders_;
-  Vector rate_;                   // y'
-  std::optional<Held> massless_;  // the system with all but these held; none without such nodes
+  Vector rate_;                      // y'
+  std::optional<Vector> tolerated_;  // absolutely, with massless nodes
+  std::optional<Held> massless_;     // the system with all but these held; none without such nodes
   bool is_consistent_ = true;
-  bool is_lost_ = false;  // whether no balance is left near the massless nodes
-  OwnCounts earlier_{};   // before IDA was started anew, which forgets them
+  bool is_lost_ = false;   // whether no balance is left near the massless nodes
+  bool is_rough_ = false;  // whether rounding moves a massless node by more than the tolerance
+  OwnCounts earlier_{};    // before IDA was started anew, which forgets them
   std::unique_ptr<void, FreeMemoryBy<IDAFree>> memory_;
 };
 

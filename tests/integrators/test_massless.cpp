@@ -250,6 +250,25 @@ BOOST_AUTO_TEST_CASE(random_networks_with_massless_nodes_run_at_every_tolerance_
   BOOST_TEST(reached + slack == 60);
 }
 
+BOOST_AUTO_TEST_CASE(what_springs_hardly_hold_at_the_start_is_no_obstacle_at_any_tolerance) {
+  // A mass hangs, aside, on two springs with a massless node between them, drawn at rest lengths of
+  // six digits: they are stretched by some 1e-7 m and hold the node across by 1e-7 of their
+  // stiffness, so that rounding of forces moves it by more than 1e-12 m.
+  Problem p{{.dimension = 3, .gravity = {0, 0, -g}}, {}};
+  p.network.node_mass = Vec{{0, 1}};
+  p.network.anchors = {{0, {0, 0, 0}, {83140.4, 0.850063}}};
+  p.network.links = {{0, 1, {9338.66, 0.949805}}};
+  p.initial = {0, Vec{{0.0046, 0.1945, -0.8275, 0.0097, 0.4118, -1.7521}}, Vec::Zero(6)};
+  const auto system = make_mass_spring(p.network);
+  const Run expected = run(method_named("ida"), *system, p.initial, 0.05, {.rtol = 1e-11});
+  BOOST_TEST(expected.summary.message == "");
+  for (const double atol : {1e-10, 1e-11, 1e-12, 1e-13, 1e-14}) {
+    const Run r = run(method_named("ida"), *system, p.initial, 0.05, {.rtol = 1e-9, .atol = atol});
+    BOOST_TEST(r.summary.message == "", atol);
+    BOOST_TEST(distance(r.state, expected.state) < 1e-6);  // a thousand steps to 1e-9
+  }
+}
+
 BOOST_AUTO_TEST_CASE(energy_elsewhere_does_not_let_a_massless_node_jump) {
   std::mt19937 random(14);
   int lost = 0;
