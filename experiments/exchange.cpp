@@ -32,6 +32,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/allowed_knobs.hpp"
 #include "experiments/csv.hpp"
 #include "experiments/deadline.hpp"
 #include "experiments/energy_exchange.hpp"
@@ -253,6 +254,10 @@ Excitation excitation_of(const CLI::App& app, const Arguments& a) {
                     "exchanged; allowed are scenes that start with a stiff spring drawn or moving "
                     "out of its rest length",
                     a.scene.name, excitation.sum));
+  }
+  for (const double h_omega : a.h_omega) {
+    require_step_size(h_omega / excitation.omega, fmt::format("--h-omega {:g}: h =", h_omega),
+                      excitation.until);
   }
   const double longest = std::ranges::max(a.h_omega) / excitation.omega;
   if (!(10 * longest <= excitation.until)) {

@@ -20,7 +20,7 @@ constexpr double most_samples = 1e8;
 std::vector<double> samples(double every, double until) {
   if (every == 0) return {};
   const double count = std::floor(until / every * (1 + rounding));
-  if (count > most_samples) {
+  if (!(count <= most_samples)) {
     throw InvalidInput(fmt::format("--every {}: {} samples up to {} s are too many; allowed are {}",
                                    every, count, until, most_samples));
   }

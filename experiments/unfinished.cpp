@@ -84,7 +84,7 @@ void forget_unfinished(const std::string& name) {
 }
 
 void remove_unfinished() {
-  const std::lock_guard lock(mutex());
+  mutex().lock();  // for ever: no other thread may begin a file before the process ends
   for (const std::string& name : names()) std::remove(name.c_str());
 }
 

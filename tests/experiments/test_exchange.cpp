@@ -172,6 +172,9 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
     check_refused(with({"--every", value}), {"--every", value, "greater than 0"});
   }
   check_refused(with({"--h-omega", "1,0.1,1"}), {"--h-omega: 1 is named twice"});
+  // So small that h is zero, or that no sum of steps grows by it.
+  check_refused(with({"--h-omega", "5e-324"}), {"--h-omega", "h = 0 ", "greater than 0"});
+  check_refused(with({"--h-omega", "1e-18"}), {"--h-omega 1e-18", "at least"});
   check_refused(with({"--until", "0.9"}), {"--until 0.9", "ten steps", "1 s"});
   check_refused(with({"--every", "21"}), {"--every 21", "tenth"});
   check_refused(with({"--methods", "leapfrog"}), {"leapfrog is not a method"});
