@@ -73,8 +73,15 @@ bool PlainModel<Real>::place_massless(Vector& x) const {
       for (std::size_t c = r + 1; c < n; ++c) d[r] -= k[c * n + r] * d[c];
       d[r] /= k[r * n + r];
     }
-    // Converged where rounding no longer lets the residual fall.
-    if (residual == 0 || (iteration > 3 && least_residual >= 0 && residual >= least_residual))
+    // Converged where rounding no longer lets the residual fall, and that is what it consists of:
+    // on the way down from afar it may rise as well.
+    Real extent = 0;
+    for (const Real& coordinate : x)
+      extent = std::max(extent, coordinate < 0 ? -coordinate : coordinate);
+    const Real rounding = Real(1e-13) * largest_entry * extent;
+    const bool is_rounding = residual <= rounding * rounding;
+    if (residual == 0 ||
+        (iteration > 3 && least_residual >= 0 && residual >= least_residual && is_rounding))
       return true;
     least_residual = residual;
     const Vector before = x;
