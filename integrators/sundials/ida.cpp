@@ -219,7 +219,7 @@ class Ida final : public Stepper {
     const Halves least(atol());
     for (Index j = 0; j < system().size(); ++j) {
       if (system().mass()[j] > 0) continue;
-      tolerated.q[j] = std::min(tolerated.q[j], std::max(moved[j], least.q[j]));
+      tolerated.q[j] = std::max(least.q[j], std::min(moved[j], tolerated.q[j]));
       is_rough_ = is_rough_ || tolerated.q[j] > least.q[j];
     }
   }
