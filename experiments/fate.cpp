@@ -22,6 +22,8 @@ constexpr double nearly_singular = 0.9;
 constexpr double suspicious = 10, growing = 3, enough = 1e6;
 constexpr int more_iterations = 5;
 constexpr double other_motion = 0.1;
+// The time after more steps than that is no number of its own.
+constexpr double most_steps = 1e15;
 
 struct Sample {
   double t, ratio;  // X over X(0)
@@ -32,7 +34,7 @@ struct Sample {
 std::vector<double> looks(const Knobs& knobs, double until) {
   std::vector<double> times;
   const double h = knobs.step_size > 0 ? knobs.step_size : until / (watched_steps + samples_more);
-  const double steps = std::max(1.0, std::round(until / h));
+  const double steps = std::clamp(std::round(until / h), 1.0, most_steps);
   const double stride = std::max(1.0, std::floor(steps / samples_more));
   for (double n = 1; n <= steps; n += n < watched_steps ? 1 : stride) times.push_back(n * h);
   return times;

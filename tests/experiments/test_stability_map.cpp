@@ -167,4 +167,13 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_sentence_and_nothing_is_written) {
   BOOST_TEST(complains(nowhere, 2, "stability_map", {"--out"}));
 }
 
+BOOST_AUTO_TEST_CASE(a_horizon_beyond_all_steps_ends_by_the_limit_of_its_cells) {
+  const Folder folder;
+  const Exit result = run("stability_map", {"--scene", "oscillator", "--methods", "verlet",
+                                            "--until", "1.7976931348623157e308", "--columns", "2",
+                                            "--cell-limit", "0.003", "--out", folder / "map"});
+  BOOST_TEST(result.status == 0, result.err);
+  BOOST_TEST(contains(result.out, {"over_budget"}), result.out);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
