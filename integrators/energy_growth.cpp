@@ -1,4 +1,4 @@
-#include "integrators/energy_growth.hpp"
+#include "qddot/integrators/energy_growth.hpp"
 
 #include <algorithm>
 #include <cmath>

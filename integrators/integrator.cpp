@@ -1,4 +1,4 @@
-#include "integrators/integrator.hpp"
+#include "qddot/integrators/integrator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "integrators/massless_balance.hpp"
-#include "integrators/method.hpp"
+#include "qddot/integrators/massless_balance.hpp"
+#include "qddot/integrators/method.hpp"
 
 namespace qddot {
 namespace {

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "integrators/energy_growth.hpp"
-#include "src/algebra/solver.hpp"
-#include "src/model/system.hpp"
+#include "qddot/algebra/solver.hpp"
+#include "qddot/integrators/energy_growth.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

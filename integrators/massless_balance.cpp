@@ -1,4 +1,4 @@
-#include "integrators/massless_balance.hpp"
+#include "qddot/integrators/massless_balance.hpp"
 
 #include <algorithm>
 #include <cmath>

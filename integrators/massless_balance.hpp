@@ -4,7 +4,7 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "src/model/system.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "integrators/integrator.hpp"
+#include "qddot/integrators/integrator.hpp"
 
 namespace qddot {
 

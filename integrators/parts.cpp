@@ -1,8 +1,8 @@
-#include "integrators/parts.hpp"
+#include "qddot/integrators/parts.hpp"
 
 #include <algorithm>
 
-#include "integrators/registry.hpp"
+#include "qddot/integrators/registry.hpp"
 
 namespace qddot {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "integrators/integrator.hpp"
+#include "qddot/integrators/integrator.hpp"
 
 namespace qddot {
 

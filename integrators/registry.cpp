@@ -1,8 +1,8 @@
-#include "integrators/registry.hpp"
+#include "qddot/integrators/registry.hpp"
 
 #include <algorithm>
 
-#include "integrators/parts.hpp"
+#include "qddot/integrators/parts.hpp"
 
 // One line a method; each is defined in the file of its name or of its family.
 #define QDDOT_METHODS(METHOD)      \
@@ -65,11 +65,13 @@
 
 namespace qddot {
 
+namespace registered {
 #define QDDOT_DECLARE(method) Method method();
 QDDOT_METHODS(QDDOT_DECLARE)
+}  // namespace registered
 
 const std::vector<Method>& methods() {
-#define QDDOT_CALL(method) method(),
+#define QDDOT_CALL(method) registered::method(),
   static const std::vector<Method> all = {QDDOT_METHODS(QDDOT_CALL)};
   return all;
 }

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "integrators/method.hpp"
+#include "qddot/integrators/method.hpp"
 
 namespace qddot {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "src/model/system.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

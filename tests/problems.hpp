@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "src/model/mass_spring.hpp"
+#include "qddot/model/mass_spring.hpp"
 
 namespace qddot {
 

@@ -1,6 +1,7 @@
 #include "experiments/bench/acceleration.hpp"
 
 namespace qddot::bench {
+
 namespace {
 
 constexpr int pinned = -1;

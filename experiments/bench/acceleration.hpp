@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "src/model/system.hpp"
-#include "src/scene/scene.hpp"
+#include "qddot/model/system.hpp"
+#include "qddot/scene/scene.hpp"
 
 namespace qddot::bench {
 

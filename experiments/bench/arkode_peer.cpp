@@ -4,11 +4,13 @@
 
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
-#include "experiments/deadline.hpp"
-#include "integrators/sundials/support.hpp"
-#include "integrators/sundials/vector.hpp"
+#include "qddot/integrators/sundials/support.hpp"
+#include "qddot/integrators/sundials/vector.hpp"
+#include "qddot/measure/motion/deadline.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
 namespace {
 
 using namespace sundials;

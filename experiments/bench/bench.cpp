@@ -25,17 +25,20 @@
 
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/ratio_table.hpp"
-#include "experiments/catalogue.hpp"
-#include "experiments/interruption.hpp"
-#include "experiments/program.hpp"
-#include "experiments/progress.hpp"
-#include "experiments/provenance.hpp"
-#include "experiments/scene_choice.hpp"
-#include "experiments/study.hpp"
-#include "integrators/registry.hpp"
-#include "src/scene/invalid_input.hpp"
+#include "experiments/command/catalogue.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/scene_choice.hpp"
+#include "experiments/command/study.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
+using namespace command;
 
 // What nlohmann::json looks for by this name.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Measured, solver, force, unknowns, knob, value, outcome, error,
@@ -257,8 +260,8 @@ int main(int argc, char** argv) {
                "bench");
   qddot::bench::Arguments arguments;
   qddot::bench::declare(app, arguments);
-  qddot::add_resume_option(app);
-  return qddot::run_program(app, argc, argv, [&] {
+  qddot::command::add_resume_option(app);
+  return qddot::command::run_program(app, argc, argv, [&] {
     return qddot::bench::bench(app, arguments, {argv, argv + argc});
   });
 }

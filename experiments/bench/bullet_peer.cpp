@@ -12,9 +12,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/deadline.hpp"
+#include "qddot/measure/motion/deadline.hpp"
 
 namespace qddot::bench {
+
+using namespace command;
+
+using namespace measure;
 namespace {
 
 btVector3 bullet_vector(const Eigen::Vector3d& x) {

@@ -3,8 +3,8 @@
 #include <exception>
 #include <string>
 
-#include "src/scene/reduce.hpp"
-#include "src/scene/scene_file.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/scene_file.hpp"
 
 namespace {
 

@@ -6,9 +6,11 @@
 
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
-#include "experiments/deadline.hpp"
+#include "qddot/measure/motion/deadline.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
 namespace {
 
 namespace odeint = boost::numeric::odeint;

@@ -3,11 +3,13 @@
 // _klu.
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
-#include "experiments/deadline.hpp"
-#include "experiments/measurement.hpp"
-#include "integrators/registry.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/speed/measurement.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
 namespace {
 
 // A run of one integrator over either system, its end as that of all free nodes.

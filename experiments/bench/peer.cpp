@@ -2,9 +2,11 @@
 
 #include <cmath>
 
-#include "src/analysis/frequency_bound.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
 
 std::vector<double> tolerances(int in_a_decade) {
   std::vector<double> values;

@@ -6,9 +6,11 @@
 
 #include "experiments/bench/acceleration.hpp"
 #include "experiments/bench/problem.hpp"
-#include "integrators/method.hpp"
+#include "qddot/integrators/method.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
 
 // How runs of a peer ended. The end and the counts mean something only where they reached it.
 struct Run {

@@ -1,9 +1,13 @@
 #pragma once
 
-#include "experiments/reference.hpp"
-#include "src/scene/reduce.hpp"
+#include <nlohmann/json_fwd.hpp>
+
+#include "qddot/measure/reference/reference.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
 
 // A scene as its user hands it to somebody else's solver: M q'' = f(q) over the coordinates of the
 // free nodes, in the order of the scene, and nothing else left out.

@@ -4,9 +4,13 @@
 #include <vector>
 
 #include "experiments/bench/ratios.hpp"
-#include "experiments/csv.hpp"
+#include "experiments/command/csv.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
+
+using namespace command;
 
 std::vector<std::string> point_columns();
 void point_row(Csv& csv, const std::string& scene, double until, const Sweep& sweep,

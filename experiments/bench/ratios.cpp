@@ -5,6 +5,8 @@
 #include <limits>
 
 namespace qddot::bench {
+
+using namespace measure;
 namespace {
 
 bool reaches(const Measured& point, double error) {

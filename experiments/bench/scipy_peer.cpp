@@ -10,9 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/bench/peers.hpp"
-#include "src/scene/scene_writer.hpp"
+#include "qddot/scene/scene_writer.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
 namespace {
 
 // Debian's own, which has SciPy; the first one on PATH may be another.

@@ -5,9 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "experiments/timing.hpp"
+#include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::bench {
+
+using namespace measure;
 namespace {
 
 // A run of so many seconds is long enough to be timed once.

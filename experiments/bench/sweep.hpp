@@ -8,6 +8,8 @@
 
 namespace qddot::bench {
 
+using namespace measure;
+
 // One measured point: a solver at one value of its knob.
 struct Measured {
   std::string solver, force;

@@ -1,4 +1,4 @@
-#include "integrators/sundials/arkode.hpp"
+#include "qddot/integrators/sundials/arkode.hpp"
 
 #include <fmt/format.h>
 

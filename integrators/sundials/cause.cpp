@@ -1,4 +1,4 @@
-#include "integrators/sundials/cause.hpp"
+#include "qddot/integrators/sundials/cause.hpp"
 
 namespace qddot::sundials {
 

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include "integrators/registry.hpp"
-#include "integrators/sundials/orders.hpp"
-#include "integrators/sundials/stepper.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/integrators/sundials/orders.hpp"
+#include "qddot/integrators/sundials/stepper.hpp"
 
-namespace qddot {
+namespace qddot::registered {
 namespace {
 
 using namespace sundials;
@@ -160,4 +160,4 @@ Method cvode_adams() {
           .make = create<Adams>};
 }
 
-}  // namespace qddot
+}  // namespace qddot::registered

@@ -3,10 +3,10 @@
 // those of the named table.
 #include <fmt/format.h>
 
-#include "integrators/registry.hpp"
-#include "integrators/sundials/arkode.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/integrators/sundials/arkode.hpp"
 
-namespace qddot {
+namespace qddot::registered {
 namespace {
 
 using namespace sundials;
@@ -73,4 +73,4 @@ Method arkode_dirk3_klu() { return stock<3>(); }
 Method arkode_dirk4_klu() { return stock<4>(); }
 Method arkode_dirk5_klu() { return stock<5>(); }
 
-}  // namespace qddot
+}  // namespace qddot::registered

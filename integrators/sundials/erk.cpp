@@ -3,11 +3,11 @@
 // h <= y/w_max, with the table's own stability limit y on vibrations.
 #include <fmt/format.h>
 
-#include "integrators/registry.hpp"
-#include "integrators/sundials/arkode.hpp"
-#include "integrators/sundials/imaginary_stability.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/integrators/sundials/arkode.hpp"
+#include "qddot/integrators/sundials/imaginary_stability.hpp"
 
-namespace qddot {
+namespace qddot::registered {
 namespace {
 
 using namespace sundials;
@@ -69,4 +69,4 @@ Method arkode_erk5() { return erk<3>(); }
 Method arkode_erk6() { return erk<4>(); }
 Method arkode_erk8() { return erk<5>(); }
 
-}  // namespace qddot
+}  // namespace qddot::registered

@@ -13,10 +13,10 @@
 
 #include <fmt/format.h>
 
-#include "integrators/registry.hpp"
-#include "integrators/sundials/arkode.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/integrators/sundials/arkode.hpp"
 
-namespace qddot {
+namespace qddot::registered {
 namespace {
 
 using namespace sundials;
@@ -85,4 +85,4 @@ Method arkode_trbdf2() {
                              "Hosea and Shampine, Applied Numerical Mathematics 20 (1996) 21-37");
 }
 
-}  // namespace qddot
+}  // namespace qddot::registered

@@ -20,16 +20,16 @@
 #include <fmt/format.h>
 #include <ida/ida.h>
 
-#include "integrators/registry.hpp"
-#include "integrators/sundials/orders.hpp"
-#include "integrators/sundials/stepper.hpp"
-#include "src/algebra/effective_mass.hpp"
-#include "src/analysis/curvature_signs.hpp"
-#include "src/analysis/equilibrium.hpp"
-#include "src/analysis/stability.hpp"
-#include "src/model/held.hpp"
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/analysis/curvature_signs.hpp"
+#include "qddot/analysis/equilibrium.hpp"
+#include "qddot/analysis/stability.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/integrators/sundials/orders.hpp"
+#include "qddot/integrators/sundials/stepper.hpp"
+#include "qddot/model/held.hpp"
 
-namespace qddot {
+namespace qddot::registered {
 namespace {
 
 using namespace sundials;
@@ -351,4 +351,4 @@ Method ida(const char* name, const char* solver) {
 Method ida() { return ida<make_structured>("ida", "n x n solves"); }
 Method ida_klu() { return ida<make_klu>("ida_klu", "stock KLU"); }
 
-}  // namespace qddot
+}  // namespace qddot::registered

@@ -8,11 +8,11 @@
 // test sees a vibration grow only where it is as large as the tolerance, and then again and again.
 #include <fmt/format.h>
 
-#include "integrators/registry.hpp"
-#include "integrators/sundials/additive_tables.hpp"
-#include "integrators/sundials/arkode.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/integrators/sundials/additive_tables.hpp"
+#include "qddot/integrators/sundials/arkode.hpp"
 
-namespace qddot {
+namespace qddot::registered {
 namespace {
 
 using namespace sundials;
@@ -71,4 +71,4 @@ Method arkode_imex3() { return imex<3>(); }
 Method arkode_imex4() { return imex<4>(); }
 Method arkode_imex5() { return imex<5>(); }
 
-}  // namespace qddot
+}  // namespace qddot::registered

@@ -5,9 +5,9 @@
 #include <sunlinsol/sunlinsol_klu.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 
-#include "integrators/sundials/newton_matrix.hpp"
-#include "integrators/sundials/vector.hpp"
-#include "src/model/first_order.hpp"
+#include "qddot/integrators/sundials/newton_matrix.hpp"
+#include "qddot/integrators/sundials/vector.hpp"
+#include "qddot/model/first_order.hpp"
 
 namespace qddot::sundials {
 namespace {

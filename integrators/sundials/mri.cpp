@@ -10,11 +10,11 @@
 #include <arkode/arkode_mristep.h>
 #include <fmt/format.h>
 
-#include "integrators/registry.hpp"
-#include "integrators/sundials/arkode.hpp"
-#include "src/analysis/frequency_bound.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/integrators/sundials/arkode.hpp"
 
-namespace qddot {
+namespace qddot::registered {
 namespace {
 
 using namespace sundials;
@@ -144,4 +144,4 @@ Method mri() {
 Method arkode_mri3() { return mri<3>(); }
 Method arkode_mri4() { return mri<4>(); }
 
-}  // namespace qddot
+}  // namespace qddot::registered

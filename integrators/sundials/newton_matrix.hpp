@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "integrators/integrator.hpp"
-#include "integrators/sundials/support.hpp"
+#include "qddot/integrators/integrator.hpp"
+#include "qddot/integrators/sundials/support.hpp"
 
 namespace qddot::sundials {
 

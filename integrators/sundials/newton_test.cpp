@@ -1,4 +1,4 @@
-#include "integrators/sundials/newton_test.hpp"
+#include "qddot/integrators/sundials/newton_test.hpp"
 
 #include <sunnonlinsol/sunnonlinsol_newton.h>
 

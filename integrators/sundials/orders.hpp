@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrators/integrator.hpp"
+#include "qddot/integrators/integrator.hpp"
 
 namespace qddot::sundials {
 

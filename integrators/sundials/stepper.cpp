@@ -1,4 +1,4 @@
-#include "integrators/sundials/stepper.hpp"
+#include "qddot/integrators/sundials/stepper.hpp"
 
 #include <algorithm>
 #include <cmath>

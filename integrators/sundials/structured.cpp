@@ -7,8 +7,8 @@
 // but of a node without mass the first row is -b = r.
 // No product with K is needed, so the factors may belong to another gamma or an older K than the
 // step at hand, which is when Newton's iteration takes a few more rounds.
-#include "integrators/sundials/newton_matrix.hpp"
-#include "src/algebra/effective_mass.hpp"
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/integrators/sundials/newton_matrix.hpp"
 
 namespace qddot::sundials {
 namespace {

@@ -1,4 +1,4 @@
-#include "integrators/sundials/support.hpp"
+#include "qddot/integrators/sundials/support.hpp"
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-#include "integrators/sundials/vector.hpp"
+#include "qddot/integrators/sundials/vector.hpp"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
-#include "src/algebra/automatic_factors.hpp"
+#include "qddot/algebra/automatic_factors.hpp"
 
 #include <unistd.h>
 
-#include "src/algebra/conjugate_gradients.hpp"
-#include "src/algebra/elimination.hpp"
-#include "src/algebra/multifrontal.hpp"
+#include "qddot/algebra/conjugate_gradients.hpp"
+#include "qddot/algebra/elimination.hpp"
+#include "qddot/algebra/multifrontal.hpp"
 
 namespace qddot {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "src/algebra/blocks.hpp"
-#include "src/algebra/large_array.hpp"
+#include "qddot/algebra/blocks.hpp"
+#include "qddot/algebra/large_array.hpp"
 
 namespace qddot {
 

@@ -1,4 +1,4 @@
-#include "src/algebra/blocks.hpp"
+#include "qddot/algebra/blocks.hpp"
 
 #include <algorithm>
 #include <span>

@@ -1,4 +1,4 @@
-#include "src/algebra/cholmod_factors.hpp"
+#include "qddot/algebra/cholmod_factors.hpp"
 
 #include <atomic>
 #include <cmath>

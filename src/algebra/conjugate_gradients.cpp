@@ -1,4 +1,4 @@
-#include "src/algebra/conjugate_gradients.hpp"
+#include "qddot/algebra/conjugate_gradients.hpp"
 
 #include <cmath>
 #include <limits>
@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "src/algebra/block_rows.hpp"
+#include "qddot/algebra/block_rows.hpp"
 
 namespace qddot {
 

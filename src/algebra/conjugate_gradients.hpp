@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "src/algebra/factors.hpp"
+#include "qddot/algebra/factors.hpp"
 
 namespace qddot {
 

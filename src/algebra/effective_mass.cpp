@@ -1,9 +1,9 @@
-#include "src/algebra/effective_mass.hpp"
+#include "qddot/algebra/effective_mass.hpp"
 
-#include "src/algebra/automatic_factors.hpp"
-#include "src/algebra/cholmod_factors.hpp"
-#include "src/algebra/conjugate_gradients.hpp"
-#include "src/algebra/multifrontal.hpp"
+#include "qddot/algebra/automatic_factors.hpp"
+#include "qddot/algebra/cholmod_factors.hpp"
+#include "qddot/algebra/conjugate_gradients.hpp"
+#include "qddot/algebra/multifrontal.hpp"
 
 namespace qddot {
 

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "src/algebra/factors.hpp"
-#include "src/model/system.hpp"
+#include "qddot/algebra/factors.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

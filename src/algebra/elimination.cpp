@@ -1,4 +1,4 @@
-#include "src/algebra/elimination.hpp"
+#include "qddot/algebra/elimination.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include <suitesparse/cholmod.h>
 
-#include "src/algebra/blocks.hpp"
+#include "qddot/algebra/blocks.hpp"
 
 namespace qddot {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "src/algebra/solver.hpp"
-#include "src/model/system.hpp"
+#include "qddot/algebra/solver.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

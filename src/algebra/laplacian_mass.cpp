@@ -1,10 +1,10 @@
-#include "src/algebra/laplacian_mass.hpp"
+#include "qddot/algebra/laplacian_mass.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <span>
 
-#include "src/algebra/multifrontal.hpp"
+#include "qddot/algebra/multifrontal.hpp"
 
 namespace qddot {
 

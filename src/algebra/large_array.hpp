@@ -6,7 +6,7 @@
 #include <new>
 #include <sys/mman.h>
 
-#include "src/model/system.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

@@ -1,4 +1,4 @@
-#include "src/algebra/leading_pairs.hpp"
+#include "qddot/algebra/leading_pairs.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "src/algebra/multifrontal.hpp"
+#include "qddot/algebra/multifrontal.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,17 +6,18 @@
 #include <omp.h>
 #include <optional>
 
-#include "src/algebra/fronts.hpp"
-#include "src/algebra/large_array.hpp"
-#include "src/algebra/strips.hpp"
-#include "src/algebra/team.hpp"
-#include "src/algebra/triangular_solves.hpp"
+#include "qddot/algebra/large_array.hpp"
+#include "qddot/algebra/multifrontal/fronts.hpp"
+#include "qddot/algebra/multifrontal/strips.hpp"
+#include "qddot/algebra/multifrontal/team.hpp"
+#include "qddot/algebra/multifrontal/triangular_solves.hpp"
 
 namespace qddot {
 
 namespace {
 
-using namespace strips;
+using namespace multifrontal;
+using namespace multifrontal::strips;
 
 // Pivots whose columns are taken off the rest of a front at once: as many as leave a tile's rows of
 // L in the first cache.

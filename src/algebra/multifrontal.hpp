@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "src/algebra/elimination.hpp"
-#include "src/algebra/factors.hpp"
+#include "qddot/algebra/elimination.hpp"
+#include "qddot/algebra/factors.hpp"
 
 namespace qddot {
 

@@ -1,4 +1,4 @@
-#include "src/analysis/curvature_signs.hpp"
+#include "qddot/analysis/curvature_signs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "src/algebra/effective_mass.hpp"
-#include "src/analysis/stability.hpp"
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/analysis/stability.hpp"
 
 namespace qddot {
 namespace {

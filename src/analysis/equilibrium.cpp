@@ -1,12 +1,12 @@
-#include "src/analysis/equilibrium.hpp"
+#include "qddot/analysis/equilibrium.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "src/algebra/effective_mass.hpp"
-#include "src/analysis/curvature_signs.hpp"
-#include "src/analysis/stability.hpp"
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/analysis/curvature_signs.hpp"
+#include "qddot/analysis/stability.hpp"
 
 namespace qddot {
 namespace {

@@ -1,4 +1,4 @@
-#include "src/analysis/frequency_bound.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
 
 #include <cmath>
 

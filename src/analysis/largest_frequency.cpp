@@ -1,4 +1,4 @@
-#include "src/analysis/largest_frequency.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "src/algebra/leading_pairs.hpp"
-#include "src/analysis/frequency_bound.hpp"
+#include "qddot/algebra/leading_pairs.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
 
 namespace qddot {
 namespace {
@@ -75,6 +75,15 @@ double frequency_at_least(const System& system, const Vec& q) {
   solver.computeFromTridiagonal(diagonal.head(taken), beside.head(taken - 1),
                                 Eigen::EigenvaluesOnly);
   return bound * std::sqrt(std::max(solver.eigenvalues().maxCoeff(), 0.0));
+}
+
+bool is_quickly_searched(const System& system) {
+  constexpr Index most_searched = 6000;  // some seconds
+  return system.size() <= most_searched;
+}
+
+double quick_frequency(const System& system, const Vec& q) {
+  return is_quickly_searched(system) ? largest_frequency(system, q) : frequency_at_least(system, q);
 }
 
 }  // namespace qddot

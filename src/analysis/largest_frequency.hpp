@@ -1,6 +1,6 @@
 #pragma once
 
-#include "src/model/system.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 
@@ -13,5 +13,10 @@ double largest_frequency(const System& system, const Vec& q);
 
 // A lower bound of w_max [rad/s], mostly within some percent, for 30 products with K and no more.
 double frequency_at_least(const System& system, const Vec& q);
+
+// Whether Lanczos' method is worth its time for so many unknowns: up to 6000.
+bool is_quickly_searched(const System& system);
+// w_max [rad/s] where is_quickly_searched(), else the lower bound; throws as largest_frequency.
+double quick_frequency(const System& system, const Vec& q);
 
 }  // namespace qddot

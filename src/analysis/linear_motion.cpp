@@ -1,4 +1,4 @@
-#include "src/analysis/linear_motion.hpp"
+#include "qddot/analysis/linear_motion.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "src/model/system.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

@@ -1,4 +1,4 @@
-#include "src/analysis/natural_modes.hpp"
+#include "qddot/analysis/natural_modes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "src/algebra/effective_mass.hpp"
-#include "src/algebra/leading_pairs.hpp"
-#include "src/analysis/largest_frequency.hpp"
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/algebra/leading_pairs.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 
 namespace qddot {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 using Eigen::MatrixXd;
 
 // Up to here the dense decomposition takes no longer than Lanczos' method, and it cannot fail.
-constexpr Index largest_dense = 400;
+constexpr Index most_dense_modes = 400;
 // Shifts stand off the spectrum by this part of its width, or as many times more as it takes.
 constexpr double least_offset = 1e-8;
 constexpr double growth = 4;
@@ -139,7 +139,7 @@ NaturalModes modes_beside(const Pencil& p, EffectiveMass& matrix, double offset,
 }
 
 bool is_small(const Pencil& p, Index count) {
-  return p.system.size() <= largest_dense || 4 * count >= p.system.size();
+  return p.system.size() <= most_dense_modes || 4 * count >= p.system.size();
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "src/model/system.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

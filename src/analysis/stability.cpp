@@ -1,8 +1,8 @@
-#include "src/analysis/stability.hpp"
+#include "qddot/analysis/stability.hpp"
 
 #include <stdexcept>
 
-#include "src/analysis/natural_modes.hpp"
+#include "qddot/analysis/natural_modes.hpp"
 
 namespace qddot {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "src/model/layout.hpp"
+#include "qddot/model/layout.hpp"
 
 namespace qddot {
 

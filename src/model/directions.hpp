@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "src/model/layout.hpp"
-#include "src/model/mass_spring.hpp"
+#include "qddot/model/layout.hpp"
+#include "qddot/model/mass_spring.hpp"
 
 namespace qddot {
 

@@ -1,4 +1,4 @@
-#include "src/model/divided.hpp"
+#include "qddot/model/divided.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "src/model/first_order.hpp"
+#include "qddot/model/first_order.hpp"
 
 namespace qddot {
 

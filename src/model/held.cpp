@@ -1,4 +1,4 @@
-#include "src/model/held.hpp"
+#include "qddot/model/held.hpp"
 
 namespace qddot {
 

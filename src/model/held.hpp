@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "src/model/system.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

@@ -1,4 +1,4 @@
-#include "src/model/in_tension.hpp"
+#include "qddot/model/in_tension.hpp"
 
 namespace qddot {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "src/model/layout.hpp"
-#include "src/model/spring.hpp"
+#include "qddot/model/layout.hpp"
+#include "qddot/model/spring.hpp"
 
 namespace qddot {
 

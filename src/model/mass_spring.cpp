@@ -1,22 +1,24 @@
-#include "src/model/mass_spring.hpp"
+#include "qddot/model/mass_spring.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
 
-#include "src/model/block_pattern.hpp"
-#include "src/model/directions.hpp"
-#include "src/model/force_kernel.hpp"
-#include "src/model/in_tension.hpp"
-#include "src/model/kinks.hpp"
-#include "src/model/layout.hpp"
-#include "src/model/network_halves.hpp"
-#include "src/model/nodal_loads.hpp"
-#include "src/model/springs_by_node.hpp"
-#include "src/model/stiffness_kernel.hpp"
+#include "qddot/model/block_pattern.hpp"
+#include "qddot/model/directions.hpp"
+#include "qddot/model/in_tension.hpp"
+#include "qddot/model/kernels/force_kernel.hpp"
+#include "qddot/model/kernels/springs_by_node.hpp"
+#include "qddot/model/kernels/stiffness_kernel.hpp"
+#include "qddot/model/kinks.hpp"
+#include "qddot/model/layout.hpp"
+#include "qddot/model/network_halves.hpp"
+#include "qddot/model/nodal_loads.hpp"
 
 namespace qddot {
 namespace {
+
+using namespace kernels;
 
 // Measured: from so many nodes on vectors sum forces faster than a loop over springs does.
 constexpr Index fewest_for_vectors = 16;
@@ -61,7 +63,7 @@ class MassSpring final : public System, public Kinks {
   }
 
   void force(const Vec& q, Vec& f) const override {
-    if (by_node_) return qddot::sum_forces(*by_node_, q, weight_, f);
+    if (by_node_) return kernels::sum_forces(*by_node_, q, weight_, f);
     sum_forces(
         [&](const auto& spring) { return spring_force(spring.law, between(q, spring)); },
         [&](const auto& spring) { return spring_force(spring.law, edge_between(q, spring)); }, f);

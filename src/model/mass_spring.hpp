@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "src/model/spring.hpp"
-#include "src/model/system.hpp"
+#include "qddot/model/spring.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 

@@ -1,4 +1,4 @@
-#include "src/model/network_halves.hpp"
+#include "qddot/model/network_halves.hpp"
 
 namespace qddot {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "src/model/mass_spring.hpp"
+#include "qddot/model/mass_spring.hpp"
 
 namespace qddot {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "src/model/layout.hpp"
-#include "src/model/mass_spring.hpp"
+#include "qddot/model/layout.hpp"
+#include "qddot/model/mass_spring.hpp"
 
 namespace qddot {
 

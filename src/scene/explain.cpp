@@ -1,4 +1,4 @@
-#include "src/scene/explain.hpp"
+#include "qddot/scene/explain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "src/analysis/curvature_signs.hpp"
-#include "src/analysis/frequency_bound.hpp"
-#include "src/analysis/largest_frequency.hpp"
-#include "src/analysis/natural_modes.hpp"
+#include "qddot/analysis/curvature_signs.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/analysis/natural_modes.hpp"
 
 namespace qddot {
 namespace {

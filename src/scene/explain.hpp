@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "src/scene/reduce.hpp"
-#include "src/scene/scene.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/scene.hpp"
 
 namespace qddot {
 

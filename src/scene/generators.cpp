@@ -1,4 +1,4 @@
-#include "src/scene/generators.hpp"
+#include "qddot/scene/generators.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "src/scene/invalid_input.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 // One line a generator; each is defined in the file of its name.
 #define QDDOT_GENERATORS(GENERATOR) \

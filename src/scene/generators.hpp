@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "src/scene/scene.hpp"
-#include "src/scene/scene_limits.hpp"
+#include "qddot/scene/scene.hpp"
+#include "qddot/scene/scene_limits.hpp"
 
 namespace qddot {
 

@@ -1,4 +1,4 @@
-#include "src/scene/scene.hpp"
+#include "qddot/scene/scene.hpp"
 
 #include <bit>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "src/scene/invalid_input.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "src/model/spring.hpp"
+#include "qddot/model/spring.hpp"
 
 namespace qddot {
 

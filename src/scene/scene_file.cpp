@@ -1,4 +1,4 @@
-#include "src/scene/scene_file.hpp"
+#include "qddot/scene/scene_file.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/invalid_input.hpp"
-#include "src/scene/mesh_scene.hpp"
-#include "src/scene/toml_table.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/mesh/mesh_scene.hpp"
+#include "qddot/scene/toml_table.hpp"
 
 namespace qddot {
 namespace {

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <string>
 
-#include "src/scene/scene.hpp"
-#include "src/scene/scene_limits.hpp"
-#include "src/scene/text_file.hpp"
+#include "qddot/scene/scene.hpp"
+#include "qddot/scene/scene_limits.hpp"
+#include "qddot/scene/text_file.hpp"
 
 namespace qddot {
 

@@ -1,8 +1,8 @@
-#include "src/scene/scene_limits.hpp"
+#include "qddot/scene/scene_limits.hpp"
 
 #include <fmt/format.h>
 
-#include "src/scene/invalid_input.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot {
 

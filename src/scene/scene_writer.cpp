@@ -1,4 +1,4 @@
-#include "src/scene/scene_writer.hpp"
+#include "qddot/scene/scene_writer.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "src/scene/invalid_input.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot {
 namespace {

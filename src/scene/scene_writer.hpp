@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "src/scene/scene.hpp"
-#include "src/scene/text_file.hpp"
+#include "qddot/scene/scene.hpp"
+#include "qddot/scene/text_file.hpp"
 
 namespace qddot {
 

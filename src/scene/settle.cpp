@@ -1,11 +1,11 @@
-#include "src/scene/settle.hpp"
+#include "qddot/scene/settle.hpp"
 
 #include <algorithm>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "src/scene/invalid_input.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "src/analysis/equilibrium.hpp"
-#include "src/scene/reduce.hpp"
-#include "src/scene/scene.hpp"
+#include "qddot/analysis/equilibrium.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/scene.hpp"
 
 namespace qddot {
 

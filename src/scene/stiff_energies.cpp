@@ -1,4 +1,4 @@
-#include "src/scene/stiff_energies.hpp"
+#include "qddot/scene/stiff_energies.hpp"
 
 namespace qddot {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "src/model/system.hpp"
-#include "src/scene/scene.hpp"
+#include "qddot/model/system.hpp"
+#include "qddot/scene/scene.hpp"
 
 namespace qddot {
 

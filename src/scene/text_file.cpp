@@ -1,4 +1,4 @@
-#include "src/scene/text_file.hpp"
+#include "qddot/scene/text_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "src/scene/invalid_input.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot {
 

@@ -1,4 +1,4 @@
-#include "src/scene/toml_table.hpp"
+#include "qddot/scene/toml_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "src/scene/invalid_input.hpp"
-#include "src/scene/text_file.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/text_file.hpp"
 
 namespace qddot {
 namespace {

@@ -1,9 +1,9 @@
 #include <boost/test/unit_test.hpp>
 
-#include "src/algebra/automatic_factors.hpp"
-#include "src/algebra/multifrontal.hpp"
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/algebra/automatic_factors.hpp"
+#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
 
 using namespace qddot;

@@ -5,10 +5,10 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/algebra/conjugate_gradients.hpp"
-#include "src/algebra/multifrontal.hpp"
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/algebra/conjugate_gradients.hpp"
+#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

@@ -7,9 +7,9 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/algebra/effective_mass.hpp"
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

@@ -2,12 +2,12 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/algebra/laplacian_mass.hpp"
-#include "src/algebra/multifrontal.hpp"
-#include "src/model/divided.hpp"
-#include "src/model/held.hpp"
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/algebra/laplacian_mass.hpp"
+#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/model/divided.hpp"
+#include "qddot/model/held.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"

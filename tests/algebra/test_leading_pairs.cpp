@@ -1,7 +1,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/algebra/leading_pairs.hpp"
+#include "qddot/algebra/leading_pairs.hpp"
 #include "tests/measure.hpp"
 
 using namespace qddot;

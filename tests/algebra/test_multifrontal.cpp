@@ -7,12 +7,12 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/algebra/cholmod_factors.hpp"
-#include "src/algebra/effective_mass.hpp"
-#include "src/algebra/elimination.hpp"
-#include "src/algebra/multifrontal.hpp"
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/algebra/cholmod_factors.hpp"
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/algebra/elimination.hpp"
+#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

@@ -4,8 +4,8 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/curvature_signs.hpp"
-#include "src/analysis/natural_modes.hpp"
+#include "qddot/analysis/curvature_signs.hpp"
+#include "qddot/analysis/natural_modes.hpp"
 #include "tests/problems.hpp"
 
 using namespace qddot;

@@ -4,11 +4,11 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/curvature_signs.hpp"
-#include "src/analysis/equilibrium.hpp"
-#include "src/analysis/stability.hpp"
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/analysis/curvature_signs.hpp"
+#include "qddot/analysis/equilibrium.hpp"
+#include "qddot/analysis/stability.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

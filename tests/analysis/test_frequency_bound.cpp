@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/frequency_bound.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

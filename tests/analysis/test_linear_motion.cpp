@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/linear_motion.hpp"
+#include "qddot/analysis/linear_motion.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

@@ -5,11 +5,11 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/frequency_bound.hpp"
-#include "src/analysis/largest_frequency.hpp"
-#include "src/analysis/natural_modes.hpp"
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/analysis/natural_modes.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

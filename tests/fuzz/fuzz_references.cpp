@@ -19,11 +19,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "experiments/reference.hpp"
+#include "qddot/measure/reference/reference.hpp"
 #include "tests/independent/plain_motion.hpp"
 #include "tests/independent/random_scene.hpp"
 
 namespace qddot {
+
+using namespace measure;
 namespace {
 
 // Far below what a double resolves, and far above what quadruple precision does.

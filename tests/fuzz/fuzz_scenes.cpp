@@ -15,9 +15,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "src/scene/invalid_input.hpp"
-#include "src/scene/scene_file.hpp"
-#include "src/scene/scene_writer.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/scene_file.hpp"
+#include "qddot/scene/scene_writer.hpp"
 #include "tests/fuzz/corpus.hpp"
 #include "tests/fuzz/mutator.hpp"
 #include "tests/scene/same_scene.hpp"

@@ -6,12 +6,15 @@
 
 #include <fmt/format.h>
 
-#include "experiments/deadline.hpp"
-#include "experiments/tolerance_scales.hpp"
-#include "integrators/registry.hpp"
-#include "src/analysis/frequency_bound.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/tolerance_scales.hpp"
+#include "qddot/scene/reduce/part.hpp"
 
 namespace qddot {
+
+using namespace measure;
 namespace {
 
 using Plain = PlainMotion<long double>;
@@ -109,7 +112,7 @@ void compare_state(const ReducedScene& reduced, const PlainModel<long double>& m
   const auto still = reduced.expand({state.t, state.q, Vec::Zero(n)});
   // In the frame that falls with a part its nodes have no weight.
   std::vector<bool> has_weight(nodes.size(), true);
-  for (const Part& part : reduced.parts()) {
+  for (const qddot::reduce::Part& part : reduced.parts()) {
     for (const std::size_t node : part.nodes()) has_weight[node] = !part.fall().moves();
   }
   long double power = 0, fastest = w.norm();

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "src/scene/reduce.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/independent/plain_motion.hpp"
 
 namespace qddot {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "src/scene/scene.hpp"
+#include "qddot/scene/scene.hpp"
 
 namespace qddot {
 

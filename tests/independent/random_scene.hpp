@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "src/scene/scene.hpp"
+#include "qddot/scene/scene.hpp"
 
 namespace qddot {
 

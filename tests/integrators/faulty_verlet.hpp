@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrators/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/runs.hpp"
 
 namespace qddot {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "integrators/nystrom.hpp"
+#include "qddot/integrators/base/nystrom.hpp"
 
 namespace qddot {
 

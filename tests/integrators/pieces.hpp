@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "src/model/divided.hpp"
+#include "qddot/model/divided.hpp"
 #include "tests/integrators/runs.hpp"
 
 namespace qddot {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "integrators/registry.hpp"
+#include "qddot/integrators/registry.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/integrators/runs.hpp"
 
 namespace qddot {

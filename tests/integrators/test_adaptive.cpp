@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/nystrom.hpp"
-#include "src/analysis/linear_motion.hpp"
+#include "qddot/analysis/linear_motion.hpp"
+#include "qddot/integrators/base/nystrom.hpp"
 #include "tests/integrators/runs.hpp"
 #include "tests/integrators/spectral_radius.hpp"
 
@@ -17,8 +17,9 @@ struct Named {
   const char* name;
   const NystromPair& pair;
 };
-const std::vector<Named> pairs = {
-    {"dprkn6", dprkn6_pair()}, {"dprkn8", dprkn8_pair()}, {"dprkn12", dprkn12_pair()}};
+const std::vector<Named> pairs = {{"dprkn6", registered::dprkn6_pair()},
+                                  {"dprkn8", registered::dprkn8_pair()},
+                                  {"dprkn12", registered::dprkn12_pair()}};
 
 std::vector<Method> interpolating() {
   std::vector<Method> list = methods();

@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/fixed_step.hpp"
-#include "src/analysis/frequency_bound.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/allocations.hpp"
 #include "tests/integrators/scenes.hpp"
 

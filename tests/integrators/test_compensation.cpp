@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/compensated_sum.hpp"
+#include "qddot/integrators/base/compensated_sum.hpp"
 #include "tests/integrators/scenes.hpp"
 
 using namespace qddot;

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 
-#include "src/scene/settle.hpp"
+#include "qddot/scene/settle.hpp"
 #include "tests/integrators/scenes.hpp"
 
 using namespace qddot;

@@ -4,7 +4,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/model/divided.hpp"
+#include "qddot/model/divided.hpp"
 #include "tests/integrators/runs.hpp"
 
 using namespace qddot;

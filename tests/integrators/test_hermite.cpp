@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/hermite.hpp"
+#include "qddot/integrators/base/hermite.hpp"
 #include "tests/measure.hpp"
 
 using namespace qddot;

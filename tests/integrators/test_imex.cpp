@@ -1,7 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/frequency_bound.hpp"
-#include "src/analysis/linear_motion.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/linear_motion.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/integrators/split_relay.hpp"
 

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/kink_search.hpp"
+#include "qddot/integrators/base/kink_search.hpp"
 #include "tests/integrators/runs.hpp"
 
 using namespace qddot;

@@ -2,9 +2,9 @@
 // implicit. What they have in common with every fixed-step method is in the generic suites.
 #include <boost/test/unit_test.hpp>
 
-#include "src/algebra/effective_mass.hpp"
-#include "src/analysis/frequency_bound.hpp"
-#include "src/analysis/linear_motion.hpp"
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/linear_motion.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/integrators/split_relay.hpp"
 

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/scenes.hpp"
 
 using namespace qddot;

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/frequency_bound.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
 #include "tests/integrators/split_relay.hpp"
 
 using namespace qddot;

@@ -14,8 +14,9 @@ struct Named {
   const NystromPair& pair;
   std::int64_t forces;  // of a step
 };
-const std::vector<Named> pairs = {
-    {"dprkn6", dprkn6_pair(), 5}, {"dprkn8", dprkn8_pair(), 8}, {"dprkn12", dprkn12_pair(), 17}};
+const std::vector<Named> pairs = {{"dprkn6", registered::dprkn6_pair(), 5},
+                                  {"dprkn8", registered::dprkn8_pair(), 8},
+                                  {"dprkn12", registered::dprkn12_pair(), 17}};
 
 // Each of up to 17 products and sums of up to 12 levels rounds by 1.1e-16 of what is added up, and
 // so do coefficients of 16 digits.
@@ -25,7 +26,7 @@ constexpr double rounding = 2e-15;
 
 BOOST_AUTO_TEST_CASE(there_are_as_many_terms_of_each_order_as_there_should_be) {
   std::vector<int> count(13, 0);
-  const NystromTrees trees(dprkn6_pair(), 12);
+  const NystromTrees trees(registered::dprkn6_pair(), 12);
   for (const NystromTree& tree : trees.all()) {
     ++count[static_cast<std::size_t>(tree.order)];
   }

@@ -1,7 +1,7 @@
 #include <boost/numeric/odeint.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/linear_motion.hpp"
+#include "qddot/analysis/linear_motion.hpp"
 #include "tests/integrators/faulty_verlet.hpp"
 
 using namespace qddot;

@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/rosenbrock.hpp"
-#include "src/analysis/linear_motion.hpp"
+#include "qddot/analysis/linear_motion.hpp"
+#include "qddot/integrators/base/rosenbrock.hpp"
 #include "tests/integrators/runs.hpp"
 
 using namespace qddot;

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "src/scene/reduce.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/integrators/runs.hpp"
 
 using namespace qddot;

@@ -2,7 +2,7 @@
 // the sum of both.
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/pieces.hpp"
 #include "tests/integrators/scenes.hpp"
 

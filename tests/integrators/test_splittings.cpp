@@ -2,7 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/kick_drift.hpp"
+#include "qddot/integrators/base/kick_drift.hpp"
 #include "tests/integrators/nystrom_trees.hpp"
 #include "tests/integrators/runs.hpp"
 #include "tests/integrators/spectral_radius.hpp"
@@ -17,10 +17,10 @@ struct Named {
   const char* name;
   const Splitting& splitting;
 };
-const std::vector<Named> all = {{"position_verlet", position_verlet_splitting()},
-                                {"blanes_moan4", blanes_moan4_splitting()},
-                                {"blanes_moan6", blanes_moan6_splitting()},
-                                {"kahan_li8", kahan_li8_splitting()}};
+const std::vector<Named> all = {{"position_verlet", registered::position_verlet_splitting()},
+                                {"blanes_moan4", registered::blanes_moan4_splitting()},
+                                {"blanes_moan6", registered::blanes_moan6_splitting()},
+                                {"kahan_li8", registered::kahan_li8_splitting()}};
 
 // The Nystrom method that a splitting is: a stage where each kick is, at the time c_i of the drifts
 // before, with a_ij = y_j (c_i - c_j), b_i = y_i (1 - c_i) and b'_i = y_i.
@@ -84,7 +84,7 @@ BOOST_AUTO_TEST_CASE(each_splitting_meets_all_conditions_of_its_order_and_not_th
 }
 
 BOOST_AUTO_TEST_CASE(a_coefficient_wrong_in_its_13th_digit_is_noticed) {
-  Splitting wrong = blanes_moan6_splitting();
+  Splitting wrong = registered::blanes_moan6_splitting();
   wrong.kicks[2] += 1e-13;
   wrong.kicks[9] += 1e-13;
   wrong.kicks[5] -= 1e-13;

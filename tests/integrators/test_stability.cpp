@@ -1,7 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/integrators/faulty_verlet.hpp"
 
 using namespace qddot;

@@ -2,7 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/linear_motion.hpp"
+#include "qddot/analysis/linear_motion.hpp"
 #include "tests/integrators/scenes.hpp"
 
 using namespace qddot;

@@ -3,7 +3,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/sundials/vector.hpp"
+#include "qddot/integrators/sundials/vector.hpp"
 #include "tests/measure.hpp"
 
 using namespace qddot;

@@ -4,7 +4,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/model/mass_spring.hpp"
+#include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 
 using namespace qddot;

@@ -4,8 +4,8 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/model/divided.hpp"
-#include "src/model/mass_spring.hpp"
+#include "qddot/model/divided.hpp"
+#include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/model/first_order.hpp"
+#include "qddot/model/first_order.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

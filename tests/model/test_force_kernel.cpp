@@ -5,13 +5,14 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/model/lanes.hpp"
-#include "src/model/neighbour_slices.hpp"
+#include "qddot/model/kernels/lanes.hpp"
+#include "qddot/model/kernels/neighbour_slices.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
 using namespace qddot;
+using namespace qddot::kernels;
 
 BOOST_AUTO_TEST_SUITE(force_kernel)
 

@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/model/divided.hpp"
-#include "src/model/in_tension.hpp"
+#include "qddot/model/divided.hpp"
+#include "qddot/model/in_tension.hpp"
 #include "tests/problems.hpp"
 
 using namespace qddot;

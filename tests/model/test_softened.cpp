@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/model/divided.hpp"
-#include "src/model/held.hpp"
+#include "qddot/model/divided.hpp"
+#include "qddot/model/held.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"

@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "src/model/spring.hpp"
+#include "qddot/model/spring.hpp"
 #include "tests/measure.hpp"
 
 using namespace qddot;

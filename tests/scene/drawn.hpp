@@ -8,8 +8,8 @@
 
 #include <Eigen/Geometry>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot {
 

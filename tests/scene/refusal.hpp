@@ -5,7 +5,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/scene/invalid_input.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot {
 

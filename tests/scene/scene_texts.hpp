@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "src/scene/scene_file.hpp"
+#include "qddot/scene/scene_file.hpp"
 #include "tests/scene/refusal.hpp"
 
 namespace qddot {

@@ -1,10 +1,11 @@
 // A part of another body is told from its own: what every reduction is checked by.
 #include <boost/test/unit_test.hpp>
 
-#include "src/scene/reduce/part.hpp"
+#include "qddot/scene/reduce/part.hpp"
 #include "tests/scene/drawn.hpp"
 
 using namespace qddot;
+using namespace qddot::reduce;
 
 namespace {
 

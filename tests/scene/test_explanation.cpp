@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "src/scene/explain.hpp"
+#include "qddot/scene/explain.hpp"
 #include "tests/scene/drawn.hpp"
 
 using namespace qddot;

@@ -2,9 +2,9 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/natural_modes.hpp"
-#include "src/scene/reduce.hpp"
-#include "src/scene/stiff_energies.hpp"
+#include "qddot/analysis/natural_modes.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/stiff_energies.hpp"
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 

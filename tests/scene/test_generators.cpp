@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/invalid_input.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 using namespace qddot;
 

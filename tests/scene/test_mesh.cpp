@@ -8,12 +8,13 @@
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
 
-#include "src/scene/mesh.hpp"
+#include "qddot/scene/mesh/mesh.hpp"
 #include "tests/folder.hpp"
 #include "tests/scene/refusal.hpp"
 
 namespace fs = std::filesystem;
 using namespace qddot;
+using namespace qddot::mesh;
 using namespace std::string_literals;
 
 namespace {

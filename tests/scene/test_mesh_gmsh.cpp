@@ -6,11 +6,12 @@
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
 
-#include "src/scene/mesh.hpp"
+#include "qddot/scene/mesh/mesh.hpp"
 #include "tests/folder.hpp"
 #include "tests/scene/refusal.hpp"
 
 using namespace qddot;
+using namespace qddot::mesh;
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
 
-#include "src/scene/generators.hpp"
+#include "qddot/scene/generators.hpp"
 #include "tests/folder.hpp"
 #include "tests/scene/scene_texts.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/invalid_input.hpp"
-#include "src/scene/settle.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/settle.hpp"
 #include "tests/measure.hpp"
 
 using namespace qddot;

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "src/scene/stiff_energies.hpp"
+#include "qddot/scene/stiff_energies.hpp"
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "src/analysis/natural_modes.hpp"
-#include "src/scene/reduce.hpp"
+#include "qddot/analysis/natural_modes.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 

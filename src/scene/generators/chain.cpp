@@ -1,7 +1,7 @@
 // A hanging chain: equal masses on equal springs along x, let go from the horizontal at rest
 // lengths, one or both ends pinned.
-#include "src/scene/generators.hpp"
-#include "src/scene/generators/ranges.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
 namespace {

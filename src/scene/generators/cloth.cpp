@@ -1,5 +1,5 @@
 // A square cloth, pinned at the two corners of one side, let go flat and horizontal.
-#include "src/scene/generators/cloth_grid.hpp"
+#include "qddot/scene/generators/cloth_grid.hpp"
 
 namespace qddot {
 

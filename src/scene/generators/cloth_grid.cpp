@@ -1,6 +1,6 @@
-#include "src/scene/generators/cloth_grid.hpp"
+#include "qddot/scene/generators/cloth_grid.hpp"
 
-#include "src/scene/generators/ranges.hpp"
+#include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
 

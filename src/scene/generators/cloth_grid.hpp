@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "src/scene/generators.hpp"
+#include "qddot/scene/generators.hpp"
 
 namespace qddot {
 

@@ -17,8 +17,8 @@
 // are less than 1.6 m and 4.7 m. Nothing depends on the 10 m as long as they are enough.
 #include <cmath>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/generators/ranges.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
 namespace {

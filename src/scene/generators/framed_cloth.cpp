@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/scene/generators/cloth_grid.hpp"
-#include "src/scene/generators/ranges.hpp"
+#include "qddot/scene/generators/cloth_grid.hpp"
+#include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdlib>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/generators/ranges.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
 namespace {

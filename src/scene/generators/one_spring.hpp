@@ -1,6 +1,6 @@
 #pragma once
 
-#include "src/scene/generators.hpp"
+#include "qddot/scene/generators.hpp"
 
 namespace qddot {
 

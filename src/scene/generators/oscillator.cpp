@@ -1,8 +1,8 @@
 // The lecture's first example, a 1D spring of zero rest length on a wall: m x'' = -k x, so that
 // x(t) = x0 cos(w t), w = sqrt(k/m), in closed form by exp(At).
-#include "src/scene/generators.hpp"
-#include "src/scene/generators/one_spring.hpp"
-#include "src/scene/generators/ranges.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/generators/one_spring.hpp"
+#include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
 

@@ -1,9 +1,9 @@
 // Two free masses on one spring: the centre of mass moves uniformly, the spring vibrates and
 // rotates about it. At small amplitude without rotation the frequency is sqrt(k/mu) with the
 // reduced mass mu = m1 m2 / (m1 + m2).
-#include "src/scene/generators.hpp"
-#include "src/scene/generators/one_spring.hpp"
-#include "src/scene/generators/ranges.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/generators/one_spring.hpp"
+#include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
 

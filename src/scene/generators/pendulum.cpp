@@ -3,9 +3,9 @@
 // energy.
 #include <cmath>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/generators/one_spring.hpp"
-#include "src/scene/generators/ranges.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/generators/one_spring.hpp"
+#include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
 

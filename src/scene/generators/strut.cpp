@@ -10,8 +10,8 @@
 //   w_j^2 = (4 k/m) sin^2(j pi / (2 (N + 1))).
 #include <cmath>
 
-#include "src/scene/generators.hpp"
-#include "src/scene/generators/ranges.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
 namespace {

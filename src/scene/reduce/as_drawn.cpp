@@ -1,8 +1,8 @@
-#include "src/scene/reduce/as_drawn.hpp"
+#include "qddot/scene/reduce/as_drawn.hpp"
 
-#include "src/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/body.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 constexpr double eps = 0x1p-52;
@@ -57,4 +57,4 @@ BoundedEnergy kinetic_of(const std::vector<Eigen::Vector3d>& v, const std::vecto
   return sum;
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

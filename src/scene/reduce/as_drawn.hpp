@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
-#include "src/scene/scene.hpp"
+#include "qddot/scene/scene.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // An energy [J] and by how much it may be off.
 struct BoundedEnergy {
@@ -45,4 +45,4 @@ inline bool differs(const BoundedEnergy& drawn, double reduced) {
   return std::abs(reduced - drawn.value) > drawn.error;
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -1,9 +1,9 @@
-#include "src/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/body.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 // Coordinate by coordinate zero, or that of the first point where all are far from zero for the
@@ -76,4 +76,4 @@ double largest_coordinate(const std::vector<Eigen::Vector3d>& vectors) {
   return largest;
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

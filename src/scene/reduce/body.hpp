@@ -4,11 +4,11 @@
 
 #include <Eigen/Core>
 
-#include "src/scene/reduce/components.hpp"
-#include "src/scene/reduce/fall.hpp"
-#include "src/scene/scene.hpp"
+#include "qddot/scene/reduce/components.hpp"
+#include "qddot/scene/reduce/fall.hpp"
+#include "qddot/scene/scene.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // One component with all that acts on it: its nodes, the pinned nodes that its springs hold it to,
 // and gravity; numbered anew.
@@ -37,4 +37,4 @@ inline constexpr double rounding = 64 * 0x1p-52;
 // The largest coordinate, in absolute value.
 double largest_coordinate(const std::vector<Eigen::Vector3d>& vectors);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -1,10 +1,10 @@
-#include "src/scene/reduce/components.hpp"
+#include "qddot/scene/reduce/components.hpp"
 
 #include <algorithm>
 
 #include <boost/pending/disjoint_sets.hpp>
 
-namespace qddot {
+namespace qddot::reduce {
 
 std::vector<Component> components_of(const std::vector<Node>& nodes,
                                      const std::vector<Spring>& springs) {
@@ -50,4 +50,4 @@ std::vector<Component> joined(const std::vector<Component>& components) {
   return {all};
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "src/scene/scene.hpp"
+#include "qddot/scene/scene.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // Nodes that springs join, directly or through each other. Pinned nodes join nothing: they pass no
 // motion on.
@@ -21,4 +21,4 @@ std::vector<Component> components_of(const std::vector<Node>& nodes,
 // The same nodes and springs as one component; none of none.
 std::vector<Component> joined(const std::vector<Component>& components);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -1,10 +1,10 @@
-#include "src/scene/reduce/fall.hpp"
+#include "qddot/scene/reduce/fall.hpp"
 
 #include <algorithm>
 
-#include "src/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/body.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 constexpr double few_roundings = 4 * 0x1p-52;
@@ -51,4 +51,4 @@ bool rests(const Body& body) {
   });
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

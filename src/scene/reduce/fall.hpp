@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace qddot {
+namespace qddot::reduce {
 
 struct Body;
 
@@ -37,4 +37,4 @@ void let_fall(Body& body);
 // move it.
 bool rests(const Body& body);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -1,12 +1,12 @@
-#include "src/scene/reduce/folded.hpp"
+#include "qddot/scene/reduce/folded.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 
-#include "src/scene/reduce/orbits.hpp"
+#include "qddot/scene/reduce/orbits.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 using Eigen::Vector3d;
@@ -113,4 +113,4 @@ Folded folded(const Body& body, const Mirrors& mirrors) {
   return result;
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -4,11 +4,11 @@
 
 #include <Eigen/Core>
 
-#include "src/model/mass_spring.hpp"
-#include "src/scene/reduce/body.hpp"
-#include "src/scene/reduce/mirror.hpp"
+#include "qddot/model/mass_spring.hpp"
+#include "qddot/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/mirror.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // A node of a body as the image diag(signs) y of an original one, its own or another of its orbit
 // under the group of all mirrors (see orbits.hpp). The original lies on the side of each mirror
@@ -35,4 +35,4 @@ struct Folded {
 
 Folded folded(const Body& body, const Mirrors& mirrors);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

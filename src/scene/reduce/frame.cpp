@@ -1,10 +1,10 @@
-#include "src/scene/reduce/frame.hpp"
+#include "qddot/scene/reduce/frame.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 // Whether coordinate d is the same for all positions, and zero for whatever moves or pulls.
@@ -109,4 +109,4 @@ Frame frame_of(const Body& body, int dimension) {
   return rotated;
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

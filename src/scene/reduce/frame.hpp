@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "src/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/body.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // Coordinates y of a D-dimensional subspace: x = origin + axes y, the axes being the first D
 // columns of an orthonormal matrix. A coordinate is either one of the scene's own, to the bit, or a
@@ -40,4 +40,4 @@ Eigen::Matrix3d complete(Eigen::Matrix3d axes, int count);
 // rounding may be there on purpose, to start a buckling.
 Frame frame_of(const Body& body, int dimension);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

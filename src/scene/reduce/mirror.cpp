@@ -1,4 +1,4 @@
-#include "src/scene/reduce/mirror.hpp"
+#include "qddot/scene/reduce/mirror.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "src/scene/reduce/orbits.hpp"
+#include "qddot/scene/reduce/orbits.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 using Eigen::Vector3d;
@@ -356,4 +356,4 @@ Mirrors mirrors_of(const Body& body, const Frame& frame) {
   return mirrors;
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

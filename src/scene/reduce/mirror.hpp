@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 
-#include "src/scene/reduce/body.hpp"
-#include "src/scene/reduce/frame.hpp"
+#include "qddot/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/frame.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // Planes (in two dimensions lines, in one points) that mirror a body onto itself, at right angles
 // to each other: coordinate d of the body, the first `count` of them, changes its sign.
@@ -36,4 +36,4 @@ struct Mirrors {
 // of which few coincide.
 Mirrors mirrors_of(const Body& body, const Frame& frame);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace qddot {
+namespace qddot::reduce {
 
 // Reflections as permutations of a body's nodes: each its own inverse, all commuting, so that the
 // group they generate acts on the nodes. An element of the group is a set of reflections, a bit for
@@ -40,4 +40,4 @@ class Orbits {
   const std::vector<std::vector<int>>& images_;
 };
 
-}  // namespace qddot
+}  // namespace qddot::reduce

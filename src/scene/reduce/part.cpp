@@ -1,10 +1,10 @@
-#include "src/scene/reduce/part.hpp"
+#include "qddot/scene/reduce/part.hpp"
 
-#include "src/model/held.hpp"
-#include "src/scene/reduce/folded.hpp"
-#include "src/scene/reduce/straight.hpp"
+#include "qddot/model/held.hpp"
+#include "qddot/scene/reduce/folded.hpp"
+#include "qddot/scene/reduce/straight.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 constexpr int no_number = -1;
@@ -150,4 +150,4 @@ Part::Moments Part::moments(const Eigen::Ref<const Vec>& q, const Eigen::Ref<con
   return sums;
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

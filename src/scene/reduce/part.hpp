@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "src/model/mass_spring.hpp"
-#include "src/scene/reduce/body.hpp"
-#include "src/scene/reduce/frame.hpp"
-#include "src/scene/reduce/mirror.hpp"
-#include "src/scene/reduce/reductions.hpp"
+#include "qddot/model/mass_spring.hpp"
+#include "qddot/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/frame.hpp"
+#include "qddot/scene/reduce/mirror.hpp"
+#include "qddot/scene/reduce/reductions.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // A body's motion in the fewest unknowns. Every node's position is an affine function of them,
 //   x_i = origin + frame.origin + axes diag(signs_i) y_original(i),   in short x = P q + c,
@@ -99,4 +99,4 @@ class Part {
   bool is_straightened_ = false;
 };
 
-}  // namespace qddot
+}  // namespace qddot::reduce

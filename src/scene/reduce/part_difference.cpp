@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "src/scene/reduce/as_drawn.hpp"
-#include "src/scene/reduce/part.hpp"
+#include "qddot/scene/reduce/as_drawn.hpp"
+#include "qddot/scene/reduce/part.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 std::string instead_of(const char* what, double reduced, double drawn, const char* unit) {
@@ -71,4 +71,4 @@ std::optional<std::string> Part::masses_differ(const Body& body) const {
   return {};
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -1,8 +1,8 @@
-#include "src/scene/reduce/series.hpp"
+#include "qddot/scene/reduce/series.hpp"
 
 #include <optional>
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -179,4 +179,4 @@ std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<
   return Condenser(nodes, springs, stiff_above, is_on_line).condense();
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

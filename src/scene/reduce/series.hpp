@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "src/scene/scene.hpp"
+#include "qddot/scene/scene.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // Springs in series through massless nodes, as one spring between the two ends.
 //
@@ -55,4 +55,4 @@ std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<
                                     std::optional<double> stiff_above,
                                     const std::vector<bool>& is_on_line);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -1,10 +1,10 @@
-#include "src/scene/reduce/springs.hpp"
+#include "qddot/scene/reduce/springs.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 // Springs with the same key may be added.
@@ -42,4 +42,4 @@ std::vector<Spring> merged_springs(const std::vector<Spring>& springs) {
   return merged;
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

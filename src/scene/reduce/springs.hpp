@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "src/scene/scene.hpp"
+#include "qddot/scene/scene.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // Springs that do the same as `springs`: those without any stiffness are left out, and those
 // between the same two nodes with the same rest length are one, whose stiffnesses are the sums,
@@ -13,4 +13,4 @@ namespace qddot {
 // order in which each first appears.
 std::vector<Spring> merged_springs(const std::vector<Spring>& springs);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -1,10 +1,10 @@
-#include "src/scene/reduce/straight.hpp"
+#include "qddot/scene/reduce/straight.hpp"
 
 #include <algorithm>
 
-#include "src/algebra/effective_mass.hpp"
+#include "qddot/algebra/effective_mass.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 // A spring on the line: d = c - x_i, + s x_j where j is a node.
@@ -121,4 +121,4 @@ std::optional<Network> straightened(const Network& network, const Vec& q, const 
   return {};
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

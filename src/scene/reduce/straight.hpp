@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "src/model/mass_spring.hpp"
+#include "qddot/model/mass_spring.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // On a line, a spring whose ends never pass through each other pulls with k (s d - l0) s, s = +-1
 // being its direction and d the difference of its ends: linear in d, V = 1/2 k (d - s l0)^2. So K
@@ -26,4 +26,4 @@ namespace qddot {
 // does; what takes f as linear asks first whether it is (System::is_linear_at).
 std::optional<Network> straightened(const Network& network, const Vec& q, const Vec& v);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

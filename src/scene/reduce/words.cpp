@@ -1,4 +1,4 @@
-#include "src/scene/reduce/words.hpp"
+#include "qddot/scene/reduce/words.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace qddot {
+namespace qddot::reduce {
 namespace {
 
 // "1 node", "2 nodes".
@@ -161,4 +161,4 @@ std::vector<Finding> findings_of(const std::vector<Part>& parts,
   return findings;
 }
 
-}  // namespace qddot
+}  // namespace qddot::reduce

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "src/model/system.hpp"
-#include "src/scene/reduce/part.hpp"
-#include "src/scene/reduce/reductions.hpp"
+#include "qddot/model/system.hpp"
+#include "qddot/scene/reduce/part.hpp"
+#include "qddot/scene/reduce/reductions.hpp"
 
-namespace qddot {
+namespace qddot::reduce {
 
 // The sentences by which reductions say what they left out and why they may.
 std::string pinned_sentence(std::size_t pins);
@@ -28,4 +28,4 @@ std::vector<Finding> findings_of(const std::vector<Part>& parts,
                                  const std::vector<std::unique_ptr<System>>& systems,
                                  int dimension);
 
-}  // namespace qddot
+}  // namespace qddot::reduce

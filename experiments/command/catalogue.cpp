@@ -1,0 +1,74 @@
+#include "experiments/command/catalogue.hpp"
+
+#include <cstdio>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "experiments/command/csv.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/scene/generators.hpp"
+
+namespace qddot::command {
+namespace {
+
+const char* yes(bool holds) { return holds ? "yes" : "no"; }
+
+}  // namespace
+
+std::string method_names() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) names.push_back(method.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string names_where(bool Method::*has) {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) {
+    if (method.*has) names.push_back(method.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void print_methods(bool as_csv) {
+  if (as_csv) {
+    Csv csv({"name", "order", "family", "knob", "implicit", "symplectic", "needs_stiffness",
+             "accepts_massless", "needs_constant_stiffness", "needs_split", "needs_laplacian",
+             "takes_iterations", "summary", "source"});
+    for (const Method& m : methods()) {
+      csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.implicit),
+              yes(m.symplectic), yes(m.needs_stiffness), yes(m.accepts_massless),
+              yes(m.needs_constant_stiffness), yes(m.needs_split), yes(m.needs_laplacian),
+              yes(m.takes_iterations), m.summary, m.source);
+    }
+    fmt::print("{}", csv.text());
+    return;
+  }
+  fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", "name", "order", "family", "knob", "what it is");
+  for (const Method& m : methods()) {
+    fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", m.name, m.order, family_name(m.family),
+               knob_name(m.knob), m.summary);
+  }
+}
+
+void print_generators(bool as_csv) {
+  if (as_csv) {
+    Csv csv({"scene", "parameter", "standard", "low", "high", "meaning", "summary"});
+    for (const Generator& g : generators()) {
+      for (const GeneratorParameter& p : g.parameters) {
+        csv.row(g.name, p.name, p.standard, p.low, p.high, p.meaning, g.summary);
+      }
+    }
+    fmt::print("{}", csv.text());
+    return;
+  }
+  for (const Generator& g : generators()) {
+    fmt::print("{:<12} {}\n", g.name, g.summary);
+    for (const GeneratorParameter& p : g.parameters) {
+      fmt::print("  {:<22} {:>8}  {}\n", p.name, p.standard, p.meaning);
+    }
+  }
+}
+
+}  // namespace qddot::command

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "qddot/integrators/method.hpp"
+
+namespace qddot::command {
+
+// The names of all methods, as "a, b, c".
+std::string method_names();
+
+// The names of those methods that have the given property.
+std::string names_where(bool Method::*has);
+
+// Prints the methods, or the scene generators with their parameters, as a table or as CSV.
+void print_methods(bool as_csv);
+void print_generators(bool as_csv);
+
+}  // namespace qddot::command

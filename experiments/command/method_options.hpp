@@ -1,0 +1,21 @@
+#pragma once
+
+#include "qddot/measure/speed/measurement.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace qddot::command {
+
+using namespace measure;
+
+// Adds --max-order, --stability-detection, --iterations, --solve-tolerance, --spectral-radius and
+// --solver.
+void add_method_options(CLI::App& app, MethodOptions& options);
+
+// Throws InvalidInput unless each option that is given is allowed for some method, or for this one.
+void require_options(const CLI::App& app, const MethodOptions& options);
+void require_options(const CLI::App& app, const MethodOptions& options, const Method& method);
+
+}  // namespace qddot::command

@@ -1,0 +1,161 @@
+#include "experiments/command/program.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <omp.h>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "experiments/command/build_info.hpp"
+#include "experiments/command/interruptible.hpp"
+#include "experiments/command/memory.hpp"
+#include "experiments/command/overwriting.hpp"
+#include "experiments/command/whole_file.hpp"
+#include "qddot/measure/reference/no_reference.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::command {
+
+using namespace measure;
+namespace {
+
+int complain(const CLI::App& app, const std::string& sentence, int status) {
+  fmt::print(stderr, "{}: {}\n", app.get_name(), in_one_line(sentence));
+  return status;
+}
+
+// The options that every program takes.
+struct EveryProgram {
+  explicit EveryProgram(CLI::App& app) {
+    app.set_version_flag("--version", fmt::format("{} of qddot {}, {}", app.get_name(),
+                                                  build_info::version, build_info::compiler));
+    app.add_flag("--force", force, "replace files that qddot did not write");
+    limit = app.add_option("--time-limit", seconds,
+                           "seconds after which the program ends in order, with what it has")
+                ->take_last();
+  }
+  void apply(Interruptible& run) const {
+    if (force) allow_replacing();
+    if (limit->count() == 0) return;
+    require_positive(seconds, "--time-limit", "the seconds that the program may take");
+    run.end_after(seconds);
+  }
+
+  bool force = false;
+  double seconds = 0;
+  CLI::Option* limit;
+};
+
+}  // namespace
+
+std::string in_one_line(const std::string& text) {
+  std::string line;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const bool begins_control =
+        c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    if (c == '\n' || c == '\r' || c == '\t') {
+      line += ' ';
+    } else if (c < ' ' || c == 0x7f || begins_control) {
+      line += '?';
+      i += begins_control;
+    } else {
+      line += text[i];
+    }
+  }
+  return line;
+}
+
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  const EveryProgram options(app);
+  try {
+    Interruptible run(app.get_name());
+    app.parse(argc, argv);
+    options.apply(run);
+    return body();
+  } catch (const Interrupted& error) {
+    return complain(app, error.what(), error.status);
+  } catch (const CannotWrite& error) {
+    return complain(app, error.what(), end_not_reached);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ConversionError& error) {
+    return complain(app, fmt::format("{}; allowed is a number", error.what()), bad_input);
+  } catch (const CLI::ParseError& error) {
+    return complain(app, error.what(), bad_input);
+  } catch (const InvalidInput& error) {
+    return complain(app, error.what(), bad_input);
+  } catch (const NoReference& error) {
+    return complain(app, error.what(), end_not_reached);
+  } catch (const std::domain_error& error) {  // what is asked for does not exist for the scene
+    return complain(app, error.what(), end_not_reached);
+  } catch (const std::range_error& error) {  // numbers of the scene overflow on the way to it
+    return complain(app, error.what(), end_not_reached);
+  } catch (const std::bad_alloc&) {
+    return complain(app, out_of_memory(), end_not_reached);
+  } catch (const std::system_error&) {  // no thread can be started
+    return complain(app, out_of_memory(), end_not_reached);
+  } catch (const std::exception& error) {
+    return complain(app, error.what(), failed);
+  }
+}
+
+void add_threads_option(CLI::App& app) {
+  omp_set_num_threads(1);
+  app.add_option_function<int>(
+         "--threads",
+         [](int threads) {
+           require_within(threads, 1, 256, "--threads");
+           omp_set_num_threads(threads);
+         },
+         "how many cores a run of a large scene may use (default: 1)")
+      ->take_last();
+}
+
+void require_positive(double value, const std::string& option, const std::string& meaning) {
+  if (std::isfinite(value) && value > 0) return;
+  throw InvalidInput(fmt::format("{} {} is not allowed; it is {}, finite and greater than 0",
+                                 option, value, meaning));
+}
+
+void require_within(int value, int low, int high, const std::string& option) {
+  if (value >= low && value <= high) return;
+  throw InvalidInput(fmt::format("{} {} is not allowed; it is a whole number from {} to {}", option,
+                                 value, low, high));
+}
+
+void require_repeats(int repeats) { require_within(repeats, 1, 1000, "--repeats"); }
+
+void require_given(const std::string& text, const std::string& option, const std::string& meaning) {
+  if (text.empty()) throw InvalidInput(fmt::format("{} is missing; it is {}", option, meaning));
+}
+
+double horizon(double asked, bool is_asked, const Scene& scene) {
+  if (is_asked) {
+    require_positive(asked, "--until", "the horizon in s");
+    return asked;
+  }
+  if (!scene.until) {
+    throw InvalidInput(
+        fmt::format("--until is missing, and scene {} has no horizon of its own; it is the time to "
+                    "run to in s, greater than 0",
+                    scene.name));
+  }
+  return *scene.until;
+}
+
+void require_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw InvalidInput(
+        fmt::format("--out {}: no folder can be made there ({}); allowed is a folder "
+                    "that exists or whose parent can be written",
+                    folder, error ? error.message() : "it is a file"));
+  }
+}
+
+}  // namespace qddot::command

@@ -1,0 +1,363 @@
+// When does an implicit method win? The fastest method for each accuracy on a scene some of whose
+// springs are `ratio` times as stiff as what sets its motion.
+//
+//   crossover --family frame --out results/frame
+//   crossover --family chain --ratios 1,1e3,1e6 --methods verlet,ida --out results/chain
+//
+//  1. For each ratio a scene (stiff_scenes.hpp) and a reference that is good to a tenth of the
+//     finest accuracy, kept in ratio_R/reference.json for the next time (agreed_reference).
+//  2. All methods but SUNDIALS' stock ways, which are slower than the same ones with the structure,
+//     climb their ladders as in work_precision, those first that were fast at the ratio before. One
+//     that will be 20 times slower than the fastest at each accuracy that it has yet to reach is
+//     not followed further; where an explicit one is that slow throughout it is not tried at larger
+//     ratios.
+//  3. points.csv holds every point; crossover.csv, for each ratio and accuracy from 1e-1 to 1e-6,
+//     the fastest method and the next; kinds.csv the fastest of each kind: explicit, implicit,
+//     split (stiff springs apart from the others). Empty is what no method reached, or what the
+//     reference does not certify.
+//
+// What to expect: the largest step of an explicit method is c / w_max, and w_max grows as
+// sqrt(ratio). Where that limit and not the accuracy decides, it takes
+//   t_explicit = sqrt(ratio) T w_1 / c x (time of a force),
+// w_1 that at ratio 1. The steps of an implicit method follow the motion and not the stiffest
+// spring: t_implicit = (steps) x (time of a step), whatever the ratio. They are equal at
+//   ratio = (implicit steps x time of an implicit step / (explicit steps at ratio 1 x time of a
+//   force))^2.
+// An accuracy that makes implicit steps n times as many moves that by n^2, as long as it leaves
+// explicit steps at their limit. It fails where vibrations of stiff springs are part of what is
+// asked: an implicit method then has to resolve them too.
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/csv.hpp"
+#include "experiments/command/point_record.hpp"
+#include "experiments/command/point_table.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/reference_file.hpp"
+#include "experiments/command/scene_choice.hpp"
+#include "experiments/command/study.hpp"
+#include "experiments/crossover/race.hpp"
+#include "experiments/crossover/stiff_scenes.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/speed/ladder.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::crossover {
+
+using namespace measure;
+using namespace command;
+namespace {
+
+constexpr double largest_ratio = 1e9;  // beyond it rounding of stiff forces is felt
+constexpr int least_nodes = 4, most_nodes = 1000;
+// What the reference is asked for: a tenth of the finest accuracy.
+constexpr double needed = Race::accuracies.back() / 10;
+
+struct Arguments {
+  std::string family = "frame";
+  int nodes = 0;
+  double until = 0;
+  std::vector<double> ratios = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8};
+  std::vector<std::string> methods;
+  Effort effort{.seconds = 5, .repeats = 3};
+  std::string out;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  std::vector<std::string> families;
+  for (const StiffFamily& f : stiff_families()) {
+    families.push_back(fmt::format("{} ({})", f.name, f.summary));
+  }
+  app.add_option("--family", a.family, fmt::format("{}", fmt::join(families, ", ")))
+      ->take_last()
+      ->capture_default_str();
+  app.add_option("--nodes", a.nodes, "along a side of the cloth or in the chain (default: 12, 30)")
+      ->take_last();
+  app.add_option("--until", a.until, "the time to run to in s (default: 0.25)")->take_last();
+  app.add_option("--ratios", a.ratios, "a,b,... how many times stiffer the stiff springs are")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--methods", a.methods, "a,b,... (default: all but SUNDIALS' stock ways)")
+      ->delimiter(',');
+  app.add_option("--repeats", a.effort.repeats, "timed runs of each point")
+      ->take_last()
+      ->capture_default_str();
+  app.add_option("--point-limit", a.effort.seconds,
+                 "seconds that one run of a point may take; slower ones become over_budget")
+      ->take_last()
+      ->capture_default_str();
+  app.add_option("--out", a.out, "the folder for crossover.csv, kinds.csv and points.csv")
+      ->take_last();
+}
+
+void require_ratios(std::vector<double>& ratios) {
+  for (const double ratio : ratios) {
+    if (ratio >= 1 && ratio <= largest_ratio) continue;
+    throw InvalidInput(fmt::format("--ratios: {} is not allowed; it is a number from 1 to {:g}",
+                                   ratio, largest_ratio));
+  }
+  std::ranges::sort(ratios);
+  const auto twice = std::ranges::adjacent_find(ratios);
+  if (twice != ratios.end()) {
+    throw InvalidInput(fmt::format("--ratios: {} is named twice; allowed is once", *twice));
+  }
+}
+
+// One ratio: its scene, and what was measured on it.
+struct Rung {
+  double ratio;
+  Scene drawn;
+  std::unique_ptr<ReducedScene> scene;
+  std::optional<Reference> reference{};  // none could be made
+  std::vector<Point> points{};
+  std::vector<Placing> placings{};
+};
+
+std::vector<Rung> rungs(const Arguments& a, const StiffFamily& family, double until) {
+  const int nodes = a.nodes > 0 ? a.nodes : family.nodes;
+  std::vector<Rung> all;
+  for (const double ratio : a.ratios) {
+    Rung rung{.ratio = ratio, .drawn = family.draw(nodes, until, ratio), .scene = nullptr};
+    rung.scene = std::make_unique<ReducedScene>(rung.drawn);
+    all.push_back(std::move(rung));
+  }
+  return all;
+}
+
+// At the largest ratio springs are named stiff if they are at any.
+std::vector<const Method*> competitors(const Arguments& a, const Rung& stiffest) {
+  auto selected = select_methods(a.methods, *stiffest.scene, a.family);
+  if (a.methods.empty()) {
+    std::erase_if(selected, [](const Method* method) { return method->name.ends_with("_klu"); });
+  }
+  return selected;
+}
+
+std::vector<Kind> kinds_of(const std::vector<const Method*>& methods) {
+  std::vector<Kind> all;
+  for (const Kind kind : kinds) {
+    const auto is_one = [&](const Method* method) { return kind_of(*method) == kind; };
+    if (std::ranges::any_of(methods, is_one)) all.push_back(kind);
+  }
+  return all;
+}
+
+// Measures the methods at one ratio and at the next: what is learnt at one serves at the next.
+class Climbers {
+ public:
+  Climbers(std::vector<const Method*> methods, const Effort& effort)
+      : methods_(std::move(methods)), effort_(effort) {}
+
+  // Throws Interrupted where the program is to end; the points so far are then in the rung.
+  void measure(Study& study, Rung& rung, double until) {
+    Race race(*rung.reference);
+    std::map<const Method*, std::vector<Point>> points;
+    try {
+      climb_all(study, rung, until, race, points);
+    } catch (const Interrupted&) {
+      gather(points, rung);
+      throw;
+    }
+    gather(points, rung);
+    std::map<const Method*, double> handicaps;
+    for (const Method* method : methods_) {
+      const auto own = points.find(method);
+      handicaps[method] = own == points.end() ? 1 : race.handicap(own->second);
+    }
+    std::erase_if(methods_, [&](const Method* method) {
+      return kind_of(*method) == Kind::explicit_steps && handicaps[method] > Race::hopeless;
+    });
+    std::ranges::stable_sort(methods_, {}, [&](const Method* method) { return handicaps[method]; });
+  }
+
+ private:
+  void climb_all(Study& study, const Rung& rung, double until, Race& race,
+                 std::map<const Method*, std::vector<Point>>& points) {
+    for (const Method* method : methods_) {
+      if (!applies_to(*method, rung.scene->system())) continue;
+      Effort effort = effort_;
+      effort.seconds = std::min(effort.seconds, race.seconds_of_interest());
+      effort.recall = points_of(study, fmt::format("{:.17g} ", rung.ratio));
+      std::vector<Point>& own = points[method];
+      climb(
+          *method, *rung.scene, until, *rung.reference, effort,
+          [&](const Point& point) {
+            race.take(point);
+            own.push_back(point);
+            show_progress(fmt::format("ratio {:g}: {}", rung.ratio, describe(point)));
+          },
+          [&](const Point& point) { return race.is_over(point); });
+      std::ranges::sort(own, std::ranges::greater(), &Point::value);
+    }
+  }
+
+  // Into the order of the registry, as the map has it.
+  static void gather(const std::map<const Method*, std::vector<Point>>& points, Rung& rung) {
+    for (const auto& [method, own] : points) {
+      rung.points.insert(rung.points.end(), own.begin(), own.end());
+    }
+  }
+
+  std::vector<const Method*> methods_;
+  Effort effort_;
+};
+
+const std::vector<std::string> winner_columns = {"stiffness_ratio", "accuracy",  "method",
+                                                 "time_s",          "runner_up", "margin"};
+const std::vector<std::string> kind_columns = {"stiffness_ratio", "accuracy", "kind", "method",
+                                               "time_s"};
+
+std::string name_of(const Point* point) { return point ? point->method->name : ""; }
+double time_of(const Point* point) {
+  return point ? point->time : std::numeric_limits<double>::quiet_NaN();
+}
+
+void tabulate(Csv& winners, Csv& of_kinds, Csv& points, const Rung& rung,
+              const std::vector<Kind>& competing) {
+  for (const Placing& p : rung.placings) {
+    winners.row(rung.ratio, p.accuracy, name_of(p.fastest), time_of(p.fastest),
+                name_of(p.runner_up), time_of(p.runner_up) / time_of(p.fastest));
+    for (const Kind kind : competing) {
+      const Point* fastest = p.of_kind[static_cast<std::size_t>(kind)];
+      of_kinds.row(rung.ratio, p.accuracy, kind_name(kind), name_of(fastest), time_of(fastest));
+    }
+  }
+  for (const Point& point : rung.points) {
+    points.field(rung.ratio);
+    point_row(points, rung.drawn.name, point, rung.reference->certified.position);
+  }
+}
+
+nlohmann::json origin_of(const std::vector<std::string>& command_line, const std::string& family,
+                         double until, const std::vector<Rung>& all) {
+  nlohmann::json origin = provenance(command_line, all.front().drawn);
+  origin.erase("scene");
+  origin["family"] = family;
+  origin["until"] = until;
+  origin["scenes"] = nlohmann::json::array();
+  for (const Rung& rung : all) {
+    const auto whole = provenance(command_line, rung.drawn, rung.drawn, *rung.scene);
+    nlohmann::json entry = {{"stiffness_ratio", rung.ratio},
+                            {"scene", whole.at("scene")},
+                            {"reduced", whole.at("reduced")},
+                            {"certified_position", nullptr},
+                            {"reference_made_by", nullptr}};
+    if (rung.reference) {
+      entry["certified_position"] = rung.reference->certified.position;
+      entry["reference_made_by"] = rung.reference->made_by;
+    }
+    origin["scenes"].push_back(entry);
+  }
+  return origin;
+}
+
+// For each accuracy the fastest methods, with the ratios from and to which each is.
+void print_winners(const std::vector<Rung>& all) {
+  for (std::size_t row = 0; row < Race::accuracies.size(); ++row) {
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < all.size();) {
+      const std::string name = name_of(all[i].placings[row].fastest);
+      std::size_t last = i;
+      while (last + 1 < all.size() && name_of(all[last + 1].placings[row].fastest) == name) ++last;
+      const std::string what = name.empty() ? "nothing" : name;
+      words.push_back(i == last
+                          ? fmt::format("{} at {:g}", what, all[i].ratio)
+                          : fmt::format("{} {:g} to {:g}", what, all[i].ratio, all[last].ratio));
+      i = last + 1;
+    }
+    fmt::print("{:.0e}  {}\n", Race::accuracies[row], fmt::join(words, ", "));
+  }
+}
+
+// The reference and the methods at one ratio. False, after a sentence, where there is no reference.
+bool measure_rung(Study& study, const std::string& out,
+                  const std::vector<std::string>& command_line, double until, Climbers& climbers,
+                  Rung& rung) {
+  const std::string folder = fmt::format("{}/ratio_{:.9g}", out, rung.ratio);
+  require_folder(folder);
+  show_progress(fmt::format("ratio {:g}: making the reference ...", rung.ratio));
+  const auto origin = provenance(command_line, rung.drawn, rung.drawn, *rung.scene);
+  bool has_reference = true;
+  try {
+    rung.reference =
+        reference_for(rung.drawn, rung.drawn, *rung.scene, until, folder, origin, needed);
+    climbers.measure(study, rung, until);
+  } catch (const NoReference& error) {
+    show_progress("");
+    fmt::print(stderr, "crossover: ratio {:g}: {}; its cells are left empty\n", rung.ratio,
+               error.what());
+    has_reference = false;
+  }
+  rung.placings = placings(rung.points, rung.reference.value_or(Reference()));
+  return has_reference;
+}
+
+int crossover(const CLI::App& app, Arguments a, const std::vector<std::string>& command_line) {
+  require_given(a.out, "--out", "the folder for the results");
+  require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
+  require_repeats(a.effort.repeats);
+  require_ratios(a.ratios);
+  const StiffFamily& family = stiff_family(a.family);
+  if (app.count("--nodes") > 0) require_within(a.nodes, least_nodes, most_nodes, "--nodes");
+  if (app.count("--until") > 0) require_positive(a.until, "--until", "the horizon in s");
+  const double until = app.count("--until") > 0 ? a.until : family.until;
+  std::vector<Rung> all = rungs(a, family, until);
+  const auto methods = competitors(a, all.back());
+  const auto competing = kinds_of(methods);
+  Climbers climbers(methods, a.effort);
+  require_folder(a.out);
+  Study study(app, a.out, {"crossover.csv", "kinds.csv", "points.csv"},
+              {{"family", a.family}, {"until", until}, {"nodes", all.front().drawn.nodes.size()}});
+  if (const auto status = study.completed()) return *status;
+  CsvFile winners(a.out + "/crossover.csv", winner_columns);
+  CsvFile of_kinds(a.out + "/kinds.csv", kind_columns);
+  std::vector<std::string> columns = point_columns();
+  columns.insert(columns.begin(), "stiffness_ratio");
+  CsvFile points(a.out + "/points.csv", columns);
+
+  bool is_whole = true;
+  std::size_t complete = 0;
+  study.measure([&] {
+    for (Rung& rung : all) {
+      is_whole = measure_rung(study, a.out, command_line, until, climbers, rung) && is_whole;
+      ++complete;
+    }
+  });
+  show_progress("");
+  const nlohmann::json origin = origin_of(command_line, a.family, until, all);
+  for (const Rung& rung : all) tabulate(winners, of_kinds, points, rung, competing);
+  // What no method could win yet is not said to be lost.
+  all.resize(complete);
+  print_winners(all);
+  for (const Rung& rung : all) {
+    if (!rung.reference || rung.reference->certified.position <= Race::accuracies.back()) continue;
+    fmt::print("at ratio {:g} the reference is certified to {:.1e}: nothing is said below that\n",
+               rung.ratio, rung.reference->certified.position);
+  }
+  return study.finish({&winners, &of_kinds, &points}, origin, is_whole ? done : end_not_reached);
+}
+
+}  // namespace
+}  // namespace qddot::crossover
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures from which stiffness on an implicit method is the fastest.", "crossover");
+  qddot::crossover::Arguments arguments;
+  qddot::crossover::declare(app, arguments);
+  qddot::command::add_threads_option(app);
+  qddot::command::add_resume_option(app);
+  return qddot::command::run_program(app, argc, argv, [&] {
+    return qddot::crossover::crossover(app, arguments, {argv, argv + argc});
+  });
+}

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "qddot/measure/speed/measurement.hpp"
+
+namespace qddot::crossover {
+
+using namespace measure;
+
+enum class Kind { explicit_steps, implicit_steps, split };
+constexpr std::array kinds = {Kind::explicit_steps, Kind::implicit_steps, Kind::split};
+
+// As it is written to tables.
+constexpr const char* kind_name(Kind kind) {
+  constexpr std::array names = {"explicit", "implicit", "split"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+// Split is what takes stiff and soft forces apart, whichever of them it takes implicitly.
+inline Kind kind_of(const Method& method) {
+  if (method.needs_split) return Kind::split;
+  return method.implicit ? Kind::implicit_steps : Kind::explicit_steps;
+}
+
+// The fastest at one accuracy: of all methods, of all others than that one, and of each kind.
+// nullptr where there is none.
+struct Placing {
+  double accuracy = 0;
+  const Point* fastest = nullptr;
+  const Point* runner_up = nullptr;
+  std::array<const Point*, kinds.size()> of_kind{};
+};
+
+// The race of methods on one scene for the accuracies 1e-1, 1e-2, ... 1e-6, as far as the reference
+// is certain. As each method takes its points from coarse to fine, it is known which need not be
+// taken.
+class Race {
+ public:
+  static constexpr std::array accuracies = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+  // Slower by this factor, a method does not count.
+  static constexpr double hopeless = 20;
+
+  explicit Race(const Reference& reference);
+
+  void take(const Point& point);
+  // Whether finer points of the method than this one are of no interest: it has reached the finest
+  // accuracy, or would come to each that is left hopelessly late if its time then grows as its
+  // order says, time ~ error^(-1/order).
+  bool is_over(const Point& point) const;
+  // Seconds after which a run is hopeless at the finest accuracy; infinite where none reached that.
+  double seconds_of_interest() const;
+  // How many times slower the method is than the fastest, at the accuracy where that is least.
+  // Infinite where it reached none; points: of that method.
+  double handicap(const std::vector<Point>& points) const;
+
+ private:
+  std::size_t count_;  // how many of the accuracies are certain
+  std::array<double, accuracies.size()> fastest_;
+};
+
+// The placings at each of the accuracies, pointers into `points`; nullptr where the reference is
+// not that certain.
+std::vector<Placing> placings(const std::vector<Point>& points, const Reference& reference);
+
+}  // namespace qddot::crossover

@@ -1,0 +1,99 @@
+// Where a scene comes to rest: a stable minimum of its potential energy, downhill from the drawn
+// positions.
+//
+//   equilibrium --scene cloth --final rest.csv
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/csv.hpp"
+#include "experiments/command/node_table.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/scene_choice.hpp"
+#include "qddot/scene/settle.hpp"
+
+namespace qddot::equilibrium {
+
+using namespace command;
+namespace {
+
+struct Arguments {
+  std::string scene, final_path;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("--scene", a.scene, "a generator's name or a scene file");
+  app.add_option("--final", a.final_path,
+                 "CSV of all nodes at rest (or, with status 3, where the search ended), with "
+                 "velocities of zero: node,x,y,z,vx,vy,vz");
+}
+
+const char* name(Equilibrium::Outcome outcome) {
+  switch (outcome) {
+    case Equilibrium::Outcome::reached:
+      return "reached";
+    case Equilibrium::Outcome::unbounded:
+      return "unbounded";
+    case Equilibrium::Outcome::not_converged:
+      break;
+  }
+  return "not_converged";
+}
+
+int equilibrium(const CLI::App& app, const Arguments& a,
+                const std::vector<std::string>& command_line) {
+  require_given(a.scene, "--scene", "a generator's name or a scene file");
+  if (app.count("--final") > 0) require_given(a.final_path, "--final", "the name of a CSV file");
+  const Scene drawn = load(a.scene);
+  const ReducedScene scene(drawn, Reductions::all_directions());
+  std::unique_ptr<CsvFile> csv;
+  if (!a.final_path.empty()) {
+    csv = std::make_unique<CsvFile>(a.final_path, node_header(drawn.dimension, {}));
+  }
+
+  const Equilibrium rest = equilibrium_of(scene);
+  if (csv) {
+    const auto nodes = scene.expand({0, rest.q, Vec::Zero(rest.q.size())});
+    for (std::size_t i = 0; i < nodes.size(); ++i) write_node(*csv, i, nodes[i], drawn.dimension);
+    nlohmann::json origin = provenance(command_line, drawn);
+    origin["outcome"] = name(rest.outcome);
+    origin["residual"] = rest.residual;
+    origin["smallest_eigenvalue"] = rest.smallest_eigenvalue;
+    origin["isolated"] = rest.isolated;
+    origin["flat_directions"] = rest.flat_directions;
+    origin["iterations"] = rest.iterations;
+    csv->commit(origin);
+  }
+  if (rest.outcome != Equilibrium::Outcome::reached) {
+    fmt::print(stderr, "equilibrium: {}\n", rest.message);
+    return end_not_reached;
+  }
+  fmt::print("{}: at rest after {} iterations; largest force {:.2g} N, energy {:.9g} J\n",
+             drawn.name, rest.iterations, rest.residual,
+             scene.potential({0, rest.q, Vec::Zero(rest.q.size())}));
+  fmt::print("smallest eigenvalue of -K: {:.6g} N/m, {}\n", rest.smallest_eigenvalue,
+             rest.isolated
+                 ? std::string("an isolated minimum")
+                 : fmt::format("zero within rounding in {} direction{}: something is "
+                               "loose, or too soft to tell, and the minimum is not known "
+                               "to be isolated",
+                               rest.flat_directions, rest.flat_directions == 1 ? "" : "s"));
+  return done;
+}
+
+}  // namespace
+}  // namespace qddot::equilibrium
+
+int main(int argc, char** argv) {
+  CLI::App app("Finds the stable equilibrium that a scene reaches downhill from where it is drawn.",
+               "equilibrium");
+  qddot::equilibrium::Arguments arguments;
+  qddot::equilibrium::declare(app, arguments);
+  qddot::command::add_threads_option(app);
+  return qddot::command::run_program(app, argc, argv, [&] {
+    return qddot::equilibrium::equilibrium(app, arguments, {argv, argv + argc});
+  });
+}

@@ -1,0 +1,99 @@
+#include "experiments/exchange/energy_exchange.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace qddot::exchange {
+namespace {
+
+constexpr Index points = 1000;  // at which means are compared, equally spaced
+constexpr double slowest = 1.0 / 64, fastest = 4;
+
+// Value i + x of a sequence of columns, 0 <= x < 1 and i >= 0, between its columns linearly.
+Vec between(const Eigen::MatrixXd& columns, double place) {
+  const auto i = std::min(static_cast<Index>(place), columns.cols() - 2);
+  const double x = std::min(place - static_cast<double>(i), 1.0);
+  return (1 - x) * columns.col(i) + x * columns.col(i + 1);
+}
+
+// The integrals of all energies from 0 to each time, by trapezia.
+Eigen::MatrixXd integrals(const EnergyCourse& course) {
+  const auto n = static_cast<Index>(course.times.size());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(course.energies.front().size(), n);
+  for (std::size_t i = 1; i < course.times.size(); ++i) {
+    const double dt = course.times[i] - course.times[i - 1];
+    const auto column = static_cast<Index>(i);
+    sums.col(column) =
+        sums.col(column - 1) + 0.5 * dt * (course.energies[i - 1] + course.energies[i]);
+  }
+  return sums;
+}
+
+// A column for each of the equally spaced times from 0 to `end`.
+Eigen::MatrixXd running_means(const EnergyCourse& course, double window, double end) {
+  const Eigen::MatrixXd sums = integrals(course);
+  const auto integral = [&](double t) {
+    const auto after = std::ranges::upper_bound(course.times, t);
+    const auto i =
+        std::clamp<std::ptrdiff_t>(after - course.times.begin(), 1, std::ssize(course.times) - 1);
+    const double left = course.times[std::size_t(i) - 1], right = course.times[std::size_t(i)];
+    return between(sums, static_cast<double>(i - 1) + (t - left) / (right - left));
+  };
+  Eigen::MatrixXd means(sums.rows(), points);
+  for (Index i = 0; i < points; ++i) {
+    const double t = end * static_cast<double>(i) / (points - 1);
+    const double from = std::max(0.0, t - window / 2), to = std::min(end, t + window / 2);
+    means.col(i) = (integral(to) - integral(from)) / (to - from);
+  }
+  return means;
+}
+
+// The root mean square of I_j(t) - R_j(a t).
+double misfit(const Eigen::MatrixXd& means, const Eigen::MatrixXd& other, double a) {
+  // By R's time where the course is the faster, so that neither leaves its range.
+  const double s = std::max(a, 1.0);
+  double sum = 0;
+  for (Index i = 0; i < points; ++i) {
+    const double t = static_cast<double>(i) / s;
+    sum += (between(means, t) - between(other, a * t)).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(points * means.rows()));
+}
+
+// The best of factors that are equally spaced in their logarithm, `count` to either side of `a`.
+double best_near(const Eigen::MatrixXd& means, const Eigen::MatrixXd& other, double a, double ratio,
+                 int count) {
+  double best = a, least = misfit(means, other, a);
+  for (int i = -count; i <= count; ++i) {
+    const double factor = std::clamp(a * std::pow(ratio, i), slowest, fastest);
+    const double left = misfit(means, other, factor);
+    if (left < least) {
+      least = left;
+      best = factor;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+ExchangeComparison compare(const EnergyCourse& course, const EnergyCourse& other, double window) {
+  const double end = std::min(course.times.back(), other.times.back());
+  const double scale = other.energies.front().sum();
+  Eigen::MatrixXd means = running_means(course, window, end),
+                  others = running_means(other, window, end);
+  ExchangeComparison result;
+  result.distance = (means - others).cwiseAbs().maxCoeff() / scale;
+  result.first = means.col(0).sum() / scale;
+  result.last = means.col(points - 1).sum() / scale;
+  result.level = means.colwise().sum().mean() / scale;
+  for (Eigen::MatrixXd* each : {&means, &others}) *each /= each->colwise().sum().mean();
+  // Steps of 4 %, then of 0.2 %.
+  result.tempo = best_near(means, others, 1, 1.04, 110);
+  result.tempo = best_near(means, others, result.tempo, 1.002, 20);
+  result.misfit = misfit(means, others, result.tempo);
+  result.exchanged = (means.colwise() - Vec(means.col(0))).cwiseAbs().maxCoeff();
+  return result;
+}
+
+}  // namespace qddot::exchange

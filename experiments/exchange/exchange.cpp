@@ -1,0 +1,380 @@
+// How stiff springs exchange their energy, by method and step size: the figures of Hairer, Lubich
+// and Wanner, Geometric Numerical Integration, I.5.2 and XIII.2.
+//
+//   exchange --scene fpu --out results/fpu
+//   exchange --scene fpu --methods verlet,trbdf2 --h-omega 0.1,0.5,1 --until 400 --out results/fpu
+//
+//  1. w is the highest frequency at the start that the stiff springs (Scene::stiff_above) make by
+//     themselves, without the soft ones: in scene fpu it is its parameter `frequency`, as h w is
+//     meant there. A method's step is h = (h w)/w, all of the way: the motion is seen at
+//     multiples of h only, those nearest to multiples of --every.
+//  2. The reference is Kahan and Li's composition of order 8 at h w = 0.1, certified by how far
+//     Dormand and Prince's Nystrom pair 12(10) at rtol = 1e-12 is from it.
+//  3. exchange.csv has the oscillatory energy of each stiff spring over time (stiff_energies.hpp),
+//     springs counted from 0 among the stiff ones, and their sum.
+//  4. summary.csv has, for each method and h w:
+//       sum_deviation   the largest |sum I(t) - sum I(0)| / sum I(0)
+//       energy_error    the largest |H(t) - H(0)| / |H(0)|
+//     over the times seen; and, of running means over 40 periods of w (a quarter of the time if
+//     that is less; see energy_exchange.hpp),
+//       exchange_error  the largest |I_j(t) - I_j,ref(t)| / sum I(0)
+//       tempo           the a for which I_j(t) is nearest to I_j,ref(a t): how fast they exchange
+//       misfit          the root mean square of what is left then
+//       verdict         in words; "as it should" is a tempo within 10 % and a misfit below 0.1
+//     What drives the exchange is the soft springs' slow motion, which may be chaotic: in scene fpu
+//     1 % more frequency moves I_j(t) by up to 0.06, so that a few per cent of tempo mean nothing.
+//     A run that fails has its outcome, and leaves the rest empty.
+#include <algorithm>
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/csv.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/reference_file.hpp"
+#include "experiments/command/scene_choice.hpp"
+#include "experiments/command/study.hpp"
+#include "experiments/command/summary_record.hpp"
+#include "experiments/exchange/energy_exchange.hpp"
+#include "experiments/exchange/exchange_words.hpp"
+#include "qddot/analysis/natural_modes.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/samples.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/stiff_energies.hpp"
+
+namespace qddot::exchange {
+
+using namespace measure;
+using namespace command;
+namespace {
+
+constexpr double reference_h_omega = 0.1, reference_rtol = 1e-12;
+constexpr double longest_run = 60;  // [s] of wall time
+constexpr double periods_of_mean = 40;
+
+struct Arguments {
+  SceneChoice scene;
+  std::string out;
+  double until = 0, every = 0;
+  std::vector<std::string> methods = {"symplectic_euler", "verlet",
+                                      "position_verlet",  "rk4",
+                                      "blanes_moan4",     "blanes_moan6",
+                                      "kahan_li8",        "implicit_midpoint",
+                                      "trapezoidal",      "discrete_gradient",
+                                      "linear_midpoint",  "linear_midpoint4",
+                                      "implicit_euler"};
+  std::vector<double> h_omega = {0.1, 1, 2.25, 5};
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  add_scene_options(app, a.scene);
+  app.add_option("--methods", a.methods, "a,b,... of fixed step")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--h-omega", a.h_omega,
+                 "a,b,...: the steps times the highest frequency of the stiff springs")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  app.add_option("--every", a.every,
+                 "how far apart the times of exchange.csv are in s, about (default: a thousandth "
+                 "of the time)");
+  app.add_option("--out", a.out, "the folder for exchange.csv and summary.csv");
+}
+
+// The highest frequency [rad/s] of the stiff springs alone; 0 where there are none.
+double stiff_frequency(const System& system, const Vec& q) {
+  double highest = 0;
+  Index first = 0;
+  for (const auto& part : system.parts()) {
+    highest = std::max(highest, stiff_frequency(*part, q.segment(first, part->size())));
+    first += part->size();
+  }
+  const Split* split = system.split();
+  if (!split || split->core_unknowns.empty()) return highest;
+  const Vec q_core = q(split->core_unknowns);
+  return std::max(highest, std::sqrt(highest_modes(*split->core, q_core, 1).squares[0]));
+}
+
+// The scene, what its runs have in common, and what its stiff springs start with.
+struct Excitation {
+  Scene drawn, start;
+  ReducedScene scene;
+  double until = 0, every = 0, omega = 0, window = 0;
+  double energy = 0, sum = 0;  // H and sum I at t = 0 [J]
+};
+
+// A run of one method.
+struct Result {
+  EnergyCourse course{};
+  Summary summary{};
+  double sum_deviation = 0, energy_error = 0;
+};
+
+// As a journal keeps it, and back.
+nlohmann::json record_of(const Result& result) {
+  nlohmann::json energies = nlohmann::json::array();
+  for (const Vec& e : result.course.energies) energies.push_back(std::vector(e.begin(), e.end()));
+  return {{"times", result.course.times},
+          {"energies", energies},
+          {"summary", result.summary},
+          {"sum_deviation", result.sum_deviation},
+          {"energy_error", result.energy_error}};
+}
+
+Result result_of(const nlohmann::json& record) {
+  Result result{.summary = record.at("summary"),
+                .sum_deviation = record.at("sum_deviation"),
+                .energy_error = record.at("energy_error")};
+  result.course.times = record.at("times").get<std::vector<double>>();
+  for (const auto& energies : record.at("energies")) {
+    const auto values = energies.get<std::vector<double>>();
+    result.course.energies.push_back(Vec::Map(values.data(), std::ssize(values)));
+  }
+  return result;
+}
+
+// Seen at the start and then at `times`, which a run of constant steps is to reach in whole ones.
+Result run_of(const Excitation& excitation, const Method& method, double knob,
+              const std::vector<double>& times) {
+  Result result;
+  const auto see = [&](const State& state) {
+    const Vec energies = stiff_energies(excitation.start, excitation.scene.expand(state));
+    const auto raise = [](double& largest, double value) {
+      if (!(value <= largest)) largest = value;
+    };
+    raise(result.sum_deviation, std::abs(energies.sum() / excitation.sum - 1));
+    raise(result.energy_error, std::abs(excitation.scene.energy(state) / excitation.energy - 1));
+    result.course.times.push_back(state.t);
+    result.course.energies.push_back(energies);
+  };
+  State state = excitation.scene.initial();
+  see(state);
+  const Deadline deadline(longest_run);
+  result.summary =
+      make_integrator(method, excitation.scene.system(), knobs_for(method, knob, excitation.scene))
+          ->advance(state, excitation.until, {times, see}, deadline.token());
+  return result;
+}
+
+// The multiples of h after 0 that are nearest to those of `every`.
+std::vector<double> multiples_near(double every, double h, double until) {
+  auto times = samples(h * std::max(1.0, std::round(every / h)), until);
+  times.erase(times.begin());
+  return times;
+}
+
+// The motion that others are compared with.
+struct CertifiedCourse {
+  double h = 0;
+  Result result{};
+  double certified = 0;  // the largest |I_j - I_j'| of the two ways, over sum I(0)
+};
+
+CertifiedCourse reference_of(Study& study, const Excitation& excitation) {
+  CertifiedCourse reference{.h = reference_h_omega / excitation.omega};
+  const auto times = multiples_near(excitation.every, reference.h, excitation.until);
+  const auto reached = [&](const char* name, double knob) {
+    Result result = result_of(study.piece(fmt::format("reference {}", name), [&] {
+      return record_of(run_of(excitation, *find_method(name), knob, times));
+    }));
+    if (result.summary.outcome == Outcome::reached_end) return result;
+    throw NoReference(fmt::format("{} reaches {} of {} s only, so that there is no reference: {}",
+                                  name, result.summary.t_reached, excitation.until,
+                                  result.summary.message));
+  };
+  reference.result = reached("kahan_li8", reference.h);
+  const Result other = reached("dprkn12", reference_rtol);
+  for (std::size_t i = 0; i <= times.size(); ++i) {
+    const Vec apart = reference.result.course.energies[i] - other.course.energies[i];
+    reference.certified =
+        std::max(reference.certified, apart.lpNorm<Eigen::Infinity>() / excitation.sum);
+  }
+  return reference;
+}
+
+void write_course(CsvFile& csv, const std::string& method, double h, double h_omega,
+                  const EnergyCourse& course) {
+  for (std::size_t i = 0; i < course.times.size(); ++i) {
+    const Vec& energies = course.energies[i];
+    for (Index j = 0; j < energies.size(); ++j)
+      csv.row(method, h, h_omega, course.times[i], j, energies[j]);
+    csv.row(method, h, h_omega, course.times[i], "sum", energies.sum());
+  }
+  csv.flush_if_large();
+}
+
+// Methods of fixed step among those named; of the others it is said that they are left out.
+std::vector<const Method*> select_fixed_step(const Arguments& a, const ReducedScene& scene) {
+  std::vector<const Method*> selected, others;
+  for (const Method* method : select_methods(a.methods, scene, a.scene.name)) {
+    (method->knob == Knob::step_size ? selected : others).push_back(method);
+  }
+  if (selected.empty()) {
+    throw InvalidInput(
+        fmt::format("--methods: none of {} has a fixed step; allowed are methods "
+                    "whose knob is step_size in simulate --list-methods --csv",
+                    fmt::join(a.methods, ", ")));
+  }
+  for (const Method* method : others) {
+    fmt::print("{} is left out: it chooses its steps by itself, so that it has no h w\n",
+               method->name);
+  }
+  return selected;
+}
+
+// Checks what was asked for and looks at the start.
+Excitation excitation_of(const CLI::App& app, const Arguments& a) {
+  const Scene drawn = load(a.scene);
+  const Scene start = started(drawn, a.scene);
+  Excitation excitation{
+      .drawn = drawn, .start = start, .scene = ReducedScene(start, reductions_of(a.scene))};
+  require_reference_exists(excitation.scene, a.scene.name);
+  excitation.until = horizon(a.until, app.count("--until") > 0, drawn);
+  const State& initial = excitation.scene.initial();
+  excitation.omega = stiff_frequency(excitation.scene.system(), initial.q);
+  excitation.energy = excitation.scene.energy(initial);
+  excitation.sum = stiff_energies(start, start.nodes).sum();
+  if (!(excitation.omega > 0)) {
+    throw InvalidInput(fmt::format(
+        "{}: stiff_above: {}; allowed are finite numbers above 0 in N/m that some spring between "
+        "free nodes has more stiffness than, since it is such springs whose energy is followed",
+        a.scene.name,
+        drawn.stiff_above ? fmt::format("{} leaves no stiff spring that moves", *drawn.stiff_above)
+                          : "it is missing"));
+  }
+  if (!(excitation.sum > 0)) {
+    throw InvalidInput(
+        fmt::format("{}: the stiff springs start without energy, {} J, so that there is none to be "
+                    "exchanged; allowed are scenes that start with a stiff spring drawn or moving "
+                    "out of its rest length",
+                    a.scene.name, excitation.sum));
+  }
+  for (const double h_omega : a.h_omega) {
+    require_step_size(h_omega / excitation.omega, fmt::format("--h-omega {:g}: h =", h_omega),
+                      excitation.until);
+  }
+  const double longest = std::ranges::max(a.h_omega) / excitation.omega;
+  if (!(10 * longest <= excitation.until)) {
+    throw InvalidInput(
+        fmt::format("--until {} is not allowed with --h-omega {}; it is at least ten steps of it, "
+                    "{:.3g} s",
+                    excitation.until, std::ranges::max(a.h_omega), 10 * longest));
+  }
+  excitation.every = app.count("--every") > 0 ? a.every : excitation.until / 1000;
+  if (!(excitation.every <= excitation.until / 10)) {
+    throw InvalidInput(
+        fmt::format("--every {} is not allowed; it is at most a tenth of the time, "
+                    "{} s",
+                    excitation.every, excitation.until));
+  }
+  excitation.window = std::min(periods_of_mean * 2 * M_PI / excitation.omega, excitation.until / 4);
+  return excitation;
+}
+
+// Writes and prints what came of each run, against the reference.
+class Reporter {
+ public:
+  Reporter(const Excitation& excitation, const CertifiedCourse& reference, CsvFile& courses,
+           CsvFile& table)
+      : excitation_(excitation),
+        exact_(reference.result.course),
+        own_(compare(exact_, exact_, excitation.window)),
+        courses_(courses),
+        table_(table) {
+    fmt::print(
+        "{} to t = {:g} s: w = {:.7g} rad/s; reference certified to {:.1e} of the energy\n\n",
+        excitation.drawn.name, excitation.until, excitation.omega, reference.certified);
+    fmt::print("{:<24} {:>6} {:>10} {:>10} {:>10} {:>7}  {}\n", "method", "h w", "sum I off",
+               "H off", "I_j off", "tempo", "verdict");
+  }
+
+  void operator()(const std::string& method, double h, double h_omega, const Result& result) {
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    const bool reached = result.summary.outcome == Outcome::reached_end;
+    ExchangeComparison c{.distance = nothing, .tempo = nothing, .misfit = nothing};
+    if (reached) c = compare(result.course, exact_, excitation_.window);
+    const std::string verdict = reached ? verdict_on(c, own_) : verdict_on(result.summary);
+    write_course(courses_, method, h, h_omega, result.course);
+    table_.row(method, h, h_omega, name(result.summary.outcome), result.summary.t_reached,
+               result.summary.counts.steps, result.summary.counts.force_evaluations,
+               result.sum_deviation, result.energy_error, c.distance, c.tempo, c.misfit, verdict);
+    fmt::print("{:<24} {:>6g} {:>10.2e} {:>10.2e} {:>10.2e} {:>7.3f}  {}\n", method, h_omega,
+               result.sum_deviation, result.energy_error, c.distance, c.tempo, verdict);
+  }
+
+ private:
+  const Excitation& excitation_;
+  const EnergyCourse& exact_;
+  const ExchangeComparison own_;
+  CsvFile &courses_, &table_;
+};
+
+int exchange(const CLI::App& app, const Arguments& a,
+             const std::vector<std::string>& command_line) {
+  require_given(a.out, "--out", "the folder for the results");
+  for (const double h_omega : a.h_omega) {
+    require_positive(h_omega, "--h-omega",
+                     "a step times the highest frequency of the stiff springs");
+    if (std::ranges::count(a.h_omega, h_omega) > 1)
+      throw InvalidInput(fmt::format("--h-omega: {} is named twice; allowed is once", h_omega));
+  }
+  if (app.count("--every") > 0) require_positive(a.every, "--every", "a time in s");
+  const Excitation excitation = excitation_of(app, a);
+  const auto selected = select_fixed_step(a, excitation.scene);
+  require_folder(a.out);
+  Study study(app, a.out, {"exchange.csv", "summary.csv"},
+              {{"scene", content_hash(excitation.drawn)}, {"name", excitation.drawn.name}});
+  if (const auto status = study.completed()) return *status;
+  CsvFile courses(a.out + "/exchange.csv", {"method", "h", "h_omega", "t", "spring", "energy"});
+  CsvFile table(a.out + "/summary.csv",
+                {"method", "h", "h_omega", "outcome", "t_reached", "steps", "force_evaluations",
+                 "sum_deviation", "energy_error", "exchange_error", "tempo", "misfit", "verdict"});
+
+  nlohmann::json origin =
+      provenance(command_line, excitation.drawn, excitation.start, excitation.scene);
+  origin["omega"] = excitation.omega;
+  origin["until"] = excitation.until;
+  origin["window"] = excitation.window;
+  study.measure([&] {
+    const CertifiedCourse reference = reference_of(study, excitation);
+    origin["certified"] = reference.certified;
+    Reporter report(excitation, reference, courses, table);
+    report("reference", reference.h, reference_h_omega, reference.result);
+    for (const Method* method : selected) {
+      for (const double h_omega : a.h_omega) {
+        const double h = h_omega / excitation.omega;
+        show_progress(fmt::format("{} at h w = {:g}", method->name, h_omega));
+        const auto times = multiples_near(excitation.every, h, excitation.until);
+        report(method->name, h, h_omega,
+               result_of(study.piece(fmt::format("{} {:.17g}", method->name, h), [&] {
+                 return record_of(run_of(excitation, *method, h, times));
+               })));
+      }
+    }
+  });
+  return study.finish({&courses, &table}, origin, done);
+}
+
+}  // namespace
+}  // namespace qddot::exchange
+
+int main(int argc, char** argv) {
+  CLI::App app("Follows the energy that stiff springs exchange, by method and step size.",
+               "exchange");
+  qddot::exchange::Arguments arguments;
+  qddot::exchange::declare(app, arguments);
+  qddot::command::add_resume_option(app);
+  return qddot::command::run_program(app, argc, argv, [&] {
+    return qddot::exchange::exchange(app, arguments, {argv, argv + argc});
+  });
+}

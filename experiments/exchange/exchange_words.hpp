@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "experiments/exchange/energy_exchange.hpp"
+#include "qddot/integrators/integrator.hpp"
+
+namespace qddot::exchange {
+
+// The verdict on a run of `exchange` that did not reach its end: its outcome and when.
+std::string verdict_on(const Summary& summary);
+
+// The verdict on a course against the reference's: whether its springs exchange energy as they
+// should, too fast, too slowly, not at all, or lose or gain some. `reference`: that compared with
+// itself.
+std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& reference);
+
+}  // namespace qddot::exchange

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+#include "qddot/measure/motion/interruption.hpp"
+
+namespace qddot::measure {
+
+// Asks for a stop after a number of seconds, or when the program is to end, from a sleeping thread:
+// the run that is timed only reads a flag. Disarmed when destroyed.
+class Deadline {
+ public:
+  explicit Deadline(double seconds)
+      : watcher_([this, seconds](std::stop_token disarmed) {
+          std::unique_lock lock(mutex_);
+          wake_.wait_for(lock, disarmed, std::chrono::duration<double>(seconds),
+                         [] { return false; });
+          if (!disarmed.stop_requested()) source_.request_stop();
+        }) {}
+
+  std::stop_token token() const { return source_.get_token(); }
+  bool passed() const { return source_.stop_requested(); }
+
+ private:
+  struct Ask {
+    std::stop_source source;
+    void operator()() { source.request_stop(); }
+  };
+
+  std::stop_source source_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::stop_callback<Ask> on_interruption_{interruption(), Ask{source_}};
+  std::jthread watcher_;  // last: starts when all else is there, and joins first
+};
+
+}  // namespace qddot::measure

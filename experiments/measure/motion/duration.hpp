@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace qddot::measure {
+
+// A duration [s] for people, from "5.2 s" to "3.1e+05 years".
+std::string duration_in_words(double seconds);
+
+}  // namespace qddot::measure

@@ -1,0 +1,117 @@
+#include "qddot/measure/motion/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace qddot::measure {
+namespace {
+
+constexpr double fewest_roundings = 1e4;
+
+double divided(double error, double scale) { return scale > 0 ? error / scale : error; }
+
+// Keeps the larger; one that is no number is not lost.
+void raise(double& largest, double x) {
+  if (!(x <= largest)) largest = x;
+}
+
+// The largest |a_i - b_i| of the positions or velocities of some nodes.
+double largest_difference(const std::vector<std::size_t>& some, const std::vector<Node>& a,
+                          const std::vector<Node>& b, Eigen::Vector3d Node::*vector) {
+  double largest = 0;
+  for (const std::size_t i : some) raise(largest, (a[i].*vector - b[i].*vector).norm());
+  return largest;
+}
+
+std::vector<std::size_t> all_of(const std::vector<Node>& nodes) {
+  std::vector<std::size_t> all(nodes.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+// The nodes as what is integrated moves them; where nothing is, as they move.
+std::vector<Node> measured(const ReducedScene& scene, const State& state) {
+  return scene.system().size() > 0 ? scene.expand_beside_falls(state) : scene.expand(state);
+}
+
+std::vector<PartScale> parts_of(const ReducedScene& scene, const std::vector<Node>& start) {
+  std::vector<PartScale> parts;
+  for (auto& nodes : scene.nodes_by_part()) {
+    PartScale& part = parts.emplace_back(PartScale{.nodes = std::move(nodes)});
+    for (const std::size_t i : part.nodes) {
+      part.extent = std::max(part.extent, start[i].position.lpNorm<Eigen::Infinity>());
+    }
+  }
+  // Where there are none, whatever moves is in free flight.
+  if (parts.empty()) parts.push_back({.nodes = all_of(start)});
+  return parts;
+}
+
+// The largest error of a part over the part's scale.
+double largest_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,
+                     Eigen::Vector3d Node::*vector, const Scales& scales, double whole,
+                     double (Scales::*scale_of)(const PartScale&) const) {
+  if (scales.parts.empty())
+    return divided(largest_difference(all_of(nodes), nodes, reference, vector), whole);
+  double largest = 0;
+  for (const PartScale& part : scales.parts) {
+    raise(largest, divided(largest_difference(part.nodes, nodes, reference, vector),
+                           (scales.*scale_of)(part)));
+  }
+  return largest;
+}
+
+}  // namespace
+
+bool PartScale::is_at_rest() const {
+  return displacement <= fewest_roundings * std::numeric_limits<double>::epsilon() * extent;
+}
+
+double Scales::displacement_of(const PartScale& part) const {
+  return part.is_at_rest() ? displacement : part.displacement;
+}
+
+double Scales::speed_of(const PartScale& part) const {
+  return part.is_at_rest() ? speed : part.speed;
+}
+
+void extend(Scales& scales, const ReducedScene& scene, const State& state) {
+  const auto start = measured(scene, scene.initial()), now = measured(scene, state);
+  if (scales.parts.empty()) scales.parts = parts_of(scene, start);
+  for (PartScale& part : scales.parts) {
+    part.displacement =
+        std::max(part.displacement, largest_difference(part.nodes, now, start, &Node::position));
+    for (const std::size_t i : part.nodes)
+      part.speed = std::max(part.speed, now[i].velocity.norm());
+    scales.displacement = std::max(scales.displacement, part.displacement);
+    scales.speed = std::max(scales.speed, part.speed);
+  }
+  scales.kinetic =
+      std::max(scales.kinetic,
+               scene.system().size() > 0 ? scene.system().kinetic(state.v) : scene.kinetic(state));
+}
+
+double position_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,
+                      const Scales& scales) {
+  return largest_error(nodes, reference, &Node::position, scales, scales.displacement,
+                       &Scales::displacement_of);
+}
+
+Errors errors_between(const ReducedScene& scene, const State& state, const State& reference,
+                      double energy, const Scales& scales) {
+  const auto nodes = measured(scene, state), expected = measured(scene, reference);
+  return {position_error(nodes, expected, scales),
+          largest_error(nodes, expected, &Node::velocity, scales, scales.speed, &Scales::speed_of),
+          divided(std::abs(scene.energy(state) - energy), scales.kinetic)};
+}
+
+double worse(const Errors& errors) { return std::max(errors.position, errors.velocity); }
+
+Errors larger(const Errors& one, const Errors& other) {
+  return {std::max(one.position, other.position), std::max(one.velocity, other.velocity),
+          std::max(one.energy, other.energy)};
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,46 @@
+#include "qddot/measure/motion/interruption.hpp"
+
+#include <atomic>
+#include <mutex>
+
+namespace qddot::measure {
+namespace {
+
+struct Shared {
+  std::stop_source source;
+  std::mutex mutex;  // of `why`
+  std::optional<Interruption> why;
+  std::atomic<bool> is_noticed = false;
+};
+
+Shared& shared() {
+  static Shared all;
+  return all;
+}
+
+}  // namespace
+
+void interrupt(const Interruption& why) {
+  {
+    const std::lock_guard lock(shared().mutex);
+    shared().why = why;
+  }
+  shared().source.request_stop();
+}
+
+std::stop_token interruption() { return shared().source.get_token(); }
+
+std::optional<Interruption> interrupted() {
+  if (!shared().source.stop_requested()) return {};
+  shared().is_noticed = true;
+  const std::lock_guard lock(shared().mutex);
+  return shared().why;
+}
+
+void stop_if_interrupted() {
+  if (const auto why = interrupted()) throw Interrupted(*why);
+}
+
+bool is_interruption_noticed() { return shared().is_noticed; }
+
+}  // namespace qddot::measure

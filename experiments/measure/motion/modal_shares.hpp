@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "qddot/scene/reduce/reduced_scene.hpp"
+
+namespace qddot::measure {
+
+// How the kinetic energy of a motion is divided among the natural modes at equilibrium, -K x_j =
+// w_j^2 M x_j with x_i'Mx_j = delta_ij:
+//   T_j = 1/2 (x_j'M v)^2,   T = sum_j T_j whatever the amplitude,
+// while potential energies 1/2 w_j^2 (x_j'M (q - q_eq))^2 would take the turning of a cloth for
+// stretching. The lowest modes each by itself, all others as one.
+class ModalShares {
+ public:
+  static constexpr Index most_modes = 32;
+
+  // Nothing where no equilibrium is reached from the start.
+  static std::optional<ModalShares> at_equilibrium(const ReducedScene& scene);
+
+  // T_j [J], the last one that of all modes above; at most most_modes + 1 entries.
+  Vec kinetic(const Vec& v) const;
+  // The mean T_j over the states of the later half of the path (by time), divided by their sum.
+  Vec mean(const std::vector<State>& path) const;
+
+ private:
+  ModalShares(const Vec& mass, Eigen::MatrixXd shapes);
+
+  Vec mass_;
+  Eigen::MatrixXd impulses_;  // M x_j, a column each
+};
+
+// The total variation distance 1/2 sum |a_j - b_j| of two distributions: from 0 to 1.
+double total_variation(const Vec& a, const Vec& b);
+
+}  // namespace qddot::measure

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+namespace qddot::measure {
+
+// The times 0, every, 2 every, ... up to and including `until` [s] (a multiple that rounding puts
+// beside `until` is `until`); empty if every = 0. Throws InvalidInput for more than 1e8 of them.
+std::vector<double> samples(double every, double until);
+
+// The times after 0 of both lists, ascending, each once.
+std::vector<double> merged(const std::vector<double>& a, const std::vector<double>& b);
+
+// Whether t is one of the times.
+bool is_sample(const std::vector<double>& times, double t);
+
+}  // namespace qddot::measure

@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/integrators/base/step_times.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/tolerance_scales.hpp"
+#include "qddot/measure/reference/reference_ways.hpp"
+
+namespace qddot::measure {
+namespace {
+
+constexpr int most_levels = 12;
+constexpr std::int64_t most_samples = 1000;  // for the scales
+
+// One way of computing the motion, finer with each level.
+struct Way {
+  bool resolves_vibrations;
+  double expected;  // seconds that the next level takes
+  double growth;    // of these from one level to the next
+  std::function<std::optional<Solution>(int level, double seconds)> solve;
+  int level = 0;
+  std::optional<Solution> finest{};
+};
+
+// Steps of h w <= coarsest at the start, half of that with each level.
+std::optional<Solution> resolved(const ReducedScene& scene, const char* name, double until,
+                                 double coarsest, int level, double seconds) {
+  const double w = frequency_bound(scene.system(), scene.initial().q);
+  const double least = std::max(16.0, std::ceil(until * w / coarsest * std::exp2(level)));
+  if (!(least < most_steps)) return {};
+  const auto samples = std::min(static_cast<std::int64_t>(least), most_samples);
+  // A whole number of steps from one sample to the next.
+  const double h =
+      until / static_cast<double>(samples) / std::ceil(least / static_cast<double>(samples));
+  auto solution = seen_run(scene, *find_method(name), {.step_size = h}, scene.initial(), until,
+                           samples, seconds);
+  if (solution) solution->made_by = fmt::format("{} at h = {:.6g} s", name, h);
+  return solution;
+}
+
+std::optional<Solution> ida(const ReducedScene& scene, double until, double rtol, double seconds) {
+  auto solution = seen_run(scene, *find_method("ida"), with_tolerance_scales({.rtol = rtol}, scene),
+                           scene.initial(), until, 1, seconds);
+  if (solution) solution->made_by = fmt::format("ida at rtol = {:.0e}", rtol);
+  return solution;
+}
+
+}  // namespace
+
+Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds) {
+  const auto start = std::chrono::steady_clock::now();
+  Scales scales;
+  const auto explicitly = [&](const char* name, double coarsest) {
+    return [&, name, coarsest](int level, double limit) {
+      return resolved(scene, name, until, coarsest, level, limit);
+    };
+  };
+  const auto tolerance = [](int level) { return std::pow(10.0, -8 - level); };
+  const auto by_fehlberg = [&](int level, double limit) {
+    return fehlberg(scene, until, tolerance(level), scales, limit);
+  };
+  const auto by_ida = [&](int level, double limit) {
+    return ida(scene, until, tolerance(level), limit);
+  };
+  // Verlet begins, and says what the others may take: they have 17 and 13 forces a step, Fehlberg's
+  // no longer than three of Verlet's; of an implicit method that can only be guessed.
+  Way verlet{true, 0, 2, explicitly("verlet", 1)};
+  const auto begin = std::chrono::steady_clock::now();
+  verlet.finest = verlet.solve(verlet.level++, seconds);
+  const double unit = seconds_since(begin);
+  verlet.expected = verlet.growth * unit;
+  if (verlet.finest) scales = verlet.finest->scales;
+  std::array<Way, 4> ways = {verlet, Way{true, 17.0 / 2 * unit, 2, explicitly("kahan_li8", 2)},
+                             Way{false, 13.0 / 3 * unit, 1.4, by_fehlberg},
+                             Way{false, 2 * unit, 1.6, by_ida}};
+
+  std::optional<Reference> nearest;
+  while (!nearest || nearest->certified.position > needed) {
+    Way& next = *std::ranges::min_element(ways, {}, &Way::expected);
+    const double left = seconds - seconds_since(start);
+    if (next.expected > left) break;
+    const auto from = std::chrono::steady_clock::now();
+    const auto solution = next.solve(next.level++, left);
+    next.expected = next.level < most_levels ? next.growth * seconds_since(from)
+                                             : std::numeric_limits<double>::infinity();
+    if (!solution) continue;
+    next.finest = solution;
+    for (const Way& other : ways) {
+      if (other.resolves_vibrations == next.resolves_vibrations || !other.finest) continue;
+      const Reference reference = next.resolves_vibrations
+                                      ? joined(scene, *next.finest, *other.finest)
+                                      : joined(scene, *other.finest, *next.finest);
+      if (!nearest || reference.certified.position < nearest->certified.position)
+        nearest = reference;
+    }
+  }
+  if (!nearest) throw NoReference("no reference: no two unlike methods reached the end in time");
+  nearest->seconds = seconds_since(start);
+  return *nearest;
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,126 @@
+#include "qddot/measure/reference/reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/linear_motion.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/duration.hpp"
+#include "qddot/measure/reference/reference_rounding.hpp"
+#include "qddot/measure/reference/reference_ways.hpp"
+#include "qddot/measure/reference/refinement.hpp"
+
+namespace qddot::measure {
+namespace {
+
+constexpr Index largest_modal_size = 2000;  // a dense eigenproblem of a few seconds
+
+// Throws NoReference where so many steps of order 8, timed on a few, take twice as long as they may
+// [s]; `expect` is told where making the reference is likely to take all its time.
+void require_affordable(const ReducedScene& scene, double until, double steps, double seconds,
+                        const Expect& expect) {
+  constexpr double tried = 16, refinements = 8;
+  State state = scene.initial();
+  const double h = until / steps;
+  const auto integrator =
+      make_integrator(*find_method("kahan_li8"), scene.system(), {.step_size = h});
+  const auto begin = std::chrono::steady_clock::now();
+  const Deadline deadline(seconds);
+  integrator->advance(state, tried * h, {}, deadline.token());
+  const double expected = seconds_since(begin) / tried * steps;
+  if (expected > 2 * seconds) {
+    throw NoReference(
+        fmt::format("no reference: to t = {:g} s it takes {:.2g} steps of order 8 at the least, "
+                    "about {}, and {} "
+                    "are allowed: ask for an earlier end (--until)",
+                    until, steps, duration_in_words(expected), duration_in_words(seconds)));
+  }
+  if (expect && expected * refinements > seconds) expect(std::max(4 * seconds, 60.0));
+}
+
+// A composition, as fine as it gets, and what a rounding of the start does to it.
+class Composed {
+ public:
+  Composed(const ReducedScene& scene, double until, double seconds, double longest_rounding,
+           const Expect& expect)
+      : scene_(scene), until_(until), longest_rounding_(longest_rounding) {
+    // Steps that resolve the fastest frequency at the start: h w = 2, 1, 1/2, ...
+    const double bound = frequency_bound(scene.system(), scene.initial().q);
+    const double coarsest = std::max(16.0, std::ceil(until * bound / 2));
+    require_affordable(scene, until, coarsest, seconds, expect);
+    finest_ = refined(
+        scene, seconds,
+        [&](int level) {
+          return composition(scene, scene.initial(), until, until / (coarsest * std::exp2(level)),
+                             seconds);
+        },
+        [&](const Solution& at, double change) { return rounding_of(at).explains(change); });
+    rounding_of(finest_);
+  }
+
+  const Solution& finest() const { return finest_; }
+  const RoundingRun& rounding() const { return *rounding_; }
+
+ private:
+  const RoundingRun& rounding_of(const Solution& solution) {
+    if (!rounding_ || rounding_->knob() != solution.knob)
+      rounding_.emplace(scene_, solution, until_, longest_rounding_);
+    return *rounding_;
+  }
+
+  const ReducedScene& scene_;
+  double until_, longest_rounding_;
+  Solution finest_;
+  std::optional<RoundingRun> rounding_;
+};
+
+Solution best_fehlberg(const ReducedScene& scene, double until, const Composed& composed,
+                       double seconds) {
+  return refined(
+      scene, seconds,
+      [&](int level) -> std::optional<Solution> {
+        const double tolerance = std::pow(10.0, -9 - level);
+        if (tolerance < 5e-16) return {};
+        return fehlberg(scene, until, tolerance, composed.finest().scales, seconds);
+      },
+      [&](const Solution&, double change) { return composed.rounding().explains(change); });
+}
+
+bool is_reduced_by_symmetry(const ReducedScene& scene) {
+  return std::ranges::any_of(scene.findings(), [](const Finding& finding) {
+    return finding.reduction == Reduction::dimension || finding.reduction == Reduction::mirror;
+  });
+}
+
+}  // namespace
+
+Reference make_reference(const ReducedScene& scene, double until, double seconds,
+                         const Scene* start, const Expect& expect) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Composed composed(scene, until, 0.6 * seconds, seconds, expect);
+  const Solution& finest = composed.finest();
+  const Errors& effect = composed.rounding().effect();
+  Reference reference;
+  if (scene.system().stiffness_is_constant() && scene.system().size() <= largest_modal_size) {
+    const Solution modal{.end = LinearMotion(scene.system()).after(scene.initial(), until),
+                         .scales = finest.scales,
+                         .made_by = "modal, exact"};
+    reference = joined(scene, modal, finest, effect);
+  } else {
+    reference = joined(scene, finest, best_fehlberg(scene, until, composed, 0.4 * seconds), effect);
+  }
+  composed.rounding().tell(reference);
+  reference.is_reduced_by_symmetry = is_reduced_by_symmetry(scene);
+  if (start && reference.is_reduced_by_symmetry)
+    reference.out_of_symmetry = out_of_symmetry(*start, scene, finest, until, seconds);
+  if (reference.is_beyond_horizon()) measure_shares(reference, scene, finest, until, seconds);
+  reference.seconds = seconds_since(begin);
+  return reference;
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,148 @@
+#include "qddot/measure/reference/reference_ways.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <boost/numeric/odeint.hpp>
+#include <fmt/format.h>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+
+namespace qddot::measure {
+namespace {
+
+constexpr std::int64_t longest_path = 100;
+// Looks at a run for its scales; a list of more times would cost more than it shows.
+constexpr std::int64_t most_looks = 1'000'000;
+constexpr double safety = 2;
+
+// Moves q and v on by `until` [s], in units of `length` [m] and `speed` [m/s]; false where the
+// deadline passes before.
+bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<Vec> v, double until,
+                           double tolerance, double length, double speed,
+                           const Deadline& deadline) {
+  namespace odeint = boost::numeric::odeint;
+  using Stacked = std::vector<double>;
+  const Index n = system.size();
+  const Vec start = q, per_mass = system.mass().cwiseInverse();
+  Vec now(n), f(n);
+
+  const auto rate = [&](const Stacked& y, Stacked& dy, double) {
+    const Eigen::Map<const Vec> u(y.data(), n), w(y.data() + n, n);
+    now = start + length * u;
+    system.force(now, f);
+    Eigen::Map<Vec>(dy.data(), n) = (speed / length) * w;
+    Eigen::Map<Vec>(dy.data() + n, n) = per_mass.cwiseProduct(f) / speed;
+  };
+  Stacked y(2 * n, 0.0);
+  Eigen::Map<Vec>(y.data() + n, n) = v / speed;
+
+  auto stepper =
+      odeint::make_controlled<odeint::runge_kutta_fehlberg78<Stacked>>(tolerance, tolerance);
+  // t and the rest of it that rounding left over: thousands of steps must add up to the end.
+  double t = 0, rest = 0, dt = until / 1000;
+  for (bool is_over = until == 0; !is_over;) {
+    if (deadline.passed() || t + dt == t) return false;
+    const double left = (until - t) - rest;
+    const bool is_last = dt >= left;
+    if (is_last) dt = left;
+    const double taken = dt;
+    double unused = t;
+    if (stepper.try_step(rate, y, unused, dt) != odeint::success) continue;
+    const double more = taken + rest, next = t + more;
+    rest = more - (next - t);
+    t = next;
+    is_over = is_last;
+  }
+  q = start + length * Eigen::Map<const Vec>(y.data(), n);
+  v = speed * Eigen::Map<const Vec>(y.data() + n, n);
+  return true;
+}
+
+}  // namespace
+
+std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
+                                 const Knobs& knobs, const State& initial, double until,
+                                 std::int64_t samples, double seconds) {
+  const auto integrator = make_integrator(method, scene.system(), knobs);
+  Solution solution{.end = initial};
+  const Deadline deadline(seconds);
+  const std::int64_t gap = (samples + most_looks - 1) / most_looks;
+  const std::int64_t looks = (samples + gap - 1) / gap;
+  const std::int64_t stride = (looks + longest_path - 1) / longest_path;
+  std::int64_t seen = 0;
+  Observer each{{}, [&](const State& state) {
+                  extend(solution.scales, scene, state);
+                  if (++seen % stride == 0 || seen == looks) solution.path.push_back(state);
+                }};
+  for (std::int64_t i = gap; i < samples; i += gap) {
+    each.times.push_back(until * static_cast<double>(i) / static_cast<double>(samples));
+  }
+  each.times.push_back(until);
+  extend(solution.scales, scene, solution.end);
+  const Summary summary = integrator->advance(solution.end, until, each, deadline.token());
+  stop_if_interrupted();
+  if (summary.outcome != Outcome::reached_end) return {};
+  return solution;
+}
+
+std::optional<Solution> composition(const ReducedScene& scene, const State& initial, double until,
+                                    double h, double seconds) {
+  const auto steps = static_cast<std::int64_t>(std::round(until / h));
+  auto solution =
+      seen_run(scene, *find_method("kahan_li8"), {.step_size = h}, initial, until, steps, seconds);
+  if (!solution) return {};
+  solution->knob = h;
+  solution->made_by = fmt::format("kahan_li8 at h = {:.6g} s", h);
+  return solution;
+}
+
+std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double tolerance,
+                                 const Scales& scales, double seconds) {
+  const System& system = scene.system();
+  const auto parts = system.parts();
+  Solution solution{.end = scene.initial(), .scales = scales, .knob = tolerance};
+  solution.end.t = until;
+  const Deadline deadline(seconds);
+  const bool has_scales = scales.parts.size() == std::max<std::size_t>(parts.size(), 1);
+  Index at = 0;
+  for (std::size_t i = 0; i < std::max<std::size_t>(parts.size(), 1); ++i) {
+    const System& part = parts.empty() ? system : *parts[i];
+    auto q = solution.end.q.segment(at, part.size()), v = solution.end.v.segment(at, part.size());
+    const double length =
+                     has_scales ? scales.displacement_of(scales.parts[i]) : scales.displacement,
+                 speed = has_scales ? scales.speed_of(scales.parts[i]) : scales.speed;
+    if (!fehlberg_step_by_step(part, q, v, until, tolerance, length > 0 ? length : 1,
+                               speed > 0 ? speed : 1, deadline)) {
+      stop_if_interrupted();
+      return {};
+    }
+    at += part.size();
+  }
+  solution.made_by = fmt::format("Boost.odeint Fehlberg 7(8) at tolerance {:.0e}", tolerance);
+  return solution;
+}
+
+Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other,
+                 const Errors& rounding_effect) {
+  const double energy = scene.energy(scene.initial());
+  Errors certified = errors_between(scene, one.end, other.end, scene.energy(other.end), one.scales);
+  certified = larger(certified, larger(rounding_effect, larger(one.change, other.change)));
+  const Errors drift = errors_between(scene, one.end, one.end, energy, one.scales);
+  certified.energy = std::max(certified.energy, drift.energy);
+  for (double* part : {&certified.position, &certified.velocity, &certified.energy}) {
+    // Two roundings of the same number may agree by chance.
+    *part = std::max(safety * *part, std::numeric_limits<double>::epsilon());
+  }
+  Reference reference{.end = one.end,
+                      .energy = energy,
+                      .scales = one.scales,
+                      .certified = certified,
+                      .made_by = fmt::format("{}; {}", one.made_by, other.made_by)};
+  return reference;
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,60 @@
+#include "qddot/measure/speed/front.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/measure/speed/judgement.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
+
+namespace qddot::measure {
+namespace {
+
+void keep_faster(const Point*& fastest, const Point& point) {
+  if (!fastest || point.time < fastest->time) fastest = &point;
+}
+
+}  // namespace
+
+std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
+                                               const Reference& reference) {
+  std::vector<FrontRow> rows;
+  for (int digit = 1; digit <= 9; ++digit) {
+    FrontRow row{.accuracy = std::pow(10.0, -digit)};
+    for (const Point& point : points) {
+      if (point.outcome != Outcome::reached_end) continue;
+      const Known error = known(judged_error(point, reference), certified(reference));
+      row.may_be_reached |= error.at_least <= row.accuracy;
+      if (!(error.at_most <= row.accuracy)) continue;
+      keep_faster(row.fastest, point);
+      keep_faster(point.method->family == Family::sundials ? row.fastest_sundials
+                                                           : row.fastest_hand_written,
+                  point);
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void add_stability_margins(std::vector<FrontRow>& rows, const ReducedScene& scene) {
+  const System& system = scene.system();
+  const auto has_limit = [](const FrontRow& row) {
+    if (!row.fastest || !has_linear_step(*row.fastest->method)) return false;
+    const double limit = linear_limit(*row.fastest->method);
+    return limit > 0 && std::isfinite(limit);
+  };
+  if (std::ranges::none_of(rows, has_limit)) return;
+  double w = 0;
+  try {
+    w = quick_frequency(system, scene.initial().q);
+  } catch (const std::exception&) {  // it was not found, and so no margin is known
+    return;
+  }
+  for (FrontRow& row : rows) {
+    if (!has_limit(row) || w == 0) continue;
+    row.stability_margin = 1 - row.fastest->value * w / linear_limit(*row.fastest->method);
+  }
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,124 @@
+#include "qddot/measure/speed/ladder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "qddot/measure/motion/resolved_frequency.hpp"
+#include "qddot/measure/speed/judgement.hpp"
+
+namespace qddot::measure {
+namespace {
+
+constexpr int most_rungs = 60;
+
+// Values of the knob, finer with the rung. Rung 0 of a step size is h w = 4 for explicit methods,
+// beyond the stability limit of most, and half the horizon for implicit ones.
+class Rungs {
+ public:
+  Rungs(const Method& method, const ReducedScene& scene, double until)
+      : method_(method), until_(until) {
+    const double w = resolved_frequency(method, scene.system(), scene.initial().q);
+    steps_ = method.implicit ? 2 : std::max(1.0, std::ceil(until * w / 4));
+  }
+
+  // Nothing where the ladder has no such rung.
+  std::optional<double> value(int rung) const {
+    if (std::abs(rung) > most_rungs) return {};
+    // Without step error one step is as good as many.
+    if (method_.order == 0) return rung == 0 ? std::optional(until_) : std::nullopt;
+    if (method_.knob == Knob::rtol) {
+      const double rtol = std::pow(10.0, -1 - rung);
+      return rtol <= 0.1 && rtol >= 1e-15 ? std::optional(rtol) : std::nullopt;
+    }
+    const double steps =
+        std::round(steps_ * std::pow(4.0, static_cast<double>(rung) / method_.order));
+    return steps >= 1 ? std::optional(until_ / steps) : std::nullopt;
+  }
+
+ private:
+  const Method& method_;
+  double until_, steps_;
+};
+
+// Whether the error has come to where a finer knob changes nothing.
+class Stagnation {
+ public:
+  explicit Stagnation(const Reference& reference) : reference_(reference) {}
+
+  bool after(const Point& point) {
+    if (point.outcome != Outcome::reached_end) return false;
+    // Steps that are held to a stability limit do not answer to the tolerance yet.
+    if (2 * point.counts.stability_limited_steps > point.counts.steps) return false;
+    const double error = judged_error(point, reference_);
+    idle_ = error > 0.8 * best_ ? idle_ + 1 : 0;
+    best_ = std::min(best_, error);
+    return idle_ >= 3 && best_ < 1e-4;
+  }
+
+ private:
+  const Reference& reference_;
+  double best_ = std::numeric_limits<double>::infinity();
+  int idle_ = 0;
+};
+
+// A run of fixed steps takes time in proportion to their number, so a hopeless one need not be
+// begun. Implicit steps become cheaper as they become shorter: Newton then needs fewer iterations.
+bool is_hopeless(const Method& method, const Point& last, double value, const Effort& effort) {
+  const double saved_at_most = method.implicit ? 10 : 1;
+  return method.knob == Knob::step_size && last.outcome == Outcome::reached_end &&
+         last.time * last.value / value > 1.5 * saved_at_most * effort.seconds;
+}
+
+bool is_good(const Point& point, const Reference& reference) {
+  return point.outcome == Outcome::reached_end && judged_error(point, reference) < 1;
+}
+
+}  // namespace
+
+std::vector<Point> climb(const Method& method, const ReducedScene& scene, double until,
+                         const Reference& reference, const Effort& effort,
+                         const std::function<void(const Point&)>& report,
+                         const std::function<bool(const Point&)>& enough) {
+  const Rungs rungs(method, scene, until);
+  std::vector<Point> points;
+  const auto take = [&](double value) -> const Point& {
+    points.push_back(!points.empty() && is_hopeless(method, points.back(), value, effort)
+                         ? Point{.method = &method, .value = value, .outcome = Outcome::over_budget}
+                         : measure_point(method, value, scene, until, reference, effort));
+    report(points.back());
+    return points.back();
+  };
+
+  for (int rung = 0; const auto value = rungs.value(rung); --rung) {
+    if (!points.empty() && points.back().value == *value) continue;
+    if (!is_good(take(*value), reference)) break;
+  }
+  std::ranges::reverse(points);
+
+  Stagnation stagnation(reference);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) stagnation.after(points[i]);
+  int unfinished = 0;
+  for (int rung = 1; const auto value = rungs.value(rung); ++rung) {
+    const Point& last = points.back();
+    if (last.value == *value) continue;
+    if (last.outcome == Outcome::reached_end &&
+        (judged_error(last, reference) <= certified(reference) || stagnation.after(last) ||
+         (enough && enough(last)))) {
+      break;
+    }
+    // Where Newton struggles at the coarse end, finer may be faster: two such points are forgiven.
+    // Explicit steps only become more.
+    unfinished = last.outcome == Outcome::over_budget ? unfinished + 1 : 0;
+    const bool has_worked =
+        std::ranges::any_of(points, [&](const Point& p) { return is_good(p, reference); });
+    if (last.outcome == Outcome::singular_mass ||
+        unfinished > (has_worked || !method.implicit ? 0 : 2))
+      break;
+    take(*value);
+  }
+  return points;
+}
+
+}  // namespace qddot::measure

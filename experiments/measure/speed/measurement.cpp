@@ -1,0 +1,96 @@
+#include "qddot/measure/speed/measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/motion/tolerance_scales.hpp"
+
+namespace qddot::measure {
+namespace {
+
+// Shorter than this, a run is timed together with others like it: the clock's own cost (some tens
+// of ns) stays below a thousandth.
+constexpr double shortest_sample = 1e-4;
+// A first run at least so long [s] is a sample like any other: what is cold about it is over soon.
+constexpr double own_warm_up = 0.1;
+// A run that is looked at ends sooner or later [s]; it is as long as the one before, and not timed.
+constexpr double longest_look = 60;
+
+// The point as it is measured now.
+Point taken(const Method& method, double value, const ReducedScene& scene, double until,
+            const Reference& reference, const Effort& effort) {
+  Point point{.method = &method, .value = value};
+  const Knobs knobs = knobs_for(method, value, scene, effort.options);
+  std::unique_ptr<Integrator> integrator;
+  point.setup = seconds_of([&] { integrator = make_integrator(method, scene.system(), knobs); });
+
+  State state = scene.initial();
+  const Deadline deadline(effort.seconds);
+  Summary summary;
+  const double first =
+      seconds_of([&] { summary = integrator->advance(state, until, {}, deadline.token()); });
+  point.outcome = summary.outcome;
+  point.t_reached = summary.t_reached;
+  point.counts = summary.counts;
+  point.energy_growth = summary.energy_growth;
+  if (summary.outcome != Outcome::reached_end) return point;
+  point.errors = errors_between(scene, state, reference.end, reference.energy, reference.scales);
+
+  const int batch = static_cast<int>(std::ceil(std::min(shortest_sample / first, 1e5)));
+  std::vector<double> times;
+  if (first >= own_warm_up) times.push_back(first);
+  double spent = times.empty() ? 0 : first;
+  while (std::ssize(times) < effort.repeats &&
+         (times.empty() || spent + first < effort.seconds / 2)) {
+    const double sample = seconds_of([&] {
+      for (int i = 0; i < batch && summary.outcome == Outcome::reached_end; ++i) {
+        state = scene.initial();
+        summary = integrator->advance(state, until);
+      }
+    });
+    if (summary.outcome != Outcome::reached_end) {  // the time of half a run is none
+      point.outcome = summary.outcome;
+      point.t_reached = summary.t_reached;
+      return point;
+    }
+    spent += sample;
+    times.push_back(sample / batch);
+  }
+  point.time = median(times);
+  point.time_min = std::ranges::min(times);
+  point.timed_runs = static_cast<int>(times.size());
+  if (effort.watch) {
+    point.on_the_way = effort.watch->see(method, knobs, point.counts.steps,
+                                         std::max(longest_look, 2 * effort.seconds));
+    // The end of the run that was timed counts as well.
+    point.on_the_way.energy = std::max(point.on_the_way.energy, point.errors.energy);
+  }
+  return point;
+}
+
+}  // namespace
+
+Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
+                const MethodOptions& options) {
+  Knobs knobs;
+  (method.knob == Knob::step_size ? knobs.step_size : knobs.rtol) = value;
+  knobs.max_order = options.max_order;
+  knobs.stability_detection = options.stability_detection;
+  knobs.iterations = options.iterations;
+  knobs.solve_tolerance = options.solve_tolerance;
+  knobs.spectral_radius = options.spectral_radius;
+  knobs.solver = find_solver(options.solver).value();
+  return with_tolerance_scales(knobs, scene);
+}
+
+Point measure_point(const Method& method, double value, const ReducedScene& scene, double until,
+                    const Reference& reference, const Effort& effort) {
+  const auto take = [&] { return taken(method, value, scene, until, reference, effort); };
+  return effort.recall ? effort.recall(method, value, take) : take();
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+
+#include "qddot/integrators/method.hpp"
+#include "qddot/measure/reference/reference.hpp"
+#include "qddot/measure/speed/watch.hpp"
+
+namespace qddot::measure {
+
+// One point of the work-precision chart: a method at one value of its knob.
+struct Point {
+  const Method* method = nullptr;
+  double value = 0;      // of the knob: h [s] or rtol
+  Outcome outcome{};     // errors and times below mean something only where it is reached_end
+  double t_reached = 0;  // [s]
+  Errors errors{};
+  OnTheWay on_the_way{};
+  double time = 0, time_min = 0;  // median and least wall time of a run [s], set-up left out
+  double setup = 0;               // wall time of allocation and symbolic analysis [s]
+  int timed_runs = 0;
+  Counts counts{};
+  double energy_growth = 1;  // as in Summary
+};
+
+// What some methods may be told besides their knob; the others do not care. As in Knobs.
+struct MethodOptions {
+  int max_order = 0;
+  bool stability_detection = false;
+  int iterations = 0;
+  double solve_tolerance = 0;
+  double spectral_radius = Knobs{}.spectral_radius;
+  std::string solver = "automatic";  // by its name
+};
+
+// How long a point may take, how often it is timed, and how it is run.
+struct Effort {
+  using Take = std::function<Point()>;
+
+  double seconds = 10;  // for one run; slower ones become over_budget
+  int repeats = 5;      // timed runs; fewer, but one, where they would take half of that together
+  MethodOptions options{};
+  const Watch* watch = nullptr;  // if any, sees one more run, untimed
+  // If any, gives a point that may be known already, or takes it.
+  std::function<Point(const Method&, double value, const Take& take)> recall{};
+};
+
+// What the user turns, as the method's kind takes it, with the scene's tolerance scales.
+Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
+                const MethodOptions& options = {});
+
+// The point of that value as the effort recalls it, or else takes it: runs the method once untimed,
+// which a run of 0.1 s need not be, and then up to `repeats` times; a
+// repeat that fails makes the point a failure. Runs too short for the clock are timed in batches.
+// Single thread.
+Point measure_point(const Method& method, double value, const ReducedScene& scene, double until,
+                    const Reference& reference, const Effort& effort);
+
+}  // namespace qddot::measure

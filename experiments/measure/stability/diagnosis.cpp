@@ -1,0 +1,258 @@
+#include "qddot/measure/stability/diagnosis.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/motion/tolerance_scales.hpp"
+#include "qddot/measure/motion/vibrating_modes.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
+
+namespace qddot::measure {
+namespace {
+
+constexpr int looks = 32, most_halvings = 12;
+constexpr std::size_t most_named = 3;
+// A motion is still what it was while its energy has changed by less than this part of the largest
+// kinetic energy so far.
+constexpr double same = 0.5;
+// What a growth of the energy is told from; and beyond this its size says nothing any more.
+constexpr double largest_growth = 10, countless = 1e6;
+// No motion that a scene means is as fast [m/s].
+constexpr double largest_speed = 1e15;
+// Implicit methods are not tried in scenes so large that their factors take seconds, and gigabytes.
+constexpr Index most_factorized = 100000;
+
+bool has_own_step(const Method& method) { return has_linear_step(method) && method.order > 0; }
+
+// Runs the method and calls see() for each of some times up to `until`, for `seconds` at most.
+Summary run(const Method& method, const Knobs& knobs, const ReducedScene& scene, double until,
+            double seconds, const std::function<void(const State&)>& see) {
+  const double steps = std::max(1.0, std::floor(until / knobs.step_size));
+  const double stride = std::max(1.0, std::floor(steps / looks));
+  Observer some{{}, see};
+  for (double n = stride; n * knobs.step_size < until; n += stride) {
+    some.times.push_back(n * knobs.step_size);
+  }
+  const Deadline deadline(seconds);
+  State state = scene.initial();
+  return make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene))
+      ->advance(state, until, some, deadline.token());
+}
+
+// Watches whether a motion still has its energy.
+class EnergyWatch {
+ public:
+  explicit EnergyWatch(const ReducedScene& scene)
+      : scene_(scene), start_(scene.energy(scene.initial())) {
+    see(scene.initial());
+  }
+  bool see(const State& state) {
+    const double kinetic = scene_.system().kinetic(state.v);  // a fall would hide what is gained
+    const double change = std::abs(scene_.energy(state) - start_);
+    // A kinetic energy that was gained is no measure.
+    if (is_same_ && change <= same * std::max(largest_, kinetic - change)) {
+      largest_ = std::max(largest_, kinetic - change);
+    } else if (change > 0) {
+      is_same_ = false;
+    }
+    return is_same_;
+  }
+  bool is_same() const { return is_same_; }
+
+ private:
+  const ReducedScene& scene_;
+  double start_, largest_ = 0;
+  bool is_same_ = true;
+};
+
+// Where the run was last known to be what it should, and the fastest vibration until then, or what
+// it is at least; how fast compressed springs push to the side, or zero where that is not searched.
+struct Before {
+  double t = 0, omega = 0, t_of_omega = 0, buckling = 0;
+};
+Before before_failure(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+                      double t_end, double seconds) {
+  const auto pushed = [&](const Vec& q) {
+    return method.implicit && is_quickly_searched(scene.system()) ? buckling_rate(scene.system(), q)
+                                                                  : 0;
+  };
+  Before before{.omega = quick_frequency(scene.system(), scene.initial().q),
+                .buckling = pushed(scene.initial().q)};
+  EnergyWatch watch(scene);
+  const auto see = [&](const State& state) {
+    // The first state of a wrong energy counts: its step began where all was right.
+    const bool counts = watch.is_same();
+    if (watch.see(state)) before.t = state.t;
+    if (!counts) return;
+    before.buckling = std::max(before.buckling, pushed(state.q));
+    const double omega = quick_frequency(scene.system(), state.q);
+    if (omega > before.omega) {
+      before.omega = omega;
+      before.t_of_omega = state.t;
+    }
+  };
+  run(method, knobs, scene, t_end, seconds, see);
+  return before;
+}
+
+std::string crossed(const Method& method, double h, const Before& before, bool is_known,
+                    Outcome outcome) {
+  const double limit = linear_limit(method);
+  const auto when = [](double t) {
+    return t == 0 ? std::string("at the start") : fmt::format("at t = {:.3g} s", t);
+  };
+  if (limit == 0) {
+    return fmt::format(
+        "{} gains energy at every h, vibrations of w by the rate h w^2/2, here up "
+        "to {:.3g}/s",
+        method.name, h * before.omega * before.omega / 2);
+  }
+  if (h * before.omega > limit) {
+    return fmt::format(
+        "h w_max is {}{:.3g} {} (w_max = {:.4g} rad/s), above {}'s limit of {:.5g}/w_max = {:.4g} "
+        "s",
+        is_known ? "" : "at least ", h * before.omega, when(before.t_of_omega), before.omega,
+        method.name, limit, limit / before.omega);
+  }
+  if (method.implicit && before.buckling * h > 0.1) {
+    return fmt::format(
+        "compressed springs push to the side at a rate of up to {:.3g}/s, {:.3g} of "
+        "1/h; M - h^2 K is indefinite where that is above 1",
+        before.buckling, before.buckling * h);
+  }
+  if (outcome == Outcome::newton_failed || !is_known) return "";
+  return fmt::format(
+      "no linear limit was crossed (h w_max was {:.3g} at most): this is a nonlinear "
+      "instability",
+      h * before.omega);
+}
+
+// Whether a run reaches the end with its energy not grown; nothing where time is up.
+std::optional<bool> holds(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+                          double until, double seconds) {
+  if (seconds <= 0) return {};
+  const double energy = scene.energy(scene.initial());
+  // Without what falls in closed form, whose potential has no least value.
+  const auto potential = [&](const State& state) {
+    return scene.energy(state) - scene.system().kinetic(state.v);
+  };
+  double lowest = potential(scene.initial()), largest = energy;
+  const Summary summary = run(method, knobs, scene, until, seconds, [&](const State& state) {
+    lowest = std::min(lowest, potential(state));
+    largest = std::max(largest, scene.energy(state));
+  });
+  if (summary.outcome == Outcome::over_budget) return {};
+  // Above the lowest potential seen no more than the rest can become kinetic.
+  return summary.outcome == Outcome::reached_end && largest - energy <= same * (energy - lowest);
+}
+
+// That forces of the start itself bring nodes to speeds that no scene means; empty where not.
+std::string extreme_start(const ReducedScene& scene) {
+  const Vec& mass = scene.system().mass();
+  Vec f(mass.size());
+  scene.system().force(scene.initial().q, f);
+  const double a = (mass.array() > 0).select(f.cwiseQuotient(mass), 0).lpNorm<Eigen::Infinity>();
+  const double speed = std::sqrt(a * with_tolerance_scales({}, scene).length);
+  if (f.allFinite() && speed < largest_speed) return "";
+  return fmt::format(
+      "the forces of the start accelerate a node by {:.3g} m/s^2, before any step: look for "
+      "extreme "
+      "rest lengths, stiffnesses or masses in the scene",
+      a);
+}
+
+}  // namespace
+
+std::string step_warning(const Method& method, const Knobs& knobs, const ReducedScene& scene) {
+  if (!has_own_step(method)) return "";
+  const System& system = scene.system();
+  const Vec& q = scene.initial().q;
+  const double limit = linear_limit(method), h = knobs.step_size;
+  if (h * frequency_bound(system, q) <= limit) return "";
+  const double w = quick_frequency(system, q);
+  if (h * w <= limit) return "";
+  if (limit == 0) {
+    return fmt::format(
+        "{} lets every vibration grow at every h, here the fastest by {:.3g}/s (w_max = {:.5g} "
+        "rad/s at the start)",
+        method.name, h * w * w / 2, w);
+  }
+  return fmt::format(
+      "h = {:.4g} s is above {:.5g}/w_max = {:.4g} s, where {} blows up (w_max = {:.5g} rad/s at "
+      "the start)",
+      h, limit, limit / w, method.name, w);
+}
+
+std::string growth_warning(const Method& method, const Summary& summary) {
+  const double growth = summary.energy_growth;
+  if (growth <= largest_growth) return "";
+  return fmt::format(
+      "the energy grew to {} times what this motion can have, so this is not the scene's motion: "
+      "lower {}",
+      growth > countless ? fmt::format("more than {:g}", countless) : fmt::format("{:.3g}", growth),
+      method.knob == Knob::step_size ? "--step-size" : "--rtol");
+}
+
+std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+                      double until, const Summary& summary, double seconds) {
+  constexpr std::array diagnosed = {Outcome::diverged, Outcome::not_finite,
+                                    Outcome::indefinite_matrix, Outcome::newton_failed};
+  const bool is_diagnosed = std::ranges::find(diagnosed, summary.outcome) != diagnosed.end();
+  if (is_diagnosed || summary.outcome == Outcome::step_too_small) {
+    if (const std::string extreme = extreme_start(scene); !extreme.empty()) return extreme;
+  }
+  if (!has_own_step(method) || !is_diagnosed) return "";
+  const auto begin = std::chrono::steady_clock::now();
+  const auto left = [&] { return seconds - seconds_since(begin); };
+  const double h = knobs.step_size;
+  const Before before = before_failure(method, knobs, scene, summary.t_reached, seconds / 4);
+  std::string words = fmt::format("it failed in step {}", summary.failed_step);
+  if (summary.outcome == Outcome::diverged && before.t < summary.t_reached) {
+    words += fmt::format(", its energy no longer right after t = {:.3g} s", before.t);
+  }
+  const std::string why =
+      crossed(method, h, before, is_quickly_searched(scene.system()), summary.outcome);
+  if (!why.empty()) words += "; " + why;
+
+  std::vector<std::string> remedies;
+  if (linear_limit(method) > 0) {
+    Knobs finer = knobs;
+    for (int i = 1; i <= most_halvings; ++i) {
+      finer.step_size = h / std::pow(2, i);
+      const auto held = holds(method, finer, scene, until, std::min(left(), seconds / 2));
+      if (!held) break;
+      if (!*held) continue;
+      remedies.push_back(fmt::format("h = {:.3g} s", finer.step_size));
+      break;
+    }
+  }
+  std::vector<std::string> others;
+  for (const Method& other : methods()) {
+    if (!has_own_step(other) || other.family != Family::hand_written || &other == &method ||
+        !applies_to(other, scene.system()) || others.size() == most_named ||
+        (other.implicit && scene.system().size() > most_factorized)) {
+      continue;
+    }
+    if (holds(other, knobs, scene, until, std::min(left(), seconds / 8)).value_or(false)) {
+      others.push_back(other.name);
+    }
+  }
+  if (!others.empty()) remedies.push_back(fmt::format("at this h {}", fmt::join(others, ", ")));
+  if (!remedies.empty()) {
+    words += fmt::format("; what holds, tried: {}", fmt::join(remedies, ", or "));
+  }
+  return words;
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,349 @@
+#include "qddot/measure/trend/energy_trend.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace qddot::measure {
+namespace {
+
+// Fewer means cannot say whether they wander, or how far they may.
+constexpr Index told_blocks = 16;
+// Of a run that first does something else, the last part says so much more surely what it comes
+// to; of one line through noise it says nearly three times less, of a walk nearly the same.
+constexpr double much_surer = 0.25;
+// What is called a drift, or its end, is no part of a sine of up to so many runs' length.
+constexpr double slow_runs = 2;
+// Such a sine moves in any last part of the run by more than so much of its range, if the part is
+// taken as means over its eighths: about its crest by 1 - cos(7/8 pi/4) of its amplitude in half of
+// the run, by 1 - cos(7/8 pi/8) in a quarter of it.
+struct LastPart {
+  double begin, range;
+};
+// And a faster one as much as before, and not by so much less.
+constexpr double quieter = 0.5;
+constexpr LastPart last_parts[] = {{0.5, 0.11}, {0.75, 0.029}};
+// A walk or slow wave is seen beneath an oscillation that is ten times as large, and then said to
+// be there; the verdict follows the oscillation.
+constexpr double beneath = 0.1;
+// An oscillation widens if it grows by so much of its mean size.
+constexpr double widening_part = 0.1;
+// Coloured noise is told from a walk by a run of so many memories, nearly always; a wave from a
+// drift by two of its periods; and a run is worth to be made again if it is so much longer.
+constexpr double memories_needed = 60, periods_needed = 2, longer = 4;
+// Less than this part of the excess energy lost or won is called a drift.
+constexpr double exponential_part = 0.1;
+// A loss is fitted until so much of the excess is left: then the slow modes remain. Less than
+// `tiny` is not told from nothing, and what comes back to half was no loss.
+constexpr double nearly_gone = 0.1, tiny = 1e-3, half_back = 0.5;
+// And a blow-up from here on, where what grows is far more than what was there, up to here.
+constexpr double growing = 100, grown = 1e8;
+// Roundings of the energy that one evaluation of it and one step may make: sums over many springs.
+constexpr double roundings_of_energy = 100, roundings_of_step = 10;
+
+Interval scaled(const Interval& x, double factor) {
+  return {factor * x.value, factor * x.low, factor * x.high};
+}
+
+// ln x = level + rate (t - middle).
+struct Exponential {
+  Interval rate;
+  double level = 0, middle = 0, slow_period = 0;
+  double range = 0, slow = 0;  // of the means of ln x, and of those over eighths of the blocks
+};
+
+Exponential fit_exponential(Blocks x) {
+  if (x.count() == 0 || (x.means.array() <= 0).any()) return {};
+  x.means = x.means.array().log();
+  const BlockFit fit = fit_blocks(x.means);
+  return {
+      scaled(fit.slope, 1 / x.length),         fit.level,    x.middle(), fit.slow_period * x.length,
+      x.means.maxCoeff() - x.means.minCoeff(), slow_range(x)};
+}
+
+// Half of what the middle 95 % of weighted numbers span.
+double half_span(std::vector<std::pair<double, double>> weighted) {
+  std::ranges::sort(weighted);
+  double all = 0;
+  for (const auto& [value, weight] : weighted) all += weight;
+  double low = weighted.front().first, high = weighted.back().first, sum = 0;
+  for (const auto& [value, weight] : weighted) {
+    if (sum <= 0.025 * all) low = value;
+    if (sum <= 0.975 * all) high = value;
+    sum += weight;
+  }
+  return (high - low) / 2;
+}
+
+template <class Expected>
+double oscillation_about(std::span<const Sample> samples, const Expected& expected) {
+  std::vector<std::pair<double, double>> deviations;
+  for (const Sample& s : samples) deviations.emplace_back(s.error - expected(s.t), s.weight);
+  return deviations.empty() ? 0 : half_span(std::move(deviations));
+}
+
+std::span<const Sample> after(std::span<const Sample> samples, double t) {
+  return {std::ranges::find_if(samples, [&](const Sample& sample) { return sample.t > t; }),
+          samples.end()};
+}
+
+// The samples of a trend that is exponential, and what they say.
+class Excess {
+ public:
+  Excess(std::span<const Sample> samples, const TrendScales& scales)
+      : samples_(samples), scales_(scales) {}
+
+  double of(const Sample& sample) const { return 1 + sample.error / scales_.excess; }
+
+  // Of what is lost, or won without end in sight.
+  void fit_slow(Trend& trend) const {
+    const auto end = std::ranges::find_if(
+        samples_, [&](const Sample& sample) { return of(sample) < nearly_gone; });
+    // An oscillation that is so large comes back.
+    if (std::any_of(end, samples_.end(), [&](const Sample& s) { return of(s) > half_back; }))
+      return;
+    const std::span<const Sample> window(samples_.begin(), end);
+    const bool is_gone = end != samples_.end();
+    const Exponential fit = take(trend, window, 0);
+    if (!is_gone && (has_ended(window, fit) || is_slow_sine(window, fit))) trend.rate = {};
+    if (is_gone && !trend.rate.excludes_zero()) {
+      take_alone(trend, std::log(std::clamp(of(*end), tiny, nearly_gone)) / end->t);
+    }
+  }
+
+  void fit_blow_up(Trend& trend) const {
+    const auto end =
+        std::ranges::find_if(samples_, [&](const Sample& sample) { return of(sample) > grown; });
+    auto begin = end;
+    while (begin != samples_.begin() && of(*(begin - 1)) > growing) --begin;
+    const std::span<const Sample> rise(begin, end);
+    if (rise.empty()) return;
+    take(trend, rise, rise.front().t);
+    if (trend.rate.value != 0 || rise.size() < 2) return;
+    take_alone(trend,
+               std::log(of(rise.back()) / of(rise.front())) / (rise.back().t - rise.front().t));
+  }
+
+ private:
+  Exponential fit(std::span<const Sample> window, double begin) const {
+    return fit_exponential(in_blocks(window, begin, [&](const Sample& s) { return of(s); }));
+  }
+
+  // Whether a last part of what began to fall or rise is level.
+  bool has_ended(std::span<const Sample> window, const Exponential& whole) const {
+    return std::ranges::any_of(last_parts, [&](const LastPart& part) {
+      const double begin = part.begin * window.back().t;
+      const Exponential last = fit(after(window, begin), begin);
+      return last.rate.holds(0) && !last.rate.holds(whole.rate.value) &&
+             last.slow < part.range * whole.range && last.range < quieter * whole.range;
+    });
+  }
+
+  // Whether that may be a part of a slow sine. None loses most of what there is.
+  bool is_slow_sine(std::span<const Sample> window, const Exponential& fit) const {
+    return fit.slow_period < slow_runs * window.back().t && of(window.back()) > half_back;
+  }
+
+  // A rate of too few samples for a fit, so that nothing says how sure it is.
+  void take_alone(Trend& trend, double rate) const {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    trend.rate = {rate, unknown, unknown};
+    trend.drift = scaled(trend.rate, scales_.excess);
+  }
+
+  Exponential take(Trend& trend, std::span<const Sample> window, double begin) const {
+    const Exponential fit = this->fit(window, begin);
+    trend.rate = fit.rate;
+    trend.drift = scaled(fit.rate, scales_.excess);
+    trend.oscillation = oscillation_about(window, [&](double t) {
+      return scales_.excess * std::expm1(fit.level + fit.rate.value * (t - fit.middle));
+    });
+    return fit;
+  }
+
+  std::span<const Sample> samples_;
+  const TrendScales& scales_;
+};
+
+// Whether that is no more than rounding makes of energies in a run: what oscillates, and what walks
+// with the root of the steps or, where all roundings go one way, drifts with their number.
+bool is_rounding(const Trend& trend, double largest_mean, double steps, const TrendScales& s) {
+  const double walked = (roundings_of_energy + roundings_of_step * std::sqrt(steps)) * s.rounding;
+  if (trend.oscillation > walked) return false;
+  return trend.drift.excludes_zero() ? std::abs(trend.drift.value) * s.step <= s.rounding
+                                     : largest_mean <= walked;
+}
+
+// The line through samples from `begin` on.
+struct Line {
+  double begin = 0;
+  Interval drift;
+  BlockFit fit{};
+  double length = 0;  // of a block [s]
+  double walk = 0, oscillation = 0, largest_mean = 0;
+  double range = 0, slow = 0;  // of the means, and of those over eighths of the blocks
+  double start = 0;            // its value at `begin`
+  Interval widening{};
+  double widening_period = 0;  // [s] the same of its slope as BlockFit::slow_period
+
+  double uncertainty() const { return drift.high - drift.low; }
+  double slow_period() const { return fit.slow_period * length; }
+};
+
+std::optional<Line> line_through(std::span<const Sample> samples, double begin) {
+  const Blocks blocks = in_blocks(samples, begin, [](const Sample& s) { return s.error; });
+  if (blocks.count() < told_blocks) return {};
+  const BlockFit fit = fit_blocks(blocks.means);
+  Line line{.begin = begin,
+            .drift = scaled(fit.slope, 1 / blocks.length),
+            .fit = fit,
+            .length = blocks.length,
+            .largest_mean = blocks.means.lpNorm<Eigen::Infinity>(),
+            .range = blocks.means.maxCoeff() - blocks.means.minCoeff(),
+            .slow = slow_range(blocks)};
+  const auto expected = [&](double t) {
+    return fit.level + line.drift.value * (t - blocks.middle());
+  };
+  line.start = expected(begin);
+  line.oscillation = oscillation_about(samples, expected);
+  if (fit.colour != Colour::none) line.walk = fit.walk / std::sqrt(blocks.length);
+  return line;
+}
+
+// How the root of the mean square about the line grows from block to block.
+void fit_widening(Line& line, std::span<const Sample> samples) {
+  Blocks squares = in_blocks(samples, line.begin, [&](const Sample& s) {
+    const double deviation = s.error - line.start - line.drift.value * (s.t - line.begin);
+    return deviation * deviation;
+  });
+  squares.means = squares.means.array().sqrt();
+  const double size = squares.means.mean();
+  if (!(size > 0)) return;
+  const BlockFit fit = fit_blocks(squares.means);
+  line.widening = scaled(fit.slope, 1 / (squares.length * size));
+  line.widening_period = fit.slow_period * squares.length;
+}
+
+// The last part of a run that has done something else before, if it has.
+std::optional<Line> settled_line(std::span<const Sample> samples, const Line& whole) {
+  const double duration = samples.back().t;
+  for (const LastPart& part : last_parts) {
+    const double begin = part.begin * duration;
+    const std::optional<Line> last = line_through(after(samples, begin), begin);
+    if (!last || last->slow > part.range * whole.range) continue;
+    if (last->range > quieter * whole.range) continue;
+    const bool is_level = !last->drift.excludes_zero() && last->fit.colour != Colour::turns &&
+                          last->fit.colour != Colour::undecided;
+    const bool has_stopped =
+        is_level && whole.drift.excludes_zero() && !last->drift.holds(whole.drift.value);
+    if (has_stopped || last->uncertainty() < much_surer * whole.uncertainty()) return last;
+  }
+  return {};
+}
+
+// The slope, which may be none where a slow sine explains it.
+Interval cautious_drift(const Line& line, double duration) {
+  const Interval& d = line.drift;
+  const bool may_be_sine = d.excludes_zero() && line.slow_period() < slow_runs * duration;
+  if (!may_be_sine) return d;
+  return {d.value, std::min(d.low, 0.0), std::max(d.high, 0.0)};
+}
+
+// What is not told of a line, and how long a run has to be to tell it.
+bool is_undecided(Trend& trend, const Line& line, double duration) {
+  const bool is_seen = trend.walk * std::sqrt(duration) > beneath * trend.oscillation;
+  const bool may_be_sine = line.drift.excludes_zero() && trend.slow_period < slow_runs * duration;
+  const bool may_beat = trend.widening.low * duration > 0 &&
+                        trend.widening.value * duration > widening_part &&
+                        line.widening_period < slow_runs * duration;
+  const bool turns = trend.colour == Colour::turns && is_seen && !line.drift.excludes_zero();
+  const bool may_walk = trend.colour == Colour::undecided && is_seen && !line.drift.excludes_zero();
+  if (!may_be_sine && !may_beat && !turns && !may_walk) return false;
+  trend.needed = longer * duration;
+  if (may_be_sine) trend.needed = std::max(trend.needed, periods_needed * trend.slow_period);
+  if (may_beat) trend.needed = std::max(trend.needed, periods_needed * line.widening_period);
+  if (turns) trend.needed = std::max(trend.needed, periods_needed * trend.period);
+  if (may_walk) trend.needed = std::max(trend.needed, memories_needed * trend.memory);
+  return true;
+}
+
+void take_line(Trend& trend, std::span<const Sample> samples, const TrendScales& scales) {
+  std::optional<Line> line = line_through(samples, 0);
+  if (!line) return;
+  const double duration = samples.back().t, half = duration / 2;
+  const auto second = line_through(after(samples, half), half);
+  trend.late_drift = cautious_drift(second ? *second : *line, duration);
+  const double largest_mean = line->largest_mean;
+  if (const auto last = settled_line(samples, *line)) {
+    line = last;
+    trend.settled = line->begin;
+    trend.before = line->start;
+  }
+  fit_widening(*line, after(samples, line->begin));
+  trend.drift = cautious_drift(*line, duration);
+  trend.walk = line->walk;
+  trend.oscillation = line->oscillation;
+  trend.colour = line->fit.colour;
+  trend.period = line->fit.period * line->length;
+  trend.memory = line->fit.memory * line->length;
+  trend.slow_period = line->slow_period();
+  trend.widening = line->widening;
+  const double steps = scales.step > 0 ? duration / scales.step : 1;
+  if (is_rounding(trend, largest_mean, steps, scales)) {
+    trend.verdict = Verdict::round_off;
+  } else if (is_undecided(trend, *line, duration)) {
+    trend.verdict = Verdict::undecided;
+  } else if (trend.drift.excludes_zero()) {
+    trend.verdict = Verdict::drifts;
+  } else if (trend.widening.low > 0 && trend.widening.value * duration > widening_part) {
+    trend.verdict = Verdict::widens;
+  } else {
+    trend.verdict = Verdict::bounded;
+  }
+}
+
+}  // namespace
+
+Trend trend_of(std::span<const Sample> samples, Outcome outcome, const TrendScales& scales) {
+  Trend trend;
+  const auto error = [](const Sample& sample) { return sample.error; };
+  const auto high =
+      std::ranges::find_if(samples, [](const Sample& s) { return s.error > blown_up; });
+  const Excess excess(samples, scales);
+  if (high != samples.end() ||
+      (!samples.empty() && (outcome == Outcome::diverged || outcome == Outcome::not_finite))) {
+    trend.verdict = Verdict::blows_up;
+    trend.last_error = samples.back().error;
+    trend.blow_up_time = high != samples.end() ? high->t : samples.back().t;
+    excess.fit_blow_up(trend);
+    return trend;
+  }
+  const Blocks blocks = in_blocks(samples, 0, error);
+  if (blocks.means.size() == 0) return trend;
+  trend.last_error = blocks.means[blocks.means.size() - 1];
+  if (std::abs(trend.last_error) > exponential_part * scales.excess) {
+    excess.fit_slow(trend);
+    if (trend.last_error * trend.rate.value > 0 && trend.rate.excludes_zero()) {
+      trend.verdict = trend.last_error > 0 ? Verdict::grows : Verdict::dissipates;
+      if (scales.frequency > 0) trend.damping_ratio = -trend.rate.value / (2 * scales.frequency);
+      return trend;
+    }
+    trend.rate = {};
+  }
+  take_line(trend, samples, scales);
+  return trend;
+}
+
+Trend line_of(std::span<const Sample> samples, const TrendScales& scales) {
+  Trend trend;
+  const Blocks blocks = in_blocks(samples, 0, [](const Sample& sample) { return sample.error; });
+  if (blocks.means.size() == 0) return trend;
+  trend.last_error = blocks.means[blocks.means.size() - 1];
+  take_line(trend, samples, scales);
+  return trend;
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,104 @@
+#include "qddot/measure/trend/motion_scales.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/analysis/natural_modes.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/scene/settle.hpp"
+
+namespace qddot::measure {
+namespace {
+
+constexpr double resolution = 0.5;  // h w_max
+constexpr int most_steps = 20000, stride = 4;
+constexpr double fine_rtol = 1e-6;
+constexpr double longest_run = 20;  // [s], for scenes of a size that no study of 10^6 steps suits
+
+// Looks at a motion and takes what is large in it into the scales.
+class Look {
+ public:
+  Look(const ReducedScene& scene, const Momenta& momenta, MotionScales& scales)
+      : scene_(scene), momenta_(momenta), scales_(scales) {}
+
+  void at(const State& state) {
+    const Vec& mass = scene_.system().mass();
+    scene_.system().force(state.q, f_);
+    // What is integrated alone counts: a fall in closed form has no error.
+    const bool is_integrated = scene_.system().size() > 0;
+    const double kinetic = is_integrated ? scene_.system().kinetic(state.v) : scene_.kinetic(state);
+    const double potential = scene_.energy(state) - kinetic;
+    if (!std::isfinite(kinetic + potential)) return;
+    scales_.kinetic = std::max(scales_.kinetic, kinetic);
+    size_ = std::max(size_, kinetic + std::abs(potential));
+    for (Index i = 0; i < f_.size(); ++i) {
+      if (mass[i] > 0) accelerations_ += f_[i] * f_[i] / mass[i];
+    }
+    velocities_ += 2 * scene_.system().kinetic(state.v);
+    if (!momenta_.any_kept()) return;
+    const auto nodes = scene_.expand(state);
+    scales_.linear = std::max(scales_.linear, momenta_.linear_size(nodes));
+    scales_.angular = std::max(scales_.angular, momenta_.angular_size(nodes));
+  }
+
+  void finish() {
+    if (velocities_ > 0) scales_.frequency = std::sqrt(accelerations_ / velocities_);
+    const double energy = std::abs(scales_.energy);
+    if (scales_.kinetic == 0) scales_.kinetic = energy > 0 ? energy : 1;
+    if (scales_.linear == 0) scales_.linear = 1;
+    if (scales_.angular == 0) scales_.angular = 1;
+    scales_.rounding = std::numeric_limits<double>::epsilon() * size_ / scales_.kinetic;
+  }
+
+ private:
+  const ReducedScene& scene_;
+  const Momenta& momenta_;
+  MotionScales& scales_;
+  Vec f_{scene_.system().size()};
+  double size_ = 0, accelerations_ = 0, velocities_ = 0;
+};
+
+}  // namespace
+
+double fastest_frequency(const ReducedScene& scene) {
+  const System& system = scene.system();
+  const Vec& q = scene.initial().q;
+  const double w = largest_frequency(system, q);
+  if (std::isfinite(w)) return w;
+  const Vec squares = highest_modes(system, q, 1).squares;
+  return squares.size() > 0 ? std::sqrt(std::max(squares[0], 0.0)) : 0;
+}
+
+MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, double until) {
+  MotionScales scales{
+      .energy = scene.energy(scene.initial()), .kinetic = 0, .linear = 0, .angular = 0};
+  Look look(scene, momenta, scales);
+  look.at(scene.initial());
+
+  const double w = fastest_frequency(scene);
+  const double h = w > 0 ? std::min(resolution / w, until) : until / most_steps;
+  const int steps = static_cast<int>(std::min<double>(most_steps, until / h));
+  Observer observer{{}, [&](const State& state) { look.at(state); }};
+  for (int k = stride; k <= steps; k += stride) observer.times.push_back(k * h);
+  const bool is_massless = scene.system().has_massless();
+  const Method& method = *find_method(is_massless ? "ida" : "blanes_moan4");
+  State state = scene.initial();
+  const Deadline deadline(longest_run);
+  make_integrator(method, scene.system(), knobs_for(method, is_massless ? fine_rtol : h, scene))
+      ->advance(state, steps * h, observer, deadline.token());
+  look.finish();
+
+  const Equilibrium rest = equilibrium_of(scene);
+  if (rest.outcome == Equilibrium::Outcome::reached) {
+    const State still{0, rest.q, Vec::Zero(rest.q.size())};
+    const double excess = (scales.energy - scene.energy(still)) / scales.kinetic;
+    if (excess > 0) scales.excess = excess;
+  }
+  return scales;
+}
+
+}  // namespace qddot::measure

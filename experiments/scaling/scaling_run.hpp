@@ -1,0 +1,87 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/command/study.hpp"
+#include "experiments/scaling/force_rate.hpp"
+#include "experiments/scaling/phase_table.hpp"
+#include "qddot/algebra/solver.hpp"
+#include "qddot/integrators/method.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
+
+namespace qddot::scaling {
+
+using namespace command;
+
+// How far a measurement of scaling goes, and how it steps.
+struct ScalingLimits {
+  double seconds;    // that a step and its analysis may take
+  double bytes;      // that the process may allocate
+  double step_size;  // h of implicit methods [s]
+  Reductions reductions;
+};
+
+// A method and who solves its implicit steps.
+struct SolvedMethod {
+  const Method* method;
+  Solver solver;
+
+  // As tables name it: the method's name, and behind a colon the solver's if that is not the
+  // multifrontal one.
+  std::string name() const;
+};
+
+// One scene at one size: where its numbers come from, and how fast its f is.
+struct ScalingSize {
+  std::string scene, hash;
+  double nodes, springs;
+  Index unknowns = 0;
+  ForceRate force{};
+  double triad = 0;  // [bytes/s], over arrays of as many bytes as the force's
+};
+
+// What was not measured: the scene from that many nodes on, with that method or with any.
+struct LeftOut {
+  std::string scene, method;  // no method: any
+  double nodes;
+  std::string why;
+};
+
+// Costs of steps by scene, size, method and phase, gathered from small scenes to large ones. What
+// theory and the size before let expect beyond the limits is left out, with everything larger.
+class ScalingRun {
+ public:
+  explicit ScalingRun(const ScalingLimits& limits) : limits_(limits) {}
+
+  // The scene at about each of these numbers of nodes, ascending, with the methods. Each size is a
+  // piece of the study.
+  void measure(Study& study, const SizedScenes& scenes, const std::vector<double>& sizes,
+               std::vector<SolvedMethod> methods);
+
+  const std::vector<PhaseCost>& costs() const { return costs_; }
+  const std::vector<ScalingSize>& sizes() const { return sizes_; }
+  const std::vector<LeftOut>& left_out() const { return left_out_; }
+  // Whether some run did not reach its end; it is among what is left out.
+  bool has_failed() const { return has_failed_; }
+
+ private:
+  // The scene at one size, all methods that fit; erases those that do not. False where the scene
+  // itself does not.
+  bool measure_size(const SizedScenes& scenes, double size, std::vector<SolvedMethod>& methods);
+  void measure_methods(const SizedScenes& scenes, const ReducedScene& scene,
+                       std::vector<SolvedMethod>& methods);
+  void measure_method(const SolvedMethod& solved, const ReducedScene& scene, double step_size);
+  bool fits(const SizedScenes& scenes, const std::string& method,
+            const std::vector<std::string>& phases, double nodes, double memory);
+  void leave_out(const std::string& method, double nodes, std::string why);
+  void add(const std::string& method, const std::string& phase, double seconds, double bytes);
+
+  ScalingLimits limits_;
+  std::vector<PhaseCost> costs_;
+  std::vector<ScalingSize> sizes_;  // the last is at hand
+  std::vector<LeftOut> left_out_;
+  bool has_failed_ = false;
+};
+
+}  // namespace qddot::scaling

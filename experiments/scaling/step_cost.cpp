@@ -1,0 +1,70 @@
+#include "experiments/scaling/step_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "qddot/measure/motion/timing.hpp"
+
+namespace qddot::scaling {
+
+using namespace measure;
+namespace {
+
+// A timed run is at least so long [s], if that takes no more than so many steps: short runs are the
+// ones that nothing else disturbs.
+constexpr double shortest_run = 5e-3;
+constexpr double most_steps = 10000, least_steps = 3;
+// The least of runs that take so long together [s], or of so many.
+constexpr double timed_together = 0.3;
+constexpr int fewest_runs = 2;
+// A first step at least so long [s] is as good as any other, and the only one.
+constexpr double own_warm_up = 5;
+
+struct Run {
+  Summary summary;
+  double seconds;
+};
+
+Run run(Integrator& integrator, double step_size, double steps, const ReducedScene& scene) {
+  State state = scene.initial();
+  Run result;
+  result.seconds =
+      seconds_of([&] { result.summary = integrator.advance(state, steps * step_size); });
+  return result;
+}
+
+// Of a run, without the forces beyond `forces` a step.
+StepCost cost_of(const Run& run, double forces) {
+  const double steps = static_cast<double>(run.summary.counts.steps);
+  const double all = static_cast<double>(run.summary.counts.force_evaluations);
+  const auto& [force, stiffness, factorization, solve] = run.summary.seconds;
+  const double before = all > 0 ? force * (1 - forces * steps / all) : 0;
+  return {run.summary.outcome,
+          run.summary.message,
+          (run.seconds - before) / steps,
+          {(force - before) / steps, stiffness / steps, factorization / steps, solve / steps}};
+}
+
+}  // namespace
+
+StepCost step_cost(Integrator& integrator, double step_size, const ReducedScene& scene) {
+  const Run first = run(integrator, step_size, 1, scene);
+  const auto forces = [](const Run& r) {
+    return static_cast<double>(r.summary.counts.force_evaluations);
+  };
+  if (first.summary.outcome != Outcome::reached_end || first.seconds >= own_warm_up) {
+    return cost_of(first, forces(first));
+  }
+  const double steps = std::clamp(std::ceil(shortest_run / first.seconds), least_steps, most_steps);
+  Run least;
+  double spent = 0;
+  for (int i = 0; i < fewest_runs || spent < timed_together; ++i) {
+    Run next = run(integrator, step_size, steps, scene);
+    if (next.summary.outcome != Outcome::reached_end) return cost_of(next, 0);
+    spent += next.seconds;
+    if (i == 0 || next.seconds < least.seconds) least = std::move(next);
+  }
+  return cost_of(least, (forces(least) - forces(first)) / (steps - 1));
+}
+
+}  // namespace qddot::scaling

@@ -1,0 +1,73 @@
+#include "experiments/simulate/background_observer.hpp"
+
+#include <utility>
+
+namespace qddot::simulate {
+namespace {
+
+// Numbers in the states that are handed over at once: enough to make waking the thread nothing
+// beside copying them, few enough to stay in the cache.
+constexpr Index batch_size = 1 << 15;
+
+}  // namespace
+
+Aside::Aside(std::function<void(const State&)> look)
+    : look_(std::move(look)), thread_([this] { run(); }) {}
+
+Aside::~Aside() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Aside::see(const State& state) {
+  if (gathered_.count == gathered_.states.size()) gathered_.states.emplace_back();
+  gathered_.states[gathered_.count++] = state;
+  size_ += 2 * state.q.size() + 1;
+  if (size_ >= batch_size) hand_over();
+}
+
+void Aside::finish() {
+  hand_over();
+  std::unique_lock lock(mutex_);
+  wait(lock);
+}
+
+void Aside::hand_over() {
+  {
+    std::unique_lock lock(mutex_);
+    wait(lock);
+    std::swap(gathered_, at_hand_);
+  }
+  changed_.notify_all();
+  size_ = 0;
+}
+
+void Aside::wait(std::unique_lock<std::mutex>& lock) {
+  changed_.wait(lock, [this] { return at_hand_.count == 0; });
+  if (error_) std::rethrow_exception(error_);
+}
+
+void Aside::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return is_over_ || at_hand_.count > 0; });
+    if (is_over_) return;
+    lock.unlock();
+    std::exception_ptr error;
+    try {
+      for (std::size_t i = 0; i < at_hand_.count; ++i) look_(at_hand_.states[i]);
+    } catch (...) {
+      error = std::current_exception();
+    }
+    lock.lock();
+    error_ = error;
+    at_hand_.count = 0;
+    changed_.notify_all();
+  }
+}
+
+}  // namespace qddot::simulate

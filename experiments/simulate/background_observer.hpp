@@ -1,0 +1,53 @@
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "qddot/model/system.hpp"
+
+namespace qddot::simulate {
+
+// Shows the states of a run to `look` on a thread of its own, in order, while the run goes on: what
+// is made of them, such as the text of a table, then costs the run a copy of each. Where looking
+// takes longer than running, the run waits.
+class Aside {
+ public:
+  explicit Aside(std::function<void(const State&)> look);
+  // States that nobody has looked at by then are forgotten.
+  ~Aside();
+  Aside(const Aside&) = delete;
+  Aside& operator=(const Aside&) = delete;
+
+  // Takes a copy. Throws what looking at an earlier state threw, after which no more are looked at.
+  void see(const State& state);
+  // Returns when all states have been looked at, or throws likewise.
+  void finish();
+
+ private:
+  // States in the order in which they came, with the memory of earlier ones behind them.
+  struct Batch {
+    std::vector<State> states;
+    std::size_t count = 0;
+  };
+
+  void run();
+  // Gives what has gathered to the thread, once that has nothing left.
+  void hand_over();
+  void wait(std::unique_lock<std::mutex>& lock);
+
+  std::function<void(const State&)> look_;
+  Batch gathered_;  // by the run
+  Index size_ = 0;  // in numbers
+  Batch at_hand_;   // the thread's, while its count is not zero
+  std::exception_ptr error_;
+  bool is_over_ = false;
+  std::mutex mutex_;  // of at_hand_, error_ and is_over_
+  std::condition_variable changed_;
+  std::thread thread_;
+};
+
+}  // namespace qddot::simulate

@@ -1,0 +1,137 @@
+#include "experiments/stability_map/amplitude_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "qddot/analysis/natural_modes.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/settle.hpp"
+
+namespace qddot::stability_map {
+namespace {
+
+constexpr int modes_predicted = 48;
+
+// Throws InvalidInput unless there is a generator of that name with that parameter.
+void require_parameter(const std::string& name, const std::string& vary) {
+  const Generator* generator = find_generator(name);
+  if (!generator) {
+    throw InvalidInput(fmt::format(
+        "--vary {}: scene {} is not a generator's, whose parameters can be varied", vary, name));
+  }
+  std::vector<std::string> names;
+  for (const GeneratorParameter& parameter : generator->parameters) names.push_back(parameter.name);
+  if (std::ranges::find(names, vary) != names.end()) return;
+  throw InvalidInput(fmt::format("--vary {}: it is not a parameter of generator {}; allowed are {}",
+                                 vary, name, fmt::join(names, ", ")));
+}
+
+// The scene as a generator draws it with its parameter `vary` set.
+Scene drawn_with(const std::string& name, const std::string& vary, double value) {
+  return generate(*find_generator(name), {{vary, value}}, name);
+}
+
+// The scene with each node moved from its place at rest to `amplitude` times its distance from it,
+// velocities likewise.
+Scene scaled(const Scene& start, const Scene& rest, double amplitude) {
+  Scene scene = start;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    Node& node = scene.nodes[i];
+    const Eigen::Vector3d& origin = rest.nodes[i].position;
+    node.position = origin + amplitude * (node.position - origin);
+    node.velocity *= amplitude;
+  }
+  return scene;
+}
+
+double energy_at_rest(const Scene& rest) {
+  const ReducedScene scene(rest, Reductions::only({Reduction::pins}));
+  return scene.potential(scene.initial());
+}
+
+AmplitudeRow row_of(double amplitude, const Scene& start, double rest_energy,
+                    const Reductions& reductions) {
+  AmplitudeRow row{.amplitude = amplitude,
+                   .scene = std::make_unique<ReducedScene>(start, reductions),
+                   .rest_energy = rest_energy,
+                   .omega_max = 0,
+                   .buckling_rate = 0,
+                   .modes = {}};
+  const System& system = row.scene->system();
+  const Vec& q = row.scene->initial().q;
+  row.modes = sampled_modes(system, q, modes_predicted);
+  row.omega_max = row.modes.empty() ? 0 : row.modes.back().omega;
+  row.buckling_rate = buckling_rate(system, q);
+  return row;
+}
+
+bool moves(const AmplitudeRow& row) {
+  return row.omega_max > 0 && row.scene->energy(row.scene->initial()) > row.rest_energy;
+}
+
+// The rows of all values whose scenes can be and move.
+std::vector<AmplitudeRow> rows_where_possible(const std::vector<double>& values, const auto& make,
+                                              std::vector<std::string>* left_out) {
+  std::vector<AmplitudeRow> rows;
+  for (const double value : values) {
+    std::string why;
+    try {
+      AmplitudeRow row = make(value);
+      if (moves(row)) {
+        rows.push_back(std::move(row));
+        continue;
+      }
+      why = fmt::format("amplitude {:g}: nothing moves", value);
+    } catch (const InvalidInput& error) {
+      why = error.what();
+    } catch (const std::runtime_error& error) {  // numbers that overflow
+      why = fmt::format("amplitude {:g}: {}", value, error.what());
+    }
+    if (left_out) left_out->push_back(why);
+  }
+  return rows;
+}
+
+}  // namespace
+
+double omega_max_of(const ReducedScene& scene) {
+  const NaturalModes highest = highest_modes(scene.system(), scene.initial().q, 1);
+  return highest.squares.size() == 0 ? 0 : std::sqrt(std::max(0.0, highest.squares[0]));
+}
+
+std::vector<AmplitudeRow> scaled_rows(const Scene& start, const Scene& rest,
+                                      const std::vector<double>& amplitudes,
+                                      const Reductions& reductions,
+                                      std::vector<std::string>* left_out) {
+  return rows_where_possible(
+      amplitudes,
+      [&](double amplitude) {
+        return row_of(amplitude, scaled(start, rest, amplitude), energy_at_rest(rest), reductions);
+      },
+      left_out);
+}
+
+std::vector<AmplitudeRow> varied_rows(const std::string& generator, const std::string& vary,
+                                      const std::vector<double>& values,
+                                      const Reductions& reductions,
+                                      std::vector<std::string>* left_out) {
+  require_parameter(generator, vary);
+  std::vector<std::string> reasons;
+  auto rows = rows_where_possible(
+      values,
+      [&](double value) {
+        const Scene scene = drawn_with(generator, vary, value);
+        return row_of(value, scene, energy_at_rest(settled(scene, generator)), reductions);
+      },
+      &reasons);
+  if (rows.empty() && !reasons.empty()) throw InvalidInput(reasons.front());
+  if (left_out) *left_out = std::move(reasons);
+  return rows;
+}
+
+}  // namespace qddot::stability_map

@@ -1,0 +1,172 @@
+#include "experiments/stability_map/fate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "qddot/integrators/base/step_times.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/error.hpp"
+#include "qddot/measure/motion/tolerance_scales.hpp"
+#include "qddot/measure/motion/vibrating_modes.hpp"
+
+namespace qddot::stability_map {
+
+using namespace measure;
+namespace {
+
+constexpr int watched_steps = 200, samples_more = 400;
+constexpr std::ptrdiff_t few = 8;
+constexpr double nearly_singular = 0.9;
+constexpr double suspicious = 10, growing = 3, enough = 1e6;
+constexpr int more_iterations = 5;
+constexpr double other_motion = 0.1;
+
+struct Sample {
+  double t, ratio;  // X over X(0)
+};
+
+// Every step at first, which a fast growth needs, then evenly; multiples of h, so that no step is
+// another one.
+std::vector<double> looks(const Knobs& knobs, double until) {
+  std::vector<double> times;
+  const double h = knobs.step_size > 0 ? knobs.step_size : until / (watched_steps + samples_more);
+  const double steps = std::clamp(std::round(until / h), 1.0, most_steps);
+  const double stride = std::max(1.0, std::floor(steps / samples_more));
+  for (double n = 1; n <= steps; n += n < watched_steps ? 1 : stride) times.push_back(n * h);
+  return times;
+}
+
+struct Run {
+  Summary summary;
+  std::vector<Sample> samples;
+  State end;
+  bool was_stopped = false;  // since X grew out of sight
+  // Where X jumped beyond what is suspicious: h times the rate [1/s] at which the state before was
+  // pushed to the side. Looked for in linearly implicit methods.
+  std::optional<double> pushed{};
+};
+
+Run run(const Method& method, const Knobs& knobs, const ReducedScene& scene, double until,
+        const FateOptions& options) {
+  Run result{.summary = {}, .samples = {}, .end = scene.initial()};
+  const double start = scene.energy(result.end) - options.rest_energy;
+  const Deadline deadline(options.seconds);
+  std::stop_source stop;
+  const std::stop_callback pass_on(deadline.token(), [&] { stop.request_stop(); });
+  Vec before = result.end.q;
+  const auto see = [&](const State& state) {
+    const double ratio = (scene.energy(state) - options.rest_energy) / start;
+    if (method.linearly_implicit && !result.pushed && !(ratio < suspicious)) {
+      result.pushed = knobs.step_size * buckling_rate(scene.system(), before);
+    }
+    if (method.linearly_implicit) before = state.q;
+    if (std::isfinite(ratio)) result.samples.push_back({state.t, ratio});
+    if (!(ratio < enough)) {
+      result.was_stopped = true;
+      stop.request_stop();
+    }
+  };
+  result.samples.push_back({0, 1});
+  const std::vector<double> times = looks(knobs, until);
+  result.summary = make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene))
+                       ->advance(result.end, times.back(), {times, see}, stop.get_token());
+  return result;
+}
+
+using Samples = std::vector<Sample>;
+
+double mean(Samples::const_iterator first, Samples::const_iterator last) {
+  return std::accumulate(first, last, 0.0,
+                         [](double sum, const Sample& s) { return sum + s.ratio; }) /
+         static_cast<double>(last - first);
+}
+
+double largest(Samples::const_iterator first, Samples::const_iterator last) {
+  return std::ranges::max_element(first, last, {}, &Sample::ratio)->ratio;
+}
+
+// Those of the time from `part` of the run on; the last one at least.
+Samples::const_iterator from(const Samples& samples, double part) {
+  const double t = part * samples.back().t;
+  return std::ranges::lower_bound(samples, t, {}, &Sample::t);
+}
+
+// The slope of the straight line nearest to (t, 1/2 ln X).
+double slope(Samples::const_iterator first, Samples::const_iterator last) {
+  double n = 0, t_mean = 0, x_mean = 0, covariance = 0, variance = 0;
+  for (auto s = first; s != last; ++s) {
+    if (s->ratio <= 0) continue;
+    const double x = std::log(s->ratio) / 2, dt = s->t - t_mean;
+    n += 1;
+    t_mean += dt / n;
+    variance += dt * (s->t - t_mean);
+    x_mean += (x - x_mean) / n;
+    covariance += dt * (x - x_mean);
+  }
+  return variance > 0 ? covariance / variance : 0;
+}
+
+double growth_rate(const Samples& samples) {
+  auto first = samples.end();
+  while (first != samples.begin() && std::prev(first)->ratio > growing) --first;
+  const auto grown = samples.end() - first;
+  if (grown < 2) return slope(from(samples, 0.5), samples.end());
+  return slope(grown < few ? std::prev(first) : first + grown / 2, samples.end());
+}
+
+std::string judged(const Run& r, const Fate& fate, double tolerated) {
+  if (r.pushed > nearly_singular) return std::string(name(Outcome::indefinite_matrix));
+  if (r.was_stopped) return "diverged";
+  const Outcome outcome = r.summary.outcome;
+  if (outcome != Outcome::reached_end) return std::string(name(outcome));
+  const auto half = from(r.samples, 0.5);
+  const double before = largest(r.samples.begin(), std::next(half)),
+               after = largest(half, r.samples.end());
+  if (after > suspicious && after > growing * before) return "diverged";
+  const double early = mean(r.samples.begin(), std::next(from(r.samples, 0.25)));
+  if (fate.energy_end > (1 + tolerated) * std::max(1.0, early)) return "gained";
+  if (fate.energy_end < 1 - tolerated) return "leaked";
+  return "bounded";
+}
+
+// The largest distance of a node's places in two states, over how far the motion took one.
+double difference(const ReducedScene& scene, const State& a, const State& b) {
+  Scales scales;
+  extend(scales, scene, a);
+  extend(scales, scene, b);
+  return errors_between(scene, a, b, 0, scales).position;
+}
+
+}  // namespace
+
+Fate fate_of(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+             const FateOptions& options) {
+  const double until = std::max(options.until, least_steps * knobs.step_size);
+  const Run r = run(method, knobs, scene, until, options);
+  Fate fate{.outcome = "",
+            .growth_rate = growth_rate(r.samples),
+            .t_reached = r.summary.t_reached,
+            .energy_end = mean(from(r.samples, 0.75), r.samples.end()),
+            .energy_max = largest(r.samples.begin(), r.samples.end()),
+            .mean_step = r.summary.t_reached /
+                         static_cast<double>(std::max<std::int64_t>(1, r.summary.counts.steps)),
+            .counts = r.summary.counts};
+  fate.outcome = judged(r, fate, options.tolerated);
+  if (method.takes_iterations && r.summary.outcome == Outcome::reached_end) {
+    Knobs to_the_end = knobs;
+    to_the_end.iterations = more_iterations * std::max(10, knobs.iterations);
+    const Run solved = run(method, to_the_end, scene, until, options);
+    if (solved.summary.outcome == Outcome::reached_end &&
+        difference(scene, r.end, solved.end) > other_motion) {
+      fate.outcome = "unconverged";
+    }
+  }
+  return fate;
+}
+
+}  // namespace qddot::stability_map

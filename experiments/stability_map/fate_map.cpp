@@ -1,0 +1,98 @@
+#include "experiments/stability_map/fate_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/summary_record.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
+
+namespace qddot::stability_map {
+
+using namespace measure;
+using namespace command;
+
+// What nlohmann::json looks for by this name.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fate, outcome, growth_rate, t_reached, energy_end, energy_max,
+                                   mean_step, counts)
+
+namespace {
+
+Knobs knobs_of(const Cell& cell) {
+  Knobs knobs;
+  knobs.rtol = cell.rtol;
+  if (cell.method->knob == Knob::step_size) knobs.step_size = cell.h_omega / cell.row->omega_max;
+  return knobs;
+}
+
+// What tells two cells apart, whatever others there are.
+std::string name_of(const Cell& cell) {
+  return fmt::format("run {} {:.17g} {:.17g} {:.17g}", cell.method->name, cell.row->amplitude,
+                     cell.h_omega, cell.rtol);
+}
+
+Fate fate_in(const Cell& cell, const MapSettings& settings) {
+  try {
+    return fate_of(*cell.method, knobs_of(cell), *cell.row->scene,
+                   {.rest_energy = cell.row->rest_energy,
+                    .tolerated = settings.tolerated,
+                    .until = settings.until,
+                    .seconds = settings.seconds});
+  } catch (const std::exception&) {  // which cannot leave a thread
+    return {.outcome = std::string(name(Outcome::solver_failed))};
+  }
+}
+
+}  // namespace
+
+double predicted_growth_rate(const Cell& cell) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!has_linear_step(*cell.method)) return none;
+  const double h = cell.h_omega / cell.row->omega_max;
+  double largest = -std::numeric_limits<double>::infinity();
+  try {
+    for (const Mode& mode : cell.row->modes) {
+      const LinearStep step = linear_step(*cell.method, h * mode.omega);
+      largest = std::max(largest, std::log(step.spectral_radius()) / h);
+    }
+  } catch (const std::exception&) {  // a step so long that its numbers overflow
+    return none;
+  }
+  return largest;
+}
+
+std::vector<std::optional<Fate>> fates(Study& study, const std::vector<Cell>& cells,
+                                       const MapSettings& settings,
+                                       const std::function<void(std::size_t done)>& progress) {
+  std::vector<std::optional<Fate>> all(cells.size());
+  std::vector<std::size_t> order(cells.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cells[i].h_omega; });
+  std::size_t done = 0;
+  std::exception_ptr trouble;
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Cell& cell = cells[order[i]];
+    try {
+      all[order[i]] =
+          study.piece(name_of(cell), [&] { return nlohmann::json(fate_in(cell, settings)); });
+#pragma omp critical
+      progress(++done);
+    } catch (const Interrupted&) {
+      // The cell is missing.
+    } catch (...) {  // which cannot leave a thread
+#pragma omp critical
+      trouble = std::current_exception();
+    }
+  }
+  if (trouble) std::rethrow_exception(trouble);
+  return all;
+}
+
+}  // namespace qddot::stability_map

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "experiments/command/study.hpp"
+#include "experiments/stability_map/amplitude_rows.hpp"
+#include "experiments/stability_map/fate.hpp"
+
+namespace qddot::stability_map {
+
+using namespace command;
+
+// One run of the map.
+struct Cell {
+  const Method* method;
+  const AmplitudeRow* row;
+  double h_omega;  // h w_max asked for; nothing where the method chooses its steps:
+  double rtol;     // then this is its tolerance
+};
+
+// How runs are made and judged.
+struct MapSettings {
+  double until, tolerated, seconds;
+};
+
+// The largest rate [1/s] at which linear theory lets one of the modes grow, or, where all decay,
+// the smallest decay as a negative one; no number for a method that chooses its steps, or that has
+// no step on an oscillator, or whose step is too long for numbers.
+double predicted_growth_rate(const Cell& cell);
+
+// Runs all cells on all cores (OpenMP), the long ones first; each is a piece of the study. Nothing
+// stands for those that were not run before the program is to end. `progress` is called with how
+// many are done, from one thread at a time.
+std::vector<std::optional<Fate>> fates(Study& study, const std::vector<Cell>& cells,
+                                       const MapSettings& settings,
+                                       const std::function<void(std::size_t done)>& progress);
+
+}  // namespace qddot::stability_map

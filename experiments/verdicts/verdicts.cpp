@@ -1,0 +1,227 @@
+// How often are the verdicts of energy_drift right? Errors of known kinds are drawn at random, seen
+// as energy_drift sees a run, and judged.
+//
+//   verdicts --out results/verdicts
+//   verdicts --seeds 4000 --kinds "random walk" --out results/walk
+//
+//  1. confusion.csv: for each kind the verdicts given, how many, and whether that is right, wrong,
+//     or uncertain (`undecided` and `unknown`, which claim nothing).
+//  2. coverage.csv: for each interval or bound that is printed, how often it holds what is true,
+//     with the 95 % interval of that (Wilson); and the size of a walk over the true one.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/csv.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/study.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/trend/sample_steps.hpp"
+#include "qddot/measure/trend/synthetic_errors.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::verdicts {
+
+using namespace measure;
+using namespace command;
+namespace {
+
+constexpr int most_seeds = 1000000;
+
+struct Arguments {
+  std::string out;
+  int seeds = 100, cells = many_cells;
+  std::vector<std::string> kinds;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("--seeds", a.seeds, "runs of each kind")->capture_default_str();
+  app.add_option("--cells", a.cells, "samples in an octave of a run")->capture_default_str();
+  app.add_option("--kinds", a.kinds, "kinds of errors, each in quotes (default: all)");
+  app.add_option("--out", a.out, "the folder for confusion.csv and coverage.csv");
+}
+
+std::vector<SyntheticKind> chosen_kinds(const std::vector<std::string>& names) {
+  const std::vector<SyntheticKind> all = synthetic_kinds();
+  if (names.empty()) return all;
+  std::vector<SyntheticKind> chosen;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(all, name, &SyntheticKind::name);
+    if (found == all.end()) {
+      std::string known;
+      for (const SyntheticKind& kind : all) known += (known.empty() ? "" : "; ") + kind.name;
+      throw InvalidInput(
+          fmt::format("--kinds: there is no kind \"{}\"; there are: {}", name, known));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+bool claims_nothing(Verdict verdict) {
+  return verdict == Verdict::undecided || verdict == Verdict::unknown;
+}
+
+const char* judgement(const SyntheticKind& kind, Verdict verdict) {
+  if (std::ranges::count(kind.right, verdict) > 0) return "right";
+  return claims_nothing(verdict) ? "uncertain" : "wrong";
+}
+
+// How often something that is said with 95 % holds.
+struct Coverage {
+  int said = 0, held = 0;
+
+  void add(bool holds) {
+    ++said;
+    held += holds;
+  }
+  double part() const { return static_cast<double>(held) / said; }
+  // Wilson, J. American Statistical Association 22 (1927) 209-212.
+  Interval interval() const {
+    const double n = said, p = part(), z = 1.959964;
+    const double middle = (p + z * z / (2 * n)) / (1 + z * z / n);
+    const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
+    return {p, middle - half, middle + half};
+  }
+};
+
+// Of one kind.
+struct Tally {
+  std::map<Verdict, int> verdicts;
+  std::map<std::string, Coverage> coverage;
+  double walk = 0;  // mean size over the true one
+
+  void add(const SyntheticKind& kind, const Trend& trend) {
+    constexpr double duration = synthetic_duration;
+    ++verdicts[trend.verdict];
+    if (kind.drift) {
+      coverage["drift_rate"].add(trend.drift.holds(*kind.drift / duration));
+      coverage["late_drift"].add(trend.late_drift.holds(*kind.drift / duration));
+    }
+    if (kind.rate && trend.rate.value != 0) {
+      coverage["exponential_rate"].add(trend.rate.holds(*kind.rate / duration));
+    }
+    if (kind.widening) coverage["widening"].add(trend.widening.holds(*kind.widening / duration));
+    if (kind.memory && trend.colour == Colour::undecided) {
+      coverage["memory_low"].add(trend.memory <= *kind.memory * duration);
+    }
+    if (kind.period && *kind.period >= 1 && trend.slow_period > 0) {
+      coverage["slow_period_low"].add(trend.slow_period <= *kind.period * duration);
+    }
+    if (kind.walk) walk += trend.walk * std::sqrt(duration) / *kind.walk;
+  }
+};
+
+Tally tally(const SyntheticKind& kind, const Arguments& a) {
+  std::vector<Trend> trends(static_cast<std::size_t>(a.seeds));
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t seed = 0; seed < trends.size(); ++seed) {
+    if (!interrupted()) trends[seed] = synthetic_trend(kind, seed, a.cells);
+  }
+  Tally result;
+  stop_if_interrupted();
+  for (const Trend& trend : trends) result.add(kind, trend);
+  result.walk /= a.seeds;
+  return result;
+}
+
+void print(const SyntheticKind& kind, const Tally& tally, int seeds) {
+  std::map<std::string, int> judged;
+  std::string words;
+  for (const auto& [verdict, count] : tally.verdicts) {
+    judged[judgement(kind, verdict)] += count;
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", verdict_name(verdict), count);
+  }
+  const double percent = 100.0 / seeds;
+  fmt::print("{:<34} {:>6.1f} {:>9.1f} {:>6.1f}   {}\n", kind.name, judged["right"] * percent,
+             judged["uncertain"] * percent, judged["wrong"] * percent, words);
+}
+
+void tabulate(Csv& confusion, Csv& coverage, const SyntheticKind& kind, const Tally& own,
+              int seeds) {
+  for (const auto& [verdict, count] : own.verdicts) {
+    confusion.row(kind.name, verdict_name(verdict), count, static_cast<double>(count) / seeds,
+                  judgement(kind, verdict));
+  }
+  for (const auto& [what, c] : own.coverage) {
+    const Interval part = c.interval();
+    coverage.row(kind.name, what, c.said, c.held, part.value, part.low, part.high);
+  }
+}
+
+void print_coverage(const std::vector<SyntheticKind>& kinds, const std::vector<Tally>& tallies) {
+  fmt::print("\n{:<34} {:<18} {:>6} {:>8}   {}\n", "what is said with 95 %", "", "said", "holds",
+             "95 % interval of that");
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
+    for (const auto& [what, c] : tallies[i].coverage) {
+      const Interval part = c.interval();
+      fmt::print("{:<34} {:<18} {:>6} {:>6.1f} %   {:.1f} to {:.1f}\n", kinds[i].name, what, c.said,
+                 100 * part.value, 100 * part.low, 100 * part.high);
+    }
+    if (kinds[i].walk) {
+      fmt::print("{:<34} size over the true one: {:.3f}\n", kinds[i].name, tallies[i].walk);
+    }
+  }
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Coverage, said, held)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tally, verdicts, coverage, walk)
+
+int verdicts(const CLI::App& app, const Arguments& a,
+             const std::vector<std::string>& command_line) {
+  const auto begin = std::chrono::steady_clock::now();
+  require_given(a.out, "--out", "the folder for the results");
+  require_within(a.seeds, 1, most_seeds, "--seeds");
+  require_within(a.cells, 8, 1 << 20, "--cells");
+  const std::vector<SyntheticKind> kinds = chosen_kinds(a.kinds);
+  require_folder(a.out);
+  Study study(app, a.out, {"confusion.csv", "coverage.csv"}, {});
+  if (const auto status = study.completed()) return *status;
+  CsvFile confusion(a.out + "/confusion.csv", {"kind", "verdict", "count", "part", "judgement"});
+  CsvFile coverage(a.out + "/coverage.csv",
+                   {"kind", "what", "said", "held", "part", "part_low", "part_high"});
+
+  fmt::print("{} runs of each kind; percent of them judged\n{:<34} {:>6} {:>9} {:>6}   {}\n",
+             a.seeds, "kind", "right", "uncertain", "wrong", "verdicts");
+  std::vector<Tally> tallies;
+  study.measure([&] {
+    for (const SyntheticKind& kind : kinds) {
+      show_progress(kind.name);
+      const Tally own = study.piece(kind.name, [&] { return nlohmann::json(tally(kind, a)); });
+      show_progress("");
+      print(kind, own, a.seeds);
+      tabulate(confusion, coverage, kind, own, a.seeds);
+      tallies.push_back(own);
+    }
+  });
+  print_coverage(kinds, tallies);
+
+  nlohmann::json origin = provenance(command_line);
+  origin["seeds"] = a.seeds;
+  origin["cells"] = a.cells;
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
+    if (kinds[i].walk) origin["walk_size"][kinds[i].name] = tallies[i].walk;
+  }
+  origin["seconds"] = seconds_since(begin);
+  return study.finish({&confusion, &coverage}, origin, done);
+}
+
+}  // namespace
+}  // namespace qddot::verdicts
+
+int main(int argc, char** argv) {
+  CLI::App app("Finds out how often the verdicts of energy_drift are right.", "verdicts");
+  qddot::verdicts::Arguments arguments;
+  qddot::verdicts::declare(app, arguments);
+  qddot::command::add_resume_option(app);
+  return qddot::command::run_program(app, argc, argv, [&] {
+    return qddot::verdicts::verdicts(app, arguments, {argv, argv + argc});
+  });
+}

@@ -1,0 +1,161 @@
+// Speed against accuracy: every method, down the ladder of its knob, on one scene.
+//
+//   work_precision --scene cloth --until 0.1 --out results/cloth
+//   work_precision --scene my.toml --methods verlet,ida --repeats 9 --out results/my
+//
+//  1. A reference is made by two unlike methods of high order, or exactly where the motion is
+//     linear. What bounds its error, by how far they and their last refinements differ, is the
+//     certified floor (reference.json, kept for the next time). A third run that starts one
+//     rounding away shows from which time on the motion is chaotic; where the motion has a plane, a
+//     line or mirrors to itself, a fourth one shows what a push out of these does.
+//  2. Each method runs from coarse to fine: once untimed unless that takes long, then timed several
+//     times, one thread; and once more, watched on its way: its largest energy error, its momenta.
+//  3. points.csv holds every point, the failed ones with the reason; front.csv, for each accuracy
+//     from 1e-1 to 1e-9, the fastest method known to have reached it: of the positions at the end
+//     or, where that is beyond the chaotic motion's horizon and nobody knows them, of the energy on
+//     the way.
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/csv.hpp"
+#include "experiments/command/method_options.hpp"
+#include "experiments/command/point_record.hpp"
+#include "experiments/command/point_table.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/reference_file.hpp"
+#include "experiments/command/scene_choice.hpp"
+#include "experiments/command/study.hpp"
+#include "experiments/work_precision/front_table.hpp"
+#include "qddot/measure/speed/front.hpp"
+#include "qddot/measure/speed/judgement.hpp"
+#include "qddot/measure/speed/ladder.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::work_precision {
+
+using namespace measure;
+using namespace command;
+namespace {
+
+struct Arguments {
+  SceneChoice scene;
+  std::string out;
+  double until = 0;
+  std::vector<std::string> methods;
+  Effort effort;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  add_scene_options(app, a.scene);
+  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  app.add_option("--methods", a.methods, "a,b,... (default: all)")->delimiter(',');
+  app.add_option("--repeats", a.effort.repeats, "timed runs of each point")
+      ->take_last()
+      ->capture_default_str();
+  app.add_option("--point-limit", a.effort.seconds,
+                 "seconds that one run of a point may take; slower ones become over_budget")
+      ->take_last()
+      ->capture_default_str();
+  add_method_options(app, a.effort.options);
+  app.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
+}
+
+const std::vector<std::string> front_columns = {"scene",  "accuracy",  "method",
+                                                "knob",   "value",     "error_position",
+                                                "time_s", "judged_by", "stability_margin"};
+
+void tabulate(Csv& csv, const std::string& scene, const std::vector<FrontRow>& front,
+              const char* judge) {
+  for (const FrontRow& row : front) {
+    if (const Point* p = row.fastest) {
+      csv.row(scene, row.accuracy, p->method->name, knob_name(p->method->knob), p->value,
+              p->errors.position, p->time, judge, row.stability_margin);
+    } else {
+      csv.row(scene, row.accuracy, "", "", "", "", "", judge, "");
+    }
+  }
+}
+
+// The points of each method from coarse to fine, whatever the order in which they were taken.
+std::vector<Point> from_coarse_to_fine(const std::vector<std::vector<Point>>& taken) {
+  std::vector<Point> points;
+  for (std::vector<Point> own : taken) {
+    std::ranges::sort(own, std::ranges::greater(), &Point::value);
+    points.insert(points.end(), own.begin(), own.end());
+  }
+  return points;
+}
+
+int work_precision(const CLI::App& app, const Arguments& a,
+                   const std::vector<std::string>& command_line) {
+  require_given(a.out, "--out", "the folder for the results");
+  require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
+  require_repeats(a.effort.repeats);
+  require_options(app, a.effort.options);
+  const Scene drawn = load(a.scene);
+  const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  const Scene start = started(drawn, a.scene);
+  const ReducedScene scene(start, reductions_of(a.scene));
+  require_reference_exists(scene, a.scene.name);
+  const auto selected = select_methods(a.methods, scene, a.scene.name);
+  require_folder(a.out);
+  Study study(app, a.out, {"points.csv", "front.csv"},
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
+  if (const auto status = study.completed()) return *status;
+  CsvFile points_csv(a.out + "/points.csv", point_columns());
+  CsvFile front_csv(a.out + "/front.csv", front_columns);
+
+  nlohmann::json origin = provenance(command_line, drawn, start, scene);
+  origin["until"] = until;
+  std::optional<Reference> reference;
+  std::vector<std::vector<Point>> taken;  // by method
+  study.measure([&] {
+    show_progress("making the reference ...");
+    reference = reference_for(drawn, start, scene, until, a.out, origin);
+    const Watch watch(start, scene, until, *reference);
+    Effort effort = a.effort;
+    effort.watch = &watch;
+    effort.recall = points_of(study);
+    for (const Method* method : selected) {
+      taken.emplace_back();
+      climb(*method, scene, until, *reference, effort, [&](const Point& point) {
+        show_progress(describe(point));
+        taken.back().push_back(point);
+      });
+    }
+  });
+  show_progress("");
+
+  if (reference) {
+    const std::vector<Point> points = from_coarse_to_fine(taken);
+    auto front = fastest_at_each_accuracy(points, *reference);
+    add_stability_margins(front, scene);
+    for (const Point& point : points)
+      point_row(points_csv, drawn.name, point, reference->certified.position);
+    tabulate(front_csv, drawn.name, front, judged_by(*reference));
+    print_front(drawn.name, until, front, *reference);
+  }
+  return study.finish({&points_csv, &front_csv}, origin, done);
+}
+
+}  // namespace
+}  // namespace qddot::work_precision
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures speed against accuracy of every integrator on one scene.",
+               "work_precision");
+  qddot::work_precision::Arguments arguments;
+  qddot::work_precision::declare(app, arguments);
+  qddot::command::add_threads_option(app);
+  qddot::command::add_resume_option(app);
+  return qddot::command::run_program(app, argc, argv, [&] {
+    return qddot::work_precision::work_precision(app, arguments, {argv, argv + argc});
+  });
+}

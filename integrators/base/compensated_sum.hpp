@@ -1,0 +1,37 @@
+#pragma once
+
+#include "qddot/model/system.hpp"
+
+namespace qddot {
+
+// A running sum x of increments that keeps what rounding takes from it: with the rest r,
+//   d = r + increment,   x' = x + d,   r' = d + (x - x'),
+// x + r errs by what is lost of the increments, not by what is lost of the sum (Kahan, Comm. ACM 8
+// (1965) 40; Hairer, Lubich and Wanner, Geometric Numerical Integration, VIII.5). Off, it is the
+// plain sum, at its cost. Relies on the order of operations, which no compiler option here changes.
+class CompensatedSum {
+ public:
+  CompensatedSum(bool is_on, Index n) : rest_(is_on ? n : 0) { restart(); }
+
+  // Of a new sum.
+  void restart() { rest_.setZero(); }
+
+  // x' = x + increment; `next` is sized n, and may be `now`.
+  template <class Increment>
+  void add(const Vec& now, const Eigen::MatrixBase<Increment>& increment, Vec& next) {
+    if (rest_.size() == 0) {
+      next = now + increment;
+      return;
+    }
+    for (Index i = 0; i < rest_.size(); ++i) {
+      const double before = now[i], more = rest_[i] + increment.coeff(i), after = before + more;
+      rest_[i] = more + (before - after);
+      next[i] = after;
+    }
+  }
+
+ private:
+  Vec rest_;  // empty where it is off
+};
+
+}  // namespace qddot

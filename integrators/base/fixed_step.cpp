@@ -1,0 +1,81 @@
+#include "qddot/integrators/base/fixed_step.hpp"
+
+#include "qddot/integrators/method.hpp"
+
+namespace qddot {
+
+FixedStep::FixedStep(const Method& method, const System& system, const Knobs& knobs)
+    : Integrator(method, system, knobs),
+      now_{0, Vec(system.size()), Vec(system.size())},
+      next_{0, Vec(system.size()), Vec(system.size())} {}
+
+void FixedStep::resume(const FixedStep&, const State& now) { start(now); }
+
+void FixedStep::begin(const State& state) {
+  now_ = state;
+  times_.emplace(state.t, t_end(), knobs().step_size);
+  taken_ = 0;
+}
+
+Outcome FixedStep::run_to(State& state, double t_stop) {
+  Outcome outcome = Outcome::solver_failed;
+  const auto show_last = [&] {
+    if (now_.t > state.t) state = now_;
+  };
+  try {
+    outcome = take_steps(t_stop);
+    const bool is_there = outcome == Outcome::reached_end && times_->is_after(taken_, t_stop);
+    if (is_there) now_.t = t_stop;
+    if (is_there || outcome != Outcome::reached_end) {
+      show_last();
+      return outcome;
+    }
+    outcome = step_aside(t_stop);
+  } catch (...) {
+    show_last();
+    throw;
+  }
+  if (outcome == Outcome::reached_end) {
+    state = next_;
+  } else {
+    show_last();
+  }
+  return outcome;
+}
+
+// All that end at t_stop or before.
+Outcome FixedStep::take_steps(double t_stop) {
+  const StepTimes& times = *times_;
+  if (!times.can_be_taken()) return Outcome::step_too_small;
+  for (const double last = times.last_by(t_stop); taken_ < last;) {
+    if (must_stop()) return Outcome::over_budget;
+    const double i = taken_ + 1;
+    Outcome outcome = step(now_, times.length(i), next_);
+    next_.t = times.after(i);
+    if (outcome == Outcome::reached_end) outcome = judge(now_, next_);
+    if (outcome != Outcome::reached_end) return outcome;
+    std::swap(now_, next_);
+    taken_ = i;
+    ++counts().steps;
+    note(now_);
+  }
+  return Outcome::reached_end;
+}
+
+// From the last step to a time before the next one, into next_.
+Outcome FixedStep::step_aside(double t) {
+  if (!aside_) {
+    auto made = method().make(method(), system(), knobs());
+    aside_.reset(&dynamic_cast<FixedStep&>(*made));
+    made.release();
+  }
+  aside_->join(*this);
+  aside_->resume(*this, now_);
+  Outcome outcome = aside_->step(now_, t - now_.t, next_);
+  next_.t = t;
+  take_over(*aside_);
+  if (outcome == Outcome::reached_end) outcome = judge(now_, next_);
+  return outcome;
+}
+
+}  // namespace qddot

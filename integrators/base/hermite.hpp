@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+
+#include "qddot/model/system.hpp"
+
+namespace qddot {
+
+// A state and the acceleration a = M^-1 f(q) there [m/s^2].
+struct Instant {
+  State state;
+  Vec a;
+};
+
+constexpr std::size_t most_instants = 4;
+
+// Sets `at` to time t [s] on the polynomial of degree 3m - 1 that has q, v and a of m instants (two
+// to most_instants, at times that differ): q = p(t), v = p'(t). The error of q is
+// q^(3m) prod |t - t_i|^3 / (3m)! (Davis, Interpolation and Approximation, theorem 3.5.1).
+void interpolate(std::span<const Instant* const> instants, double t, State& at);
+
+}  // namespace qddot

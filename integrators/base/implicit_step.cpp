@@ -1,0 +1,223 @@
+#include "qddot/integrators/base/implicit_step.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace qddot {
+namespace {
+
+constexpr int most_iterations = 100;
+constexpr int most_halvings = 30;
+// Corrections that shrink more slowly than this are worth new factors, which cost as much as some
+// ten solves.
+constexpr double slowest_rate = 0.3;
+// Of what a stage may leave of the prediction's error, the part that an iterative solve for a
+// correction may leave of the residual: where all is linear one correction is all there is.
+constexpr double linear_share = 0.1;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+// Of the positions: where corrections no longer shrink below this, rounding makes them.
+constexpr double rounding = 1e-12;
+
+}  // namespace
+
+ImplicitStep::ImplicitStep(const Method& method, const System& system, const Knobs& knobs,
+                           double solve_tolerance)
+    : FixedStep(method, system, knobs),
+      free_(system.size()),
+      u_(system.size()),
+      tolerance_(knobs.solve_tolerance > 0 ? knobs.solve_tolerance : solve_tolerance),
+      kinks_(dynamic_cast<const Kinks*>(&system)),
+      x_(system.size()),
+      f_(system.size()),
+      r_(system.size()),
+      p_(system.size()),
+      before_(system.size()),
+      start_(system.size()),
+      k_(system.stiffness_pattern()),
+      matrix_(system, knobs.solver) {
+  matrix_.set_tolerance(linear_share * tolerance_);
+  if (kinks_ && kinks_->kinks() == 0) kinks_ = nullptr;
+  if (!kinks_) return;
+  length_.resize(kinks_->kinks());
+  other_length_.resize(kinks_->kinks());
+}
+
+void ImplicitStep::start(const State&) {
+  factorized_s_ = last_missed_ = 0;
+  last_rate_ = 1;
+  compression_.start();
+}
+
+void ImplicitStep::acceleration(const Vec& q, Vec& a) {
+  force(q, a);
+  a.array() /= system().mass().array();
+}
+
+Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
+  const bool is_linear = system().stiffness_is_constant();
+  bool are_new = false;                  // whether the factors were made in this stage,
+  bool are_of_u = false;                 // and for the u at hand
+  bool are_wanted = s != factorized_s_;  // whether to make them now
+  double last = 0;  // the correction before, if with these factors and of full length
+  double least = std::numeric_limits<double>::infinity();  // of all corrections so far
+  start_ = u_;
+  residual(q, s);
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    if (must_stop()) return Outcome::over_budget;
+    if (are_wanted) {
+      if (const Outcome outcome = factorize(q, s); outcome != Outcome::reached_end) {
+        return outcome;
+      }
+      are_new = are_of_u = true;
+      are_wanted = false;
+      last = 0;
+    }
+    Outcome outcome = correction();
+    while (outcome == Outcome::indefinite_matrix && compression_.soften()) {
+      outcome = factorize_softened(q, s);
+      if (outcome == Outcome::reached_end) outcome = correction();
+      are_new = are_of_u = true;
+      last = 0;
+    }
+    if (outcome != Outcome::reached_end) return outcome;
+    const double size = p_.lpNorm<Eigen::Infinity>(), place = (q + u_).lpNorm<Eigen::Infinity>();
+    double rate = 1;
+    if (last > 0) rate = size / last;
+    // One correction tells nothing, but that the last stage was like this one; beyond a kink none
+    // was.
+    const bool may_be_like_last = iteration == 0 && !are_new && size <= 2 * last_missed_;
+    if (may_be_like_last && !is_linear && !crosses_kink(q)) rate = last_rate_;
+    const bool is_exact = is_linear && compression_.kept() == 1 && is_linear_along(q);
+    const double missed = (u_ - start_ + p_).lpNorm<Eigen::Infinity>();
+    const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * missed;
+    const bool is_rounding =
+        size <= 4 * epsilon * place || (2 * size > least && size <= rounding * place);
+    if (is_exact || is_solved || is_rounding) {
+      u_ += p_;
+      last_missed_ = missed;
+      // What was not seen this time is trusted less the next; with new factors nothing was seen
+      // yet.
+      last_rate_ = are_new ? 1 : (iteration == 0 ? 2 * rate : rate);
+      return Outcome::reached_end;
+    }
+    least = std::min(least, size);
+    are_wanted = last > 0 && rate > slowest_rate && !are_of_u;
+    if (are_wanted) continue;
+
+    const double length = search(q, s);
+    if (length == 0 && are_of_u) return Outcome::newton_failed;
+    are_wanted = length < 1;
+    are_of_u = false;
+    last = length == 1 ? size : 0;
+  }
+  return Outcome::newton_failed;
+}
+
+// Whether f is linear where the residual was taken and where the correction leads to.
+bool ImplicitStep::is_linear_along(const Vec& q) {
+  if (knows_start() && !system().is_linear_at(q)) return false;
+  x_ = q + u_;
+  if (!system().is_linear_at(x_)) return false;
+  x_ += p_;
+  return system().is_linear_at(x_);
+}
+
+bool ImplicitStep::crosses_kink(const Vec& q) {
+  if (!kinks_) return false;
+  kinks_->kink_lengths(q, length_);
+  const auto has_other_signs = [&] {
+    kinks_->kink_lengths(x_, other_length_);
+    return (length_.array() * other_length_.array() <= 0).any();
+  };
+  x_ = q + u_;
+  if (has_other_signs()) return true;
+  x_ += p_;
+  return has_other_signs();
+}
+
+// r = M (u - u*) - s f.
+void ImplicitStep::residual(const Vec& q, double s) {
+  stage_force(q, u_, f_);
+  r_ = system().mass().cwiseProduct(u_ - free_) - s * f_;
+}
+
+void ImplicitStep::stage_force(const Vec& q, const Vec& u, Vec& f) {
+  x_ = q + u;
+  force(x_, f);
+}
+
+void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compression,
+                                   SymmetricMatrix& k) {
+  x_ = q + u;
+  softened_stiffness(x_, compression, k);
+}
+
+Outcome ImplicitStep::factorize(const Vec& q, double s) {
+  compression_.harden();
+  return factorize_softened(q, s);
+}
+
+Outcome ImplicitStep::factorize_softened(const Vec& q, double s) {
+  factorized_s_ = 0;
+  bool is_finite = true;
+  const bool is_positive = compression_.find([&](double kept) {
+    stage_stiffness(q, u_, kept, k_);
+    is_finite = k_.coeffs().allFinite();
+    if (!is_finite) return true;  // no factor of it helps
+    ++counts().factorizations;
+    const Stopwatch watch(seconds(), &Seconds::factorization);
+    return matrix_.factorize_positive(1, s, k_);
+  });
+  if (!is_finite) return Outcome::not_finite;
+  if (!is_positive) return Outcome::indefinite_matrix;
+  factorized_s_ = s;
+  return Outcome::reached_end;
+}
+
+// p = -(M - s K)^-1 r.
+Outcome ImplicitStep::correction() {
+  const Stopwatch watch(seconds(), &Seconds::solve);
+  ++counts().solves;
+  ++counts().newton_iterations;
+  if (const Outcome outcome = judge(matrix_.solve(r_, p_)); outcome != Outcome::reached_end) {
+    return outcome;
+  }
+  p_ = -p_;
+  return p_.allFinite() ? Outcome::reached_end : Outcome::not_finite;
+}
+
+// Moves u along p by the first of 1, 1/2, 1/4, ... of it that halves the residual, or else
+// decreases g by Armijo's rule; the first test costs nothing, since the next iteration needs that
+// residual. Without a g to decrease, by all of it. Returns that part, or 0, with u as it was, if
+// there is none.
+double ImplicitStep::search(const Vec& q, double s) {
+  const double norm = r_.norm(), slope = r_.dot(p_);
+  double g = std::numeric_limits<double>::quiet_NaN();
+  before_ = u_;
+  double length = 1;
+  for (int halvings = 0; halvings < most_halvings; ++halvings, length /= 2) {
+    u_ = before_ + length * p_;
+    residual(q, s);
+    if (!is_minimisation() || r_.norm() <= 0.5 * norm) return length;
+    const double g_there = objective(q, s);
+    if (std::isnan(g)) {
+      u_.swap(before_);
+      g = objective(q, s);
+      u_.swap(before_);
+    }
+    // Near the minimum rounding decides which g is less.
+    if (g_there <= g + 1e-4 * length * slope + 8 * epsilon * std::abs(g)) return length;
+  }
+  u_ = before_;
+  residual(q, s);
+  return 0;
+}
+
+double ImplicitStep::objective(const Vec& q, double s) {
+  x_ = q + u_;
+  const double potential = system().potential(x_);
+  x_ = u_ - free_;
+  return system().kinetic(x_) + s * potential;
+}
+
+}  // namespace qddot

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/integrators/base/compression.hpp"
+#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/model/kinks.hpp"
+
+namespace qddot {
+
+// A fixed step with implicit stages. Each stage of M q'' = f(q) asks, whatever the formula, for the
+// displacement u from q_n that solves
+//   M (u - u*) = s f(q_n + u)
+// with a u* from what is known and an s [s^2]; it makes the incremental potential
+//   g(u) = 1/2 (u - u*)' M (u - u*) + s V(q_n + u)
+// stationary, and a minimum is looked for (Martin, Thomaszewski, Grinspun, Gross, SIGGRAPH 2011,
+// section 4). The acceleration of the stage is (u - u*)/s: it costs no force.
+//
+// Newton's method with the last factors of M - s K as long as they converge, and K anew where they
+// do not. Where M - s K is not positive definite, only some of the compression is kept (see
+// compression.hpp). So directions descend, and a step along one that does not decrease g is halved
+// until it does.
+class ImplicitStep : public FixedStep {
+ public:
+  // What a solve leaves is of no use to be less than the step's own error; but a method that keeps
+  // an invariant keeps it no better than its stages are solved.
+  static constexpr double enough = 1e-4, enough_for_invariants = 1e-9;
+
+  // `solve_tolerance`: where the knobs do not say.
+  ImplicitStep(const Method& method, const System& system, const Knobs& knobs,
+               double solve_tolerance = enough);
+
+ protected:
+  // Solves the stage at q = q_n for u_, which holds its prediction, with u* in free_; up to the
+  // tolerance times what the prediction was wrong by, which is of the size of the step's own error.
+  // reached_end, newton_failed, indefinite_matrix, not_finite or over_budget.
+  Outcome solve_stage(const Vec& q, double s);
+
+  void start(const State&) override;
+  // a = M^-1 f(q) [m/s^2]; for methods that begin with it.
+  void acceleration(const Vec& q, Vec& a);
+
+  Vec free_, u_;  // u* and u
+
+ private:
+  // What a stage's f and K are; a method with another mean of the forces over the step says so.
+  virtual void stage_force(const Vec& q, const Vec& u, Vec& f);
+  virtual void stage_stiffness(const Vec& q, const Vec& u, double compression, SymmetricMatrix& k);
+  // Whether f is the gradient of a potential, so that there is a g to decrease.
+  virtual bool is_minimisation() const { return true; }
+  // Whether a stage's f knows forces at q itself, which then have to be linear as well.
+  virtual bool knows_start() const { return false; }
+
+  bool is_linear_along(const Vec& q);
+  // Whether f has a kink (kinks.hpp) between q, where the residual was taken, and where the
+  // correction leads to.
+  bool crosses_kink(const Vec& q);
+  void residual(const Vec& q, double s);
+  // With twice the compression that the last factors have, where that works, or with as much.
+  Outcome factorize(const Vec& q, double s);
+  Outcome factorize_softened(const Vec& q, double s);
+  // With conjugate gradients indefinite_matrix as well: only now they may see that it is.
+  Outcome correction();
+  double search(const Vec& q, double s);
+  double objective(const Vec& q, double s);
+
+  const double tolerance_;
+  const Kinks* kinks_;  // none where f has no kinks
+  Vec x_, f_, r_, p_, before_, start_, length_, other_length_;
+  SymmetricMatrix k_;
+  EffectiveMass matrix_;
+  double factorized_s_ = 0;  // of the factors at hand; 0: none
+  Compression compression_;  // with which they were made
+  // What the last stage's prediction was wrong by, and the rate at which its corrections shrank.
+  double last_missed_ = 0, last_rate_ = 1;
+};
+
+}  // namespace qddot

@@ -1,0 +1,53 @@
+#include "qddot/integrators/base/kick_drift.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace qddot {
+
+std::vector<double> mirrored(std::vector<double> half, std::size_t size) {
+  assert(half.size() == (size + 1) / 2);
+  for (std::size_t i = half.size(); i < size; ++i) half.push_back(half[size - 1 - i]);
+  return half;
+}
+
+KickDrift::KickDrift(const Method& method, const System& system, const Knobs& knobs,
+                     const Splitting& splitting)
+    : FixedStep(method, system, knobs),
+      splitting_(splitting),
+      kicks_first_(splitting.kicks.size() > splitting.drifts.size()),
+      q_(knobs.compensated, system.size()),
+      v_(knobs.compensated, system.size()),
+      f_(system.size()) {}
+
+void KickDrift::start(const State& state) {
+  q_.restart();
+  v_.restart();
+  if (kicks_first_) force(state.q, f_);
+}
+
+void KickDrift::kick(double size, State& state) {
+  v_.add(state.v, size * f_.cwiseQuotient(system().mass()), state.v);
+}
+
+void KickDrift::drift(double size, State& state) { q_.add(state.q, size * state.v, state.q); }
+
+Outcome KickDrift::step(const State& now, double h, State& next) {
+  const auto& [order, kicks, drifts] = splitting_;
+  next.q = now.q;
+  next.v = now.v;
+  for (std::size_t i = 0; i < std::min(kicks.size(), drifts.size()); ++i) {
+    if (kicks_first_) kick(kicks[i] * h, next);
+    drift(drifts[i] * h, next);
+    force(next.q, f_);
+    if (!kicks_first_) kick(kicks[i] * h, next);
+  }
+  if (kicks_first_) {
+    kick(kicks.back() * h, next);
+  } else {
+    drift(drifts.back() * h, next);
+  }
+  return Outcome::reached_end;
+}
+
+}  // namespace qddot

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "qddot/integrators/base/compensated_sum.hpp"
+#include "qddot/integrators/base/fixed_step.hpp"
+
+namespace qddot {
+
+// A step as kicks v += y h M^-1 f(q) and drifts q += x h v by turns, each of which is the exact
+// motion of a part of H = T(v) + V(q): symplectic, and time-reversible where both lists are the
+// same read backwards. The longer list is that of what comes first and last.
+struct Splitting {
+  int order;
+  std::vector<double> kicks, drifts;  // y and x, each of sum 1
+};
+
+// A list of `size` numbers that is the same read backwards, from the numbers up to its middle.
+std::vector<double> mirrored(std::vector<double> half, std::size_t size);
+
+// The steps of a splitting. Where a kick is first, the last force of a step is the first of the
+// next: one evaluation a drift, and one to begin. Else one evaluation a kick.
+class KickDrift final : public FixedStep {
+ public:
+  KickDrift(const Method& method, const System& system, const Knobs& knobs,
+            const Splitting& splitting);
+
+ private:
+  void start(const State& state) override;
+  Outcome step(const State& now, double h, State& next) override;
+  void kick(double size, State& state);
+  void drift(double size, State& state);
+
+  const Splitting& splitting_;
+  bool kicks_first_;
+  CompensatedSum q_, v_;
+  Vec f_;  // where the last kick was, or where the next one is
+};
+
+// For Method::make.
+template <const Splitting& (*splitting)()>
+std::unique_ptr<Integrator> create_splitting(const Method& method, const System& system,
+                                             const Knobs& knobs) {
+  return std::make_unique<KickDrift>(method, system, knobs, splitting());
+}
+
+// Those that there are, each in the file of its method.
+namespace registered {
+const Splitting& position_verlet_splitting();
+const Splitting& kahan_li8_splitting();
+const Splitting& blanes_moan4_splitting();
+const Splitting& blanes_moan6_splitting();
+}  // namespace registered
+
+}  // namespace qddot

@@ -1,0 +1,79 @@
+#include "qddot/integrators/base/local_global.hpp"
+
+#include <cmath>
+
+namespace qddot {
+namespace {
+
+constexpr int usual_iterations = 10;
+constexpr int most_halvings = 60;
+
+}  // namespace
+
+LocalGlobal::LocalGlobal(const Method& method, const System& system, const Knobs& knobs)
+    : FixedStep(method, system, knobs),
+      iterations_(knobs.iterations > 0 ? knobs.iterations : usual_iterations),
+      matrix_(system) {}
+
+Outcome LocalGlobal::step(const State& now, double h, State& next) {
+  if (h != factorized_h_) {
+    ++counts().factorizations;
+    const Stopwatch watch(seconds(), &Seconds::factorization);
+    if (!matrix_.factorize(h * h)) return Outcome::indefinite_matrix;
+    factorized_h_ = h;
+  }
+  now_ = &now;
+  h_ = h;
+  next.v = now.v;
+  begin();
+  for (int i = 0; i < iterations_; ++i) {
+    if (must_stop()) return Outcome::over_budget;
+    iterate(next.v);
+    if (!is_finite_) return Outcome::not_finite;
+  }
+  next.q = now.q + h * next.v;
+  return Outcome::reached_end;
+}
+
+void LocalGlobal::gradient(const Vec& v, Vec& r) {
+  q_ = now_->q + h_ * v;
+  force(q_, f_);
+  r = system().mass().cwiseProduct(v - now_->v) - h_ * f_;
+}
+
+void LocalGlobal::direction(const Vec& r, Vec& p) {
+  ++counts().solves;
+  const Stopwatch watch(seconds(), &Seconds::solve);
+  matrix_.solve(r, p);
+  is_finite_ = std::isfinite(p.sum());
+}
+
+double LocalGlobal::objective(const Vec& v) {
+  q_ = v - now_->v;
+  const double kinetic = system().kinetic(q_);
+  q_ = now_->q + h_ * v;
+  return kinetic + system().potential(q_);
+}
+
+void LocalGlobal::search(Vec& v, const Vec& p, double slope, double& g) {
+  double alpha = 1;
+  for (int halvings = 0; halvings < most_halvings; ++halvings, alpha /= 2) {
+    trial_ = v - alpha * p;
+    if (const double lower = objective(trial_); lower <= g - 1e-4 * alpha * slope) {
+      v.swap(trial_);
+      g = lower;
+      return;
+    }
+  }
+}
+
+void LocalGlobal::plain_step(Vec& v, const Vec& r, const Vec& p) {
+  if (descends()) {
+    v -= p;
+    return;
+  }
+  double g = objective(v);
+  search(v, p, r.dot(p), g);
+}
+
+}  // namespace qddot

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "qddot/algebra/laplacian_mass.hpp"
+#include "qddot/integrators/base/fixed_step.hpp"
+
+namespace qddot {
+
+// Implicit Euler as a minimisation over the velocity, by a given number of steps whose metric never
+// changes:
+//   g(v) = 1/2 (v - v_n)' M (v - v_n) + V(q_n + h v)
+//   r    = dg/dv = M (v - v_n) - h f(q_n + h v)
+//   p    = (M + h^2 L)^-1 r
+// from the inertial prediction v = v_n on; v = v - p is one iteration of local_global, and what
+// others make of the same r and p is theirs to say. The matrix is factorised once a step size.
+class LocalGlobal : public FixedStep {
+ public:
+  LocalGlobal(const Method& method, const System& system, const Knobs& knobs);
+
+ protected:
+  // Called before the first iteration of each step.
+  virtual void begin() {}
+  // Brings v one iteration further, with one gradient() and one direction().
+  virtual void iterate(Vec& v) = 0;
+
+  int iterations() const { return iterations_; }
+  double step_size() const { return h_; }
+  // Whether L bounds -K, so that g falls by r'p / 2 at least from v to v - p.
+  bool descends() const { return system().has_laplacian() == HasLaplacian::as_bound; }
+  void gradient(const Vec& v, Vec& r);
+  void direction(const Vec& r, Vec& p);
+  double objective(const Vec& v);  // g [J]
+  // Moves v by the first of -p, -p/2, -p/4, ... that lowers g by Armijo's rule, or not at all where
+  // rounding hides it. `g` is that of v, before and after.
+  void search(Vec& v, const Vec& p, double slope, double& g);
+  // v - p where that is sure to lower g, else by search().
+  void plain_step(Vec& v, const Vec& r, const Vec& p);
+
+ private:
+  void start(const State&) final { factorized_h_ = 0; }
+  Outcome step(const State& now, double h, State& next) final;
+
+  int iterations_;
+  LaplacianMass matrix_;
+  const State* now_ = nullptr;  // where the step at hand begins
+  double h_ = 0, factorized_h_ = 0;
+  bool is_finite_ = true;  // the last direction
+  Vec q_{system().size()}, f_{system().size()}, trial_{system().size()};
+};
+
+}  // namespace qddot

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "qddot/analysis/frequency_bound.hpp"
+
+namespace qddot {
+
+// Gershgorin's bound of the largest frequency w_max [1/s] of a system along its motion: taken anew
+// every 50 steps only, for it changes with the positions, but much less than these do.
+class RenewedBound {
+ public:
+  explicit RenewedBound(const System& system) : system_(system), k_(system.stiffness_pattern()) {}
+
+  void start() { renewed_at_ = never; }
+  // The bound for that step of a run, 0, 1, ...; stiffness(k) brings the K of where it begins.
+  template <class Stiffness>
+  double at(std::int64_t step, const Stiffness& stiffness) {
+    if (renewed_at_ == never || step >= renewed_at_ + steps_with_one) {
+      stiffness(k_);
+      w_max_ = frequency_bound(system_.mass(), k_, row_sums_);
+      renewed_at_ = step;
+    }
+    return w_max_;
+  }
+
+ private:
+  static constexpr std::int64_t steps_with_one = 50, never = -1;
+
+  const System& system_;
+  SymmetricMatrix k_;
+  Vec row_sums_;
+  double w_max_ = 0;
+  std::int64_t renewed_at_ = never;
+};
+
+}  // namespace qddot

@@ -1,0 +1,36 @@
+#include "qddot/integrators/base/step_times.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace qddot {
+namespace {
+
+// A step that is a smaller part of h is none of its own: the one before is that much longer.
+constexpr double sliver = 1e-6;
+
+}  // namespace
+
+StepTimes::StepTimes(double t_start, double t_end, double h)
+    : t_start_(t_start), t_end_(t_end), h_(h) {
+  // What rounding makes of a time that is a multiple of h, or of a time between samples.
+  rounding_ =
+      4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_start), std::abs(t_end));
+  count_ = std::max(1.0, std::ceil((t_end - t_start) / h - sliver - rounding_ / h));
+  can_be_taken_ = h > 0 && count_ < most_steps && t_end - h != t_end;
+  // Where only rounding parts the last step from h it is h, so that factorisations for h serve it
+  // too.
+  const double last = t_end - (t_start + (count_ - 1) * h);
+  last_h_ = std::abs(last - h) <= rounding_ ? h : last;
+  rounding_ = std::min(rounding_, h / 4);
+}
+
+double StepTimes::last_by(double t) const {
+  double i = std::clamp(std::floor((t - t_start_) / h_), 0.0, count_);
+  while (i > 0 && !reaches(i, t)) --i;
+  while (i < count_ && reaches(i + 1, t)) ++i;
+  return i;
+}
+
+}  // namespace qddot

@@ -1,0 +1,71 @@
+// The two-step backward differentiation formula, for steps h after a step w^-1 h:
+//   y_{n+1} = ((1 + w)^2 y_n - w^2 y_{n-1}) / (1 + 2 w) + c h y'_{n+1},  c = (1 + w)/(1 + 2 w),
+// y = (q, v), y' = (v, M^-1 f(q)); with equal steps y_{n+1} = 4/3 y_n - 1/3 y_{n-1} + 2/3 h y'.
+// Eliminating v_{n+1} leaves one stage with s = c^2 h^2. Order 2, A-stable and L-stable. The first
+// step is one of implicit Euler, whose own error is of second order.
+#include "qddot/integrators/base/implicit_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+class Bdf2 final : public ImplicitStep {
+ public:
+  using ImplicitStep::ImplicitStep;
+
+ private:
+  void start(const State& state) override {
+    ImplicitStep::start(state);
+    last_h_ = 0;
+  }
+
+  void resume(const FixedStep& run, const State& now) override {
+    const auto& other = static_cast<const Bdf2&>(run);
+    start(now);
+    last_ = other.last_;
+    last_h_ = other.last_h_;
+  }
+
+  Outcome step(const State& now, double h, State& next) override {
+    const double w = last_h_ > 0 ? h / last_h_ : 0;  // w = 0: implicit Euler
+    const double back = w * w / (1 + 2 * w), c = (1 + w) / (1 + 2 * w);
+    if (w == 0) last_ = now;
+    // q_{n+1} - q_n = back (q_n - q_{n-1}) + c h v_{n+1}, and v likewise.
+    known_ = back * (now.q - last_.q);
+    free_ = known_ + c * h * (now.v + back * (now.v - last_.v));
+    u_ = free_;
+    if (w > 0) u_ = known_ + c * h * (now.v + w * (now.v - last_.v));
+    if (const Outcome outcome = solve_stage(now.q, c * c * h * h);
+        outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    next.q = now.q + u_;
+    next.v = (u_ - known_) / (c * h);
+    last_.q = now.q;
+    last_.v = now.v;
+    last_h_ = h;
+    return Outcome::reached_end;
+  }
+
+  State last_{0, Vec(system().size()), Vec(system().size())};
+  double last_h_ = 0;
+  Vec known_{system().size()};
+};
+
+}  // namespace
+
+Method bdf2() {
+  return {
+      .name = "bdf2",
+      .summary = "two-step backward differentiation; one solve a step, damps fast vibrations",
+      .source = "Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.1, III.5",
+      .order = 2,
+      .implicit = true,
+      .needs_stiffness = true,
+      .accepts_massless = true,
+      .takes_solve_tolerance = true,
+      .takes_solver = true,
+      .make = create<Bdf2>};
+}
+
+}  // namespace qddot::registered

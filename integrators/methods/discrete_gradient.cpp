@@ -1,0 +1,70 @@
+// The energy-momentum method: implicit midpoint with the mean of the force over the step that makes
+// exactly the work V(q_n) - V(q_{n+1}) (System::mean_force), f(q_n, q_{n+1}):
+//   q_{n+1} = q_n + h/2 (v_n + v_{n+1}),  M (v_{n+1} - v_n) = h f(q_n, q_{n+1})
+// so that (v_n + v_{n+1})/2 . M (v_{n+1} - v_n) = (q_{n+1} - q_n)/h . h f: kinetic energy gains
+// what potential energy loses, whatever h is. One stage, M (u - h v_n) = h^2/2 f(q_n, q_n + u),
+// whose matrix is taken as M - h^2/4 K(q_n + u/2): df/du is half of K there but for terms of first
+// order in u. Order 2, reversible; keeps energy, linear and angular momentum to what the solve
+// leaves.
+#include "qddot/integrators/base/implicit_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+class DiscreteGradient final : public ImplicitStep {
+ public:
+  DiscreteGradient(const Method& method, const System& system, const Knobs& knobs)
+      : ImplicitStep(method, system, knobs, enough_for_invariants) {}
+
+ private:
+  void start(const State& state) override {
+    ImplicitStep::start(state);
+    acceleration(state.q, a_);
+  }
+
+  Outcome step(const State& now, double h, State& next) override {
+    const double s = h * h / 2;
+    free_ = h * now.v;
+    u_ = free_ + s * a_;
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    a_ = (u_ - free_) / s;
+    next.q = now.q + u_;
+    next.v = 2 / h * u_ - now.v;
+    return Outcome::reached_end;
+  }
+
+  void stage_force(const Vec& q, const Vec& u, Vec& f) override {
+    x_ = q + u;
+    mean_force(q, x_, f);
+  }
+  void stage_stiffness(const Vec& q, const Vec& u, double compression,
+                       SymmetricMatrix& k) override {
+    x_ = q + u / 2;
+    softened_stiffness(x_, compression, k);
+    k.coeffs() /= 2;
+  }
+  bool is_minimisation() const override { return false; }
+  bool knows_start() const override { return true; }
+
+  Vec a_{system().size()};  // the mean of the last step, which predicts the next
+  Vec x_{system().size()};
+};
+
+}  // namespace
+
+Method discrete_gradient() {
+  return {.name = "discrete_gradient",
+          .summary = "keeps energy and momenta at every h, to what its nonlinear solve leaves",
+          .source = "Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467, section 4",
+          .order = 2,
+          .implicit = true,
+          .needs_stiffness = true,
+          .takes_solve_tolerance = true,
+          .takes_solver = true,
+          .make = create<DiscreteGradient>};
+}
+
+}  // namespace qddot::registered

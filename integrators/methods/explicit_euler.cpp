@@ -1,0 +1,36 @@
+// Explicit (forward) Euler:
+//   q_{n+1} = q_n + h v_n
+//   v_{n+1} = v_n + h M^-1 f(q_n)
+// Order 1. On q'' = -w^2 q the amplitude grows by sqrt(1 + h^2 w^2) each step, at every h.
+#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+class ExplicitEuler final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    force(now.q, f_);
+    next.q = now.q + h * now.v;
+    next.v = now.v + h * f_.cwiseQuotient(system().mass());
+    return Outcome::reached_end;
+  }
+
+  Vec f_{system().size()};
+};
+
+}  // namespace
+
+Method explicit_euler() {
+  return {.name = "explicit_euler",
+          .summary = "forward Euler; gains energy at every step size",
+          .source = "Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, I.7",
+          .stability_limit = 0,
+          .make = create<ExplicitEuler>};
+}
+
+}  // namespace qddot::registered

@@ -1,0 +1,120 @@
+// The generalised-alpha method (Chung and Hulbert, Journal of Applied Mechanics 60 (1993) 371-375):
+//   q_{n+1} = q_n + h v_n + h^2 ((1/2 - beta) a_n + beta a_{n+1})
+//   v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1})
+//   M ((1 - alpha_m) a_{n+1} + alpha_m a_n) = f((1 - alpha_f) q_{n+1} + alpha_f q_n)
+//   gamma = 1/2 - alpha_m + alpha_f,  beta = 1/4 (1 - alpha_m + alpha_f)^2
+// with f at the mean position, so that each step is one stage in u, that position less q_n. The
+// alphas follow from the damping wanted at infinite frequency: there each step multiplies a motion
+// by the spectral radius rho. Order 2, A-stable. Their equation holds between the steps, so that
+// a_n is the acceleration at t_n + (alpha_m - alpha_f) h, to second order. Where a step h' follows
+// one of h it is taken at (alpha_m - alpha_f) h' instead, on the line through the last two:
+//   a_n + (alpha_m - alpha_f) (h'/h - 1) (a_n - a_{n-1}),
+// without which each change of h would leave an error of first order in it. Steps only ever shorten
+// (the last one, and those to what is observed between two), so that the line is not followed far.
+#include "qddot/integrators/base/implicit_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+struct Alphas {
+  double m, f;
+};
+
+// Eq. 25: of all with that rho, those that damp low frequencies least.
+Alphas least_damping(double rho) { return {(2 * rho - 1) / (rho + 1), rho / (rho + 1)}; }
+
+// Hilber, Hughes, Taylor (Earthquake Engineering and Structural Dynamics 5 (1977) 283-292):
+// alpha_m = 0; their alpha is -alpha_f, and rho = (1 - alpha_f)/(1 + alpha_f) >= 1/2.
+Alphas without_alpha_m(double rho) {
+  rho = std::max(rho, 0.5);
+  return {0, (1 - rho) / (1 + rho)};
+}
+
+class GeneralizedAlpha : public ImplicitStep {
+ public:
+  GeneralizedAlpha(const Method& method, const System& system, const Knobs& knobs,
+                   const Alphas& alpha)
+      : ImplicitStep(method, system, knobs), alpha_(alpha) {}
+
+ private:
+  void start(const State& state) override {
+    ImplicitStep::start(state);
+    acceleration(state.q, a_);
+    last_h_ = 0;
+  }
+
+  void resume(const FixedStep& run, const State&) override {
+    const auto& other = static_cast<const GeneralizedAlpha&>(run);
+    ImplicitStep::start(State{});
+    a_ = other.a_;
+    last_a_ = other.last_a_;
+    last_h_ = other.last_h_;
+  }
+
+  Outcome step(const State& now, double h, State& next) override {
+    if (last_h_ > 0 && h != last_h_) {
+      a_ += (alpha_.m - alpha_.f) * (h / last_h_ - 1) * (a_ - last_a_);
+    }
+    const double gamma = 0.5 - alpha_.m + alpha_.f;
+    const double beta = 0.25 * (1 - alpha_.m + alpha_.f) * (1 - alpha_.m + alpha_.f);
+    const double s = (1 - alpha_.f) * beta / (1 - alpha_.m) * h * h;
+    free_ = (1 - alpha_.f) * (h * now.v + h * h * (0.5 - beta) * a_) - s * alpha_.m * a_;
+    u_ = free_ + s * a_;
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    last_a_ = a_;
+    a_ = ((u_ - free_) / s - alpha_.m * last_a_) / (1 - alpha_.m);
+    next.q = now.q + u_ / (1 - alpha_.f);
+    next.v = now.v + h * ((1 - gamma) * last_a_ + gamma * a_);
+    last_h_ = h;
+    return Outcome::reached_end;
+  }
+
+  const Alphas alpha_;
+  Vec a_{system().size()}, last_a_{system().size()};
+  double last_h_ = 0;  // 0: no step yet, and a_ is that of the start
+};
+
+class ChungHulbert final : public GeneralizedAlpha {
+ public:
+  ChungHulbert(const Method& method, const System& system, const Knobs& knobs)
+      : GeneralizedAlpha(method, system, knobs, least_damping(knobs.spectral_radius)) {}
+};
+
+class Hht final : public GeneralizedAlpha {
+ public:
+  Hht(const Method& method, const System& system, const Knobs& knobs)
+      : GeneralizedAlpha(method, system, knobs, without_alpha_m(knobs.spectral_radius)) {}
+};
+
+}  // namespace
+
+Method generalized_alpha() {
+  return {.name = "generalized_alpha",
+          .summary = "second order; damps infinite frequencies by the spectral radius a step",
+          .source = "Chung and Hulbert, Journal of Applied Mechanics 60 (1993) 371-375, eq. 25",
+          .order = 2,
+          .implicit = true,
+          .needs_stiffness = true,
+          .takes_solve_tolerance = true,
+          .takes_spectral_radius = true,
+          .takes_solver = true,
+          .make = create<ChungHulbert>};
+}
+
+Method hht() {
+  return {.name = "hht",
+          .summary = "HHT-alpha: Newmark with damping, the finite-element codes' default",
+          .source = "Hilber, Hughes, Taylor, Earthquake Eng. Struct. Dyn. 5 (1977) 283-292",
+          .order = 2,
+          .implicit = true,
+          .needs_stiffness = true,
+          .takes_solve_tolerance = true,
+          .takes_spectral_radius = true,
+          .takes_solver = true,
+          .make = create<Hht>};
+}
+
+}  // namespace qddot::registered

@@ -1,0 +1,54 @@
+// Implicit midpoint: with u = q_{n+1/2} - q_n and q_{n+1/2} = (q_n + q_{n+1})/2,
+//   M (u - h/2 v_n) = h^2/4 f(q_n + u)
+//   q_{n+1} = q_n + 2 u,  v_{n+1} = 4 u/h - v_n
+// Order 2, symplectic, time-reversible; keeps quadratic invariants (momenta; the energy where f is
+// linear, at every h). A-stable, but on a stiff nonlinear spring its energy may grow.
+#include "qddot/integrators/base/implicit_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+class ImplicitMidpoint final : public ImplicitStep {
+ public:
+  ImplicitMidpoint(const Method& method, const System& system, const Knobs& knobs)
+      : ImplicitStep(method, system, knobs, enough_for_invariants) {}
+
+ private:
+  void start(const State& state) override {
+    ImplicitStep::start(state);
+    acceleration(state.q, a_);
+  }
+
+  Outcome step(const State& now, double h, State& next) override {
+    const double s = h * h / 4;
+    free_ = h / 2 * now.v;
+    u_ = free_ + s * a_;
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    a_ = (u_ - free_) / s;
+    next.q = now.q + 2 * u_;
+    next.v = 4 / h * u_ - now.v;
+    return Outcome::reached_end;
+  }
+
+  Vec a_{system().size()};  // of the last step's middle, which predicts the next
+};
+
+}  // namespace
+
+Method implicit_midpoint() {
+  return {.name = "implicit_midpoint",
+          .summary = "symplectic and A-stable; keeps momenta, and energy where f is linear",
+          .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, eq. II.1.7",
+          .order = 2,
+          .implicit = true,
+          .symplectic = true,
+          .needs_stiffness = true,
+          .takes_solve_tolerance = true,
+          .takes_solver = true,
+          .make = create<ImplicitMidpoint>};
+}
+
+}  // namespace qddot::registered

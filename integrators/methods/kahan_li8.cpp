@@ -1,0 +1,40 @@
+// Order-8 composition of 17 velocity Verlet steps of sizes gamma_s h, gamma symmetric, with
+// sum gamma = 1 (Kahan and Li, Mathematics of Computation 66 (1997) 1089-1099, method s17odr8a).
+// Neighbouring half kicks are one kick, and the last force of a step is the first of the next:
+// 17 evaluations a step, and one to begin. Symplectic and time-reversible.
+#include "qddot/integrators/base/kick_drift.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+
+const Splitting& kahan_li8_splitting() {
+  static const Splitting splitting = [] {
+    const std::vector<double> gamma = mirrored(
+        {0.13020248308889008087881763, 0.56116298177510838456196441, -0.38947496264484728640807860,
+         0.15884190655515560089621075, -0.39590389413323757733623154, 0.18453964097831570709183254,
+         0.25837438768632204729397911, 0.29501172360931029887096624, -0.60550853383003451169892108},
+        17);
+    std::vector<double> kicks;
+    double before = 0;
+    for (const double g : gamma) {
+      kicks.push_back((before + g) / 2);
+      before = g;
+    }
+    kicks.push_back(before / 2);
+    return Splitting{.order = 8, .kicks = kicks, .drifts = gamma};
+  }();
+  return splitting;
+}
+
+Method kahan_li8() {
+  return {.name = "kahan_li8",
+          .summary = "17 Verlet steps composed to order 8; for the accurate end of the chart",
+          .source = "Kahan and Li, Mathematics of Computation 66 (1997) 1089-1099",
+          .order = 8,
+          .stability_limit = 3.0964386800007322,  // where the trace of one step first exceeds 2
+          .symplectic = true,
+          .takes_compensation = true,
+          .make = create_splitting<kahan_li8_splitting>};
+}
+
+}  // namespace qddot::registered

@@ -1,0 +1,94 @@
+// local_global accelerated by Chebyshev's semi-iterative method. Near the solution an iteration
+// multiplies errors by T = I - (M + h^2 L)^-1 (M - h^2 K), whose eigenvalues lie in [0, rho] where
+// springs are not compressed: T >= 0 since L bounds -K, and rho = h^2 w^2 / (1 + h^2 w^2) with the
+// largest w of L x = w^2 M x. The polynomial of degree k that is smallest there,
+//   v_{k+1} = omega_{k+1} (v_k - gamma p_k - v_{k-1}) + v_{k-1},   gamma = 2 / (2 - rho),
+//   omega_1 = 1, omega_2 = 2 / (2 - sigma^2), omega_{k+1} = 4 / (4 - sigma^2 omega_k),
+//   sigma = rho / (2 - rho),
+// is Wang's, shifted to that interval from his [-rho, rho]. The first iteration is a plain one,
+// after which the momentum of free bodies is right and stays so. Where r'p grows from one iteration
+// to the next, the recurrence begins anew with a plain step.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/integrators/base/local_global.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+class Chebyshev final : public LocalGlobal {
+ public:
+  Chebyshev(const Method& method, const System& system, const Knobs& knobs)
+      : LocalGlobal(method, system, knobs) {
+    SymmetricMatrix l = system.stiffness_pattern();
+    system.laplacian(l);
+    Vec row_sums;
+    frequency_ = frequency_bound(system.mass(), l, row_sums);
+  }
+
+ private:
+  // What is outside of a narrower interval grows no less slowly in a few iterations, while what is
+  // inside shrinks faster: the widest one in which k iterations gain a digit.
+  void begin() override {
+    const double hw = step_size() * frequency_;
+    const double widest = hw * hw / (1 + hw * hw);
+    const double few = 1 / std::cosh(std::acosh(10.0) / iterations());
+    const double sigma = std::min(widest / (2 - widest), few);
+    sigma_squared_ = sigma * sigma;
+    gamma_ = 1 + sigma;
+    omega_ = 0;
+    size_ = std::numeric_limits<double>::infinity();
+  }
+
+  void iterate(Vec& v) override {
+    gradient(v, r_);
+    direction(r_, p_);
+    const double size = r_.dot(p_);
+    if (omega_ == 0 || !(size < size_)) {
+      plain_step(v, r_, p_);
+      omega_ = -1;
+    } else if (omega_ < 0) {
+      move(v, 1);
+    } else {
+      move(v, omega_ == 1 ? 2 / (2 - sigma_squared_) : 4 / (4 - sigma_squared_ * omega_));
+    }
+    size_ = size;
+  }
+
+  void move(Vec& v, double omega) {
+    trial_ = v - gamma_ * p_;
+    if (omega != 1) trial_ = omega * (trial_ - before_) + before_;
+    if (!descends() && !(objective(trial_) < objective(v))) {
+      plain_step(v, r_, p_);
+      omega_ = -1;
+      return;
+    }
+    before_ = v;
+    v.swap(trial_);
+    omega_ = omega;
+  }
+
+  double frequency_, sigma_squared_ = 0, gamma_ = 1;
+  double omega_ = 0;  // the last one; 0 at the start of a step, -1 after a plain iteration
+  double size_ = 0;   // the last r'p
+  Vec r_{system().size()}, p_{system().size()}, trial_{system().size()}, before_{system().size()};
+};
+
+}  // namespace
+
+Method local_global_chebyshev() {
+  return {.name = "local_global_chebyshev",
+          .summary = "local_global, its iterations accelerated by Chebyshev's polynomials",
+          .source =
+              "Wang, A Chebyshev Semi-Iterative Approach for Accelerating Projective and "
+              "Position-Based Dynamics, SIGGRAPH Asia 2015",
+          .implicit = true,
+          .needs_laplacian = true,
+          .takes_iterations = true,
+          .make = create<Chebyshev>};
+}
+
+}  // namespace qddot::registered

@@ -1,0 +1,29 @@
+// Position Verlet (Stormer-Verlet, drift - kick - drift):
+//   q_{n+1/2} = q_n + h/2 v_n
+//   v_{n+1}   = v_n + h M^-1 f(q_{n+1/2})
+//   q_{n+1}   = q_{n+1/2} + h/2 v_{n+1}
+// Order 2, symplectic, time-reversible; one force a step. Bounded on q'' = -w^2 q for h w < 2.
+#include "qddot/integrators/base/kick_drift.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+
+const Splitting& position_verlet_splitting() {
+  static const Splitting splitting{.order = 2, .kicks = {1}, .drifts = {1. / 2, 1. / 2}};
+  return splitting;
+}
+
+Method position_verlet() {
+  return {.name = "position_verlet",
+          .summary = "Verlet with its one force a step in the middle, between two half drifts",
+          .source =
+              "Tuckerman, Berne and Martyna, J. Chemical Physics 97 (1992) 1990-2001, "
+              "position Verlet",
+          .order = 2,
+          .stability_limit = 2,
+          .symplectic = true,
+          .takes_compensation = true,
+          .make = create_splitting<position_verlet_splitting>};
+}
+
+}  // namespace qddot::registered

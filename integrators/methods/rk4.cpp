@@ -1,0 +1,63 @@
+// The classical Runge-Kutta method on (q, v)' = (v, M^-1 f(q)):
+//   q_1 = q_n,                 v_1 = v_n,                 a_i = M^-1 f(q_i)
+//   q_2 = q_n + h/2 v_1,       v_2 = v_n + h/2 a_1
+//   q_3 = q_n + h/2 v_2,       v_3 = v_n + h/2 a_2
+//   q_4 = q_n + h v_3,         v_4 = v_n + h a_3
+//   q_{n+1} = q_n + h/6 (v_1 + 2 v_2 + 2 v_3 + v_4),   v_{n+1} likewise with a_i.
+// Order 4; four forces a step. On q'' = -w^2 q amplitudes shrink by 1 - (h w)^6/144 a step and grow
+// beyond h w = 2 sqrt 2.
+#include <cmath>
+
+#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+class Rk4 final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    next.q = now.q;
+    next.v = now.v;
+    add_stage(now.q, now.v, h / 6, next);
+    at_.q = now.q + h / 2 * now.v;
+    at_.v = now.v + h / 2 * a_;
+    add_stage(at_.q, at_.v, h / 3, next);
+    at_.q = now.q + h / 2 * at_.v;
+    at_.v = now.v + h / 2 * a_;
+    add_stage(at_.q, at_.v, h / 3, next);
+    at_.q = now.q + h * at_.v;
+    at_.v = now.v + h * a_;
+    add_stage(at_.q, at_.v, h / 6, next);
+    return Outcome::reached_end;
+  }
+
+  // a_i at a stage, and so much of the stage's rate into `next`.
+  void add_stage(const Vec& q, const Vec& v, double weight, State& next) {
+    force(q, a_);
+    a_.array() /= system().mass().array();
+    next.q += weight * v;
+    next.v += weight * a_;
+  }
+
+  State at_{0, Vec(system().size()), Vec(system().size())};
+  Vec a_{system().size()};
+};
+
+}  // namespace
+
+Method rk4() {
+  return {.name = "rk4",
+          .summary = "the classical Runge-Kutta method; four forces a step",
+          .source =
+              "Kutta, Z. Math. Phys. 46 (1901) 435-453; Hairer, Norsett and Wanner, Solving "
+              "ODEs I, table II.1.2",
+          .order = 4,
+          .stability_limit = 2 * std::sqrt(2),
+          .make = create<Rk4>};
+}
+
+}  // namespace qddot::registered

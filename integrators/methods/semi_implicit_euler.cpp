@@ -1,0 +1,76 @@
+// Semi-implicit (linearly implicit) Euler, as in the lecture and in Baraff and Witkin, SIGGRAPH
+// 1998: implicit Euler with f linearised at q_n, one Newton step of it from v = 0:
+//   (M - h^2 K(q_n)) v_{n+1} = M v_n + h f(q_n)
+//   q_{n+1} = q_n + h v_{n+1}
+// Order 1, one factorisation a step (one a run where K is constant). Not to be confused with
+// symplectic_euler, which the literature calls semi-implicit as well. An indefinite matrix is
+// solved with as it stands, as the formula says, but conjugate gradients alone end the run, as a
+// singular one does.
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+class SemiImplicitEuler final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  void start(const State&) override { factorized_h_ = 0; }
+
+  Outcome step(const State& now, double h, State& next) override {
+    force(now.q, f_);
+    if (!factorize(now.q, h)) return Outcome::indefinite_matrix;
+    b_ = system().mass().cwiseProduct(now.v) + h * f_;
+    if (const Outcome outcome = solve(b_, next.v); outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    next.q = now.q + h * next.v;
+    return Outcome::reached_end;
+  }
+
+  // Makes the factors of M - h^2 K(q) unless the last ones are these.
+  bool factorize(const Vec& q, double h) {
+    if (system().stiffness_is_constant() && h == factorized_h_) return true;
+    stiffness(q, k_);
+    ++counts().factorizations;
+    factorized_h_ = h;
+    const Stopwatch watch(seconds(), &Seconds::factorization);
+    return matrix_.factorize(1, h * h, k_) != EffectiveMass::Definiteness::singular;
+  }
+
+  Outcome solve(const Vec& b, Vec& x) {
+    const Stopwatch watch(seconds(), &Seconds::solve);
+    ++counts().solves;
+    const Outcome outcome = judge(matrix_.solve(b, x));
+    if (outcome == Outcome::indefinite_matrix) {
+      explain(
+          "compressed springs make M - h^2 K indefinite, with which conjugate gradients cannot "
+          "solve: take --solver multifrontal, which can, or a shorter step");
+    }
+    return outcome;
+  }
+
+  Vec f_{system().size()}, b_{system().size()};
+  SymmetricMatrix k_{system().stiffness_pattern()};
+  EffectiveMass matrix_{system(), knobs().solver};
+  double factorized_h_ = 0;
+};
+
+}  // namespace
+
+Method semi_implicit_euler() {
+  return {.name = "semi_implicit_euler",
+          .summary = "linearly implicit Euler; one linear solve a step, damps",
+          .source = "Baraff and Witkin, Large Steps in Cloth Simulation, SIGGRAPH 1998, eq. 6",
+          .implicit = true,
+          .linearly_implicit = true,
+          .needs_stiffness = true,
+          .accepts_massless = true,
+          .takes_solver = true,
+          .make = create<SemiImplicitEuler>};
+}
+
+}  // namespace qddot::registered

@@ -1,0 +1,47 @@
+// Symplectic Euler (often called semi-implicit Euler, a name that here belongs to the linearly
+// implicit method of the lecture):
+//   v_{n+1} = v_n + h M^-1 f(q_n)
+//   q_{n+1} = q_n + h v_{n+1}
+// Order 1, one force a step. Bounded on q'' = -w^2 q for h w < 2, unbounded above.
+#include "qddot/integrators/base/compensated_sum.hpp"
+#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+class SymplecticEuler final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  void start(const State&) override {
+    q_.restart();
+    v_.restart();
+  }
+
+  Outcome step(const State& now, double h, State& next) override {
+    force(now.q, f_);
+    v_.add(now.v, h * f_.cwiseQuotient(system().mass()), next.v);
+    q_.add(now.q, h * next.v, next.q);
+    return Outcome::reached_end;
+  }
+
+  CompensatedSum q_{knobs().compensated, system().size()};
+  CompensatedSum v_{knobs().compensated, system().size()};
+  Vec f_{system().size()};
+};
+
+}  // namespace
+
+Method symplectic_euler() {
+  return {.name = "symplectic_euler",
+          .summary = "kick, then drift; energy error stays bounded below h = 2/w_max",
+          .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.9",
+          .stability_limit = 2,
+          .symplectic = true,
+          .takes_compensation = true,
+          .make = create<SymplecticEuler>};
+}
+
+}  // namespace qddot::registered

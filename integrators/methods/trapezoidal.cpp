@@ -1,0 +1,52 @@
+// The trapezoidal rule, which is Newmark's method with beta = 1/4, gamma = 1/2:
+//   q_{n+1} = q_n + h v_n + h^2/4 (a_n + a_{n+1}),  M a = f(q)
+//   v_{n+1} = v_n + h/2 (a_n + a_{n+1})
+// so that M (u - u*) = h^2/4 f(q_n + u), u* = h v_n + h^2/4 a_n. Order 2, A-stable, reversible;
+// conjugate to implicit midpoint and so as good over long times, but not itself symplectic.
+#include "qddot/integrators/base/implicit_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+class Trapezoidal final : public ImplicitStep {
+ public:
+  using ImplicitStep::ImplicitStep;
+
+ private:
+  void start(const State& state) override {
+    ImplicitStep::start(state);
+    acceleration(state.q, a_);
+  }
+
+  Outcome step(const State& now, double h, State& next) override {
+    const double s = h * h / 4;
+    free_ = h * now.v + s * a_;
+    u_ = free_ + s * a_;
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    next.q = now.q + u_;
+    next.v = 2 / h * u_ - now.v;  // u = h/2 (v_n + v_{n+1})
+    a_ = (u_ - free_) / s;
+    return Outcome::reached_end;
+  }
+
+  Vec a_{system().size()};
+};
+
+}  // namespace
+
+Method trapezoidal() {
+  return {.name = "trapezoidal",
+          .summary = "Newmark's beta = 1/4, gamma = 1/2 (average acceleration); damps nothing",
+          .source = "Newmark, Journal of the Engineering Mechanics Division 85 (1959) 67-94",
+          .order = 2,
+          .implicit = true,
+          .needs_stiffness = true,
+          .takes_solve_tolerance = true,
+          .takes_solver = true,
+          .make = create<Trapezoidal>};
+}
+
+}  // namespace qddot::registered

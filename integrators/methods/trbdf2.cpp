@@ -1,0 +1,65 @@
+// TR-BDF2: the trapezoidal rule over g h, then BDF2 through both (y = (q, v), y' = (v, M^-1 f)):
+//   y_g     = y_n + g h/2 (y'_n + y'_g)
+//   y_{n+1} = y_n + b (y_g - y_n) + g h/2 y'_{n+1},  b = 1/(g (2 - g)),
+// where g = 2 - sqrt 2 gives both stages the matrix M - (g h/2)^2 K. Order 2, A-stable and
+// L-stable. The last stage's acceleration is the next step's first.
+#include "qddot/integrators/base/implicit_step.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::registered {
+namespace {
+
+const double g = 2 - std::sqrt(2.0);
+const double b = 1 / (g * (2 - g));
+
+class TrBdf2 final : public ImplicitStep {
+ public:
+  using ImplicitStep::ImplicitStep;
+
+ private:
+  void start(const State& state) override {
+    ImplicitStep::start(state);
+    acceleration(state.q, a_);
+  }
+
+  Outcome step(const State& now, double h, State& next) override {
+    const double c = g * h / 2, s = c * c;
+    free_ = 2 * c * now.v + s * a_;
+    u_ = free_ + s * a_;
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    ug_ = u_;
+    vg_ = u_ / c - now.v;
+    a_ = (u_ - free_) / s;
+
+    free_ = b * ug_ + c * (now.v + b * (vg_ - now.v));
+    u_ = free_ + s * a_;
+    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+      return outcome;
+    }
+    next.q = now.q + u_;
+    next.v = (u_ - b * ug_) / c;
+    a_ = (u_ - free_) / s;
+    return Outcome::reached_end;
+  }
+
+  Vec a_{system().size()};
+  Vec ug_{system().size()}, vg_{system().size()};
+};
+
+}  // namespace
+
+Method trbdf2() {
+  return {.name = "trbdf2",
+          .summary = "trapezoidal rule, then BDF2; two solves a step with one matrix, L-stable",
+          .source = "Hosea and Shampine, Applied Numerical Mathematics 20 (1996) 21-37",
+          .order = 2,
+          .implicit = true,
+          .needs_stiffness = true,
+          .takes_solve_tolerance = true,
+          .takes_solver = true,
+          .make = create<TrBdf2>};
+}
+
+}  // namespace qddot::registered

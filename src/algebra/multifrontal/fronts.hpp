@@ -1,0 +1,110 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "qddot/algebra/elimination.hpp"
+#include "qddot/model/system.hpp"
+
+namespace qddot::multifrontal {
+
+// Rows of an update that stay neighbours in the front they are added to.
+struct Run {
+  int from, to, length;
+};
+
+// The dense matrix of one supernode: `pivots` columns that become columns of L, and the `below` x
+// `below` update of what comes after. Rows and columns are numbered with the pivots first, then, at
+// the next multiple of 8, the rows below; what lies between is zero.
+struct Front {
+  int first, pivots, below;
+  Index factor, update;  // where its part of L and its update begin, in doubles
+  bool kept;             // the update is for a front above the branches
+  int row_start, row_end;
+  int entry_start, entry_end;
+  int diagonal_start, diagonal_end;
+  int run_start, run_end;
+  int child_start, child_end;
+
+  int pivot_strips() const { return (pivots + 7) / 8; }
+  int below_strips() const { return (below + 7) / 8; }
+  int strips() const { return pivot_strips() + below_strips(); }
+  // Rows of the whole, of the pivots and of the update, filled up to strips of 8.
+  int height() const { return 8 * strips(); }
+  int pivot_height() const { return 8 * pivot_strips(); }
+  int below_height() const { return 8 * below_strips(); }
+};
+
+// Fronts [start, end), subtrees that need none but their own. Branches are small against the whole,
+// so that each can be one thread's work; the tree is divided alike whatever the number of threads.
+struct Branch {
+  int start, end;
+};
+
+// All fronts of a matrix a D - s K and every index that its factorisation needs.
+class Fronts {
+ public:
+  // An entry of K or D and where it goes in the columns of its front's pivots.
+  struct Entry {
+    int source, target;
+  };
+
+  Fronts(const SymmetricMatrix& pattern, Elimination elimination);
+
+  // In the order of elimination: children before their parent.
+  const std::vector<Front>& all() const { return all_; }
+  const Front* begin() const { return all_.data(); }
+  const Front* end() const { return all_.data() + all_.size(); }
+  const std::vector<Branch>& branches() const { return branches_; }
+  // Those above the branches, in the order of elimination: few, but the largest.
+  const std::vector<int>& top() const { return top_; }
+  // place()[i]: where unknown i comes in the order of elimination.
+  const std::vector<int>& place() const { return place_; }
+
+  std::span<const int> rows(const Front& f) const { return part(rows_, f.row_start, f.row_end); }
+  // By ascending target.
+  std::span<const Entry> entries(const Front& f) const {
+    return part(entries_, f.entry_start, f.entry_end);
+  }
+  std::span<const Entry> diagonal(const Front& f) const {
+    return part(diagonal_, f.diagonal_start, f.diagonal_end);
+  }
+  // Where the rows of its update stand in its parent.
+  std::span<const Run> runs(const Front& f) const { return part(runs_, f.run_start, f.run_end); }
+  std::span<const int> children(const Front& f) const {
+    return part(children_, f.child_start, f.child_end);
+  }
+
+  // What some fronts need one after the other: doubles of the updates that are alive at once and of
+  // the largest columns of pivots; rows of the highest front.
+  struct Sizes {
+    Index updates = 0, pivot_columns = 0;
+    int height = 0;
+  };
+  // Of any branch, without the updates that are kept; of the fronts above, with them.
+  Sizes branch_sizes, top_sizes;
+  Index factor_size = 0;  // doubles of L
+
+ private:
+  template <class T>
+  static std::span<const T> part(const std::vector<T>& all, int start, int end) {
+    return std::span(all).subspan(start, end - start);
+  }
+  // An entry of K, which stands in the column of `unknown`, in the order of elimination.
+  struct Placed {
+    int source, unknown, column, row;
+  };
+  std::vector<Placed> in_order_of_elimination(const SymmetricMatrix& pattern) const;
+  // position: of its parent's rows.
+  void add_runs(Front& child, const std::vector<int>& position);
+  void divide(const std::vector<int>& parents);
+  void place_updates(const std::vector<int>& parents);
+
+  std::vector<Front> all_;
+  std::vector<Branch> branches_;
+  std::vector<int> top_, place_, rows_, children_;
+  std::vector<Entry> entries_, diagonal_;
+  std::vector<Run> runs_;
+};
+
+}  // namespace qddot::multifrontal

@@ -1,0 +1,316 @@
+#pragma once
+
+#include <cmath>
+
+#include "qddot/model/kernels/lanes.hpp"
+#include "qddot/model/system.hpp"
+
+namespace qddot::multifrontal::strips {
+
+using namespace kernels;
+
+// Dense kernels for LDL' and its triangular solves, on matrices cut into strips of 8 rows. A strip
+// of k columns is k times 8 numbers, one after the other: products read it as it lies in memory,
+// its rows in the lanes of the processor's vectors.
+constexpr int height = 8;
+
+// Strips that hold so many rows.
+constexpr int count(int rows) { return (rows + height - 1) / height; }
+
+// Tiles of as many vectors as the processor's registers hold: 32 with AVX-512, else 16.
+constexpr int vectors = height / lanes;  // in a column of a strip
+constexpr int tile_strips = lanes == 8 ? 3 : 1;
+constexpr int tile_columns = lanes;
+
+constexpr LaneNumbers first_places = lane_numbers([](int t) { return t; });
+
+// C = C - A W', or C = -A W' where `fresh`. C: columns `ld` apart; A: strips `stride` apart, of k
+// columns; W: the first `tile_columns` rows of a strip of k columns.
+template <int strips, bool fresh>
+inline void subtract_tile(double* c, Index ld, const double* a, Index stride, const double* w,
+                          int k) {
+  constexpr int rows = strips * vectors;
+  // C may be in a farther cache than A and W: where there are many products, it is fetched before.
+  if (k >= 48) {
+#pragma GCC unroll 16
+    for (int j = 0; j < tile_columns; ++j) {
+#pragma GCC unroll 16
+      for (int i = 0; i < strips; ++i) __builtin_prefetch(c + j * ld + i * height, 1);
+    }
+  }
+  Lanes sum[tile_columns][rows] = {};
+  for (int p = 0; p < k; ++p, a += height, w += height) {
+    Lanes x[rows];
+#pragma GCC unroll 16
+    for (int i = 0; i < rows; ++i) x[i] = load(a + i / vectors * stride + i % vectors * lanes);
+#pragma GCC unroll 16
+    for (int j = 0; j < tile_columns; ++j) {
+#pragma GCC unroll 16
+      for (int i = 0; i < rows; ++i) sum[j][i] += x[i] * w[j];
+    }
+  }
+#pragma GCC unroll 16
+  for (int j = 0; j < tile_columns; ++j) {
+#pragma GCC unroll 16
+    for (int i = 0; i < rows; ++i) {
+      double* to = c + j * ld + i * lanes;
+      store(to, fresh ? -sum[j][i] : load(to) - sum[j][i]);
+    }
+  }
+}
+
+// The same for all 8 rows of W and 1 to `tile_strips` strips.
+template <bool fresh>
+inline void subtract(double* c, Index ld, const double* a, Index stride, const double* w, int k,
+                     int strips) {
+  for (int j = 0; j < height; j += tile_columns, c += tile_columns * ld, w += tile_columns) {
+    if constexpr (tile_strips == 3) {
+      if (strips == 3) subtract_tile<3, fresh>(c, ld, a, stride, w, k);
+      if (strips == 2) subtract_tile<2, fresh>(c, ld, a, stride, w, k);
+    }
+    if (strips == 1) subtract_tile<1, fresh>(c, ld, a, stride, w, k);
+  }
+}
+
+// Entry i of a strip's column, in every lane.
+inline Lanes splat(const Lanes* x, int i) {
+  return __builtin_shuffle(x[i / lanes], LaneNumbers{} + i % lanes);
+}
+
+// Which entries of a column stand below (above) entry i, the others 0.
+inline Lanes below(Lanes x, int v, int i) { return first_places + v * lanes > i ? x : Lanes{}; }
+inline Lanes above(Lanes x, int v, int i) { return first_places + v * lanes < i ? x : Lanes{}; }
+
+// Y = Y + X, n rows of columns x_ld and y_ld apart. A column's last vector is read and written
+// whole, beyond it unchanged.
+inline void add(const double* x, Index x_ld, int n, int columns, double* y, Index y_ld) {
+  const int whole = n / lanes * lanes;
+  const auto rest = first_places < n - whole;
+  for (int j = 0; j < columns; ++j, x += x_ld, y += y_ld) {
+    for (int i = 0; i < whole; i += lanes) store(y + i, load(y + i) + load(x + i));
+    if (whole < n) store(y + whole, load(y + whole) + (rest ? load(x + whole) : Lanes{}));
+  }
+}
+
+// A = L D L' of 8 pivots without pivoting.
+struct Block {
+  double l[height * height];   // without the diagonal; L' above it
+  double ld[height * height];  // columns of L D
+  double pivot[height], inverse[height];
+  int negative = 0;
+  bool regular = true;  // every pivot is a number that can be divided by
+
+  Block() = default;
+  // A: the lower triangle of columns `a_ld` apart.
+  Block(const double* a, Index a_ld) {
+    Lanes x[height][vectors], y[height][vectors];
+#pragma GCC unroll 8
+    for (int j = 0; j < height; ++j) {
+#pragma GCC unroll 4
+      for (int v = 0; v < vectors; ++v) x[j][v] = load(a + j * a_ld + v * lanes);
+    }
+#pragma GCC unroll 8
+    for (int p = 0; p < height; ++p) {
+      const Lanes d = splat(x[p], p);
+#pragma GCC unroll 4
+      for (int v = 0; v < vectors; ++v) y[p][v] = x[p][v] / d;
+#pragma GCC unroll 8
+      for (int j = p + 1; j < height; ++j) {
+#pragma GCC unroll 4
+        for (int v = 0; v < vectors; ++v) x[j][v] -= y[p][v] * splat(x[p], j);
+      }
+#pragma GCC unroll 4
+      for (int v = 0; v < vectors; ++v) {
+        store(ld + p * height + v * lanes, x[p][v]);
+        store(l + p * height + v * lanes, below(y[p][v], v, p));
+      }
+    }
+    for (int p = 0; p < height; ++p) {
+      pivot[p] = ld[p * height + p];
+      inverse[p] = 1 / pivot[p];
+      negative += pivot[p] < 0;
+      regular = regular && std::isfinite(pivot[p]) && std::isfinite(inverse[p]);
+      for (int i = p + 1; i < height; ++i) l[i * height + p] = l[p * height + i];
+    }
+  }
+};
+
+// A strip of L below a block: L D = A L'^-1, A's 8 columns `ld` apart. Of L and L D the first k
+// columns are kept.
+inline void divide_strip(const double* a, Index ld, const Block& block, int k, double* l,
+                         double* scaled) {
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) {
+    Lanes x[height];
+#pragma GCC unroll 8
+    for (int j = 0; j < height; ++j) x[j] = load(a + j * ld + v * lanes);
+#pragma GCC unroll 8
+    for (int p = 0; p < height; ++p) {
+      if (p < k) store(scaled + p * height + v * lanes, x[p]);
+      x[p] *= block.inverse[p];
+#pragma GCC unroll 8
+      for (int j = p + 1; j < height; ++j) x[j] -= x[p] * block.ld[p * height + j];
+    }
+#pragma GCC unroll 8
+    for (int j = 0; j < height; ++j) {
+      if (j < k) store(l + j * height + v * lanes, x[j]);
+    }
+  }
+}
+
+// y = y - A x of strips `stride` apart, of k <= 8 columns.
+inline void subtract_product(const double* a, Index stride, const double* x, int k, int strips,
+                             double* y) {
+  for (int i = 0; i < strips; ++i, a += stride, y += height) {
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) {
+      Lanes even = load(y + v * lanes), odd = {};
+#pragma GCC unroll 8
+      for (int j = 0; j < height; ++j) {
+        if (j < k) (j % 2 ? odd : even) -= load(a + j * height + v * lanes) * x[j];
+      }
+      store(y + v * lanes, even + odd);
+    }
+  }
+}
+
+// The sums of `size` vectors' lanes, size a multiple of `lanes`, into size / lanes vectors: by
+// halves, sums of `width` lanes side by side.
+template <int size, int width = 1>
+inline void add_lanes(Lanes* x) {
+  if constexpr (width < lanes) {
+    const LaneNumbers block = first_places / width, within = first_places % width;
+    const LaneNumbers first = within + (block - block % 2) * width + block % 2 * lanes;
+#pragma GCC unroll 8
+    for (int i = 0; i < size / 2; ++i) {
+      x[i] = __builtin_shuffle(x[2 * i], x[2 * i + 1], first) +
+             __builtin_shuffle(x[2 * i], x[2 * i + 1], first + width);
+    }
+    add_lanes<size / 2, 2 * width>(x);
+  }
+}
+
+// y = y - A' x of strips `stride` apart, of k <= 8 columns.
+inline void subtract_transposed(const double* a, Index stride, const double* x, int k, int strips,
+                                double* y) {
+  Lanes sum[height][vectors] = {};
+  for (int i = 0; i < strips; ++i, a += stride, x += height) {
+#pragma GCC unroll 8
+    for (int j = 0; j < height; ++j) {
+      if (j >= k) continue;
+#pragma GCC unroll 4
+      for (int v = 0; v < vectors; ++v)
+        sum[j][v] += load(a + j * height + v * lanes) * load(x + v * lanes);
+    }
+  }
+  Lanes total[height];
+#pragma GCC unroll 8
+  for (int j = 0; j < height; ++j) {
+    total[j] = sum[j][0];
+#pragma GCC unroll 4
+    for (int v = 1; v < vectors; ++v) total[j] += sum[j][v];
+  }
+  add_lanes<height>(total);
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) store(y + v * lanes, load(y + v * lanes) - total[v]);
+}
+
+// x = L^-1 x and x = L'^-1 x for the first k pivots of a block, `l` as in Block; further x are 0.
+inline void solve_lower(const double* l, int k, double* x) {
+  Lanes z[vectors];
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) z[v] = load(x + v * lanes);
+#pragma GCC unroll 8
+  for (int p = 0; p < height; ++p) {
+    if (p >= k) continue;
+    const Lanes pivot = splat(z, p);
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) z[v] -= below(load(l + p * height + v * lanes), v, p) * pivot;
+  }
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) store(x + v * lanes, z[v]);
+}
+
+inline void solve_upper(const double* l, int k, double* x) {
+  Lanes z[vectors];
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) z[v] = load(x + v * lanes);
+#pragma GCC unroll 8
+  for (int p = height; p-- > 0;) {
+    if (p >= k) continue;
+    const Lanes pivot = splat(z, p);
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) z[v] -= above(load(l + p * height + v * lanes), v, p) * pivot;
+  }
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) store(x + v * lanes, z[v]);
+}
+
+// The same for four right-hand sides at once, whose rows are the lanes: no sums over lanes, and
+// one load of a row where it is gathered.
+constexpr int quad = 4;
+using Quad = double __attribute__((vector_size(quad * sizeof(double)), aligned(8), may_alias));
+
+inline Quad& row(double* x, int i) { return reinterpret_cast<Quad*>(x)[i]; }
+inline const Quad& row(const double* x, int i) { return reinterpret_cast<const Quad*>(x)[i]; }
+
+// Y = Y - A X of one strip of k columns.
+inline void subtract_products(const double* a, const double* x, int k, double* y) {
+  Quad sum[height];
+#pragma GCC unroll 8
+  for (int i = 0; i < height; ++i) sum[i] = row(y, i);
+  for (int j = 0; j < k; ++j, a += height) {
+    const Quad xj = row(x, j);
+#pragma GCC unroll 8
+    for (int i = 0; i < height; ++i) sum[i] -= a[i] * xj;
+  }
+#pragma GCC unroll 8
+  for (int i = 0; i < height; ++i) row(y, i) = sum[i];
+}
+
+// Y = Y - A' X of strips `stride` apart, of `columns` columns.
+template <int columns>
+inline void subtract_transposed_products(const double* a, Index stride, const double* x, int strips,
+                                         double* y) {
+  Quad sum[columns];
+#pragma GCC unroll 8
+  for (int j = 0; j < columns; ++j) sum[j] = row(y, j);
+  for (int i = 0; i < strips; ++i, a += stride, x += height * quad) {
+#pragma GCC unroll 8
+    for (int r = 0; r < height; ++r) {
+      const Quad xr = row(x, r);
+#pragma GCC unroll 8
+      for (int j = 0; j < columns; ++j) sum[j] -= a[j * height + r] * xr;
+    }
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < columns; ++j) row(y, j) = sum[j];
+}
+
+// The same of k <= 8 columns.
+inline void subtract_transposed_products(const double* a, Index stride, const double* x, int k,
+                                         int strips, double* y) {
+  for (; k >= 4; k -= 4, a += 4 * height, y += 4 * quad) {
+    subtract_transposed_products<4>(a, stride, x, strips, y);
+  }
+  for (; k >= 1; k -= 1, a += height, y += quad) {
+    subtract_transposed_products<1>(a, stride, x, strips, y);
+  }
+}
+
+// X = L^-1 X and X = L'^-1 X for the first k pivots of a block.
+inline void solve_lowers(const double* l, int k, double* x) {
+  for (int p = 0; p < k; ++p) {
+    const Quad pivot = row(x, p);
+    for (int i = p + 1; i < k; ++i) row(x, i) -= l[p * height + i] * pivot;
+  }
+}
+
+inline void solve_uppers(const double* l, int k, double* x) {
+  for (int p = k; p-- > 0;) {
+    const Quad pivot = row(x, p);
+    for (int i = 0; i < p; ++i) row(x, i) -= l[p * height + i] * pivot;
+  }
+}
+
+}  // namespace qddot::multifrontal::strips

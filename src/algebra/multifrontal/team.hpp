@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+
+namespace qddot::multifrontal {
+
+// What the threads of a team have in common.
+class Meeting {
+ public:
+  explicit Meeting(int threads) : threads_(threads) {}
+
+  int threads() const { return threads_; }
+  // 0, 1, 2, ..., each once.
+  int draw() { return next_.fetch_add(1, std::memory_order_relaxed); }
+
+  // Returns when all threads have come. Where others take the processor from one of them, waiting
+  // for it in a loop would keep it away for longer: after some microseconds the rest sleep.
+  void wait() {
+    const int round = round_.load();
+    if (come_.fetch_add(1) + 1 == threads_) {
+      come_.store(0);
+      round_.store(round + 1);
+      round_.notify_all();
+      return;
+    }
+    for (int i = 0; i < 20000 && round_.load() == round;) ++i;
+    round_.wait(round);
+  }
+
+ private:
+  const int threads_;
+  alignas(64) std::atomic<int> next_ = 0;
+  alignas(64) std::atomic<int> come_ = 0;
+  alignas(64) std::atomic<int> round_ = 0;
+};
+
+// One of the threads that walk through the same code together and share its loops, as it sees the
+// team; or a thread by itself, for which all of this is plain loops.
+class Team {
+ public:
+  Team() = default;
+  explicit Team(Meeting& meeting) : threads_(meeting.threads()), meeting_(&meeting) {}
+
+  bool alone() const { return threads_ == 1; }
+
+  // work(i) for i = 0, ..., count - 1, each by whichever thread is free. All threads must come
+  // here; none leaves before all is done.
+  template <class Work>
+  void share(int count, const Work& work) {
+    if (alone()) {
+      for (int i = 0; i < count; ++i) work(i);
+      return;
+    }
+    for (int i; (i = meeting_->draw() - first_) < count;) work(i);
+    first_ += count + threads_;  // every thread has drawn one too many
+    meeting_->wait();
+  }
+
+  // work(from, end) for parts of [0, count) that begin at multiples of `part`; all at once for a
+  // thread alone.
+  template <class Work>
+  void share_parts(int count, int part, const Work& work) {
+    if (alone()) {
+      work(0, count);
+    } else {
+      share((count + part - 1) / part,
+            [&](int i) { work(i * part, std::min((i + 1) * part, count)); });
+    }
+  }
+
+ private:
+  int threads_ = 1;
+  Meeting* meeting_ = nullptr;
+  int first_ = 0;  // what is drawn for the next loop's first turn
+};
+
+}  // namespace qddot::multifrontal

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "qddot/model/spring.hpp"
+#include "qddot/model/system.hpp"
+
+namespace qddot::kernels {
+
+// One end of a spring, seen from its node: what it pulls that node towards.
+struct Neighbour {
+  int point;  // a node, or a point that is none; see slice_neighbours
+  SpringLaw law;
+};
+
+// The springs of all nodes, laid out for a processor that evaluates as many at once as its vectors
+// have lanes: a row is a node, a slice is `lanes` rows, a slot one spring of each of them. Every
+// spring stands here twice, once for each end, so that a row sums its own forces and nothing is
+// scattered. Where a row has fewer springs than others, slots are filled with springs of no
+// stiffness. This is the format SELL-C-sigma (Kreutzer, Hager, Wellein, Fehske, Bishop, SIAM J.
+// Sci. Comput. 36 (2014) C401-C423) with, besides slots that gather, slots of one shift, as most
+// are inside of a grid.
+struct NeighbourSlices {
+  // Where a slice's slots begin; they end where those of the next begin.
+  struct Slice {
+    int shift, gather;
+    Index law;
+  };
+
+  // The node of each row, -1 where a row only fills up the last slice. Rows are the first places;
+  // then come the points that are no nodes, in order.
+  std::vector<int> node;
+  int places = 0;
+  std::vector<Slice> slices;  // and the end
+  std::vector<int> shifts;    // of a slot: its rows' neighbours are at the rows' places plus this
+  std::vector<int> gathers;   // of a slot: `lanes` places
+  // Of a slot: the stiffness of its rows' springs; then, where any spring of all has one, their
+  // rest lengths; then, where any has one, their quartic stiffness. In a slice first the slots of
+  // one shift, then those that gather.
+  Vec laws;
+  int law_vectors = 1;
+  std::vector<bool> gathered;  // of `lanes` places each: whether any slot gathers from these
+
+  int rows() const { return static_cast<int>(node.size()); }
+  int count() const { return static_cast<int>(slices.size()) - 1; }
+};
+
+// neighbours[i]: those of node i < N; points N, ..., N + extras - 1 are no nodes. Rows are in the
+// nodes' order, or sorted by their number of springs within windows where that leaves fewer slots.
+NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours, int extras);
+
+}  // namespace qddot::kernels

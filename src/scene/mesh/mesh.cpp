@@ -1,0 +1,117 @@
+#include "qddot/scene/mesh/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/mesh/mesh_formats.hpp"
+
+namespace qddot::mesh {
+namespace {
+
+using Reader = Mesh (*)(const std::string& text, const std::string& file);
+
+Reader reader_for(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  if (ending == ".obj") return read_obj;
+  if (ending == ".mesh") return read_medit;
+  if (ending == ".msh") return read_gmsh;
+  throw InvalidInput(
+      fmt::format("{}: the ending \"{}\" is not allowed; allowed are .obj, .mesh and .msh",
+                  file.string(), ending));
+}
+
+// Lines end with a line feed, a carriage return, or both, as each system writes them.
+bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+
+bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && !is_line_end(c); }
+
+void keep_distinct(std::vector<std::array<std::size_t, 2>>& edges) {
+  for (auto& [i, j] : edges) {
+    if (i > j) std::swap(i, j);
+  }
+  // A face may name a corner twice in a row; that is no edge.
+  std::erase_if(edges, [](const auto& edge) { return edge[0] == edge[1]; });
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+}
+
+}  // namespace
+
+std::string_view Words::in_line() {
+  while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+  if (at_ < text_.size() && text_[at_] == '#') pass_line();
+  const std::size_t start = at_;
+  while (at_ < text_.size() && !is_line_end(text_[at_]) && !is_blank(text_[at_])) ++at_;
+  return text_.substr(start, at_ - start);
+}
+
+std::string_view Words::next() {
+  std::string_view word = in_line();
+  while (word.empty() && next_line()) word = in_line();
+  return word;
+}
+
+void Words::pass_line() {
+  while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
+}
+
+bool Words::next_line() {
+  pass_line();
+  if (at_ == text_.size()) return false;
+  at_ += text_.substr(at_, 2) == "\r\n" ? 2 : 1;
+  ++line_;
+  return true;
+}
+
+void Words::refuse(std::string_view field, std::string_view value, std::string_view allowed,
+                   int line) const {
+  const std::string what =
+      value.empty() ? "ends too early" : fmt::format("{} is not allowed", shown(value));
+  throw InvalidInput(fmt::format("{}:{}: {}: {}; allowed {}", file_, line, field, what, allowed));
+}
+
+double Words::number(std::string_view field, std::string_view word) const {
+  const auto value = number_in<double>(word);
+  if (!value || !std::isfinite(*value)) refuse(field, word, "are finite numbers");
+  return *value;
+}
+
+Mesh read_mesh(const std::filesystem::path& file, const TextSource& read) {
+  reader_for(file);  // a file of another ending is not opened
+  return parse_mesh(read(file.string()), file);
+}
+
+Mesh parse_mesh(const std::string& text, const std::filesystem::path& file) {
+  const std::string name = file.string();
+  Mesh mesh = reader_for(file)(text, name);
+  if (mesh.vertices.empty())
+    throw InvalidInput(fmt::format("{}: it has no vertices; allowed are meshes with some", name));
+  keep_distinct(mesh.edges);
+  return mesh;
+}
+
+std::vector<std::array<std::size_t, 2>> opposite_vertices(const Mesh& mesh) {
+  std::vector<std::array<std::size_t, 3>> sides;  // the two ends of an edge, the corner opposite
+  for (const auto& [a, b, c] : mesh.triangles) {
+    for (const auto& [i, j, k] : {std::array{a, b, c}, std::array{b, c, a}, std::array{c, a, b}})
+      sides.push_back({std::min(i, j), std::max(i, j), k});
+  }
+  std::sort(sides.begin(), sides.end());
+  // A triangle may be given twice, as for two groups.
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+
+  std::vector<std::array<std::size_t, 2>> pairs;
+  const auto edge = [](const auto& side) { return std::pair(side[0], side[1]); };
+  for (auto first = sides.begin(); first != sides.end();) {
+    const auto last = std::find_if(first, sides.end(),
+                                   [&](const auto& side) { return edge(side) != edge(*first); });
+    if (last - first == 2) pairs.push_back({first[0][2], first[1][2]});
+    first = last;
+  }
+  return pairs;
+}
+
+}  // namespace qddot::mesh

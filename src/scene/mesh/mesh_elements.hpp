@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "qddot/scene/mesh/mesh.hpp"
+
+namespace qddot::mesh {
+
+// A kind of element, as MEDIT and Gmsh call it, and its edges by the places of their two corners.
+// Both number the corners alike.
+struct Element {
+  std::string_view name;
+  std::string_view medit_section;  // empty where it is passed over
+  int gmsh_type;
+  int dimension;
+  std::size_t corners;
+  std::string_view edges;
+};
+inline constexpr std::array<Element, 8> elements{{
+    {"line", "Edges", 1, 1, 2, "01"},
+    {"triangle", "Triangles", 2, 2, 3, "01 12 20"},
+    {"quadrangle", "Quadrilaterals", 3, 2, 4, "01 12 23 30"},
+    {"tetrahedron", "Tetrahedra", 4, 3, 4, "01 02 03 12 13 23"},
+    {"hexahedron", "Hexahedra", 5, 3, 8, "01 12 23 30 45 56 67 74 04 15 26 37"},
+    {"prism", "Prisms", 6, 3, 6, "01 12 20 34 45 53 03 14 25"},
+    {"pyramid", "Pyramids", 7, 3, 5, "01 12 23 30 04 14 24 34"},
+    {"point", "", 15, 0, 1, ""},
+}};
+inline constexpr std::size_t most_corners = 8;
+
+// Appends the edges of an element with these vertices, and the triangle if it is one.
+inline void add_element(const Element& element, std::span<const std::size_t> corners, Mesh& mesh) {
+  const auto corner_at = [&](std::size_t k) {
+    return corners[std::size_t(element.edges[k] - '0')];
+  };
+  for (std::size_t k = 0; k < element.edges.size(); k += 3)
+    mesh.edges.push_back({corner_at(k), corner_at(k + 1)});
+  if (element.corners == 3) mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+}
+
+}  // namespace qddot::mesh

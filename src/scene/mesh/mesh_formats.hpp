@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "qddot/scene/mesh/mesh.hpp"
+
+namespace qddot::mesh {
+
+// The words of a mesh file and the line that the last one stands in. Lines end with LF, CR LF or CR
+// alone; a '#' ends its line's words.
+class Words {
+ public:
+  // Both must outlive this.
+  Words(const std::string& text, const std::string& file) : text_(text), file_(file) {}
+
+  // The next word of this line; empty at the line's end.
+  std::string_view in_line();
+  // The next word of this or a later line; empty at the file's end.
+  std::string_view next();
+  // Steps to the start of the next line; false where there is none.
+  bool next_line();
+
+  int line() const { return line_; }
+
+  // Throws InvalidInput: `value`, met in `line`, is not one of those `allowed`.
+  [[noreturn]] void refuse(std::string_view field, std::string_view value, std::string_view allowed,
+                           int line) const;
+  [[noreturn]] void refuse(std::string_view field, std::string_view value,
+                           std::string_view allowed) const {
+    refuse(field, value, allowed, line_);
+  }
+  // The finite number that a word writes.
+  double number(std::string_view field, std::string_view word) const;
+
+ private:
+  void pass_line();  // to its end
+
+  std::string_view text_;
+  const std::string& file_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+};
+
+// The number that is all of `word`, with or without a sign.
+template <class Number>
+std::optional<Number> number_in(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  Number value{};
+  const char* last = word.data() + word.size();
+  const auto [end, error] = std::from_chars(word.data(), last, value);
+  return error == std::errc() && end == last ? std::optional(value) : std::nullopt;
+}
+
+// The formats. Edges come as the file has them: repeated, in either direction, unsorted.
+Mesh read_obj(const std::string& text, const std::string& file);
+Mesh read_medit(const std::string& text, const std::string& file);
+Mesh read_gmsh(const std::string& text, const std::string& file);
+
+}  // namespace qddot::mesh

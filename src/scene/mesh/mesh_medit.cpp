@@ -1,0 +1,117 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "qddot/scene/mesh/mesh_elements.hpp"
+#include "qddot/scene/mesh/mesh_formats.hpp"
+
+namespace qddot::mesh {
+namespace {
+
+class MeditReader {
+ public:
+  MeditReader(const std::string& text, const std::string& file) : words_(text, file) {}
+
+  Mesh read() {
+    if (const auto word = words_.next(); word != "MeshVersionFormatted")
+      words_.refuse("first word", word, "is MeshVersionFormatted");
+    whole("MeshVersionFormatted", 0, 9);
+    // The content of a section that has no edges is passed over up to the next keyword; that of any
+    // other ends where its count says, so that a number behind it is one too many.
+    bool passes_over = false;
+    std::string_view section = "MeshVersionFormatted";
+    for (auto word = words_.next(); !word.empty() && word != "End"; word = words_.next()) {
+      if (number_in<double>(word)) {
+        if (!passes_over)
+          words_.refuse(section, word, "is no more than its count says: next comes a keyword");
+        continue;
+      }
+      section = word;
+      passes_over = !read_section(word);
+    }
+    // Elements may come before the vertices, so what they name is known only now.
+    if (largest_ > mesh_.vertices.size())
+      words_.refuse("element", std::to_string(largest_),
+                    fmt::format("are the vertices 1 to {}", mesh_.vertices.size()), largest_line_);
+    return std::move(mesh_);
+  }
+
+ private:
+  // Whether it is one that is read.
+  bool read_section(std::string_view keyword) {
+    const auto element =
+        std::find_if(elements.begin(), elements.end(),
+                     [&](const Element& candidate) { return candidate.medit_section == keyword; });
+    const bool is_read =
+        keyword == "Dimension" || keyword == "Vertices" || element != elements.end();
+    if (!is_read) return false;
+    if (std::ranges::find(seen_, keyword) != seen_.end())
+      words_.refuse("section", keyword, "is each section once");
+    seen_.push_back(keyword);
+    if (keyword == "Dimension") {
+      if (!mesh_.vertices.empty())
+        words_.refuse("section", keyword, "is Dimension before Vertices");
+      dimension_ = whole(keyword, 2, 3);
+    } else if (keyword == "Vertices") {
+      read_vertices();
+    } else {
+      read_elements(*element);
+    }
+    return true;
+  }
+
+  std::size_t whole(std::string_view field, std::size_t low, std::size_t high) {
+    const auto word = words_.next();
+    const auto value = number_in<std::size_t>(word);
+    if (!value || *value < low || *value > high)
+      words_.refuse(field, word, fmt::format("are whole numbers from {} to {}", low, high));
+    return *value;
+  }
+  // The number of entries in a section. Nothing is reserved for them before they are seen.
+  std::size_t count(std::string_view field) { return whole(field, 0, 1'000'000'000); }
+  void skip_reference(std::string_view field) { words_.number(field, words_.next()); }
+
+  void read_vertices() {
+    constexpr std::string_view field = "Vertices";
+    for (std::size_t left = count(field); left > 0; --left) {
+      Eigen::Vector3d x = Eigen::Vector3d::Zero();
+      for (std::size_t k = 0; k < dimension_; ++k) x[k] = words_.number(field, words_.next());
+      skip_reference(field);
+      mesh_.vertices.push_back(x);
+    }
+  }
+
+  void read_elements(const Element& element) {
+    const std::string_view field = element.medit_section;
+    std::array<std::size_t, most_corners> corners;
+    for (std::size_t left = count(field); left > 0; --left) {
+      for (std::size_t k = 0; k < element.corners; ++k) corners[k] = corner(field);
+      skip_reference(field);
+      add_element(element, corners, mesh_);
+    }
+  }
+
+  std::size_t corner(std::string_view field) {
+    const std::size_t index = whole(field, 1, 1'000'000'000);
+    if (index > largest_) {
+      largest_ = index;
+      largest_line_ = words_.line();
+    }
+    return index - 1;
+  }
+
+  Words words_;
+  Mesh mesh_;
+  std::size_t dimension_ = 3;
+  std::vector<std::string_view> seen_;  // sections
+  std::size_t largest_ = 0;             // of all indices, counted from 1
+  int largest_line_ = 0;
+};
+
+}  // namespace
+
+Mesh read_medit(const std::string& text, const std::string& file) {
+  return MeditReader(text, file).read();
+}
+
+}  // namespace qddot::mesh

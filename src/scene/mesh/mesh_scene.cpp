@@ -1,0 +1,145 @@
+#include "qddot/scene/mesh/mesh_scene.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/mesh/mesh.hpp"
+
+namespace qddot {
+namespace {
+
+using namespace mesh;
+
+Mesh read_file(const Table& table, const std::filesystem::path& folder, const TextSource& read) {
+  const std::string file = table.text("file");
+  const bool has_control =
+      std::ranges::any_of(file, [](unsigned char c) { return std::iscntrl(c); });
+  if (has_control || file.size() > 1000)  // messages hold it
+    table.refuse("file", "names of up to 1000 bytes without control characters");
+  try {
+    return read_mesh(folder / file, read);
+  } catch (const InvalidInput& refusal) {
+    table.fail("file", refusal.what());
+  }
+}
+
+// The pairs of nodes that springs against bending join.
+std::vector<std::array<std::size_t, 2>> bending_pairs(const Table& table, const Mesh& mesh) {
+  const double stiffness = table.number_or(0, "bending_stiffness", not_negative);
+  if (stiffness == 0) return {};
+  auto pairs = opposite_vertices(mesh);
+  if (pairs.empty())
+    table.fail(
+        "bending_stiffness",
+        fmt::format("{} is not allowed as {} has no edge between two triangles; allowed is 0",
+                    stiffness, shown(table.text("file"))));
+  return pairs;
+}
+
+double mass_of_each(const Table& table, std::size_t nodes) {
+  if (table.has("node_mass") == table.has("total_mass"))
+    table.fail("node_mass", "allowed is exactly one of node_mass and total_mass");
+  if (table.has("node_mass")) return table.number("node_mass", not_negative);
+  return table.number("total_mass", not_negative) / static_cast<double>(nodes);
+}
+
+void add_springs(const std::vector<std::array<std::size_t, 2>>& pairs, double stiffness,
+                 Scene& scene) {
+  for (const auto& [i, j] : pairs) {
+    const double length = (scene.nodes[j].position - scene.nodes[i].position).norm();
+    scene.springs.push_back({{i, j}, {.stiffness = stiffness, .rest_length = length}});
+  }
+}
+
+// Leaves out the vertices at which no edge ends; the others keep their order. Returns how many.
+std::size_t leave_out_unused(Mesh& mesh) {
+  std::vector<bool> is_used(mesh.vertices.size(), false);
+  for (const auto& edge : mesh.edges) is_used[edge[0]] = is_used[edge[1]] = true;
+  std::vector<std::size_t> number(mesh.vertices.size());
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    number[i] = used;
+    if (is_used[i]) mesh.vertices[used++] = mesh.vertices[i];
+  }
+  const std::size_t unused = mesh.vertices.size() - used;
+  if (unused == 0) return 0;
+  mesh.vertices.resize(used);
+  const auto renumber = [&](auto& all) {
+    for (auto& corners : all) {
+      for (std::size_t& corner : corners) corner = number[corner];
+    }
+  };
+  renumber(mesh.edges);
+  // One that names a corner twice may have corners at which no edge ends: it has no area.
+  std::erase_if(mesh.triangles, [&](const auto& corners) {
+    return std::ranges::any_of(corners, [&](std::size_t corner) { return !is_used[corner]; });
+  });
+  renumber(mesh.triangles);
+  return unused;
+}
+
+std::string unused_sentence(const std::string& file, std::size_t unused) {
+  return fmt::format("{}: {} {} left out; nodes are numbered without {}", file,
+                     unused == 1 ? "1 vertex that no edge uses"
+                                 : fmt::format("{} vertices that no edge uses", unused),
+                     unused == 1 ? "is" : "are", unused == 1 ? "it" : "them");
+}
+
+std::string in_words(const Eigen::Vector3d& x) {
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x[0], x[1], x[2]);
+}
+
+void pin(const Table& box, std::vector<Node>& nodes) {
+  box.allow_keys({"min", "max"});
+  const Eigen::Vector3d low = box.vector("min", 3), high = box.vector("max", 3);
+  if ((low.array() > high.array()).any()) box.refuse("max", "arrays that are nowhere below min");
+  bool catches_any = false;
+  Eigen::AlignedBox3d mesh;
+  for (Node& node : nodes) {
+    const auto x = node.position.array();
+    const bool is_inside = (low.array() <= x && x <= high.array()).all();
+    node.pinned |= is_inside;
+    catches_any |= is_inside;
+    mesh.extend(node.position);
+  }
+  if (!catches_any)
+    box.fail("min", fmt::format(
+                        "the box {} to {} holds no vertex of the mesh, which with its scale spans "
+                        "{} to {}; allowed are boxes that hold one",
+                        in_words(low), in_words(high), in_words(mesh.min()), in_words(mesh.max())));
+}
+
+}  // namespace
+
+void add_mesh(const Table& table, const std::filesystem::path& folder, const TextSource& read,
+              const SceneLimits& limits, Scene& scene) {
+  table.allow_keys(
+      {"file", "scale", "stiffness", "bending_stiffness", "node_mass", "total_mass", "pin"});
+  const double scale = table.number_or(1, "scale", positive);
+  const double stiffness = table.number("stiffness", not_negative);
+  const double bending_stiffness = table.number_or(0, "bending_stiffness", not_negative);
+  Mesh mesh = read_file(table, folder, read);
+  const std::string file = shown(table.text("file"));
+  if (mesh.edges.empty())
+    table.fail("file", fmt::format("{} has no edge; allowed are meshes with some", file));
+  if (const std::size_t unused = leave_out_unused(mesh); unused > 0)
+    scene.warnings.push_back(unused_sentence(file, unused));
+  const auto bending = bending_pairs(table, mesh);
+  const SceneSize size{mesh.vertices.size(), mesh.edges.size() + bending.size()};
+  require_within(limits, size, table.place());
+
+  const double mass = mass_of_each(table, mesh.vertices.size());
+  scene.nodes.reserve(size.nodes);
+  scene.springs.reserve(size.springs);
+  for (const Eigen::Vector3d& vertex : mesh.vertices)
+    scene.nodes.push_back({.position = scale * vertex, .mass = mass});
+  add_springs(mesh.edges, stiffness, scene);
+  add_springs(bending, bending_stiffness, scene);
+  for (const Table& box : table.tables("pin")) pin(box, scene.nodes);
+}
+
+}  // namespace qddot

@@ -1,0 +1,307 @@
+#include "qddot/scene/reduce/reduced.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "qddot/model/divided.hpp"
+#include "qddot/scene/reduce/as_drawn.hpp"
+#include "qddot/scene/reduce/springs.hpp"
+#include "qddot/scene/reduce/words.hpp"
+
+namespace qddot::reduce {
+namespace {
+
+std::logic_error defect(const std::string& difference) {
+  return std::logic_error(fmt::format(
+      "a defect of qddot, please report the scene: with its reductions {} (--no-reduce leaves them "
+      "out)",
+      difference));
+}
+
+std::string energy_instead_of(double reduced, double drawn) {
+  return fmt::format("the energy at the start would be {:.10g} J instead of {:.10g}", reduced,
+                     drawn);
+}
+
+// Of all nodes, whether the part of the scene that springs join them to never leaves a line.
+std::vector<bool> on_lines(const std::vector<Node>& nodes, const std::vector<Spring>& springs,
+                           const Eigen::Vector3d& gravity, int dimension) {
+  std::vector<bool> is_on_line(nodes.size(), dimension == 1);
+  if (dimension == 1) return is_on_line;
+  for (const Component& component : components_of(nodes, springs)) {
+    Body body = make_body(component, nodes, springs, gravity);
+    let_fall(body);  // whether that is left out or not, no part leaves a line by falling
+    if (frame_of(body, dimension).dimension > 1) continue;
+    for (const std::size_t node : component.nodes) is_on_line[node] = true;
+  }
+  return is_on_line;
+}
+
+}  // namespace
+
+Reduced::Reduced(const Scene& scene, const Reductions& reductions)
+    : nodes_(scene.nodes),
+      dimension_(scene.dimension),
+      gravity_(scene.gravity),
+      stiff_above_(scene.stiff_above) {
+  for (Node& node : nodes_) {
+    if (node.pinned) node.velocity.setZero();
+  }
+  if (reductions.has(Reduction::pins)) leave_out_pins();
+  std::vector<Spring> springs = scene.springs;
+  for (Spring& spring : springs) spring.stiff = is_stiff(spring.law, stiff_above_);
+  if (reductions.has(Reduction::duplicates)) merge(springs);
+  if (reductions.has(Reduction::massless)) condense(springs);
+  leave_out_static_springs(springs);
+  build(divide(springs, reductions), springs, reductions);
+  check(scene);
+}
+
+void Reduced::leave_out_pins() {
+  const auto pins = static_cast<std::size_t>(std::ranges::count(nodes_, true, &Node::pinned));
+  if (pins > 0) report(Reduction::pins, pinned_sentence(pins));
+}
+
+void Reduced::merge(std::vector<Spring>& springs) {
+  const std::size_t before = springs.size();
+  springs = merged_springs(springs);
+  if (springs.size() < before) {
+    report(Reduction::duplicates, merged_sentence(before - springs.size(), springs.size()));
+  }
+}
+
+void Reduced::condense(std::vector<Spring>& springs) {
+  if (std::ranges::none_of(nodes_, [](const Node& n) { return !n.pinned && n.mass == 0; })) return;
+  series_ = condense_series(nodes_, springs, stiff_above_,
+                            on_lines(nodes_, springs, gravity_, dimension_));
+  if (series_.empty()) return;
+  std::vector<std::size_t> condensed;
+  for (const Series& series : series_) {
+    series.place(nodes_);
+    for (const auto& joint : series.joints) condensed.push_back(joint.node);
+  }
+  report(Reduction::massless, condensed_sentence(condensed, series_.size()));
+}
+
+void Reduced::leave_out_static_springs(const std::vector<Spring>& springs) {
+  for (const auto& [ends, law, holds, stiff] : springs) {
+    const Node &a = nodes_[ends[0]], &b = nodes_[ends[1]];
+    if (a.pinned && b.pinned) static_energy_ += law.energy((b.position - a.position).norm());
+  }
+}
+
+std::vector<Component> Reduced::divide(const std::vector<Spring>& springs,
+                                       const Reductions& reductions) {
+  std::vector<bool> is_condensed(nodes_.size(), false);
+  for (const Series& series : series_) {
+    for (const auto& joint : series.joints) is_condensed[joint.node] = true;
+  }
+  std::vector<Component> components;
+  std::vector<std::size_t> flying;
+  for (Component& component : components_of(nodes_, springs)) {
+    const std::size_t first = component.nodes.front();
+    if (is_condensed[first]) continue;  // on no spring any more
+    if (component.springs.empty() && reductions.has(Reduction::free_flight)) {
+      const bool is_heavy = nodes_[first].mass > 0;
+      flying_.push_back({first, nodes_[first].velocity,
+                         is_heavy ? gravity_ : Eigen::Vector3d(Eigen::Vector3d::Zero())});
+      flying.push_back(first);
+    } else {
+      components.push_back(std::move(component));
+    }
+  }
+  if (!flying.empty()) report(Reduction::free_flight, flying_sentence(flying));
+  if (!reductions.has(Reduction::parts)) return joined(components);
+  if (components.size() > 1) report(Reduction::parts, parts_sentence(components.size()));
+  return components;
+}
+
+void Reduced::build(const std::vector<Component>& components, const std::vector<Spring>& springs,
+                    const Reductions& reductions) {
+  std::vector<std::unique_ptr<System>> systems;
+  Index n = 0;
+  for (const Component& component : components) {
+    const std::optional<Body> body = body_of(component, springs, reductions);
+    if (!body) continue;
+    Part& part = parts_.emplace_back(faithful_part(*body, reductions));
+    systems.push_back(part.take_system());
+    static_energy_ += part.energy_of_origin();
+    n += part.initial().q.size();
+  }
+  initial_ = {0, Vec(n), Vec(n)};
+  Index at = 0;
+  for (const Part& part : parts_) {
+    const Index own = part.initial().q.size();
+    initial_.q.segment(at, own) = part.initial().q;
+    initial_.v.segment(at, own) = part.initial().v;
+    at += own;
+  }
+  const auto falling = static_cast<std::size_t>(
+      std::ranges::count_if(parts_, [](const Part& part) { return part.fall().moves(); }));
+  if (falling + resting_ > 0) report(Reduction::falling, falling_sentence(falling, resting_));
+  for (Finding& finding : findings_of(parts_, systems, dimension_)) {
+    findings_.push_back(std::move(finding));
+  }
+  if (systems.empty()) {
+    system_ = make_mass_spring({.dimension = dimension_, .offers_split = stiff_above_.has_value()});
+  } else if (systems.size() == 1) {
+    system_ = std::move(systems.front());
+  } else {
+    system_ = std::make_unique<Divided>(std::move(systems));
+  }
+}
+
+std::optional<Body> Reduced::body_of(const Component& component, const std::vector<Spring>& springs,
+                                     const Reductions& reductions) {
+  Body body = make_body(component, nodes_, springs, gravity_);
+  body.offers_split = stiff_above_.has_value();
+  if (!reductions.has(Reduction::falling)) return body;
+  let_fall(body);
+  if (!rests(body)) return body;
+  ++resting_;
+  for (const std::size_t node : body.nodes) {
+    flying_.push_back({node, body.fall.velocity, body.fall.gravity});
+  }
+  return {};
+}
+
+Part Reduced::faithful_part(const Body& body, Reductions reductions) {
+  Part part(body, dimension_, reductions);
+  for (const Reduction suspect :
+       {Reduction::mirror, Reduction::dimension, Reduction::constant_stiffness}) {
+    if (!reductions.has(suspect)) continue;
+    const auto difference = part.difference_from(body);
+    if (!difference) return part;
+    report(suspect, mistaken_sentence(*difference));
+    reductions = reductions.without(suspect);
+    part = Part(body, dimension_, reductions);
+  }
+  if (const auto difference = part.difference_from(body)) throw defect(*difference);
+  return part;
+}
+
+void Reduced::check(const Scene& scene) const {
+  std::vector<int> places(nodes_.size(), 0);
+  for (const Part& part : parts_) {
+    for (const std::size_t node : part.nodes()) ++places[node];
+  }
+  for (const Flying& flying : flying_) ++places[flying.node];
+  for (const Series& series : series_) {
+    for (const auto& joint : series.joints) ++places[joint.node];
+  }
+  const std::vector<Node> nodes = expand(initial_, true);
+  std::vector<Eigen::Vector3d> x, v;
+  std::vector<double> mass;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (places[i] != (nodes[i].pinned ? 0 : 1)) {
+      throw defect(fmt::format("node {} has {} places", i, places[i]));
+    }
+    x.push_back(nodes[i].position);
+    v.push_back(nodes[i].velocity);
+    mass.push_back(nodes[i].pinned ? 0 : nodes[i].mass);
+  }
+  const Tolerances tolerances = tolerances_of(x, v);
+  const BoundedEnergy t = kinetic_of(v, mass, tolerances);
+  const BoundedEnergy p = potential_of(scene.springs, x, mass, gravity_, tolerances);
+  if (differs(t, kinetic(initial_))) throw defect(energy_instead_of(kinetic(initial_), t.value));
+  if (differs(p, potential(initial_)))
+    throw defect(energy_instead_of(potential(initial_), p.value));
+}
+
+std::vector<Node> Reduced::expand(const State& state, bool falls) const {
+  std::vector<Node> nodes = nodes_;
+  Index at = 0;
+  for (const Part& part : parts_) {
+    const Index n = part.initial().q.size();
+    const Fall fall = falls ? part.fall() : Fall{};
+    part.expand(state.q.segment(at, n), state.v.segment(at, n), fall.displacement(state.t),
+                fall.velocity_at(state.t), nodes);
+    at += n;
+  }
+  for (const Flying& flying : flying_) {
+    Node& node = nodes[flying.node];
+    if (falls) node.position += flying.displacement(state.t);
+    node.velocity = falls ? flying.velocity_at(state.t) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  }
+  for (const Series& series : series_) series.place(nodes);
+  return nodes;
+}
+
+std::vector<std::vector<std::size_t>> Reduced::nodes_by_part() const {
+  std::vector<std::vector<std::size_t>> nodes;
+  std::vector<std::size_t> part_of(nodes_.size(), parts_.size());
+  for (const Part& part : parts_) {
+    for (const std::size_t node : part.nodes()) part_of[node] = nodes.size();
+    nodes.push_back(part.nodes());
+  }
+  for (const Series& series : series_) {
+    const std::size_t part = std::min(part_of[series.ends[0]], part_of[series.ends[1]]);
+    if (part == parts_.size()) continue;  // between two pinned nodes
+    for (const auto& joint : series.joints) nodes[part].push_back(joint.node);
+  }
+  return nodes;
+}
+
+std::vector<std::size_t> Reduced::massless_nodes() const {
+  std::vector<std::size_t> massless;
+  for (const Part& part : parts_) {
+    for (const std::size_t node : part.nodes()) {
+      if (nodes_[node].mass == 0) massless.push_back(node);
+    }
+  }
+  std::ranges::sort(massless);
+  return massless;
+}
+
+template <class Action>
+void Reduced::for_falling(const State& state, const Action& action) const {
+  Index at = 0;
+  for (const Part& part : parts_) {
+    const Index n = part.initial().q.size();
+    if (part.fall().moves()) {
+      action(part.fall(), part.moments(state.q.segment(at, n), state.v.segment(at, n)));
+    }
+    at += n;
+  }
+}
+
+double Reduced::kinetic(const State& state) const {
+  double energy = system_->kinetic(state.v);
+  for (const Flying& flying : flying_) {
+    energy += 0.5 * nodes_[flying.node].mass * flying.velocity_at(state.t).squaredNorm();
+  }
+  for_falling(state, [&](const Fall& fall, const Part::Moments& moments) {
+    const Eigen::Vector3d v = fall.velocity_at(state.t);
+    energy += moments.momentum.dot(v) + 0.5 * fall.mass * v.squaredNorm();
+  });
+  return energy;
+}
+
+double Reduced::potential(const State& state) const {
+  double energy = system_->potential(state.q) + static_energy_;
+  for (const Flying& flying : flying_) {
+    const Node& node = nodes_[flying.node];
+    energy -= node.mass * gravity_.dot(node.position + flying.displacement(state.t));
+  }
+  for_falling(state, [&](const Fall& fall, const Part::Moments& moments) {
+    energy -= fall.gravity.dot(moments.first + fall.mass * fall.displacement(state.t));
+  });
+  return energy;
+}
+
+double Reduced::energy(const State& state) const {
+  double energy = total_energy(*system_, state) + static_energy_;
+  for (const Flying& flying : flying_) {
+    const Node& node = nodes_[flying.node];
+    energy += node.mass * (0.5 * flying.velocity.squaredNorm() - gravity_.dot(node.position));
+  }
+  for_falling(state, [&](const Fall& fall, const Part::Moments& moments) {
+    energy += moments.momentum.dot(fall.velocity_at(state.t)) +
+              0.5 * fall.mass * fall.velocity.squaredNorm() - fall.gravity.dot(moments.first);
+  });
+  return energy;
+}
+
+}  // namespace qddot::reduce

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "qddot/model/system.hpp"
+#include "qddot/scene/reduce/components.hpp"
+#include "qddot/scene/reduce/part.hpp"
+#include "qddot/scene/reduce/reductions.hpp"
+#include "qddot/scene/reduce/series.hpp"
+#include "qddot/scene/scene.hpp"
+
+namespace qddot::reduce {
+
+// What a ReducedScene consists of, and the steps by which it is made, in order; functions as there.
+class Reduced {
+ public:
+  Reduced(const Scene& scene, const Reductions& reductions);
+
+  const System& system() const { return *system_; }
+  const State& initial() const { return initial_; }
+  int dimension() const { return dimension_; }
+  const std::vector<Finding>& findings() const { return findings_; }
+  const std::vector<Part>& parts() const { return parts_; }
+
+  // As ReducedScene::expand or, unless it `falls`, expand_beside_falls.
+  std::vector<Node> expand(const State& state, bool falls) const;
+  double kinetic(const State& state) const;
+  double potential(const State& state) const;
+  double energy(const State& state) const;
+  std::vector<std::size_t> massless_nodes() const;
+  std::vector<std::vector<std::size_t>> nodes_by_part() const;
+
+ private:
+  // A node that moves in closed form, x = x0 + v0 t + 1/2 g t^2: by itself, or in a part that rests
+  // in the frame that falls with it.
+  struct Flying {
+    std::size_t node;
+    Eigen::Vector3d velocity, gravity;  // v0 [m/s], g [m/s^2]
+
+    Eigen::Vector3d displacement(double t) const { return t * velocity + (0.5 * t * t) * gravity; }
+    Eigen::Vector3d velocity_at(double t) const { return velocity + t * gravity; }
+  };
+  // Calls action(part, its q, its v) for each part that falls as a whole.
+  template <class Action>
+  void for_falling(const State& state, const Action& action) const;
+
+  // Each step of the reduction, in order.
+  void leave_out_pins();
+  void merge(std::vector<Spring>& springs);
+  void condense(std::vector<Spring>& springs);
+  std::vector<Component> divide(const std::vector<Spring>& springs, const Reductions& reductions);
+  // The body of a component as its motion is integrated; nothing where it rests in its fall.
+  std::optional<Body> body_of(const Component& component, const std::vector<Spring>& springs,
+                              const Reductions& reductions);
+  void leave_out_static_springs(const std::vector<Spring>& springs);
+  void build(const std::vector<Component>& components, const std::vector<Spring>& springs,
+             const Reductions& reductions);
+  // Reduced as far as it starts as the body does.
+  Part faithful_part(const Body& body, Reductions reductions);
+  // That each free node has one place, and that energies are the scene's. Positions and velocities
+  // of nodes on springs are compared part by part, those of joints are placed by their series.
+  void check(const Scene& scene) const;
+  void report(Reduction reduction, std::string what) {
+    findings_.push_back({reduction, std::move(what)});
+  }
+
+  std::vector<Node> nodes_;  // as drawn, condensed ones in their places
+  int dimension_;
+  Eigen::Vector3d gravity_;
+  std::optional<double> stiff_above_;
+  std::vector<Series> series_;
+  std::vector<Flying> flying_;
+  std::size_t resting_ = 0;  // parts that rest in their fall
+  std::vector<Part> parts_;
+  std::unique_ptr<System> system_;
+  double static_energy_ = 0;  // of springs between pinned nodes, and of the parts' origins
+  State initial_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace qddot::reduce

@@ -1,0 +1,195 @@
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/measure/stability/linear_limit.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
+#include "tests/integrators/faulty_verlet.hpp"
+
+using namespace qddot;
+using namespace qddot::measure;
+
+BOOST_AUTO_TEST_SUITE(linear_step)
+
+namespace {
+
+using Complex = std::complex<double>;
+
+LinearStep step_of(const char* method, double h_omega) {
+  return qddot::measure::linear_step(method_named(method), h_omega);
+}
+
+// R of y' = i w y for the methods that are a rational function of z = i h w.
+struct Rational {
+  const char* method;
+  Complex (*r)(Complex z);
+};
+const Rational rationals[] = {
+    {"explicit_euler", [](Complex z) { return 1. + z; }},
+    {"implicit_euler", [](Complex z) { return 1. / (1. - z); }},
+    {"semi_implicit_euler", [](Complex z) { return 1. / (1. - z); }},
+    {"local_global", [](Complex z) { return 1. / (1. - z); }},
+    {"arkode_implicit_euler", [](Complex z) { return 1. / (1. - z); }},
+    {"implicit_midpoint", [](Complex z) { return (2. + z) / (2. - z); }},
+    {"trapezoidal", [](Complex z) { return (2. + z) / (2. - z); }},
+    {"discrete_gradient", [](Complex z) { return (2. + z) / (2. - z); }},
+    {"rk4", [](Complex z) { return 1. + z * (1. + z / 2. * (1. + z / 3. * (1. + z / 4.))); }}};
+
+// Heun's method, order 2: |R(i z)|^2 = 1 + z^4/4, which grows at every h.
+class Heun final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    Vec a(now.q.size()), b(now.q.size());
+    force(now.q, a);
+    force(now.q + h * now.v, b);
+    next.q = now.q + h * now.v + h * h / 2 * a;
+    next.v = now.v + h / 2 * (a + b);
+    return Outcome::reached_end;
+  }
+};
+Method heun() {
+  Method method = method_named("verlet");
+  method.make = create<Heun>;
+  return method;
+}
+
+// Whether the limit that the registry has of a method is the one that its steps show.
+bool declares_its_limit(const Method& method) {
+  const double declared = linear_limit(method), measured = measured_limit(method);
+  if (declared == 0 || std::isinf(declared)) return measured == declared;
+  // Bisection to 1e-12, and a radius above 1 by no more than 1e-12.
+  return std::abs(measured / declared - 1) < 1e-10;
+}
+
+// Of bdf2 on y' = i w y, 3 z^2 - 4 z + 1 = 2 i x z^2 with x = h w, and of its conjugate.
+double bdf2_radius(double x) {
+  const Complex a(3, -2 * x), root = std::sqrt(16. - 4. * a);
+  return std::max(std::abs((4. + root) / (2. * a)), std::abs((4. - root) / (2. * a)));
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(roots_are_those_of_the_method_s_rational_function) {
+  for (const Rational& rational : rationals) {
+    for (const double x : {0.01, 0.3, 1.0, 2.5, 30.0}) {
+      BOOST_TEST_CONTEXT(rational.method << " at h w = " << x) {
+        const Complex expected = rational.r({0, x});
+        const LinearStep found = step_of(rational.method, x);
+        BOOST_TEST_REQUIRE(found.roots.size() == 2u);
+        // Rounding of a step, of which it cancels up to 1 + x of its digits.
+        const double tolerance = 1e-14 * (1 + x) * std::max(1.0, std::abs(expected));
+        BOOST_TEST(std::abs(found.spectral_radius() - std::abs(expected)) < tolerance);
+        BOOST_TEST(std::abs(std::abs(std::arg(found.roots[0])) - std::abs(std::arg(expected))) <
+                   1e-13 * (1 + x));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(roots_of_methods_with_memory_are_all_found) {
+  for (const double x : {0.1, 1.0, 10.0}) {
+    const LinearStep found = step_of("bdf2", x);
+    BOOST_TEST_REQUIRE(found.roots.size() == 4u);
+    // Hankel matrices of condition 100 or so, and rounding of five steps.
+    BOOST_TEST(std::abs(found.spectral_radius() - bdf2_radius(x)) < 1e-10);
+  }
+  // Chung and Hulbert: the roots of an infinitely fast vibration are -rho twice and, of the
+  // acceleration, the same; at no step at all its third is (2 rho - 1)/(rho - 2) = -1/2.
+  const LinearStep slow = step_of("generalized_alpha", 0.01);
+  BOOST_TEST_REQUIRE(slow.roots.size() == 3u);
+  BOOST_TEST(std::abs(slow.roots[2] - (-0.5)) < 1e-4);  // x^2 from the limit, and noise
+}
+
+BOOST_AUTO_TEST_CASE(a_recurrence_made_up_is_found_again_and_noise_hides_what_is_smaller) {
+  // y_n = 0.9^n (rotation by n/2), and 0.2 (-0.4)^n beside it in one entry.
+  Responses y;
+  const Eigen::Matrix2d turn = 0.9 * Eigen::Rotation2Dd(0.5).toRotationMatrix();
+  Eigen::Matrix2d power = Eigen::Matrix2d::Identity();
+  for (int n = 0; n <= steps_observed; ++n, power *= turn) {
+    y.push_back(power);
+    y.back()(0, 1) += 0.2 * (std::pow(-0.4, n) - std::pow(0.9, n) * std::cos(0.5 * n));
+  }
+  const auto roots = roots_of(y, 1e-11);
+  BOOST_TEST_REQUIRE(roots.size() >= 3u);
+  BOOST_TEST(std::abs(std::abs(roots[0]) - 0.9) < 1e-10);
+  BOOST_TEST(std::abs(std::abs(std::arg(roots[0])) - 0.5) < 1e-10);
+  BOOST_TEST(roots_of(y, 1.0).size() == 2u);
+}
+
+BOOST_AUTO_TEST_CASE(damping_ratio_and_period_error_are_those_of_a_damped_vibration) {
+  // A step that is an exact damped vibration, zeta = 0.1 of w' = 1.2 over h = 1.
+  const double zeta = 0.1, w = 1.2;
+  const Complex exponent(-zeta * w, w * std::sqrt(1 - zeta * zeta));
+  const LinearStep made{.h_omega = 1, .roots = {std::exp(exponent), std::exp(std::conj(exponent))}};
+  BOOST_TEST(std::abs(made.damping_ratio() - zeta) < 1e-15);
+  BOOST_TEST(std::abs(made.period_error() - (1 / exponent.imag() - 1)) < 1e-15);
+  // To leading order: implicit Euler zeta = h w/2, Verlet's period too short by (h w)^2/24. The
+  // cosine's rounding is some 1e-16/x^2 of the period, so that a much smaller x would not do.
+  const double x = 1e-2;
+  BOOST_TEST(std::abs(step_of("implicit_euler", x).damping_ratio() / (x / 2) - 1) < x);
+  BOOST_TEST(std::abs(step_of("verlet", x).period_error() / (-x * x / 24) - 1) < x);
+  BOOST_TEST(std::abs(step_of("verlet", x).damping_ratio()) < 1e-12);  // rounding over h w
+}
+
+BOOST_AUTO_TEST_CASE(a_step_beyond_all_numbers_grows_beyond_all_bounds) {
+  BOOST_TEST(std::isinf(step_of("kahan_li8", 100).spectral_radius()));
+  BOOST_TEST(step_of("rk4", 100).spectral_radius() > 1e6);  // z^4/24
+  BOOST_CHECK_THROW(step_of("ida", 1), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_CASE(measured_limits_are_the_declared_ones) {
+  for (const Method& method : methods()) {
+    if (!has_linear_step(method)) continue;
+    BOOST_TEST_CONTEXT(method.name) { BOOST_TEST(declares_its_limit(method)); }
+  }
+  BOOST_TEST(std::abs(measured_limit(method_named("rk4")) - std::sqrt(8)) < 1e-10);
+}
+
+BOOST_AUTO_TEST_CASE(
+    exactly_explicit_methods_of_fixed_steps_declare_a_limit_and_there_is_no_default) {
+  for (const Method& method : methods()) {
+    // Whatever has no step error is stable at every h.
+    const bool needs_one = has_linear_step(method) && !method.implicit && method.order > 0;
+    BOOST_TEST_CONTEXT(method.name) { BOOST_TEST(method.stability_limit.has_value() == needs_one); }
+  }
+  BOOST_TEST(!Method{}.stability_limit.has_value());
+  BOOST_TEST(std::isinf(linear_limit(Method{})));  // nobody is told that a step is above it
+}
+
+BOOST_AUTO_TEST_CASE(a_wrong_or_missing_limit_is_found) {
+  Method method = method_named("rk4");
+  for (const std::optional<double> wrong :
+       {std::optional<double>(2), std::optional<double>(0), std::optional<double>(2.8284),
+        std::optional<double>(), std::optional<double>(INFINITY)}) {
+    method.stability_limit = wrong;
+    BOOST_TEST(!declares_its_limit(method));
+  }
+  BOOST_TEST(!declares_its_limit(heun()));  // which says that it is Verlet's
+}
+
+BOOST_AUTO_TEST_CASE(limits_hold_from_both_sides) {
+  for (const Method& method : methods()) {
+    if (!has_linear_step(method)) continue;
+    const double limit = linear_limit(method);
+    if (limit == 0 || std::isinf(limit)) continue;
+    BOOST_TEST_CONTEXT(method.name) {
+      BOOST_TEST(qddot::measure::linear_step(method, 0.999 * limit).spectral_radius() < 1 + 1e-12);
+      // Blanes and Moan's of order 6 has a gap of 9e-4 there, and is stable again above.
+      const double above = method.name == "blanes_moan6" ? 1 + 1e-4 : 1.001;
+      BOOST_TEST(qddot::measure::linear_step(method, above * limit).spectral_radius() > 1 + 1e-5);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(growth_that_fades_as_a_power_of_h_is_no_threshold_and_faults_move_limits) {
+  BOOST_TEST(measured_limit(heun()) == 0);
+  BOOST_TEST(std::abs(qddot::measure::linear_step(heun(), 0.5).spectral_radius() -
+                      std::sqrt(1 + std::pow(0.5, 4) / 4)) < 1e-14);
+  // A second kick longer by a thousandth makes the determinant 1 - 5e-4 (h w)^2 ..., no longer 1.
+  BOOST_TEST(std::abs(measured_limit(faulty_verlet<1>()) - 2) > 1e-4);
+  BOOST_TEST(std::abs(measured_limit(faulty_verlet<0>()) - 2) < 1e-10);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

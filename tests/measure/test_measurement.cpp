@@ -1,0 +1,169 @@
+#include <chrono>
+#include <thread>
+
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/scene/scene_file.hpp"
+
+using namespace qddot;
+using namespace qddot::measure;
+
+namespace {
+
+constexpr double until = 0.5;
+
+const ReducedScene& orbit() {
+  static const ReducedScene scene(load_scene("orbit"));
+  return scene;
+}
+
+const Reference& reference() {
+  static const Reference made = make_reference(orbit(), until, 1);
+  return made;
+}
+
+// Stays where it is. Its runs are counted.
+class Still : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+  static inline int runs = 0;
+
+ protected:
+  void start(const State&) override { ++runs; }
+  Outcome step(const State& now, double, State& next) override {
+    next = now;
+    return Outcome::reached_end;
+  }
+};
+
+// For a tenth of a second, so that a run is a long one on any machine.
+class Slow final : public Still {
+ public:
+  using Still::Still;
+
+ private:
+  void start(const State& state) override {
+    Still::start(state);
+    std::this_thread::sleep_for(std::chrono::milliseconds(101));
+  }
+};
+
+// But for its first run it fails.
+class Once final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  void start(const State&) override { ++runs_; }
+  Outcome step(const State& now, double, State& next) override {
+    next = now;
+    return runs_ == 1 ? Outcome::reached_end : Outcome::newton_failed;
+  }
+
+  int runs_ = 0;
+};
+
+template <class Made>
+Method made_of() {
+  Method method = *find_method("verlet");
+  method.make = create<Made>;
+  return method;
+}
+
+Point measured(const char* method, double value, const Effort& effort) {
+  return measure_point(*find_method(method), value, orbit(), until, reference(), effort);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(measurement)
+
+BOOST_AUTO_TEST_CASE(the_knob_is_the_one_that_the_method_takes) {
+  for (const Method& method : methods()) {
+    const Knobs knobs = knobs_for(method, 0.25, orbit());
+    const bool fixed = method.knob == Knob::step_size;
+    BOOST_TEST(knobs.step_size == (fixed ? 0.25 : 0), method.name);
+    BOOST_TEST(knobs.rtol == (fixed ? 0 : 0.25), method.name);
+    BOOST_TEST(knobs.atol == 0, method.name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_point_is_one_run_of_the_method) {
+  for (const auto& [name, value] :
+       {std::pair("verlet", 1e-2), std::pair("implicit_euler", 1e-3), std::pair("ida", 1e-5)}) {
+    const Point point = measured(name, value, {.seconds = 60, .repeats = 2});
+    const auto integrator = make_integrator(*find_method(name), orbit().system(),
+                                            knobs_for(*find_method(name), value, orbit()));
+    State state = orbit().initial();
+    const Summary summary = integrator->advance(state, until);
+    const Errors errors =
+        errors_between(orbit(), state, reference().end, reference().energy, reference().scales);
+    BOOST_TEST((point.outcome == Outcome::reached_end));
+    BOOST_TEST(point.t_reached == until);
+    BOOST_TEST(point.errors.position == errors.position);
+    BOOST_TEST(point.errors.velocity == errors.velocity);
+    BOOST_TEST(point.errors.energy == errors.energy);
+    BOOST_TEST(point.errors.position > 0);
+    BOOST_TEST(point.counts.steps == summary.counts.steps);
+    BOOST_TEST(point.counts.force_evaluations == summary.counts.force_evaluations);
+    BOOST_TEST(point.counts.factorizations == summary.counts.factorizations);
+    BOOST_TEST(point.counts.newton_iterations == summary.counts.newton_iterations);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(it_is_timed_as_often_as_asked_for) {
+  for (const int repeats : {1, 2, 5}) {
+    const Point point = measured("verlet", 1e-2, {.seconds = 60, .repeats = repeats});
+    BOOST_TEST(point.timed_runs == repeats);
+    BOOST_TEST(point.time_min > 0);
+    BOOST_TEST(point.time_min <= point.time);
+    BOOST_TEST(point.setup > 0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_that_fails_is_not_timed) {
+  const Point slow = measured("verlet", 1e-12, {.seconds = 0.01, .repeats = 3});
+  BOOST_TEST((slow.outcome == Outcome::over_budget));
+  BOOST_TEST(slow.t_reached < until);
+  BOOST_TEST(slow.timed_runs == 0);
+  BOOST_TEST(slow.time == 0);
+  const Point stuck = measured("verlet", 1e-20, {.seconds = 60, .repeats = 3});
+  BOOST_TEST((stuck.outcome == Outcome::step_too_small));
+  BOOST_TEST(stuck.timed_runs == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_repeat_that_fails_is_a_failure_and_not_a_short_run) {
+  const Point point = measure_point(made_of<Once>(), until, orbit(), until, reference(),
+                                    {.seconds = 60, .repeats = 3});
+  BOOST_TEST((point.outcome == Outcome::newton_failed));
+  BOOST_TEST(point.t_reached == 0);
+  BOOST_TEST(point.timed_runs == 0);
+}
+
+BOOST_AUTO_TEST_CASE(only_a_long_run_is_its_own_warm_up) {
+  for (const int repeats : {1, 2}) {
+    const Effort effort{.seconds = 60, .repeats = repeats};
+    Slow::runs = 0;
+    BOOST_TEST(
+        measure_point(made_of<Slow>(), until, orbit(), until, reference(), effort).timed_runs ==
+        repeats);
+    BOOST_TEST(Slow::runs == repeats);
+    Still::runs = 0;
+    BOOST_TEST(
+        measure_point(made_of<Still>(), until, orbit(), until, reference(), effort).timed_runs ==
+        repeats);
+    BOOST_TEST(Still::runs > repeats);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(negative_control_another_knob_is_another_point) {
+  const Effort effort{.seconds = 60, .repeats = 1};
+  const Point fine = measured("verlet", 5e-3, effort), coarse = measured("verlet", 1e-2, effort);
+  BOOST_TEST(fine.counts.steps == 2 * coarse.counts.steps);
+  BOOST_TEST(fine.errors.position < coarse.errors.position);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,390 @@
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/reference/reference.hpp"
+#include "qddot/measure/reference/reference_ways.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/scene_file.hpp"
+#include "tests/fragments.hpp"
+
+using namespace qddot;
+using namespace qddot::measure;
+
+namespace {
+
+constexpr double seconds = 1;  // for a reference
+// By what factor a certified bound may be missed; and what it is at best.
+constexpr double slack = 10;
+constexpr double tight = 1e-12;
+
+// A 1D row of equal masses on equal springs of zero rest length between two walls, displaced by
+// two of its modes: x_i(t) = i L/(N+1) + sum_j a_j sin(j pi i/(N+1)) cos(w_j t + b_j),
+// w_j = 2 sqrt(k/m) sin(j pi / (2 (N+1))).
+struct Row {
+  int count = 12;
+  long double stiffness = 500, mass = 0.5L;
+
+  long double omega(int mode) const {
+    return 2 * std::sqrt(stiffness / mass) * std::sin(mode * M_PIl / (2 * (count + 1)));
+  }
+  std::pair<long double, long double> node(int i, long double t) const {
+    long double x = i / static_cast<long double>(count + 1), v = 0;
+    for (const auto& [mode, amplitude, phase] : modes) {
+      const long double shape = amplitude * std::sin(mode * M_PIl * i / (count + 1));
+      x += shape * std::cos(omega(mode) * t + phase);
+      v -= shape * omega(mode) * std::sin(omega(mode) * t + phase);
+    }
+    return {x, v};
+  }
+  Scene scene() const {
+    Scene scene{.name = "row", .dimension = 1};
+    for (int i = 0; i <= count + 1; ++i) {
+      const auto [x, v] = node(i, 0);
+      scene.nodes.push_back({.position = {static_cast<double>(x), 0, 0},
+                             .velocity = {static_cast<double>(v), 0, 0},
+                             .mass = static_cast<double>(mass),
+                             .pinned = i == 0 || i == count + 1});
+    }
+    for (std::size_t i = 0; i + 1 < scene.nodes.size(); ++i) {
+      scene.springs.push_back({{i, i + 1}, {.stiffness = static_cast<double>(stiffness)}});
+    }
+    return scene;
+  }
+
+  struct Mode {
+    int number;
+    long double amplitude, phase;
+  };
+  std::array<Mode, 2> modes = {{{1, 0.3L, 0.2L}, {7, 0.05L, -1}}};
+};
+
+// Seven masses on a line in a plane, ends pinned, the springs compressed by a tenth, each pushed
+// along the line.
+Scene compressed_strut() {
+  Scene scene{.name = "strut", .dimension = 2};
+  for (int i = 0; i < 7; ++i) {
+    scene.nodes.push_back({.position = {0.9 * i, 0, 0},
+                           .velocity = {i % 2 == 0 ? 0.1 : -0.2, 0, 0},
+                           .mass = 0.1,
+                           .pinned = i == 0 || i == 6});
+    if (i == 0) continue;
+    const auto own = static_cast<std::size_t>(i);
+    scene.springs.push_back({{own - 1, own}, {.stiffness = 1000, .rest_length = 1}});
+  }
+  return scene;
+}
+
+double length(const Eigen::Vector3d& x) { return x.norm(); }
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(reference)
+
+BOOST_AUTO_TEST_CASE(the_oscillator_ends_where_its_closed_form_does) {
+  const Generator& oscillator = *find_generator("oscillator");
+  for (const double until : {0.01, 2.0, 10.0}) {
+    const ReducedScene scene(
+        generate(oscillator, {{"mass", 4}, {"stiffness", 25}, {"velocity", -3}}, "here"));
+    const Reference made = make_reference(scene, until, seconds);
+    const long double w = 2.5, t = until;
+    const double x = static_cast<double>(std::cos(w * t) - 3 / w * std::sin(w * t));
+    const double v = static_cast<double>(-w * std::sin(w * t) - 3 * std::cos(w * t));
+    BOOST_TEST(made.end.t == until);
+    BOOST_TEST(made.certified.position < tight);
+    BOOST_TEST(made.certified.velocity < tight);
+    BOOST_TEST(std::abs(made.end.q[0] - x) <=
+               slack * made.certified.position * made.scales.displacement);
+    BOOST_TEST(std::abs(made.end.v[0] - v) <= slack * made.certified.velocity * made.scales.speed);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_linear_network_ends_where_its_modes_do) {
+  const Row row;
+  const ReducedScene scene(row.scene());
+  const Reference made = make_reference(scene, 1.5, seconds);
+  BOOST_TEST(made.certified.position < tight);
+  BOOST_TEST(made.certified.velocity < tight);
+  BOOST_TEST(made.certified.energy < tight);
+  for (int i = 1; i <= row.count; ++i) {
+    const auto [x, v] = row.node(i, 1.5L);
+    BOOST_TEST(std::abs(made.end.q[i - 1] - static_cast<double>(x)) <=
+               slack * made.certified.position * made.scales.displacement);
+    BOOST_TEST(std::abs(made.end.v[i - 1] - static_cast<double>(v)) <=
+               slack * made.certified.velocity * made.scales.speed);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_nonlinear_motion_ends_where_a_third_method_sees_it) {
+  for (const char* name : {"pair", "orbit", "pendulum"}) {
+    const ReducedScene scene(load_scene(name));
+    const Reference made = make_reference(scene, 0.5, seconds);
+    BOOST_TEST(made.certified.position < tight, name);
+    const auto error_at = [&](double rtol) {
+      State state = scene.initial();
+      const auto third =
+          make_integrator(*find_method("arkode_dirk5"), scene.system(), {.rtol = rtol});
+      BOOST_TEST((third->advance(state, 0.5).outcome == Outcome::reached_end));
+      return errors_between(scene, state, made.end, made.energy, made.scales);
+    };
+    // Local errors of 1e-12 add up over the steps, of which there are some hundreds.
+    const Errors fine = error_at(1e-12), coarse = error_at(1e-9);
+    BOOST_TEST(fine.position < 5e-10, name);
+    BOOST_TEST(fine.velocity < 5e-10, name);
+    BOOST_TEST(fine.position < coarse.position, name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_a_free_pair_keeps_is_kept) {
+  const Scene drawn = generate(*find_generator("pair"), {{"spin", 5}, {"stretch", 1.5}}, "here");
+  const ReducedScene scene(drawn);
+  const Reference made = make_reference(scene, 2, seconds);
+  const auto moments = [&](const State& state) {
+    Eigen::Vector3d centre = {0, 0, 0}, spin = {0, 0, 0};
+    const auto nodes = scene.expand(state);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      centre += drawn.nodes[i].mass * nodes[i].position;
+      spin += drawn.nodes[i].mass * nodes[i].position.cross(nodes[i].velocity);
+    }
+    return std::pair(centre, spin);
+  };
+  const auto [centre, spin] = moments(scene.initial());
+  const auto [later_centre, later_spin] = moments(made.end);
+  BOOST_TEST(length(later_centre - centre) < 1e-13);
+  BOOST_TEST(length(later_spin - spin) < 1e-12 * length(spin));
+}
+
+BOOST_AUTO_TEST_CASE(energy_is_that_of_the_start_and_is_kept) {
+  for (const char* name : {"oscillator", "pair", "pendulum"}) {
+    const ReducedScene scene(load_scene(name));
+    const Reference made = make_reference(scene, 0.7, seconds);
+    BOOST_TEST(made.energy == scene.energy(scene.initial()), name);
+    BOOST_TEST(made.certified.energy < tight, name);
+    BOOST_TEST(std::abs(scene.energy(made.end) - made.energy) <=
+                   made.certified.energy * made.scales.kinetic,
+               name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(scales_are_the_extremes_of_the_whole_motion) {
+  // x = cos 10 t: from 1 to -1 and back, with the speed 10 between.
+  const ReducedScene scene(load_scene("oscillator"));
+  const Scales scales = make_reference(scene, 2, seconds).scales;
+  constexpr double sampling = 1e-2;  // extremes are seen at steps
+  BOOST_TEST(scales.displacement == 2, boost::test_tools::tolerance(sampling));
+  BOOST_TEST(scales.speed == 10, boost::test_tools::tolerance(sampling));
+  BOOST_TEST(scales.kinetic == 50, boost::test_tools::tolerance(sampling));
+  // A tenth of a turn reaches none of them.
+  const double t = M_PI / 50;
+  const Scales early = make_reference(scene, t, seconds).scales;
+  BOOST_TEST(early.displacement == 1 - std::cos(10 * t), boost::test_tools::tolerance(1e-9));
+  BOOST_TEST(early.speed == 10 * std::sin(10 * t), boost::test_tools::tolerance(1e-9));
+}
+
+BOOST_AUTO_TEST_CASE(both_ways_are_named) {
+  const auto made_by = [](const char* name) {
+    return make_reference(ReducedScene(load_scene(name)), 0.1, seconds).made_by;
+  };
+  BOOST_TEST(contains(made_by("oscillator"), {"modal", "kahan_li8 at h = "}));
+  BOOST_TEST(contains(made_by("pair"), {"kahan_li8 at h = ", "Fehlberg"}));
+}
+
+BOOST_AUTO_TEST_CASE(free_flight_without_springs_is_a_parabola) {
+  Scene scene{.name = "thrown", .dimension = 2, .gravity = {0, -8, 0}};
+  scene.nodes = {{.velocity = {3, 4, 0}, .mass = 2}};
+  for (const Reductions& reductions : {Reductions(), Reductions::only({Reduction::pins})}) {
+    const ReducedScene thrown(scene, reductions);
+    const Reference made = make_reference(thrown, 0.5, seconds);
+    const Node end = thrown.expand(made.end).front();
+    BOOST_TEST(made.end.t == 0.5);
+    BOOST_TEST(end.position.x() == 1.5, boost::test_tools::tolerance(1e-14));
+    BOOST_TEST(end.position.y() == 1.0, boost::test_tools::tolerance(1e-14));
+    BOOST_TEST(end.velocity.x() == 3.0, boost::test_tools::tolerance(1e-14));
+    BOOST_TEST(std::abs(end.velocity.y()) < 1e-14);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(one_rounding_of_the_start_does_little_to_a_regular_motion) {
+  for (const char* name : {"oscillator", "pair", "orbit", "pendulum"}) {
+    const Reference made = make_reference(ReducedScene(load_scene(name)), 0.5, seconds);
+    BOOST_TEST(made.rounding_effect < 1e-13, name);
+    BOOST_TEST((made.perturbation_growth > 0 && made.perturbation_growth < 1e3), name);
+    BOOST_TEST(!made.is_chaotic(), name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_regular_motion_has_no_horizon) {
+  for (const char* name : {"oscillator", "pair", "orbit", "pendulum"}) {
+    const Reference made = make_reference(ReducedScene(load_scene(name)), 2, seconds);
+    BOOST_TEST(std::isinf(made.horizon), name);
+    BOOST_TEST(made.lyapunov == 0, name);
+    BOOST_TEST(!made.is_beyond_horizon(), name);
+    BOOST_TEST(made.modal_shares.size() == 0, name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_chaotic_motion_has_one_before_and_after_it_is_reached) {
+  // Four masses in a row on soft springs, let go from the horizontal: one rounding is all of the
+  // motion after some nine seconds.
+  const Scene chain =
+      generate(*find_generator("chain"), {{"nodes", 4}, {"stiffness", 1000}}, "here");
+  const ReducedScene scene(chain);
+  const Reference early = make_reference(scene, 6, seconds),
+                  late = make_reference(scene, 12, seconds);
+  BOOST_TEST(!early.is_beyond_horizon());
+  BOOST_TEST((early.certified.position < 1e-4 && early.horizon > 6));
+  BOOST_TEST((late.is_beyond_horizon() && late.is_chaotic()));
+  BOOST_TEST(late.certified.position > apart);
+  // Growth is uneven, so that it is foreseen but roughly.
+  BOOST_TEST(early.horizon == late.horizon, boost::test_tools::tolerance(0.25));
+  BOOST_TEST(early.lyapunov == late.lyapunov, boost::test_tools::tolerance(0.5));
+  BOOST_TEST(early.modal_shares.size() == 0);
+  BOOST_TEST(late.modal_shares.sum() == 1, boost::test_tools::tolerance(1e-12));
+  // Another run than those it was found by: half a horizon's error of the start is apart sooner.
+  State near = scene.initial(), far = near;
+  far.q[0] += 1e-8;
+  const auto end = [&](State state, double until) {
+    const auto run =
+        make_integrator(*find_method("kahan_li8"), scene.system(), {.step_size = 1e-3});
+    BOOST_TEST((run->advance(state, until).outcome == Outcome::reached_end));
+    return state;
+  };
+  const double soon = 0.8 * late.horizon;
+  BOOST_TEST(errors_between(scene, end(far, soon), end(near, soon), 0, late.scales).position >
+             apart);
+}
+
+BOOST_AUTO_TEST_CASE(refinement_goes_on_while_steps_are_too_coarse_for_its_order) {
+  // A rosette that comes near the spring's other end: the first changes do not shrink at all.
+  const ReducedScene scene(
+      generate(*find_generator("orbit"), {{"rest_length", 0.3}, {"speed", 1}}, "here"));
+  const Reference made = make_reference(scene, 20, seconds);
+  BOOST_TEST(made.certified.position < 1e-7);
+  BOOST_TEST(made.certified.velocity < 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(a_motion_in_exact_symmetry_is_known_and_known_to_be_alone) {
+  // Of masses m on springs that push with F over the length l, the fastest to the side grow by
+  // (2 sin(5 pi/12)) sqrt(F/(l m)) = 66/s: one rounding is a hundredth after half a second.
+  const Scene strut = compressed_strut();
+  const ReducedScene scene(strut);
+  const Reference early = make_reference(scene, 0.2, seconds, &strut),
+                  late = make_reference(scene, 0.7, seconds, &strut);
+  for (const Reference& made : {early, late}) {
+    BOOST_TEST(made.is_reduced_by_symmetry);
+    BOOST_TEST(made.certified.position < 1e-10);
+    BOOST_TEST((!made.is_chaotic() && std::isinf(made.horizon)));
+    BOOST_TEST_REQUIRE(made.out_of_symmetry.has_value());
+  }
+  BOOST_TEST(!early.is_only_symmetric());
+  BOOST_TEST(late.is_only_symmetric());
+  BOOST_TEST(late.out_of_symmetry->effect > apart);
+  BOOST_TEST((late.out_of_symmetry->horizon > 0.3 && late.out_of_symmetry->horizon < 0.6));
+  // The motion along the line changes F by some.
+  BOOST_TEST(late.out_of_symmetry->lyapunov == 66, boost::test_tools::tolerance(0.25));
+  // Without any reduction it is chaotic, and of the same horizon.
+  const ReducedScene whole(strut, Reductions::only({Reduction::pins}));
+  const Reference plain = make_reference(whole, 0.7, seconds);
+  BOOST_TEST(plain.is_beyond_horizon());
+  BOOST_TEST(plain.horizon == late.out_of_symmetry->horizon, boost::test_tools::tolerance(0.2));
+}
+
+BOOST_AUTO_TEST_CASE(a_push_out_of_a_stable_symmetry_does_nothing) {
+  Scene stretched = compressed_strut();
+  for (Spring& spring : stretched.springs) spring.law.rest_length = 0.8;
+  const Reference made = make_reference(ReducedScene(stretched), 0.7, seconds, &stretched);
+  BOOST_TEST_REQUIRE(made.out_of_symmetry.has_value());
+  BOOST_TEST(std::isinf(made.out_of_symmetry->horizon));
+  // It is a rounding of the start, whose effect is seen in one run as well; two runs of thousands
+  // of steps add theirs.
+  BOOST_TEST(made.out_of_symmetry->effect < 10 * made.rounding_effect);
+  BOOST_TEST(made.rounding_effect < 1e-10);
+  BOOST_TEST(!made.is_only_symmetric());
+}
+
+BOOST_AUTO_TEST_CASE(without_symmetry_there_is_nothing_to_be_pushed_out_of) {
+  Scene bent = compressed_strut();
+  bent.nodes[3].position.y() = 0.1;
+  bent.nodes[2].position.y() = 0.2;
+  const Reference made = make_reference(ReducedScene(bent), 0.1, seconds, &bent);
+  BOOST_TEST(!made.is_reduced_by_symmetry);
+  BOOST_TEST(!made.out_of_symmetry.has_value());
+  // Nor is anything known of it where the drawn scene is not.
+  const Reference unasked = make_reference(ReducedScene(compressed_strut()), 0.1, seconds);
+  BOOST_TEST((unasked.is_reduced_by_symmetry && !unasked.out_of_symmetry));
+}
+
+BOOST_AUTO_TEST_CASE(a_certificate_sees_changes_and_roundings_and_not_the_difference_alone) {
+  const ReducedScene scene(load_scene("oscillator"));
+  const Scales scales{.displacement = 2, .speed = 10, .kinetic = 50};
+  Solution one{.end = {0.1, Vec::Constant(1, 0.5), Vec::Constant(1, 1)}, .scales = scales},
+      other = one;
+  other.end.q[0] += 2e-9;  // 1e-9 of the scale
+  BOOST_TEST(joined(scene, one, other).certified.position == 2e-9,
+             boost::test_tools::tolerance(1e-6));
+  one.change.position = 3e-9;
+  BOOST_TEST(joined(scene, one, other).certified.position == 6e-9);
+  other.change.position = 4e-9;
+  BOOST_TEST(joined(scene, one, other).certified.position == 8e-9);
+  BOOST_TEST(joined(scene, one, other, {.position = 5e-9}).certified.position == 1e-8);
+  BOOST_TEST(joined(scene, one, other, {.velocity = 7e-9}).certified.velocity == 1.4e-8);
+}
+
+BOOST_AUTO_TEST_CASE(what_two_unlike_methods_agree_on_is_as_good_as_needed) {
+  for (const char* name : {"oscillator", "orbit", "pendulum"}) {
+    const ReducedScene scene(load_scene(name));
+    const Reference best = make_reference(scene, 0.5, seconds);
+    for (const double needed : {1e-5, 1e-8}) {
+      const Reference agreed = agreed_reference(scene, 0.5, needed, 10);
+      BOOST_TEST(agreed.certified.position <= needed, name);
+      BOOST_TEST(errors_between(scene, agreed.end, best.end, best.energy, best.scales).position <=
+                     slack * needed,
+                 name);
+      // Of a tenth of a turn more is seen than its ends.
+      BOOST_TEST(agreed.scales.displacement == best.scales.displacement,
+                 boost::test_tools::tolerance(1e-2));
+      BOOST_TEST(contains(agreed.made_by, {" at h = ", "; ", " at "}));
+      BOOST_TEST(agreed.energy == best.energy);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(where_time_is_up_the_nearest_two_say_how_far_they_differ) {
+  const ReducedScene scene(load_scene("pendulum"));
+  BOOST_CHECK_THROW(agreed_reference(scene, 0.5, 1e-8, 0), NoReference);
+  const Reference best = make_reference(scene, 0.5, seconds);
+  const Reference agreed = agreed_reference(scene, 0.5, 0, 0.2);
+  const double off = errors_between(scene, agreed.end, best.end, best.energy, best.scales).position;
+  BOOST_TEST(agreed.certified.position > 0);
+  BOOST_TEST(off <= slack * agreed.certified.position + tight);
+}
+
+BOOST_AUTO_TEST_CASE(an_end_too_late_is_refused_with_what_it_would_take) {
+  // w = 10 rad/s: 5e10 steps at the least, of which a core takes some millions a second.
+  const ReducedScene scene(load_scene("pendulum"));
+  for (const double until : {1e9, 1e300}) {
+    const auto start = std::chrono::steady_clock::now();
+    BOOST_CHECK_EXCEPTION(make_reference(scene, until, 5), NoReference, [](const auto& error) {
+      return std::string(error.what()).find("earlier end (--until)") != std::string::npos;
+    });
+    BOOST_TEST(seconds_since(start) < 5);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(negative_control_another_motion_is_not_within_the_bound) {
+  const Row row;
+  Row softer = row;
+  softer.stiffness *= 1 + 1e-9L;
+  const Reference made = make_reference(ReducedScene(row.scene()), 1.5, seconds);
+  double largest = 0;
+  for (int i = 1; i <= row.count; ++i) {
+    const double x = static_cast<double>(softer.node(i, 1.5L).first);
+    largest = std::max(largest, std::abs(made.end.q[i - 1] - x));
+  }
+  BOOST_TEST(largest > slack * made.certified.position * made.scales.displacement);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,333 @@
+// Mirrors of scenes in which nodes coincide: every node moves, and as it does in the scene as
+// drawn.
+#include <numeric>
+#include <set>
+
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/scene/reduce/part.hpp"
+#include "tests/measure.hpp"
+#include "tests/scene/drawn.hpp"
+
+using namespace qddot;
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+// Two pairs of nodes in one place each, which part.
+Scene two_pairs() {
+  Scene scene{.dimension = 2};
+  for (const auto& [y, v] : {std::pair(1., -1.), {1., 1.}, {-1., 1.}, {-1., -1.}}) {
+    scene.nodes.push_back({.position = {0, y, 0}, .velocity = {v, 0, 0}, .mass = 1});
+  }
+  for (const auto& [i, j] : {std::pair(0u, 1u), {2u, 3u}, {0u, 3u}, {1u, 2u}}) {
+    const double l0 = (scene.nodes[j].position - scene.nodes[i].position).norm();
+    scene.springs.push_back({{i, j}, {100, l0}});
+  }
+  return scene;
+}
+
+// A grid of n x n nodes drawn twice, sewn together by springs of no length, and stretched.
+Scene two_layers(int n, bool numbers_alternate) {
+  Scene scene{.dimension = 2};
+  const auto number = [&](int layer, int i, int j) {
+    const int place = n * i + j;
+    const bool is_turned = numbers_alternate && (i * j + i + j) % 3 == 0;
+    return static_cast<std::size_t>(2 * place + (is_turned ? 1 - layer : layer));
+  };
+  scene.nodes.resize(static_cast<std::size_t>(2 * n * n));
+  for (int layer = 0; layer < 2; ++layer) {
+    // Unlike springs, so that no layer is the other's image.
+    const double k = layer == 0 ? 50 : 80;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        scene.nodes[number(layer, i, j)] = {.position = {0.1 * i, 0.1 * j, 0}, .mass = 0.02};
+        if (i > 0)
+          scene.springs.push_back({{number(layer, i, j), number(layer, i - 1, j)}, {k, 0.09}});
+        if (j > 0)
+          scene.springs.push_back({{number(layer, i, j), number(layer, i, j - 1)}, {k, 0.09}});
+        if (layer == 0) scene.springs.push_back({{number(0, i, j), number(1, i, j)}, {30, 0}});
+      }
+    }
+  }
+  return scene;
+}
+
+// Nodes and springs with all their images in `mirrors` planes of the coordinates. Nodes on a plane
+// are drawn once, or twice where they move across it; others may be drawn twice as they are.
+class RandomSymmetry {
+ public:
+  RandomSymmetry(unsigned seed, int dimension, int mirrors)
+      : random_(seed), mirrors_(mirrors), scene_{.dimension = dimension} {
+    for (int d = mirrors; d < dimension; ++d) scene_.gravity[d] = number(-5, 5);
+    for (int bases = 0; bases < 4; ++bases) {
+      const Node node = random_node();
+      add_orbit(node);
+      if (chance(0.4)) add_orbit(node);
+    }
+    for (int e = 0; e < 14; ++e) add_springs();
+  }
+
+  // Moves every node by what rounding may, so that nodes in one place are so only nearly.
+  void jitter() {
+    for (Node& node : scene_.nodes) {
+      for (int d = 0; d < scene_.dimension; ++d) node.position[d] += number(-4, 4) * eps;
+    }
+  }
+
+  Scene shuffled() {
+    std::vector<std::size_t> order(scene_.nodes.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::shuffle(order, random_);
+    std::ranges::shuffle(scene_.springs, random_);
+    return renumbered(scene_, order);
+  }
+
+ private:
+  double number(double low, double high) {
+    return std::uniform_real_distribution(low, high)(random_);
+  }
+  bool chance(double share) { return number(0, 1) < share; }
+
+  Node random_node() {
+    Node node{.mass = number(0.5, 2), .pinned = chance(0.15)};
+    for (int d = 0; d < scene_.dimension; ++d) {
+      node.position[d] = d < mirrors_ && chance(0.4) ? 0 : number(0.2, 1);
+      const bool is_across = d < mirrors_ && node.position[d] == 0;
+      node.velocity[d] = is_across && chance(0.5) ? 0 : number(-1, 1);
+    }
+    if (node.pinned) node.velocity.setZero();
+    return node;
+  }
+
+  Eigen::Vector3d image(unsigned element, Eigen::Vector3d x) const {
+    for (int d = 0; d < mirrors_; ++d) {
+      if (element >> d & 1) x[d] = -x[d];
+    }
+    return x;
+  }
+
+  void add_orbit(const Node& node) {
+    auto& orbit = orbits_.emplace_back();
+    for (unsigned g = 0; g < 1u << mirrors_; ++g) {
+      Node other = node;
+      other.position = image(g, node.position);
+      other.velocity = image(g, node.velocity);
+      const auto same = std::ranges::find_if(orbit, [&](std::size_t i) {
+        return scene_.nodes[i].position == other.position &&
+               scene_.nodes[i].velocity == other.velocity;
+      });
+      const bool is_new = same == orbit.end();
+      orbit.push_back(is_new ? scene_.nodes.size() : *same);
+      if (is_new) scene_.nodes.push_back(other);
+    }
+  }
+
+  void add_springs() {
+    const auto& a = orbits_[random_() % orbits_.size()];
+    const auto& b = orbits_[random_() % orbits_.size()];
+    const std::size_t shift = random_() % a.size();
+    SpringLaw law{.stiffness = number(5, 50), .rest_length = number(0.1, 1), .quartic = 0};
+    const auto ends = [&](std::size_t g) { return std::minmax(a[g], b[g ^ shift]); };
+    const double length = (scene_.nodes[a[0]].position - scene_.nodes[b[shift]].position).norm();
+    if (length == 0) law.rest_length = 0;
+    std::set<std::pair<std::size_t, std::size_t>> drawn;
+    for (std::size_t g = 0; g < a.size(); ++g) {
+      const auto [low, high] = ends(g);
+      if (low == high || !drawn.emplace(low, high).second) continue;
+      scene_.springs.push_back({{low, high}, law});
+    }
+  }
+
+  std::mt19937 random_;
+  int mirrors_;
+  Scene scene_;
+  std::vector<std::vector<std::size_t>> orbits_;  // the node that each element makes of the first
+};
+
+std::vector<Eigen::Vector3d> forces_by_hand(const Scene& scene, const std::vector<Node>& nodes) {
+  std::vector<Eigen::Vector3d> f;
+  for (const Node& node : nodes) f.push_back(node.mass * scene.gravity);
+  for (const Spring& spring : scene.springs) {
+    const auto [a, b] = spring.nodes;
+    const Eigen::Vector3d force =
+        spring_force<double, 3>(spring.law, nodes[b].position - nodes[a].position);
+    f[a] += force;
+    f[b] -= force;
+  }
+  return f;
+}
+
+// That in this state all nodes are accelerated as drawn, and energies are those of all.
+void check(const Scene& scene, const ReducedScene& reduced, const State& state) {
+  const std::vector<Node> nodes = reduced.expand(state);
+  const auto f = forces_by_hand(scene, nodes);
+  const Vec a = force_at(reduced.system(), state.q).cwiseQuotient(reduced.system().mass());
+  const std::vector<Node> accelerated = reduced.expand_beside_falls({state.t, state.q, a});
+  std::vector<bool> falls(nodes.size(), false);
+  for (const qddot::reduce::Part& part : reduced.parts()) {
+    for (const std::size_t node : part.nodes()) falls[node] = part.fall().moves();
+  }
+  // Tens of springs of up to 50 N/m and a few metres on nodes above 0.02 kg, rounded a few times.
+  const double round_off = 1e3 * eps * 50 / 0.02;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i].pinned) continue;
+    const bool flies = reduced.system().size() == 0 ||
+                       std::ranges::none_of(scene.springs, [&](const Spring& spring) {
+                         return spring.nodes[0] == i || spring.nodes[1] == i;
+                       });
+    if (!flies) {
+      Eigen::Vector3d own = f[i] / nodes[i].mass;
+      if (falls[i]) own -= scene.gravity;  // as seen from the frame that falls with it
+      BOOST_TEST((accelerated[i].velocity - own).norm() < round_off);
+    }
+  }
+  const double t = kinetic_by_hand(nodes), v = potential_by_hand(scene, nodes);
+  BOOST_TEST(std::abs(reduced.kinetic(state) - t) <= 100 * eps * t);
+  BOOST_TEST(std::abs(reduced.potential(state) - v) <= 1e3 * eps * (std::abs(v) + 50));
+}
+
+State moved(const ReducedScene& reduced, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> part(-0.1, 0.1);
+  State state = reduced.initial();
+  for (double& x : state.q) x += part(random);
+  for (double& v : state.v) v += part(random);
+  return state;
+}
+
+// As drawn, but that pinned nodes rest.
+std::vector<Node> at_start(const Scene& scene) {
+  std::vector<Node> nodes = scene.nodes;
+  for (Node& node : nodes) {
+    if (node.pinned) node.velocity.setZero();
+  }
+  return nodes;
+}
+
+void check_all(const Scene& scene) {
+  const ReducedScene reduced(scene);
+  // Tolerances of mirrors, 64 eps, and turning there and back.
+  BOOST_TEST(farthest(reduced.expand(reduced.initial()), at_start(scene)) < 1e3 * eps);
+  check(scene, reduced, reduced.initial());
+  check(scene, reduced, moved(reduced, 1));
+  for (const Finding& finding : reduced.findings()) {
+    BOOST_TEST(finding.what.find("defect") == std::string::npos, finding.what);
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(coincident)
+
+BOOST_AUTO_TEST_CASE(pairs_that_part_are_four_images_of_one_node) {
+  const Scene scene = two_pairs();
+  const ReducedScene reduced(scene);
+  BOOST_TEST(reduced.energy(reduced.initial()) == 2, boost::test_tools::tolerance(10 * eps));
+  BOOST_TEST(reduced.system().size() == 2);
+  check_all(scene);
+  // Each moves away from the mirror at its own side with 1 m/s, held back by 4 x 100 N/m.
+  const auto nodes_at = [&](const Reductions& reductions) {
+    const ReducedScene some(scene, reductions);
+    State state = some.initial();
+    make_integrator(*find_method("kahan_li8"), some.system(), {.step_size = 1e-3})
+        ->advance(state, 0.1);
+    return some.expand(state);
+  };
+  const auto all = nodes_at(Reductions()), drawn = nodes_at(Reductions::only({Reduction::pins}));
+  // A hundred steps of numbers around one.
+  BOOST_TEST(farthest(all, drawn) < 1e-12);
+  for (const Node& node : all) BOOST_TEST(std::abs(node.position.x()) > 0.01);
+}
+
+BOOST_AUTO_TEST_CASE(layers_of_a_grid_keep_all_of_their_mass) {
+  for (const int n : {3, 4, 5, 6, 7}) {
+    for (const bool numbers_alternate : {false, true}) {
+      const Scene scene = two_layers(n, numbers_alternate);
+      BOOST_TEST_CONTEXT(n << " by " << n) {
+        check_all(scene);
+        const ReducedScene reduced(scene);
+        BOOST_TEST(reduced.parts().front().mirrors().count == 2);
+        // Both layers of a quarter; those on a mirror have one coordinate, the middle has none.
+        BOOST_TEST(reduced.system().size() == 2 * (n / 2) * (n / 2) * 2 + n % 2 * 2 * 2 * (n / 2));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(whatever_coincides_moves_as_drawn) {
+  int found = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    const int dimension = 1 + static_cast<int>(seed % 3);
+    const int mirrors = 1 + static_cast<int>(seed / 3) % dimension;
+    RandomSymmetry symmetry(seed, dimension, mirrors);
+    if (seed % 4 == 0) symmetry.jitter();
+    Scene scene = symmetry.shuffled();
+    if (seed % 2 == 1 && dimension == 3) scene = turned(scene, some_rotation(), {0.3, -0.2, 0.4});
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      check_all(scene);
+      const ReducedScene reduced(scene);
+      for (const qddot::reduce::Part& part : reduced.parts()) found += part.mirrors().count;
+    }
+  }
+  // A hundred scenes for each number of mirrors; some fall into parts that are not their own image.
+  BOOST_TEST(found > 200);
+}
+
+BOOST_AUTO_TEST_CASE(twins_that_nothing_tells_apart_are_swapped_by_mirrors_that_commute) {
+  // Two nodes at each corner of a rectangle, each on springs to both of either side: any of two may
+  // be the image. In one place but for rounding, so that no order decides.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> rounding_of(-4 * eps, 4 * eps);
+  for (int draw = 0; draw < 20; ++draw) {
+    Scene scene{.dimension = 2};
+    for (const auto& [x, y] : {std::pair(1., 2.), {-1., 2.}, {-1., -2.}, {1., -2.}}) {
+      for (int twin = 0; twin < 2; ++twin) {
+        scene.nodes.push_back(
+            {.position = {x + rounding_of(random), y + rounding_of(random), 0}, .mass = 1});
+      }
+    }
+    for (std::size_t i = 0; i < 8; ++i) {
+      const std::size_t next = (i / 2 + 1) % 4 * 2;
+      for (const std::size_t j : {next, next + 1}) scene.springs.push_back({{i, j}, {30, 1.5}});
+    }
+    check_all(scene);
+    const ReducedScene reduced(scene);
+    BOOST_TEST(reduced.parts().front().mirrors().count == 2);
+    BOOST_TEST(reduced.system().size() == 4);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_ring_that_winds_twice_has_one_mirror) {
+  // Node i at corner i mod 4, springs from i to i + 1 mod 8. The images under one mirror are 1 - i
+  // or 5 - i, under the other 3 - i or 7 - i: one after the other they are i - 2 or i + 2, and
+  // i + 2 or i - 2 in the other order.
+  Scene scene{.dimension = 2};
+  const std::vector<std::pair<double, double>> corners = {{1, 2}, {-1, 2}, {-1, -2}, {1, -2}};
+  for (std::size_t i = 0; i < 8; ++i) {
+    const auto [x, y] = corners[i % 4];
+    scene.nodes.push_back({.position = {x, y, 0}, .mass = 1});
+    scene.springs.push_back({{i, (i + 1) % 8}, {30, 1.5}});
+  }
+  check_all(scene);
+  const ReducedScene reduced(scene);
+  BOOST_TEST(reduced.parts().front().mirrors().count == 1);
+}
+
+BOOST_AUTO_TEST_CASE(a_spring_as_short_as_rounding_has_no_mirror) {
+  // Its ends, apart by one rounding, fly apart along the diagonal.
+  Scene scene{.dimension = 2};
+  scene.nodes = {{.position = {1e-17, 1e-17, 0}, .mass = 1},
+                 {.position = {-1e-17, -1e-17, 0}, .mass = 1},
+                 {.position = {1, 0, 0}, .mass = 1},
+                 {.position = {-1, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {100, 1}}};
+  for (const std::size_t i : {0u, 1u}) {
+    for (const std::size_t j : {2u, 3u}) scene.springs.push_back({{i, j}, {10, 0}});
+  }
+  check_all(scene);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

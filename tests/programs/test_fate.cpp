@@ -1,0 +1,192 @@
+#include <CLI/CLI.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include "experiments/stability_map/fate.hpp"
+#include "experiments/stability_map/fate_map.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/settle.hpp"
+#include "tests/folder.hpp"
+#include "tests/integrators/runs.hpp"
+
+using namespace qddot;
+using namespace qddot::measure;
+using namespace qddot::stability_map;
+
+BOOST_AUTO_TEST_SUITE(fate)
+
+namespace {
+
+struct Case {
+  Scene drawn;
+  ReducedScene scene{drawn};
+  double rest_energy = [this] {
+    const ReducedScene rest(settled(drawn, drawn.name), Reductions::only({Reduction::pins}));
+    return rest.potential(rest.initial());
+  }();
+
+  Case(const char* generator, const GeneratorValues& values)
+      : drawn(generate(*find_generator(generator), values, generator)) {}
+  Fate operator()(const char* method, double h, double until, int iterations = 0) const {
+    return fate_of(method_named(method), {.step_size = h, .iterations = iterations}, scene,
+                   {.rest_energy = rest_energy, .until = until, .seconds = 60});
+  }
+};
+
+// w = sqrt(k/m) = 5 rad/s.
+const Case& oscillator() {
+  static const Case one("oscillator", {{"mass", 2}, {"stiffness", 50}});
+  return one;
+}
+constexpr double w = 5;
+
+// A swing of 2 s on a spring of 100 times that frequency.
+const Case& stiff_pendulum() {
+  static const Case one("pendulum", {{"stiffness", 1e5}});
+  return one;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(symplectic_methods_are_bounded_below_their_limit_and_diverge_above) {
+  for (const char* method : {"symplectic_euler", "verlet", "position_verlet"}) {
+    BOOST_TEST_CONTEXT(method) {
+      BOOST_TEST(oscillator()(method, 0.999 * 2 / w, 2000).outcome == "bounded");
+      const Fate above = oscillator()(method, 1.001 * 2 / w, 2000);
+      BOOST_TEST(above.outcome == "diverged");
+      // ln rho / h with rho = 1 + 2 sqrt(2 * 0.001) + ..., by theory; the fit sees its start too.
+      const double rho = linear_step(method_named(method), 2.002).spectral_radius();
+      BOOST_TEST(above.growth_rate == std::log(rho) / (2.002 / w),
+                 boost::test_tools::tolerance(0.02));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(explicit_euler_dies_slowly_at_its_rate_at_any_step) {
+  for (const double hw : {0.05, 0.2, 1.0}) {
+    const double h = hw / w;
+    const Fate fate = oscillator()("explicit_euler", h, 400 / hw * h);
+    BOOST_TEST(fate.outcome == "diverged");
+    // |1 + i h w| a step, without any transient.
+    BOOST_TEST(fate.growth_rate == std::log1p(hw * hw) / (2 * h),
+               boost::test_tools::tolerance(1e-6));
+  }
+  // It is slow: over a hundred short steps nothing is to be seen.
+  BOOST_TEST(oscillator()("explicit_euler", 0.01 / w, 1 / w).outcome == "bounded");
+}
+
+BOOST_AUTO_TEST_CASE(implicit_euler_leaks_at_its_rate) {
+  for (const double hw : {0.1, 1.0}) {
+    const double h = hw / w;
+    const Fate fate = oscillator()("implicit_euler", h, 100 * h);
+    BOOST_TEST(fate.outcome == "leaked");
+    BOOST_TEST(fate.growth_rate == -std::log1p(hw * hw) / (2 * h),
+               boost::test_tools::tolerance(1e-6));
+  }
+  BOOST_TEST(oscillator()("trapezoidal", 100 / w, 100).outcome == "bounded");
+}
+
+BOOST_AUTO_TEST_CASE(
+    a_stable_methods_fail_on_a_stiff_pendulum_that_linear_theory_knows_nothing_of) {
+  // h w = 16 for the spring, 33 steps a swing: bounded, as linear theory has it.
+  for (const char* method : {"implicit_midpoint", "trapezoidal", "discrete_gradient"}) {
+    BOOST_TEST(stiff_pendulum()(method, 0.05, 20).outcome == "bounded", method);
+  }
+  // h w = 19: the energy grows more than a thousandfold.
+  for (const char* method : {"implicit_midpoint", "trapezoidal"}) {
+    const Fate fate = stiff_pendulum()(method, 0.06, 20);
+    BOOST_TEST(fate.energy_max > 1000, method);
+    BOOST_TEST((fate.outcome == "gained" || fate.outcome == "diverged"), method);
+  }
+  // The discrete gradient's equations have no solution that Newton finds there, but what it has
+  // taken of steps has kept the energy, to what its solves leave.
+  const Fate kept = stiff_pendulum()("discrete_gradient", 0.06, 20);
+  BOOST_TEST(kept.outcome == "newton_failed");
+  BOOST_TEST(kept.energy_max < 1 + 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(linearly_implicit_steps_fail_where_a_strut_makes_their_matrix_singular) {
+  // One free node between two pins: lambda = (2 k/m)(l0/l - 1), less by the bend's part in 1e5.
+  const double k = 1000, m = 0.1, compression = 0.8;
+  const double rate = std::sqrt(2 * k / m * (1 / compression - 1));
+  const Case strut(
+      "strut",
+      {{"nodes", 3}, {"stiffness", k}, {"mass", m}, {"compression", compression}, {"bend", 1e-3}});
+  const auto at = [&](double h_squared_lambda) {
+    return strut("semi_implicit_euler", std::sqrt(h_squared_lambda) / rate, 1);
+  };
+  BOOST_TEST(at(0.5).outcome != "indefinite_matrix");
+  BOOST_TEST(at(0.5).energy_max < 10);
+  BOOST_TEST(at(1.0).outcome == "indefinite_matrix");
+  BOOST_TEST(at(1.0).energy_max > 1e4);
+  // Beyond h rate = 2 its map damps what pushes to the side, 1/(1 - h rate) a step: it stands still
+  // on top, which is bounded and wrong.
+  BOOST_TEST(at(5).outcome == "bounded");
+  BOOST_TEST(std::abs(at(5).energy_end - 1) < 1e-3);
+  // Implicit Euler solves the same equation to the end, at a minimum.
+  const Fate solved = strut("implicit_euler", 1 / rate, 1);
+  BOOST_TEST(solved.energy_max < 1 + 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(few_iterations_converge_to_another_motion) {
+  const Case chain("chain", {{"nodes", 40}, {"stiffness", 1e5}});
+  BOOST_TEST(chain("local_global", 0.02, 0.5, 1).outcome == "unconverged");
+  BOOST_TEST(chain("local_global", 1e-4, 0.02, 10).outcome != "unconverged");
+}
+
+BOOST_AUTO_TEST_CASE(time_that_is_up_is_an_outcome) {
+  const Fate fate = fate_of(method_named("verlet"), {.step_size = 1e-7}, oscillator().scene,
+                            {.until = 1e4, .seconds = 0.05});
+  BOOST_TEST(fate.outcome == "over_budget");
+  BOOST_TEST(fate.t_reached < 1e4);
+}
+
+BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
+  const Folder folder;
+  AmplitudeRow row{.amplitude = 1,
+                   .scene = std::make_unique<ReducedScene>(oscillator().drawn),
+                   .rest_energy = oscillator().rest_energy,
+                   .omega_max = w,
+                   .buckling_rate = 0,
+                   .modes = {}};
+  row.modes = sampled_modes(row.scene->system(), row.scene->initial().q, 3);
+  std::vector<Cell> cells;
+  for (const double h_omega : {0.5, 1.9, 2.1}) {
+    cells.push_back({&method_named("verlet"), &row, h_omega, 0});
+  }
+  const MapSettings settings{.until = 20, .tolerated = 0.5, .seconds = 10};
+  CLI::App app("", "map");
+  add_resume_option(app);
+  std::vector<std::optional<Fate>> all;
+  {
+    Study study(app, folder.path(), {}, {});
+    all = fates(study, cells, settings, [](std::size_t) {});
+  }
+  BOOST_TEST(all[0]->outcome == "bounded");
+  BOOST_TEST(all[1]->outcome == "bounded");
+  BOOST_TEST(all[2]->outcome == "diverged");
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Fate alone = fate_of(*cells[i].method, {.step_size = cells[i].h_omega / w}, *row.scene,
+                               {row.rest_energy, settings.tolerated, settings.until, 10});
+    BOOST_TEST(all[i]->growth_rate == alone.growth_rate);
+    BOOST_TEST(all[i]->energy_max == alone.energy_max);
+  }
+  BOOST_TEST(std::abs(predicted_growth_rate(cells[0])) < 1e-12);
+  BOOST_TEST(predicted_growth_rate(cells[2]) > 1);
+
+  // What the journal holds is believed, and what is missing is run.
+  app.parse("--resume");
+  Study study(app, folder.path(), {}, {});
+  cells.push_back({&method_named("verlet"), &row, 1.5, 0});
+  const auto resumed = fates(
+      study, cells, MapSettings{.until = 30, .tolerated = 0.5, .seconds = 10}, [](std::size_t) {});
+  for (std::size_t i = 0; i < 3; ++i) {
+    BOOST_TEST(resumed[i]->outcome == all[i]->outcome);
+    BOOST_TEST(resumed[i]->growth_rate == all[i]->growth_rate);
+    BOOST_TEST(resumed[i]->counts.force_evaluations == all[i]->counts.force_evaluations);
+  }
+  BOOST_TEST(resumed[0]->t_reached == 20);
+  BOOST_TEST(resumed[3]->t_reached == 30);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

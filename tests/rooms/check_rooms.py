@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Holds the house to its plan: which room may include which, read off every #include.
+
+A room is a folder; the table below is the plan, each room with those that it may see beside itself
+and whatever those may see. Call: check_rooms.py ROOT [--arrows], the latter printing what is seen.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+MODEL = {"src/model", "src/model/kernels"}
+ALGEBRA = MODEL | {"src/algebra", "src/algebra/multifrontal"}
+ANALYSIS = ALGEBRA | {"src/analysis"}
+SCENE = ANALYSIS | {"src/scene", "src/scene/generators", "src/scene/mesh", "src/scene/reduce"}
+FACE = ANALYSIS | {"integrators"}  # never a scene
+BASE = FACE | {"integrators/base"}
+MOTION = BASE | SCENE | {"experiments/measure/motion"}
+REFERENCE = MOTION | {"experiments/measure/reference"}
+STABILITY = MOTION | {"experiments/measure/stability"}
+SPEED = REFERENCE | STABILITY | {"experiments/measure/speed"}
+TREND = SPEED | {"experiments/measure/trend"}
+COMMAND = TREND | {"experiments/command"}
+
+MAY_SEE = {
+    **{room: MODEL for room in MODEL},
+    **{room: ALGEBRA for room in ALGEBRA - MODEL},
+    **{room: ANALYSIS for room in ANALYSIS - ALGEBRA},
+    **{room: SCENE for room in SCENE - ANALYSIS},
+    "integrators": FACE,
+    "integrators/base": BASE,
+    "integrators/methods": BASE,
+    "integrators/sundials": BASE,
+    "experiments/measure/motion": MOTION,
+    "experiments/measure/reference": REFERENCE,
+    "experiments/measure/stability": STABILITY,
+    "experiments/measure/speed": SPEED,
+    "experiments/measure/trend": TREND,
+    "experiments/command": COMMAND,
+    # A peer is SUNDIALS by itself, whose handles are there.
+    "experiments/bench": COMMAND | {"integrators/sundials"},
+}
+# What a library of data in, data out does not know.
+NOT_IN_A_LIBRARY = re.compile(r"#include <(CLI/|nlohmann/)|fmt::print|std::c(out|err)\b|\bprintf\(")
+
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+
+
+def path_of(name):
+    """The file that an include names, from the root."""
+    if not name.startswith("qddot/"):
+        return name
+    rest = name.removeprefix("qddot/")
+    if rest.startswith("integrators/"):
+        return rest
+    return ("experiments/" if rest.startswith("measure/") else "src/") + rest
+
+
+def may_see(room):
+    """A question sees the command line and the measurements, and never another question."""
+    return MAY_SEE.get(room, COMMAND) | {room}
+
+
+def check(root):
+    """The arrows between rooms, and a sentence for each that the plan does not have."""
+    arrows, wrong = {}, []
+    for top in ("src", "integrators", "experiments"):
+        for file in sorted((root / top).rglob("*.[ch]pp")):
+            room = str(file.parent.relative_to(root))
+            text = file.read_text()
+            place = file.relative_to(root)
+            for name in INCLUDE.findall(text):
+                target = path_of(name)
+                if not (root / target).is_file():
+                    wrong.append(f"{place} includes {name}, which no room has")
+                    continue
+                seen = str(Path(target).parent)
+                if seen != room:
+                    arrows.setdefault((room, seen), []).append(f"{place} -> {target}")
+                if seen not in may_see(room):
+                    wrong.append(f"{place} includes {target}: {room} may not see {seen}")
+            is_library = top != "experiments" or room.startswith("experiments/measure")
+            if is_library and (found := NOT_IN_A_LIBRARY.search(text)):
+                wrong.append(f"{place} has {found[0]}: a library takes data and returns data")
+    return arrows, wrong
+
+
+def main(arguments):
+    root = Path(arguments[0])
+    arrows, wrong = check(root)
+    if not arrows:
+        wrong.append(f"{root} has no includes: is it the root of the tree?")
+    if "--arrows" in arguments:
+        for (room, seen), places in sorted(arrows.items()):
+            print(f"{room} -> {seen} ({len(places)})")
+        rooms = {room for arrow in arrows for room in arrow}
+        print(f"{len(rooms)} rooms, {len(arrows)} arrows")
+    for sentence in wrong:
+        print(sentence, file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
