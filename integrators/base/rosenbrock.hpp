@@ -17,7 +17,9 @@ struct RosenbrockTable {
 };
 
 // Of order 4 with an estimate of order 3.
+namespace registered {
 const RosenbrockTable& rodas4_table();
+}  // namespace registered
 
 // Steps of such a method for y = (q, v), F = (v, M^-1 f(q)), J = [[0, I], [M^-1 K, 0]], K(q_n)
 // exact: with g = gamma h each stage is one n x n solve,

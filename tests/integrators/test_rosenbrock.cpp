@@ -80,7 +80,7 @@ Case nonlinear() {
 
 // One step of the method in the form without transformation, with a dense 2n x 2n Jacobian.
 State step(const System& system, const State& start, double h) {
-  const Plain p = plain(rodas4_table());
+  const Plain p = plain(registered::rodas4_table());
   const Index n = system.size(), s = p.b.size();
   MatrixXd j = MatrixXd::Zero(2 * n, 2 * n);
   j.topRightCorner(n, n).setIdentity();
@@ -106,12 +106,12 @@ State step(const System& system, const State& start, double h) {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(the_table_meets_the_conditions_of_order_4_and_the_embedded_one_of_order_3) {
-  const Plain p = plain(rodas4_table());
+  const Plain p = plain(registered::rodas4_table());
   for (const double left : conditions(p, p.b)) BOOST_TEST(std::abs(left) < 1e-14);
   const auto lower = conditions(p, p.lower_b);
   for (std::size_t i = 0; i < 4; ++i) BOOST_TEST(std::abs(lower[i]) < 1e-14);
   for (std::size_t i = 4; i < 8; ++i) BOOST_TEST(std::abs(lower[i]) > 1e-3);
-  RosenbrockTable wrong = rodas4_table();
+  RosenbrockTable wrong = registered::rodas4_table();
   wrong.c[4][2] *= 1.0001;
   double worst = 0;
   for (const double left : conditions(plain(wrong), plain(wrong).b)) {
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(the_table_meets_the_conditions_of_order_4_and_the_embedded_
 }
 
 BOOST_AUTO_TEST_CASE(it_is_a_stable_and_damps_infinite_frequencies_at_once) {
-  const Plain p = plain(rodas4_table());
+  const Plain p = plain(registered::rodas4_table());
   // Stages of up to 34, which cancel.
   for (double y = 1e-3; y < 1e6; y *= 1.3) BOOST_TEST(amplification(p, {0, y}) < 1 + 1e-12);
   BOOST_TEST(amplification(p, {0, 1e6}) < 1e-4);
