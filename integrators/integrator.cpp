@@ -50,6 +50,10 @@ std::string_view name(Outcome outcome) {
       return "no_stiff_set";
     case Outcome::no_laplacian:
       return "no_laplacian";
+    case Outcome::no_stiffness:
+      return "no_stiffness";
+    case Outcome::no_discrete_gradient:
+      return "no_discrete_gradient";
   }
   return "unknown";
 }
@@ -92,6 +96,12 @@ std::string_view advice(Outcome outcome) {
     case Outcome::no_laplacian:
       return "the system has no matrix that stands for its stiffness everywhere, as springs have: "
              "take another method";
+    case Outcome::no_stiffness:
+      return "the system computes no stiffness matrix K, which this method needs: give it "
+             "stiffness_pattern() and stiffness(), or take an explicit method";
+    case Outcome::no_discrete_gradient:
+      return "the system computes no discrete gradient of its energy, which this method needs: "
+             "take another method";
   }
   return "";
 }
@@ -120,7 +130,13 @@ Seconds& Seconds::operator+=(const Seconds& more) {
 }
 
 Integrator::Integrator(const Method& method, const System& system, const Knobs& knobs)
-    : method_(method), system_(system), knobs_(knobs), growth_(system) {}
+    : method_(method),
+      system_(system),
+      split_stiffness_(capability<SplitStiffness>(system)),
+      discrete_gradient_(capability<DiscreteGradient>(system)),
+      validity_(capability<Validity>(system)),
+      knobs_(knobs),
+      growth_(system) {}
 
 Integrator::~Integrator() = default;
 
@@ -165,9 +181,11 @@ Outcome Integrator::judge(const State& from, const State& to) {
   const double speed_squared = to.v.squaredNorm();
   if (std::isnan(speed_squared)) return Outcome::not_finite;
   if (!(speed_squared < largest_speed_squared)) return Outcome::diverged;
-  if (const auto t = system_.stops_holding(from, to)) {
-    slack_at_ = *t;
-    return Outcome::went_slack;
+  if (validity_) {
+    if (const auto t = validity_->end_of_validity(from, to)) {
+      slack_at_ = *t;
+      return Outcome::went_slack;
+    }
   }
   if (balance_ && !balance_->is_stable([&](SymmetricMatrix& k) { stiffness(to.q, k); })) {
     slack_at_ = to.t;
@@ -200,9 +218,9 @@ void Integrator::take_over(Integrator& other) {
 
 void Integrator::set_out(const State& state) {
   reached_ = state.t;
-  if (system_.parts().empty()) {  // else each part looks after itself
+  if (blocks_of(system_).empty()) {  // else each block looks after itself
     growth_.start(state);
-    if (system_.has_massless()) {
+    if (system_.has_massless() && system_.has_stiffness()) {
       balance_ =
           std::make_unique<MasslessBalance>(system_, std::max(balance_tolerance, knobs_.rtol));
     }

@@ -13,7 +13,7 @@
 
 #include "qddot/algebra/solver.hpp"
 #include "qddot/integrators/energy_growth.hpp"
-#include "qddot/model/system.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 
@@ -23,18 +23,20 @@ class MasslessBalance;
 // How a run ended. Everything but reached_end is a failure, and a failure is data.
 enum class Outcome {
   reached_end,
-  diverged,           // speeds grew beyond any bound
-  newton_failed,      // a nonlinear solve did not converge
-  indefinite_matrix,  // M - h^2 K is singular or not positive definite where it must be
-  step_too_small,     // t + h == t, or an adaptive method's step collapsed
-  singular_mass,      // a massless node, and a method that divides by M
-  not_finite,         // a force, energy or start value is no number
-  solver_failed,      // a library gave up for another reason
-  over_budget,        // stopped from outside
-  stiffness_varies,   // a method for constant K, and a system whose K is not
-  went_slack,         // compressed springs at a massless node (System::holds_at, MasslessBalance)
-  no_stiff_set,       // a method that takes stiff forces apart, and none are named (System::split)
-  no_laplacian,       // a method that takes L in the place of -K, and a system that has none
+  diverged,              // speeds grew beyond any bound
+  newton_failed,         // a nonlinear solve did not converge
+  indefinite_matrix,     // M - h^2 K is singular or not positive definite where it must be
+  step_too_small,        // t + h == t, or an adaptive method's step collapsed
+  singular_mass,         // a massless node, and a method that divides by M
+  not_finite,            // a force, energy or start value is no number
+  solver_failed,         // a library gave up for another reason
+  over_budget,           // stopped from outside
+  stiffness_varies,      // a method for constant K, and a system whose K is not
+  went_slack,            // compressed springs at a massless node (Validity, MasslessBalance)
+  no_stiff_set,          // a method that takes stiff forces apart, and none are named (SplitForces)
+  no_laplacian,          // a method that takes L in the place of -K, and a system that has none
+  no_stiffness,          // a method that needs K, and a system that computes none
+  no_discrete_gradient,  // a method that needs one of V, and a system that computes none
 };
 
 std::string_view name(Outcome outcome);    // as above
@@ -202,16 +204,23 @@ class Integrator {
     const Stopwatch watch(seconds(), &Seconds::stiffness);
     part.stiffness(q, k);
   }
-  // Likewise System::mean_force, counted as a force, and System::softened_stiffness.
-  void mean_force(const Vec& a, const Vec& b, Vec& f) {
+  // Likewise the system's DiscreteGradient, counted as a force; for methods that need it.
+  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) {
     ++counts_.force_evaluations;
     const Stopwatch watch(seconds(), &Seconds::force);
-    system_.mean_force(a, b, f);
+    discrete_gradient_->discrete_gradient(a, b, f);
   }
-  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) {
+  // Likewise SplitStiffness::weighted_stiffness. Of a system that does not offer it, the weight
+  // times all of K: with the weight going to 0, M - s K goes to M, which is positive definite.
+  void weighted_stiffness(const Vec& q, double compression_weight, SymmetricMatrix& k) {
     ++counts_.stiffness_evaluations;
     const Stopwatch watch(seconds(), &Seconds::stiffness);
-    system_.softened_stiffness(q, compression, k);
+    if (split_stiffness_) {
+      split_stiffness_->weighted_stiffness(q, compression_weight, k);
+      return;
+    }
+    system_.stiffness(q, k);
+    if (compression_weight != 1) k.coeffs() *= compression_weight;
   }
 
  private:
@@ -223,6 +232,10 @@ class Integrator {
 
   const Method& method_;
   const System& system_;
+  // What the system offers; nullptr where it does not.
+  const SplitStiffness* split_stiffness_;
+  const DiscreteGradient* discrete_gradient_;
+  const Validity* validity_;
   Knobs knobs_;
   Counts counts_;
   Seconds seconds_;

@@ -14,8 +14,8 @@ namespace qddot {
 // equation of motion says where to.
 class MasslessBalance {
  public:
-  // The system must have massless nodes. An eigenvalue is negative where it is below -tolerance
-  // times the stiffness of the nodes around.
+  // The system must have massless nodes and a K. An eigenvalue is negative where it is below
+  // -tolerance times the stiffness of the nodes around.
   MasslessBalance(const System& system, double tolerance);
 
   // With stiffness(k), which brings the K of the place.

@@ -43,15 +43,16 @@ struct Method {
   bool varies_order = false;         // up to `order`, or to Knobs::max_order
   bool detects_instability = false;  // listens to Knobs::stability_detection
   bool interpolates = false;         // between its steps, for an Observer
-  // Takes the forces of System::split(), of which a system may have none when the method is made:
+  // Takes the forces of SplitForces, of which a system may have none when the method is made:
   // it may be asked for from start() on.
   bool needs_split = false;
-  bool needs_laplacian = false;        // takes System::laplacian()
-  bool takes_iterations = false;       // listens to Knobs::iterations,
-  bool takes_solve_tolerance = false;  // Knobs::solve_tolerance
-  bool takes_spectral_radius = false;  // Knobs::spectral_radius,
-  bool takes_solver = false;           // Knobs::solver
-  bool takes_compensation = false;     // and Knobs::compensated
+  bool needs_discrete_gradient = false;  // takes the f of DiscreteGradient
+  bool needs_laplacian = false;          // takes the L of Laplacian
+  bool takes_iterations = false;         // listens to Knobs::iterations,
+  bool takes_solve_tolerance = false;    // Knobs::solve_tolerance
+  bool takes_spectral_radius = false;    // Knobs::spectral_radius,
+  bool takes_solver = false;             // Knobs::solver
+  bool takes_compensation = false;       // and Knobs::compensated
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
 };
 
@@ -61,20 +62,24 @@ inline double linear_limit(const Method& method) {
   return method.stability_limit.value_or(std::numeric_limits<double>::infinity());
 }
 
-// Whether the system's forces are divided into stiff and soft ones, in each of its parts that has
+// Whether the system's forces are divided into stiff and soft ones, in each of its blocks that has
 // unknowns.
 inline bool is_split(const System& system) {
-  if (system.parts().empty()) return system.size() == 0 || system.split();
-  return std::ranges::all_of(system.parts(), [](const auto& part) { return is_split(*part); });
+  const auto blocks = blocks_of(system);
+  if (blocks.empty()) return system.size() == 0 || split_of(system);
+  return std::ranges::all_of(blocks, [](const auto& block) { return is_split(*block); });
 }
 
 // Why the method cannot be used on the system at all, whatever its masses; nothing where it can.
 inline std::optional<Outcome> misfit(const Method& method, const System& system) {
+  if (method.needs_stiffness && !system.has_stiffness()) return Outcome::no_stiffness;
   if (method.needs_constant_stiffness && !system.stiffness_is_constant())
     return Outcome::stiffness_varies;
   if (method.needs_split && !is_split(system)) return Outcome::no_stiff_set;
-  if (method.needs_laplacian && system.size() > 0 && system.has_laplacian() == HasLaplacian::no)
+  if (method.needs_laplacian && system.size() > 0 && !capability<Laplacian>(system))
     return Outcome::no_laplacian;
+  if (method.needs_discrete_gradient && system.size() > 0 && !capability<DiscreteGradient>(system))
+    return Outcome::no_discrete_gradient;
   return {};
 }
 inline bool applies_to(const Method& method, const System& system) {

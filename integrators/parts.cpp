@@ -9,9 +9,9 @@ namespace qddot {
 Parts::Parts(const Method& method, const System& system, const Knobs& knobs)
     : Integrator(method, system, knobs) {
   Index first = 0;
-  for (const auto& part : system.parts()) {
-    pieces_.push_back({first, make_integrator(method, *part, knobs), {}, {}, 1});
-    first += part->size();
+  for (const auto& block : blocks_of(system)) {
+    pieces_.push_back({first, make_integrator(method, *block, knobs), {}, {}, 1});
+    first += block->size();
   }
 }
 

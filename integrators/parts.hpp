@@ -7,7 +7,7 @@
 
 namespace qddot {
 
-// Runs a system whose parts no force couples (System::parts): each by an integrator of its own,
+// Runs a system whose parts no force couples (see Blocks): each by an integrator of its own,
 // with steps of its own where the method is adaptive, as one run with one outcome. Counts and
 // seconds are the sums over the parts. Where a part fails, the others are brought to the time that
 // it reached; of several that fail the earliest decides. A run that is stopped from outside ends

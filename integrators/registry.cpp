@@ -78,7 +78,8 @@ const std::vector<Method>& methods() {
 
 namespace {
 
-// Of a system without unknowns, which no library need be asked about: advance() lets time pass.
+// Of a system without unknowns, which no library need be asked about: advance() lets time pass. Of
+// a system that the method does not fit: advance() refuses before it would run.
 class Rest final : public Integrator {
  public:
   using Integrator::Integrator;
@@ -96,8 +97,10 @@ const Method* find_method(std::string_view name) {
 
 std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
                                             const Knobs& knobs) {
-  if (system.size() == 0) return std::make_unique<Rest>(method, system, knobs);
-  if (!system.parts().empty()) return std::make_unique<Parts>(method, system, knobs);
+  if (system.size() == 0 || !applies_to(method, system)) {
+    return std::make_unique<Rest>(method, system, knobs);
+  }
+  if (!blocks_of(system).empty()) return std::make_unique<Parts>(method, system, knobs);
   return method.make(method, system, knobs);
 }
 

@@ -14,7 +14,8 @@ const std::vector<Method>& methods();
 const Method* find_method(std::string_view name);
 
 // An integrator for `system`, which must outlive it; allocates and analyses all it needs. Of a
-// system that consists of parts, each gets an integrator of its own.
+// system that consists of blocks, each gets an integrator of its own. Where the method does not fit
+// the system (see misfit), advance() says why and does nothing.
 std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
                                             const Knobs& knobs);
 

@@ -2,10 +2,11 @@
 
 #include <cmath>
 #include <span>
+#include <stdexcept>
 
 #include <Eigen/Dense>
 
-#include "qddot/model/system.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 
@@ -48,6 +49,24 @@ inline Eigen::MatrixXd dense(const SymmetricMatrix& lower) {
   return Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
 }
 
+// A capability that a test needs; throws where the system does not offer it.
+template <class C>
+const C& offered(const System& system) {
+  const C* found = capability<C>(system);
+  if (!found) throw std::invalid_argument("the system does not offer what the test needs");
+  return *found;
+}
+
+// Whether nothing says that the system is not valid at q, and whether f is linear there.
+inline bool is_valid_at(const System& system, const Vec& q) {
+  const auto* validity = capability<Validity>(system);
+  return !validity || validity->is_valid_at(q);
+}
+inline bool is_linear_at(const System& system, const Vec& q) {
+  const auto* pieces = capability<PiecewiseLinear>(system);
+  return pieces ? pieces->is_linear_at(q) : system.stiffness_is_constant();
+}
+
 // f(q), K(q) and its material part by value.
 inline Vec force_at(const System& system, const Vec& q) {
   Vec f(system.size());
@@ -61,7 +80,7 @@ inline SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
 }
 inline SymmetricMatrix material_stiffness_at(const System& system, const Vec& q) {
   SymmetricMatrix k = system.stiffness_pattern();
-  system.material_stiffness(q, k);
+  offered<SplitStiffness>(system).material_stiffness(q, k);
   return k;
 }
 

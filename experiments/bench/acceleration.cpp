@@ -1,34 +1,49 @@
 #include "experiments/bench/acceleration.hpp"
 
+#include "qddot/model/capabilities.hpp"
+
 namespace qddot::bench {
 
 namespace {
 
 constexpr int pinned = -1;
 
-class WithPlainForce final : public System {
+// Of the system's capabilities it has the two that its implicit methods use.
+class WithPlainForce final : public System, public SplitStiffness, public DiscreteGradient {
  public:
   WithPlainForce(const System& system, const PlainForce& plain)
-      : System(system.mass()), system_(system), plain_(plain) {}
+      : System(system.mass()),
+        system_(system),
+        split_stiffness_(capability<SplitStiffness>(system)),
+        discrete_gradient_(capability<DiscreteGradient>(system)),
+        plain_(plain) {}
 
   void force(const Vec& q, Vec& f) const override { plain_.force(q.data(), f.data()); }
 
   double potential(const Vec& q) const override { return system_.potential(q); }
   void stiffness(const Vec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
-  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
-    system_.material_stiffness(q, k);
-  }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
-  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
-    system_.softened_stiffness(q, compression, k);
-  }
-  void mean_force(const Vec& a, const Vec& b, Vec& f) const override {
-    system_.mean_force(a, b, f);
-  }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
+  bool offers(const std::type_info& type) const override {
+    return type == typeid(SplitStiffness) ? split_stiffness_ != nullptr
+                                          : discrete_gradient_ != nullptr;
+  }
+
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    split_stiffness_->material_stiffness(q, k);
+  }
+  void weighted_stiffness(const Vec& q, double compression_weight,
+                          SymmetricMatrix& k) const override {
+    split_stiffness_->weighted_stiffness(q, compression_weight, k);
+  }
+  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override {
+    discrete_gradient_->discrete_gradient(a, b, f);
+  }
 
  private:
   const System& system_;
+  const SplitStiffness* split_stiffness_;
+  const DiscreteGradient* discrete_gradient_;
   const PlainForce& plain_;
 };
 

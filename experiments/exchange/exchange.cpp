@@ -95,14 +95,14 @@ void declare(CLI::App& app, Arguments& a) {
 double stiff_frequency(const System& system, const Vec& q) {
   double highest = 0;
   Index first = 0;
-  for (const auto& part : system.parts()) {
-    highest = std::max(highest, stiff_frequency(*part, q.segment(first, part->size())));
-    first += part->size();
+  for (const auto& block : blocks_of(system)) {
+    highest = std::max(highest, stiff_frequency(*block, q.segment(first, block->size())));
+    first += block->size();
   }
-  const Split* split = system.split();
-  if (!split || split->core_unknowns.empty()) return highest;
-  const Vec q_core = q(split->core_unknowns);
-  return std::max(highest, std::sqrt(highest_modes(*split->core, q_core, 1).squares[0]));
+  const Split* split = split_of(system);
+  if (!split || split->stiff_unknowns.empty()) return highest;
+  const Vec own = q(split->stiff_unknowns);
+  return std::max(highest, std::sqrt(highest_modes(*split->stiff_block, own, 1).squares[0]));
 }
 
 // The scene, what its runs have in common, and what its stiff springs start with.

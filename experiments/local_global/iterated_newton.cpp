@@ -51,7 +51,7 @@ class Newton final : public FixedStep {
 
   bool factorize(const Vec& q, double s) {
     const auto works = [&](double kept) {
-      softened_stiffness(q, kept, k_);
+      weighted_stiffness(q, kept, k_);
       ++counts().factorizations;
       return matrix_.factorize_positive(1, s, k_);
     };

@@ -174,7 +174,7 @@ void ScalingRun::measure_method(const SolvedMethod& solved, const ReducedScene& 
   const std::string name = solved.name();
   const System& system = scene.system();
   double stiffness_bytes = nothing, factor_bytes = nothing;
-  if (method.needs_stiffness) {
+  if (method.implicit && method.needs_stiffness) {
     std::optional<EffectiveMass> matrix;
     const Making analysis = make(matrix, [&] { return EffectiveMass(system, solved.solver); });
     add(name, "symbolic", analysis.seconds, analysis.bytes);

@@ -5,8 +5,8 @@
 namespace qddot {
 
 // How much of the push that compressed springs give to the side a matrix M - s K may keep
-// (System::softened_stiffness) and still be positive definite: all of it where that works, else a
-// half, a quarter, ... down to a 64th, or none.
+// (Integrator::weighted_stiffness) and still be positive definite: all of it where that works, else
+// a half, a quarter, ... down to a 64th, or none.
 class Compression {
  public:
   void start() { kept_ = 1; }

@@ -26,7 +26,8 @@ ImplicitStep::ImplicitStep(const Method& method, const System& system, const Kno
       free_(system.size()),
       u_(system.size()),
       tolerance_(knobs.solve_tolerance > 0 ? knobs.solve_tolerance : solve_tolerance),
-      kinks_(dynamic_cast<const Kinks*>(&system)),
+      kinks_(capability<Kinks>(system)),
+      pieces_(capability<PiecewiseLinear>(system)),
       x_(system.size()),
       f_(system.size()),
       r_(system.size()),
@@ -115,11 +116,12 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
 
 // Whether f is linear where the residual was taken and where the correction leads to.
 bool ImplicitStep::is_linear_along(const Vec& q) {
-  if (knows_start() && !system().is_linear_at(q)) return false;
+  if (!pieces_) return system().stiffness_is_constant();
+  if (knows_start() && !pieces_->is_linear_at(q)) return false;
   x_ = q + u_;
-  if (!system().is_linear_at(x_)) return false;
+  if (!pieces_->is_linear_at(x_)) return false;
   x_ += p_;
-  return system().is_linear_at(x_);
+  return pieces_->is_linear_at(x_);
 }
 
 bool ImplicitStep::crosses_kink(const Vec& q) {
@@ -146,10 +148,10 @@ void ImplicitStep::stage_force(const Vec& q, const Vec& u, Vec& f) {
   force(x_, f);
 }
 
-void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compression,
+void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                                    SymmetricMatrix& k) {
   x_ = q + u;
-  softened_stiffness(x_, compression, k);
+  weighted_stiffness(x_, compression_weight, k);
 }
 
 Outcome ImplicitStep::factorize(const Vec& q, double s) {

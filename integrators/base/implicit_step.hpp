@@ -44,7 +44,8 @@ class ImplicitStep : public FixedStep {
  private:
   // What a stage's f and K are; a method with another mean of the forces over the step says so.
   virtual void stage_force(const Vec& q, const Vec& u, Vec& f);
-  virtual void stage_stiffness(const Vec& q, const Vec& u, double compression, SymmetricMatrix& k);
+  virtual void stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
+                               SymmetricMatrix& k);
   // Whether f is the gradient of a potential, so that there is a g to decrease.
   virtual bool is_minimisation() const { return true; }
   // Whether a stage's f knows forces at q itself, which then have to be linear as well.
@@ -64,7 +65,8 @@ class ImplicitStep : public FixedStep {
   double objective(const Vec& q, double s);
 
   const double tolerance_;
-  const Kinks* kinks_;  // none where f has no kinks
+  const Kinks* kinks_;             // none where f has no kinks
+  const PiecewiseLinear* pieces_;  // none where a constant K says all
   Vec x_, f_, r_, p_, before_, start_, length_, other_length_;
   SymmetricMatrix k_;
   EffectiveMass matrix_;

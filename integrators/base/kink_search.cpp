@@ -38,7 +38,7 @@ struct Cubic {
 
 }  // namespace
 
-KinkSearch::KinkSearch(const System& system) : kinks_(dynamic_cast<const Kinks*>(&system)) {
+KinkSearch::KinkSearch(const System& system) : kinks_(capability<Kinks>(system)) {
   const Index n = kinks_ ? kinks_->kinks() : 0;
   for (int end : {0, 1}) {
     length_[end].resize(n);

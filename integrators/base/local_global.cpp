@@ -13,6 +13,7 @@ constexpr int most_halvings = 60;
 LocalGlobal::LocalGlobal(const Method& method, const System& system, const Knobs& knobs)
     : FixedStep(method, system, knobs),
       iterations_(knobs.iterations > 0 ? knobs.iterations : usual_iterations),
+      descends_(capability<Laplacian>(system)->bounds_stiffness()),
       matrix_(system) {}
 
 Outcome LocalGlobal::step(const State& now, double h, State& next) {

@@ -25,7 +25,7 @@ class LocalGlobal : public FixedStep {
   int iterations() const { return iterations_; }
   double step_size() const { return h_; }
   // Whether L bounds -K, so that g falls by r'p / 2 at least from v to v - p.
-  bool descends() const { return system().has_laplacian() == HasLaplacian::as_bound; }
+  bool descends() const { return descends_; }
   void gradient(const Vec& v, Vec& r);
   void direction(const Vec& r, Vec& p);
   double objective(const Vec& v);  // g [J]
@@ -40,6 +40,7 @@ class LocalGlobal : public FixedStep {
   Outcome step(const State& now, double h, State& next) final;
 
   int iterations_;
+  bool descends_;
   LaplacianMass matrix_;
   const State* now_ = nullptr;  // where the step at hand begins
   double h_ = 0, factorized_h_ = 0;

@@ -8,15 +8,18 @@
 namespace qddot {
 
 // Gershgorin's bound of the largest frequency w_max [1/s] of a system along its motion: taken anew
-// every 50 steps only, for it changes with the positions, but much less than these do.
+// every 50 steps only, for it changes with the positions, but much less than these do. Of a system
+// that computes no K nothing is known: the bound is 0, as where nothing pulls, and limits no step.
 class RenewedBound {
  public:
-  explicit RenewedBound(const System& system) : system_(system), k_(system.stiffness_pattern()) {}
+  explicit RenewedBound(const System& system)
+      : system_(system), has_k_(system.has_stiffness()), k_(system.stiffness_pattern()) {}
 
   void start() { renewed_at_ = never; }
   // The bound for that step of a run, 0, 1, ...; stiffness(k) brings the K of where it begins.
   template <class Stiffness>
   double at(std::int64_t step, const Stiffness& stiffness) {
+    if (!has_k_) return 0;
     if (renewed_at_ == never || step >= renewed_at_ + steps_with_one) {
       stiffness(k_);
       w_max_ = frequency_bound(system_.mass(), k_, row_sums_);
@@ -29,6 +32,7 @@ class RenewedBound {
   static constexpr std::int64_t steps_with_one = 50, never = -1;
 
   const System& system_;
+  bool has_k_;
   SymmetricMatrix k_;
   Vec row_sums_;
   double w_max_ = 0;

@@ -1,5 +1,5 @@
 // The energy-momentum method: implicit midpoint with the mean of the force over the step that makes
-// exactly the work V(q_n) - V(q_{n+1}) (System::mean_force), f(q_n, q_{n+1}):
+// exactly the work V(q_n) - V(q_{n+1}) (see DiscreteGradient), f(q_n, q_{n+1}):
 //   q_{n+1} = q_n + h/2 (v_n + v_{n+1}),  M (v_{n+1} - v_n) = h f(q_n, q_{n+1})
 // so that (v_n + v_{n+1})/2 . M (v_{n+1} - v_n) = (q_{n+1} - q_n)/h . h f: kinetic energy gains
 // what potential energy loses, whatever h is. One stage, M (u - h v_n) = h^2/2 f(q_n, q_n + u),
@@ -12,9 +12,9 @@
 namespace qddot::registered {
 namespace {
 
-class DiscreteGradient final : public ImplicitStep {
+class EnergyMomentum final : public ImplicitStep {
  public:
-  DiscreteGradient(const Method& method, const System& system, const Knobs& knobs)
+  EnergyMomentum(const Method& method, const System& system, const Knobs& knobs)
       : ImplicitStep(method, system, knobs, enough_for_invariants) {}
 
  private:
@@ -38,12 +38,12 @@ class DiscreteGradient final : public ImplicitStep {
 
   void stage_force(const Vec& q, const Vec& u, Vec& f) override {
     x_ = q + u;
-    mean_force(q, x_, f);
+    discrete_gradient(q, x_, f);
   }
-  void stage_stiffness(const Vec& q, const Vec& u, double compression,
+  void stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                        SymmetricMatrix& k) override {
     x_ = q + u / 2;
-    softened_stiffness(x_, compression, k);
+    weighted_stiffness(x_, compression_weight, k);
     k.coeffs() /= 2;
   }
   bool is_minimisation() const override { return false; }
@@ -62,9 +62,10 @@ Method discrete_gradient() {
           .order = 2,
           .implicit = true,
           .needs_stiffness = true,
+          .needs_discrete_gradient = true,
           .takes_solve_tolerance = true,
           .takes_solver = true,
-          .make = create<DiscreteGradient>};
+          .make = create<EnergyMomentum>};
 }
 
 }  // namespace qddot::registered

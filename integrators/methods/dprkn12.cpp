@@ -122,7 +122,6 @@ Method dprkn12() {
               "RKN12(10)17M",
           .order = 12,
           .knob = Knob::rtol,
-          .needs_stiffness = true,
           .interpolates = true,
           .make = make_dprkn12};
 }

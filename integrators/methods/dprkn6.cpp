@@ -55,7 +55,6 @@ Method dprkn6() {
               "937-949, RKN6(4)6FD",
           .order = 6,
           .knob = Knob::rtol,
-          .needs_stiffness = true,
           .interpolates = true,
           .make = make_dprkn6};
 }

@@ -54,7 +54,6 @@ Method dprkn8() {
               "RKN8(6)9FM",
           .order = 8,
           .knob = Knob::rtol,
-          .needs_stiffness = true,
           .interpolates = true,
           .make = make_dprkn8};
 }

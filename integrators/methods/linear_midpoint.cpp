@@ -5,8 +5,9 @@
 //   A (v' - v) = h f(x),   A = M - h^2/4 K_m(x)
 //   q'         = x + h/2 v'
 // K_m is the material stiffness, of the stiff springs alone where the scene names some, else of
-// all. One force, one factorisation and one solve a step and no iteration; A is positive definite
-// whatever is compressed. Seen from either end of a step x is the same point, so that the method is
+// all; and K itself of a system that does not know its material part (see SplitStiffness). One
+// force, one factorisation and one solve a step and no iteration; A is positive definite whatever
+// is compressed. Seen from either end of a step x is the same point, so that the method is
 // time-reversible and of order 2, whatever A is. A^-1 f is no gradient, so it is not symplectic;
 // but springs push along themselves in K_m as in f, which keeps angular momentum (where l0 > 0).
 //
@@ -50,8 +51,9 @@ class LinearMidpoint final : public FixedStep {
  public:
   LinearMidpoint(const Method& method, const System& system, const Knobs& knobs)
       : FixedStep(method, system, knobs),
-        split_(system.split()),
-        implicit_(split_ ? *split_->core : system),
+        split_(split_of(system)),
+        implicit_(split_ ? *split_->stiff_block : system),
+        split_stiffness_(capability<SplitStiffness>(implicit_)),
         k_(implicit_.stiffness_pattern()),
         f_(system.size()),
         change_(system.size()),
@@ -89,16 +91,16 @@ class LinearMidpoint final : public FixedStep {
     }
     change_ = f_.cwiseQuotient(system().mass());
     if (matrix_) {
-      const std::vector<Index>& core = split_->core_unknowns;
-      for (std::size_t a = 0; a < core.size(); ++a) own_[a] = next.q[core[a]];
+      const std::vector<Index>& stiff = split_->stiff_unknowns;
+      for (std::size_t a = 0; a < stiff.size(); ++a) own_[a] = next.q[stiff[a]];
       if (const Outcome outcome = factorize(h, own_); outcome != Outcome::reached_end) {
         return outcome;
       }
-      for (std::size_t a = 0; a < core.size(); ++a) own_[a] = f_[core[a]];
+      for (std::size_t a = 0; a < stiff.size(); ++a) own_[a] = f_[stiff[a]];
       if (const Outcome outcome = solve(own_, own_change_); outcome != Outcome::reached_end) {
         return outcome;
       }
-      for (std::size_t a = 0; a < core.size(); ++a) change_[core[a]] = own_change_[a];
+      for (std::size_t a = 0; a < stiff.size(); ++a) change_[stiff[a]] = own_change_[a];
     }
     next.v += h * change_;
     return Outcome::reached_end;
@@ -112,7 +114,11 @@ class LinearMidpoint final : public FixedStep {
     ++counts().stiffness_evaluations;
     {
       const Stopwatch watch(seconds(), &Seconds::stiffness);
-      implicit_.material_stiffness(x, k_);
+      if (split_stiffness_) {
+        split_stiffness_->material_stiffness(x, k_);
+      } else {
+        implicit_.stiffness(x, k_);
+      }
     }
     if (!k_.coeffs().allFinite()) return Outcome::not_finite;
     factorized_h_ = std::abs(h);
@@ -129,7 +135,8 @@ class LinearMidpoint final : public FixedStep {
   }
 
   const Split* split_;                     // none: every spring is in the matrix
-  const System& implicit_;                 // whose material stiffness is
+  const System& implicit_;                 // whose stiffness is, by its
+  const SplitStiffness* split_stiffness_;  // material part, where it has one
   std::unique_ptr<EffectiveMass> matrix_;  // none where that has no unknowns
   SymmetricMatrix k_;
   Vec f_, change_, own_, own_change_;

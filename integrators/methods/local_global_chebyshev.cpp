@@ -24,7 +24,7 @@ class Chebyshev final : public LocalGlobal {
   Chebyshev(const Method& method, const System& system, const Knobs& knobs)
       : LocalGlobal(method, system, knobs) {
     SymmetricMatrix l = system.stiffness_pattern();
-    system.laplacian(l);
+    capability<Laplacian>(system)->laplacian(l);
     Vec row_sums;
     frequency_ = frequency_bound(system.mass(), l, row_sums);
   }

@@ -1,6 +1,6 @@
 // ARKODE's adaptive explicit Runge-Kutta methods of order 2 to 8. Their error test does not see an
 // instability of modes that hardly move yet, so steps are held to what the stiffest mode allows,
-// h <= y/w_max, with the table's own stability limit y on vibrations.
+// h <= y/w_max, with the table's own stability limit y on vibrations; where the system has a K.
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
@@ -56,7 +56,6 @@ Method erk() {
           .order = table.order,
           .family = Family::sundials,
           .knob = Knob::rtol,
-          .needs_stiffness = true,
           .make = create<Erk<which>>};
 }
 

@@ -27,7 +27,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/integrators/sundials/orders.hpp"
 #include "qddot/integrators/sundials/stepper.hpp"
-#include "qddot/model/held.hpp"
+#include "qddot/model/constrained_system.hpp"
 
 namespace qddot::registered {
 namespace {
@@ -321,7 +321,8 @@ class Ida final : public Stepper {
   Orders orders_;
   Vector rate_;                      // y'
   std::optional<Vector> tolerated_;  // absolutely, with massless nodes
-  std::optional<Held> massless_;     // the system with all but these held; none without such nodes
+  // The system with all but the massless nodes held; none without such nodes.
+  std::optional<ConstrainedSystem> massless_;
   bool is_consistent_ = true;
   bool is_lost_ = false;   // whether no balance is left near the massless nodes
   bool is_rough_ = false;  // whether rounding moves a massless node by more than the tolerance

@@ -28,23 +28,27 @@ class Imex final : public Arkode {
                     ButcherTable(check(ARKodeButcherTable_LoadERK(table.explicit_id))).get(),
                 .implicit_table =
                     ButcherTable(check(ARKodeButcherTable_LoadDIRK(table.implicit_id))).get()},
-               soft_rate, stiff_rate, make_structured, stiff_of(system)) {
-    limit_steps(soft_of(system), table.limit);
+               soft_rate, stiff_rate, make_structured, stiff_of(system)),
+        stiff_(stiff_of(system)),
+        soft_(soft_of(system)) {
+    limit_steps(soft_, table.limit);
   }
 
  private:
   static int soft_rate(double, N_Vector y, N_Vector rate, void* user) {
     auto& self = *static_cast<Imex*>(static_cast<Stepper*>(user));
     return self.guarded([&] {
-      const bool is_finite = self.set_rate(*self.system().split()->soft, y, rate);
+      const bool is_finite = self.set_rate(self.soft_, y, rate);
       Halves(rate).q.setZero();
       return is_finite;
     });
   }
   static int stiff_rate(double, N_Vector y, N_Vector rate, void* user) {
     auto& self = *static_cast<Imex*>(static_cast<Stepper*>(user));
-    return self.guarded([&] { return self.set_rate(*self.system().split()->stiff, y, rate); });
+    return self.guarded([&] { return self.set_rate(self.stiff_, y, rate); });
   }
+
+  const System &stiff_, &soft_;
 };
 
 template <int order>

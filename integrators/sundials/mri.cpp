@@ -44,6 +44,8 @@ class Mri final : public Stepper {
  public:
   Mri(const Method& method, const System& system, const Knobs& knobs)
       : Stepper(method, system, knobs, nullptr),
+        stiff_(stiff_of(system)),
+        soft_(soft_of(system)),
         fast_(check(ARKStepCreate(stiff_rate, nullptr, 0, y(), context()))) {
     auto* self = static_cast<Stepper*>(this);
     const ButcherTable table(check(ARKodeButcherTable_LoadERK(pair.fast)));
@@ -68,9 +70,8 @@ class Mri final : public Stepper {
 
   void start(const State& state) override {
     load(state);
-    const Split& split = *system().split();
-    const double stiff = frequency_bound(*split.stiff, state.q);
-    const double soft = frequency_bound(*split.soft, state.q);
+    const double stiff = frequency_bound(stiff_, state.q);
+    const double soft = frequency_bound(soft_, state.q);
     fast_steps_ = soft > 0 ? std::clamp(std::ceil(stiff / soft), 1.0, most_fast_steps) : 1;
     check(ARKStepReInit(fast_.get(), stiff_rate, nullptr, state.t, y()), "ARKStepReInit");
     check(MRIStepReInit(slow_.get(), soft_rate, nullptr, state.t, y()), "MRIStepReInit");
@@ -94,14 +95,14 @@ class Mri final : public Stepper {
   static int soft_rate(double, N_Vector y, N_Vector rate, void* user) {
     auto& self = *static_cast<Mri*>(static_cast<Stepper*>(user));
     return self.guarded([&] {
-      const bool is_finite = self.set_rate(*self.system().split()->soft, y, rate);
+      const bool is_finite = self.set_rate(self.soft_, y, rate);
       Halves(rate).q.setZero();
       return is_finite;
     });
   }
   static int stiff_rate(double, N_Vector y, N_Vector rate, void* user) {
     auto& self = *static_cast<Mri*>(static_cast<Stepper*>(user));
-    return self.guarded([&] { return self.set_rate(*self.system().split()->stiff, y, rate); });
+    return self.guarded([&] { return self.set_rate(self.stiff_, y, rate); });
   }
 
   void collect_counts() override {
@@ -117,6 +118,7 @@ class Mri final : public Stepper {
     return fmt::format("ARKODE {}", text ? text.get() : "");
   }
 
+  const System &stiff_, &soft_;
   double fast_steps_ = 1;  // of each step
   double fast_step_ = 0;   // [s]
   std::unique_ptr<void, FreeMemoryBy<ARKStepFree>> fast_;
@@ -135,6 +137,7 @@ Method mri() {
       .source = "Sandu, SIAM J. Numerical Analysis 57:5 (2019) 2300-2327",
       .order = order,
       .family = Family::sundials,
+      .needs_stiffness = true,
       .needs_split = true,
       .make = create<Mri<order>>};
 }

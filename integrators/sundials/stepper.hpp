@@ -20,10 +20,12 @@ using MakeMatrix = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext, 
 // The parts of a system's forces, or the system itself where it has none, which is to be made but
 // never run.
 inline const System& stiff_of(const System& system) {
-  return system.split() ? *system.split()->stiff : system;
+  const Split* split = split_of(system);
+  return split ? *split->stiff : system;
 }
 inline const System& soft_of(const System& system) {
-  return system.split() ? *system.split()->soft : system;
+  const Split* split = split_of(system);
+  return split ? *split->soft : system;
 }
 
 // What ARKODE, CVODE and IDA share: the first-order form y = (q, v) in a vector of length 2n, steps

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "qddot/algebra/factors.hpp"
-#include "qddot/model/system.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 
-// Solves (M + s L) x = b with the L of System::laplacian(), which a system must have. M + s L falls
+// Solves (M + s L) x = b with the L of Laplacian, which a system must offer. M + s L falls
 // apart into matrices that nothing couples, one for each axis at least, and most of them are the
 // same: the N x N matrix of a network in D dimensions is made and factorised once, and solves for D
 // right-hand sides at a time.

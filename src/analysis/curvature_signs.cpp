@@ -9,7 +9,9 @@
 #include <Eigen/Eigenvalues>
 
 #include "qddot/algebra/effective_mass.hpp"
+#include "qddot/analysis/require_stiffness.hpp"
 #include "qddot/analysis/stability.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 namespace {
@@ -31,9 +33,10 @@ constexpr Index largest_dense = 1000;
 // that are across it, but the rounding of its length does.
 Vec stiffness_of_rows(const System& system, const SymmetricMatrix& k) {
   const Vec rows = row_sums(k);
-  if (system.has_laplacian() == HasLaplacian::as_bound) {
+  const auto* laplacian = capability<Laplacian>(system);
+  if (laplacian && laplacian->bounds_stiffness()) {
     SymmetricMatrix l = system.stiffness_pattern();
-    system.laplacian(l);
+    laplacian->laplacian(l);
     return rows + row_sums(l);
   }
   // The rows along it are those of the same node, which share its block of the pattern.
@@ -114,6 +117,7 @@ Below by_pivots(const System& system, const SymmetricMatrix& k, Vec& e) {
 
 CurvatureSigns curvature_signs(const System& system, const Vec& q) {
   if (system.size() == 0) return {};
+  require_stiffness(system);
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
   if (!k.coeffs().allFinite()) throw std::range_error("the stiffness matrix is not finite");

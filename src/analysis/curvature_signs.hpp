@@ -22,7 +22,8 @@ struct CurvatureSigns {
 //   of lengths, of sums and of the pivots,
 //   and what K changes by where each position changes by its own rounding.
 // Where the factors turn out worse than that, E is raised to what they are.
-// Throws std::runtime_error where K is not finite or cannot be factorised.
+// Throws std::runtime_error where K is not finite or cannot be factorised, and
+// std::invalid_argument where the system has no K.
 CurvatureSigns curvature_signs(const System& system, const Vec& q);
 
 }  // namespace qddot

@@ -6,6 +6,7 @@
 
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
+#include "qddot/analysis/require_stiffness.hpp"
 #include "qddot/analysis/stability.hpp"
 
 namespace qddot {
@@ -200,6 +201,7 @@ class Descent {
 
 Equilibrium find_equilibrium(const System& system, const Vec& start, double length) {
   if (system.size() == 0) return {.q = start};
+  require_stiffness(system);
   return Descent(system, start, length).run();
 }
 

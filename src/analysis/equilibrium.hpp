@@ -39,7 +39,8 @@ struct Equilibrium {
 // Reached: |f_i| <= 8 eps max_i sum_j |K_ij| max(|q|, length), which is what the rounding of q
 // makes of f = 0, and then as far below as Newton's steps still lead. Unbounded: 1e6 lengths away
 // and still falling. Not converged: after 2000 iterations, or where nothing lower is found. Throws
-// std::runtime_error where the iteration for the eigenvalue does not converge.
+// std::runtime_error where the iteration for the eigenvalue does not converge, and
+// std::invalid_argument where the system has no K.
 Equilibrium find_equilibrium(const System& system, const Vec& start, double length);
 
 }  // namespace qddot

@@ -2,9 +2,12 @@
 
 #include <cmath>
 
+#include "qddot/analysis/require_stiffness.hpp"
+
 namespace qddot {
 
 double frequency_bound(const System& system, const Vec& q) {
+  require_stiffness(system);
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
   Vec row_sums;

@@ -8,10 +8,12 @@ namespace qddot {
 // below, to a relative accuracy of about 1e-4 for some hundred products with K. An explicit method
 // is stable up to a step of about 2 / w_max; frequency_bound is the cheaper bound from above.
 // Zero where nothing vibrates (n = 0, or no positive w^2); infinite where a massless node has
-// stiffness. Throws std::runtime_error where the iteration does not converge.
+// stiffness. Throws std::runtime_error where the iteration does not converge, and
+// std::invalid_argument where the system has no K.
 double largest_frequency(const System& system, const Vec& q);
 
 // A lower bound of w_max [rad/s], mostly within some percent, for 30 products with K and no more.
+// Throws std::invalid_argument where the system has no K.
 double frequency_at_least(const System& system, const Vec& q);
 
 // Whether Lanczos' method is worth its time for so many unknowns: up to 6000.

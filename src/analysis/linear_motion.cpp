@@ -15,7 +15,7 @@ double sinc(double x) { return x == 0 ? 1 : std::sin(x) / x; }
 
 LinearMotion::LinearMotion(const System& system)
     : system_(system), root_mass_(system.mass().cwiseSqrt()) {
-  if (!system.stiffness_is_constant() || system.has_massless()) {
+  if (!system.has_stiffness() || !system.stiffness_is_constant() || system.has_massless()) {
     throw std::invalid_argument("the exact motion needs a constant K and positive masses");
   }
   if (system.size() == 0) return;

@@ -13,6 +13,7 @@
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/analysis/require_stiffness.hpp"
 
 namespace qddot {
 namespace {
@@ -38,6 +39,7 @@ struct Pencil {
 
   Pencil(const System& s, const Vec& q, const Vec& m)
       : system(s), mass(m), k(s.stiffness_pattern()) {
+    require_stiffness(system);
     system.stiffness(q, k);
     const SymmetricMatrix sizes = k.cwiseAbs();
     const Vec row_sums = sizes.selfadjointView<Eigen::Lower>() * Vec::Ones(system.size());

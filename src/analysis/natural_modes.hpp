@@ -24,14 +24,15 @@ Index finite_modes(const System& system);
 // lowest as they are small. w^2 is right to what rounding of K leaves at the places that move in
 // the shape; whether that hides its sign, curvature_signs() tells.
 // Throws std::domain_error where a massless unknown is not held by its springs (-K among the
-// massless is not positive definite), so that M q'' = f(q) does not say how it moves.
+// massless is not positive definite), so that M q'' = f(q) does not say how it moves. Throws
+// std::invalid_argument where the system has no K.
 NaturalModes lowest_modes(const System& system, const Vec& q, Index count);
 
 // The same with another diagonal (n entries, >= 0) in place of M.
 NaturalModes lowest_modes(const System& system, const Vec& q, Index count, const Vec& mass);
 
 // The `count` highest of the finite modes at q, ascending like the lowest and found like them, with
-// a shift above all finite w^2.
+// a shift above all finite w^2. Throws as they do.
 NaturalModes highest_modes(const System& system, const Vec& q, Index count);
 
 }  // namespace qddot

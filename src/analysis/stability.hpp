@@ -14,7 +14,7 @@ struct Curvature {
   double value = 0;
   Vec direction{};
 };
-// Throws std::invalid_argument where n = 0.
+// Throws std::invalid_argument where n = 0 or the system has no K.
 Curvature smallest_curvature(const System& system, const Vec& q);
 
 // sum_j |K_ij| [N/m] (n), and the largest of them, zero where n = 0.

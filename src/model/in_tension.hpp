@@ -32,6 +32,7 @@ class InTension {
   };
 
   void add(const Spring& spring) { springs_.push_back(spring); }
+  bool empty() const { return springs_.empty(); }
 
   bool holds_at(const Layout<D>& layout, const Vec& q) const {
     return std::ranges::all_of(springs_, [&](const Spring& spring) {

@@ -1,11 +1,12 @@
 #pragma once
 
-#include "qddot/model/system.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 
-// What a System may be beside: one whose force jumps where certain lengths change their sign. On a
-// line a spring of rest length l0 > 0 that passes through length zero turns its force of k l0 over.
+// A capability (see capabilities.hpp): the system knows where its force jumps, which is where
+// certain lengths change their sign. On a line a spring of rest length l0 > 0 that passes through
+// length zero turns its force of k l0 over. A system without this has a continuous force.
 class Kinks {
  public:
   virtual ~Kinks() = default;

@@ -26,7 +26,14 @@ constexpr Index fewest_for_vectors = 16;
 // Springs between nodes all of whose coordinates are unknowns are kept apart, by their first
 // unknowns alone; the few that touch a node on a mirror go through the layout.
 template <int D>
-class MassSpring final : public System, public Kinks {
+class MassSpring final : public System,
+                         public SplitStiffness,
+                         public DiscreteGradient,
+                         public Laplacian,
+                         public PiecewiseLinear,
+                         public Validity,
+                         public Kinks,
+                         public SplitForces {
   using Point = Eigen::Matrix<double, D, 1>;
   using Block = Eigen::Matrix<double, D, D>;
 
@@ -69,25 +76,27 @@ class MassSpring final : public System, public Kinks {
         [&](const auto& spring) { return spring_force(spring.law, edge_between(q, spring)); }, f);
   }
 
-  void mean_force(const Vec& a, const Vec& b, Vec& f) const override {
+  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override {
     sum_forces(
         [&](const auto& spring) {
-          return spring_mean_force(spring.law, between(a, spring), between(b, spring));
+          return spring_discrete_gradient(spring.law, between(a, spring), between(b, spring));
         },
         [&](const auto& spring) {
-          return spring_mean_force(spring.law, edge_between(a, spring), edge_between(b, spring));
+          return spring_discrete_gradient(spring.law, edge_between(a, spring),
+                                          edge_between(b, spring));
         },
         f);
   }
 
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override { softened_stiffness(q, 1, k); }
+  void stiffness(const Vec& q, SymmetricMatrix& k) const override { weighted_stiffness(q, 1, k); }
 
-  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
-    const auto block = [compression](const SpringLaw& law, const Point& d) {
-      return spring_stiffness(law, d, compression);
+  void weighted_stiffness(const Vec& q, double compression_weight,
+                          SymmetricMatrix& k) const override {
+    const auto block = [compression_weight](const SpringLaw& law, const Point& d) {
+      return spring_stiffness(law, d, compression_weight);
     };
     if (!by_node_) return assemble(q, k, block);
-    columns_->stiffness(*by_node_, q, compression, k);
+    columns_->stiffness(*by_node_, q, compression_weight, k);
     add_left_out(q, k, block);
   }
 
@@ -102,8 +111,15 @@ class MassSpring final : public System, public Kinks {
 
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override { return linear_; }
+  bool offers(const std::type_info& type) const override {
+    if (type == typeid(PiecewiseLinear)) return linear_ && keeps_directions();
+    if (type == typeid(Validity)) return !in_tension_.empty();
+    if (type == typeid(Kinks)) return kinks_ > 0;
+    if (type == typeid(SplitForces)) return split_.has_value();
+    return true;
+  }
+
   bool is_linear_at(const Vec& q) const override {
-    if (!linear_ || !keeps_directions()) return linear_;
     const signed char* direction = directions_.data();
     bool all = true;
     for_all(q, [&](const SpringLaw&, const Point& d) {
@@ -112,9 +128,9 @@ class MassSpring final : public System, public Kinks {
     });
     return all;
   }
-  const Split* split() const override { return split_ ? &*split_ : nullptr; }
+  const Split& split() const override { return *split_; }
 
-  HasLaplacian has_laplacian() const override { return has_laplacian_; }
+  bool bounds_stiffness() const override { return !has_quartic_; }
   // The network at rest lengths zero is stiff alike at every q.
   void laplacian(SymmetricMatrix& l) const override {
     assemble(Vec::Zero(size()), l, [](const SpringLaw& law, const Point&) -> Block {
@@ -131,8 +147,8 @@ class MassSpring final : public System, public Kinks {
     });
   }
 
-  bool holds_at(const Vec& q) const override { return in_tension_.holds_at(layout_, q); }
-  std::optional<double> stops_holding(const State& from, const State& to) const override {
+  bool is_valid_at(const Vec& q) const override { return in_tension_.holds_at(layout_, q); }
+  std::optional<double> end_of_validity(const State& from, const State& to) const override {
     return in_tension_.first_slack(layout_, mass(), from, to);
   }
 
@@ -166,7 +182,7 @@ class MassSpring final : public System, public Kinks {
     const Vec anywhere = Vec::Zero(size());
     for_all(anywhere, [&](const SpringLaw& law, const Point&) {
       linear_ &= law.is_linear() || keeps_directions();
-      if (law.quartic > 0) has_laplacian_ = HasLaplacian::yes;
+      if (law.quartic > 0) has_quartic_ = true;
       kinks_ += turns_over(law);
     });
     if (network.offers_split) {
@@ -178,7 +194,7 @@ class MassSpring final : public System, public Kinks {
                 {}};
       for (const int i : nodes) {
         for (int a = 0; a < layout.count(i); ++a) {
-          split_->core_unknowns.push_back(layout.first(i) + a);
+          split_->stiff_unknowns.push_back(layout.first(i) + a);
         }
       }
     }
@@ -381,7 +397,7 @@ class MassSpring final : public System, public Kinks {
   double constant_energy_;
   bool linear_ = false;
   Index kinks_ = 0;
-  HasLaplacian has_laplacian_ = HasLaplacian::as_bound;
+  bool has_quartic_ = false;
   SymmetricMatrix pattern_;
   std::optional<SpringsByNode<D>> by_node_;
   std::optional<StiffnessKernel<D>> columns_;

@@ -55,7 +55,7 @@ struct Network {
   std::vector<unsigned> zero_coordinates{};
   Vec load{};                           // constant forces beside the weight [N], D N; empty = none
   bool uses_constant_stiffness = true;  // false: K counts as varying even where it is constant
-  bool offers_split = false;            // whether the system is to have a split() by `stiff`
+  bool offers_split = false;            // whether the system is to offer SplitForces, by `stiff`
 };
 
 // How forces are summed: spring by spring as the formula says, by vectors as force_kernel.hpp says,

@@ -79,13 +79,13 @@ template <class Real, int D>
   return d * (std::abs(l) > 0 ? law.tension(l) / l : Real(0));
 }
 
-// The mean force on x_i [N] of a spring that goes from d0 to d1: the secant (V1 - V0)/(l1 - l0) of
-// its energy in the direction of (d0 + d1)/(l0 + l1). With d1 - d0 it makes V1 - V0 exactly, for
-// (d0 + d1).(d1 - d0) = (l0 + l1)(l1 - l0). Both lengths zero: no force.
+// The discrete gradient, as a force on x_i [N], of a spring that goes from d0 to d1: the secant
+// (V1 - V0)/(l1 - l0) of its energy in the direction of (d0 + d1)/(l0 + l1). With d1 - d0 it makes
+// V1 - V0 exactly, for (d0 + d1).(d1 - d0) = (l0 + l1)(l1 - l0). Both lengths zero: no force.
 template <int D>
-Eigen::Matrix<double, D, 1> spring_mean_force(const SpringLaw& law,
-                                              const Eigen::Matrix<double, D, 1>& d0,
-                                              const Eigen::Matrix<double, D, 1>& d1) {
+Eigen::Matrix<double, D, 1> spring_discrete_gradient(const SpringLaw& law,
+                                                     const Eigen::Matrix<double, D, 1>& d0,
+                                                     const Eigen::Matrix<double, D, 1>& d1) {
   const double l0 = d0.norm(), l1 = d1.norm();
   return (d0 + d1) * (l0 + l1 > 0 ? law.secant(l0, l1) / (l0 + l1) : 0);
 }

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <span>
-#include <vector>
+#include <typeinfo>
+#include <utility>
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -24,16 +22,13 @@ struct State {
   Vec q, v;
 };
 
-struct Split;
-
-// Whether a system offers the matrix L of laplacian(), and whether that bounds its stiffness:
-// x'(-K(q))x <= x'Lx for all q and x.
-enum class HasLaplacian { no, yes, as_bound };
-
 // The mechanics of the lecture's Lagrangian L = T - V with T = 1/2 v'Mv: everything that the
 // equation of motion M q'' = f(q) is made of, and nothing of how it is stepped through time.
 // SI units. Signs: f = -dV/dq and K = df/dq = -d2V/dq2, so K is negative semidefinite at rest
 // (many codes store -K). Objects are immutable; every function may be called from any thread.
+//
+// A force law of one's own is a class with potential() and force(). With K it can be given to
+// implicit methods as well. What some methods need beyond K is in capabilities.hpp.
 class System {
  public:
   explicit System(Vec mass) : mass_(std::move(mass)) {}
@@ -54,63 +49,24 @@ class System {
   virtual double potential(const Vec& q) const = 0;
   // f = -dV/dq [N]; q, f: n, f sized by the caller.
   virtual void force(const Vec& q, Vec& f) const = 0;
-  // K = df/dq [N/m] into `k`, which must carry the pattern of stiffness_pattern().
-  virtual void stiffness(const Vec& q, SymmetricMatrix& k) const = 0;
-  // Of K what the springs' material makes, without what their tension adds across them (the
-  // geometric stiffness): -sum tau' b b' with b the gradient of a spring's length. Negative
-  // semidefinite at every q, while compressed springs make K itself indefinite. As stiffness().
-  virtual void material_stiffness(const Vec& q, SymmetricMatrix& k) const = 0;
-  // The n x n pattern that K has at every q, with values zero; made once, copied by each user.
-  virtual const SymmetricMatrix& stiffness_pattern() const = 0;
-  // K with the negative transverse part tau/l (I - nn') of every compressed spring scaled by
-  // `compression` from 1, the whole of it, to 0, where the sum of all springs is negative
-  // semidefinite.
-  virtual void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const = 0;
-  // The discrete gradient f of V [N]: f.(b - a) = V(a) - V(b) whatever a and b are, f = force(a)
-  // where b = a, and f keeps linear and angular momentum as a force does (Gonzalez, Journal of
-  // Nonlinear Science 6 (1996) 449-467, spring by spring). a, b: n, f sized by the caller.
-  virtual void mean_force(const Vec& a, const Vec& b, Vec& f) const = 0;
+
+  // The n x n pattern that K has at every q, with values zero; made once, copied by each user. A
+  // system that computes no K has an empty one, 0 x 0.
+  virtual const SymmetricMatrix& stiffness_pattern() const;
+  // Whether the system computes K.
+  bool has_stiffness() const { return stiffness_pattern().cols() == size(); }
+  // K = df/dq [N/m] into `k`, which must carry the pattern of stiffness_pattern(). Throws
+  // std::logic_error where the system computes no K.
+  virtual void stiffness(const Vec& q, SymmetricMatrix& k) const;
   // True only where K is the same at every q of the motion, so that that is linear.
-  virtual bool stiffness_is_constant() const = 0;
-  // Whether q, which may lie where no motion comes to, is one of the places between which f is
-  // linear: f(b) = f(a) + K (b - a) for any two of them, and all that lie between. q: n.
-  virtual bool is_linear_at(const Vec&) const { return stiffness_is_constant(); }
+  virtual bool stiffness_is_constant() const { return false; }
 
-  // L [N/m]: what -K is, everywhere, when all springs have rest length zero and nothing quartic.
-  // Into `l`, of the pattern of stiffness_pattern(); to be called where has_laplacian() says so.
-  // f(q) = -L q + the rest, which grows with distances no faster than a constant for springs
-  // without a quartic part; then L bounds -K. No entry couples different axes.
-  virtual HasLaplacian has_laplacian() const { return HasLaplacian::no; }
-  virtual void laplacian(SymmetricMatrix&) const {}
-
-  // Whether this system is, at q, still what it stands for (see Holds in spring.hpp).
-  virtual bool holds_at(const Vec&) const { return true; }
-  // When, on the way from the state before a step to the one after it, this stops [s]; nothing
-  // where it does not. Integrators ask after each step and do not accept one on which it does.
-  virtual std::optional<double> stops_holding(const State&, const State& to) const {
-    return holds_at(to.q) ? std::nullopt : std::optional(to.t);
-  }
-  // The systems that this one is made of where no force couples them, each with its own run of
-  // consecutive unknowns, in order; empty where it is one whole.
-  virtual std::span<const std::unique_ptr<System>> parts() const { return {}; }
-  // This system's forces divided into stiff and soft ones; nullptr where no springs are named
-  // stiff, and where there are parts(), each of which has its own.
-  virtual const Split* split() const { return nullptr; }
+  // Whether this object has the capability (see capabilities.hpp) of that type, which its class
+  // implements. A wrapper declines what the systems in it do not have. To be asked by capability().
+  virtual bool offers(const std::type_info&) const { return true; }
 
  private:
   Vec mass_;
-};
-
-// A system divided by its springs: f = stiff->force + soft->force, and V and K are sums likewise.
-// Both have all of its unknowns and masses, and it holds where both do; the pattern of each one's K
-// is that of its own springs alone. Weight, loads and constants are the soft one's. Either may be
-// without springs.
-struct Split {
-  std::shared_ptr<const System> stiff, soft;
-  // The stiff one once more, over the unknowns alone that its springs or loads act on: unknown a of
-  // `core` is unknown core_unknowns[a] of the whole, ascending. All others feel no stiff force.
-  std::shared_ptr<const System> core;
-  std::vector<Index> core_unknowns;
 };
 
 // Kinetic plus potential energy [J] of a state.

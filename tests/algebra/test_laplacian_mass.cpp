@@ -4,8 +4,8 @@
 
 #include "qddot/algebra/laplacian_mass.hpp"
 #include "qddot/algebra/multifrontal.hpp"
-#include "qddot/model/divided.hpp"
-#include "qddot/model/held.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
+#include "qddot/model/constrained_system.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
@@ -27,7 +27,7 @@ double backward_error(const System& system, double s) {
   LaplacianMass matrix(system);
   BOOST_TEST_REQUIRE(matrix.factorize(s));
   SymmetricMatrix l = system.stiffness_pattern();
-  system.laplacian(l);
+  offered<Laplacian>(system).laplacian(l);
   const SymmetricMatrix both = l.selfadjointView<Eigen::Lower>();
   const Vec b = Vec::LinSpaced(system.size(), -1, 2).array().sin();
   Vec x = Vec::Constant(system.size(), NAN);
@@ -66,7 +66,7 @@ BOOST_AUTO_TEST_CASE(it_solves_on_cloths_as_they_are_and_reduced_held_or_in_part
   // Five times the same: fifteen columns in four solves.
   std::vector<std::unique_ptr<System>> parts;
   for (int i = 0; i < 5; ++i) parts.push_back(make_mass_spring(hammock(3).network));
-  const Divided divided(std::move(parts));
+  const BlockDiagonalSystem divided(std::move(parts));
   BOOST_TEST(backward_error(divided, 1e-2) < tolerance(divided));
   BOOST_TEST((LaplacianMass(divided).sizes() == std::vector<Index>{4}));
 }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "qddot/model/divided.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
 #include "tests/integrators/runs.hpp"
 
 namespace qddot {
@@ -47,7 +47,7 @@ struct Together {
       parts.push_back(one.make());
       n += parts.back()->size();
     }
-    system = std::make_unique<Divided>(std::move(parts));
+    system = std::make_unique<BlockDiagonalSystem>(std::move(parts));
     start = {start_time, Vec(n), Vec(n)};
     Index at = 0;
     for (const Piece& one : pieces) {
@@ -59,8 +59,8 @@ struct Together {
   // What part i has of a state.
   State part(const State& state, std::size_t i) const {
     Index at = 0;
-    for (std::size_t before = 0; before < i; ++before) at += system->parts()[before]->size();
-    const Index n = system->parts()[i]->size();
+    for (std::size_t before = 0; before < i; ++before) at += blocks_of(*system)[before]->size();
+    const Index n = blocks_of(*system)[i]->size();
     return {state.t, state.q.segment(at, n), state.v.segment(at, n)};
   }
 

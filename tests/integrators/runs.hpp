@@ -45,6 +45,11 @@ inline std::vector<Method> general_methods() {
   }
   return list;
 }
+// Whether the method evaluates K where there is one: because it needs it, or to bound its steps.
+inline bool evaluates_stiffness(const Method& method) {
+  return method.needs_stiffness || method.name.starts_with("dprkn") ||
+         method.name.starts_with("arkode_erk");
+}
 inline std::vector<Method> methods_of(Family family) {
   std::vector<Method> list = general_methods();
   std::erase_if(list, [&](const Method& method) { return method.family != family; });
@@ -104,8 +109,12 @@ inline std::ostream& operator<<(std::ostream& out, const Counts& c) {
              << c.order_reductions << " reductions), " << c.stability_limited_steps << " limited";
 }
 
-// Speaks for another system, and lets a test see or change what it says.
-class Relay final : public System {
+// Speaks for another system, and lets a test see or change what it says. Of its capabilities it
+// offers those that are below.
+class Relay final : public System,
+                    public SplitStiffness,
+                    public DiscreteGradient,
+                    public Laplacian {
  public:
   explicit Relay(const System& system) : System(system.mass()), system_(system) {}
 
@@ -118,22 +127,29 @@ class Relay final : public System {
     system_.stiffness(q, k);
     if (after_stiffness) after_stiffness(q, k);
   }
-  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
-    system_.softened_stiffness(q, compression, k);
-    if (after_stiffness) after_stiffness(q, k);
-  }
-  void mean_force(const Vec& a, const Vec& b, Vec& f) const override {
-    system_.mean_force(a, b, f);
-    if (after_force) after_force(b, f);
-  }
-  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
-    system_.material_stiffness(q, k);
-    if (after_stiffness) after_stiffness(q, k);
-  }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
-  HasLaplacian has_laplacian() const override { return system_.has_laplacian(); }
-  void laplacian(SymmetricMatrix& l) const override { system_.laplacian(l); }
+  bool offers(const std::type_info& type) const override {
+    if (type == typeid(SplitStiffness)) return capability<SplitStiffness>(system_);
+    if (type == typeid(DiscreteGradient)) return capability<DiscreteGradient>(system_);
+    return capability<Laplacian>(system_);
+  }
+
+  void weighted_stiffness(const Vec& q, double compression_weight,
+                          SymmetricMatrix& k) const override {
+    offered<SplitStiffness>(system_).weighted_stiffness(q, compression_weight, k);
+    if (after_stiffness) after_stiffness(q, k);
+  }
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+    offered<SplitStiffness>(system_).material_stiffness(q, k);
+    if (after_stiffness) after_stiffness(q, k);
+  }
+  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override {
+    offered<DiscreteGradient>(system_).discrete_gradient(a, b, f);
+    if (after_force) after_force(b, f);
+  }
+  void laplacian(SymmetricMatrix& l) const override { offered<Laplacian>(system_).laplacian(l); }
+  bool bounds_stiffness() const override { return offered<Laplacian>(system_).bounds_stiffness(); }
 
   std::function<void(const Vec& q, Vec& f)> after_force;
   std::function<void(const Vec& q, SymmetricMatrix& k)> after_stiffness;

@@ -7,20 +7,24 @@
 namespace qddot {
 
 // Speaks for another split system, and lets a test see or change what its halves say; what is asked
-// of the core is asked of the stiff half.
-class SplitRelay final : public System {
+// of the stiff block is asked of the stiff half.
+class SplitRelay final : public System,
+                         public SplitStiffness,
+                         public DiscreteGradient,
+                         public Laplacian,
+                         public SplitForces {
  public:
   explicit SplitRelay(const System& system)
       : System(system.mass()),
-        stiff(std::make_shared<Relay>(*system.split()->stiff)),
-        soft(std::make_shared<Relay>(*system.split()->soft)),
+        stiff(std::make_shared<Relay>(*split_of(system)->stiff)),
+        soft(std::make_shared<Relay>(*split_of(system)->soft)),
         whole(system),
-        core_(std::make_shared<Relay>(*system.split()->core)),
-        split_{stiff, soft, core_, system.split()->core_unknowns} {
-    core_->after_force = [this](const Vec& q, Vec& f) {
+        block_(std::make_shared<Relay>(*split_of(system)->stiff_block)),
+        split_{stiff, soft, block_, split_of(system)->stiff_unknowns} {
+    block_->after_force = [this](const Vec& q, Vec& f) {
       if (stiff->after_force) stiff->after_force(q, f);
     };
-    core_->after_stiffness = [this](const Vec& q, SymmetricMatrix& k) {
+    block_->after_stiffness = [this](const Vec& q, SymmetricMatrix& k) {
       if (stiff->after_stiffness) stiff->after_stiffness(q, k);
     };
   }
@@ -28,24 +32,31 @@ class SplitRelay final : public System {
   double potential(const Vec& q) const override { return whole.potential(q); }
   void force(const Vec& q, Vec& f) const override { whole.force(q, f); }
   void stiffness(const Vec& q, SymmetricMatrix& k) const override { whole.stiffness(q, k); }
-  void softened_stiffness(const Vec& q, double compression, SymmetricMatrix& k) const override {
-    whole.softened_stiffness(q, compression, k);
+  const SymmetricMatrix& stiffness_pattern() const override { return whole.stiffness_pattern(); }
+  bool stiffness_is_constant() const override { return whole.stiffness_is_constant(); }
+  bool offers(const std::type_info& type) const override {
+    return type == typeid(SplitForces) || whole.offers(type);
   }
-  void mean_force(const Vec& a, const Vec& b, Vec& f) const override { whole.mean_force(a, b, f); }
+
+  void weighted_stiffness(const Vec& q, double compression_weight,
+                          SymmetricMatrix& k) const override {
+    whole.weighted_stiffness(q, compression_weight, k);
+  }
   void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
     whole.material_stiffness(q, k);
   }
-  const SymmetricMatrix& stiffness_pattern() const override { return whole.stiffness_pattern(); }
-  bool stiffness_is_constant() const override { return whole.stiffness_is_constant(); }
-  HasLaplacian has_laplacian() const override { return whole.has_laplacian(); }
+  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override {
+    whole.discrete_gradient(a, b, f);
+  }
   void laplacian(SymmetricMatrix& l) const override { whole.laplacian(l); }
-  const Split* split() const override { return &split_; }
+  bool bounds_stiffness() const override { return whole.bounds_stiffness(); }
+  const Split& split() const override { return split_; }
 
   const std::shared_ptr<Relay> stiff, soft;
   Relay whole;
 
  private:
-  const std::shared_ptr<Relay> core_;
+  const std::shared_ptr<Relay> block_;
   Split split_;
 };
 

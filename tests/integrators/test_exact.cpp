@@ -4,7 +4,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/divided.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
 #include "tests/integrators/runs.hpp"
 
 using namespace qddot;
@@ -152,7 +152,7 @@ BOOST_AUTO_TEST_CASE(parts_have_their_modes_each_for_itself) {
   std::vector<std::unique_ptr<System>> parts;
   constexpr int count = 250, size = 9;
   for (int i = 0; i < count; ++i) parts.push_back(make_mass_spring(Chain().problem().network));
-  const Divided system(std::move(parts));
+  const BlockDiagonalSystem system(std::move(parts));
   const Chain chain;
   const State start{0, chain.at(0).q.replicate<count, 1>(), chain.at(0).v.replicate<count, 1>()};
   const Run r = run(method, system, start, 3, {.step_size = 3});

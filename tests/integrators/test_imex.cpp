@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(newtons_matrix_is_that_of_the_stiff_springs_alone) {
 BOOST_AUTO_TEST_CASE(its_matrix_has_fewer_entries_than_that_of_all_springs) {
   const ReducedScene scene = framed_cloth(6);
   const auto& all = scene.system().stiffness_pattern();
-  const auto& stiff = scene.system().split()->stiff->stiffness_pattern();
+  const auto& stiff = split_of(scene.system())->stiff->stiffness_pattern();
   // Twenty of 36 nodes are on the border, each coupled with two of its up to twelve neighbours.
   BOOST_TEST(3 * stiff.nonZeros() < all.nonZeros());
 }

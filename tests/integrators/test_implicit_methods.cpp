@@ -27,7 +27,7 @@ double trapezoidal_residual(const Ends& e) {
 }
 double discrete_gradient_residual(const Ends& e) {
   Vec f(e.system.size());
-  e.system.mean_force(e.a.q, e.b.q, f);
+  offered<DiscreteGradient>(e.system).discrete_gradient(e.a.q, e.b.q, f);
   return std::max(distance(e.b.v, e.a.v + e.h * f.cwiseQuotient(e.system.mass())),
                   distance(e.b.q, e.a.q + e.h / 2 * (e.a.v + e.b.v)));
 }

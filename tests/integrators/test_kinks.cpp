@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(where_springs_turn_that_should_not_a_run_goes_on_as_drawn) 
         const Run b = run(method, *directed, p.initial, until, knobs);
         BOOST_TEST(a.summary.message == "");
         BOOST_TEST(b.summary.message == "");
-        has_turned = has_turned || !directed->is_linear_at(b.state.q);
+        has_turned = has_turned || !is_linear_at(*directed, b.state.q);
         // A hundred steps' solves to 1e-12 of a step's 0.1 m, and what a force of 45 N that jumps
         // makes of these; a spring taken as if it had not turned is off by metres.
         BOOST_TEST(distance(a.state, b.state) < 1e-7);

@@ -31,7 +31,7 @@ const std::vector<Form>& forms() {
 
 // The stiff springs of a system as one over all of its unknowns, or all of them.
 const System& implicit_part(const System& system) {
-  return system.split() ? *system.split()->stiff : system;
+  return split_of(system) ? *split_of(system)->stiff : system;
 }
 
 // A step of the method's formula by a dense solve over all unknowns.
@@ -286,7 +286,7 @@ BOOST_AUTO_TEST_CASE(a_frame_ten_thousand_times_stiffer_does_not_bound_the_steps
     const System& system = scene.system();
     const State& start = scene.initial();
     const double t_end = 0.1;
-    const double h = 1 / frequency_bound(*system.split()->soft, start.q);
+    const double h = 1 / frequency_bound(*split_of(system)->soft, start.q);
     BOOST_TEST(h * frequency_bound(system, start.q) > 30);
     for (const Form& form : forms()) {
       const Method& method = method_named(form.name);

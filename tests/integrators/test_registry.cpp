@@ -169,7 +169,7 @@ BOOST_AUTO_TEST_CASE(exactly_the_implicit_methods_factorise_and_those_that_need_
     BOOST_TEST_CONTEXT(method.name) {
       const Run r = run(method, *system, p.initial, 0.1, knobs_of(method, 0.01, 1e-4));
       BOOST_TEST(r.summary.message == "");
-      BOOST_TEST((r.summary.counts.stiffness_evaluations > 0) == method.needs_stiffness);
+      BOOST_TEST((r.summary.counts.stiffness_evaluations > 0) == evaluates_stiffness(method));
       BOOST_TEST((r.summary.counts.factorizations > 0) == method.implicit);
     }
   }
@@ -197,12 +197,13 @@ BOOST_AUTO_TEST_CASE(every_outcome_has_a_name_and_every_failure_its_advice) {
        {Outcome::reached_end, Outcome::diverged, Outcome::newton_failed, Outcome::indefinite_matrix,
         Outcome::step_too_small, Outcome::singular_mass, Outcome::not_finite,
         Outcome::solver_failed, Outcome::over_budget, Outcome::stiffness_varies,
-        Outcome::went_slack, Outcome::no_stiff_set, Outcome::no_laplacian}) {
+        Outcome::went_slack, Outcome::no_stiff_set, Outcome::no_laplacian, Outcome::no_stiffness,
+        Outcome::no_discrete_gradient}) {
     names.insert(name(outcome));
     BOOST_TEST(name(outcome) != "unknown");
     BOOST_TEST(advice(outcome).empty() == (outcome == Outcome::reached_end));
   }
-  BOOST_TEST(names.size() == 13);
+  BOOST_TEST(names.size() == 15);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

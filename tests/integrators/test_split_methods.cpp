@@ -16,8 +16,8 @@ class SumOfForces final : public FixedStep {
 
  private:
   Outcome step(const State& now, double h, State& next) override {
-    system().split()->stiff->force(now.q, stiff_);
-    system().split()->soft->force(now.q, soft_);
+    split_of(system())->stiff->force(now.q, stiff_);
+    split_of(system())->soft->force(now.q, soft_);
     next.v = now.v + h * (stiff_ + soft_).cwiseQuotient(system().mass());
     next.q = now.q + h * next.v;
     return Outcome::reached_end;

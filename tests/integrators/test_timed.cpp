@@ -2,7 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/divided.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
 #include "tests/integrators/runs.hpp"
 
 using namespace qddot;
@@ -22,7 +22,7 @@ Knobs knobs_for(const Method& method, bool is_timed) {
 std::unique_ptr<System> two_parts() {
   std::vector<std::unique_ptr<System>> parts;
   for (int i = 0; i < 2; ++i) parts.push_back(make_mass_spring(hammock(2).network));
-  return std::make_unique<Divided>(std::move(parts));
+  return std::make_unique<BlockDiagonalSystem>(std::move(parts));
 }
 State twice(const State& s) {
   State both{s.t, Vec(2 * s.q.size()), Vec(2 * s.q.size())};

@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(force_and_stiffness_are_its_derivatives) {
       // The mean force does the work, V(a) - V(b).
       Vec other = q, mean(q.size());
       for (Index i = 0; i < q.size(); ++i) other[i] += 0.1 * std::sin(3. * static_cast<double>(i));
-      system->mean_force(q, other, mean);
+      offered<DiscreteGradient>(*system).discrete_gradient(q, other, mean);
       BOOST_TEST(std::abs(mean.dot(other - q) - (system->potential(q) - system->potential(other))) <
                  100 * eps * (1 + system->potential(other)) * count);
     }
@@ -99,12 +99,12 @@ BOOST_AUTO_TEST_CASE(all_is_as_without_directions_wherever_the_nodes_are) {
       for (auto& anchor : network.anchors) anchor.direction = 0;
       const auto drawn = make_mass_spring(network);
       BOOST_TEST(!drawn->stiffness_is_constant());
-      BOOST_TEST(!drawn->is_linear_at(q));
-      BOOST_TEST(directed->is_linear_at(q));
+      BOOST_TEST(!is_linear_at(*drawn, q));
+      BOOST_TEST(is_linear_at(*directed, q));
       const Eigen::MatrixXd k = dense(stiffness_at(*directed, q));
       Vec turned = q;
       for (Index i = 0; i < q.size(); ++i) turned[i] *= i % 2 == 0 ? 1 : -3;
-      BOOST_TEST(!directed->is_linear_at(turned));
+      BOOST_TEST(!is_linear_at(*directed, turned));
       for (const Vec& at : {q, turned}) {
         BOOST_TEST((force_at(*directed, at) == force_at(*drawn, at)));
         BOOST_TEST(directed->potential(at) == drawn->potential(at));

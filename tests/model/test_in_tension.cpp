@@ -2,8 +2,9 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/divided.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
 #include "qddot/model/in_tension.hpp"
+#include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
 using namespace qddot;
@@ -57,42 +58,47 @@ BOOST_AUTO_TEST_CASE(a_spring_in_tension_at_both_ends_of_a_step_may_not_be_so_be
   // x = 1.1 - s + s^2 with s = t - 3, down to 0.85 and up again, is its own cubic.
   const State from = state(3, 1.1, 0, -1, 0), to = state(4, 1.1, 0, 1, 0);
   const auto system = tether();
-  BOOST_TEST(system->holds_at(from.q));
-  BOOST_TEST(system->holds_at(to.q));
+  BOOST_TEST(is_valid_at(*system, from.q));
+  BOOST_TEST(is_valid_at(*system, to.q));
   // 1.1 - s + s^2 = 1.
   const double s = 0.5 - std::sqrt(0.15);
-  BOOST_REQUIRE(system->stops_holding(from, to));
-  BOOST_TEST(std::abs(*system->stops_holding(from, to) - (3 + s)) < 1e-5);
+  BOOST_REQUIRE(offered<Validity>(*system).end_of_validity(from, to));
+  BOOST_TEST(std::abs(*offered<Validity>(*system).end_of_validity(from, to) - (3 + s)) < 1e-5);
   // x = 1.3 - s + s^2 stays above 1.
-  BOOST_TEST(!system->stops_holding(state(3, 1.3, 0, -1, 0), state(4, 1.3, 0, 1, 0)));
+  BOOST_TEST(
+      !offered<Validity>(*system).end_of_validity(state(3, 1.3, 0, -1, 0), state(4, 1.3, 0, 1, 0)));
 }
 
 BOOST_AUTO_TEST_CASE(a_turning_spring_is_as_long_as_it_is) {
   // A quarter of a circle of radius 1.05 in one step: the cubic with h v = r pi/2 at both ends errs
   // by 1 % of the radius.
   const double r = 1.05, v = r * M_PI / 2;
-  BOOST_TEST(!tether()->stops_holding(state(0, r, 0, 0, v), state(1, 0, r, -v, 0)));
+  BOOST_TEST(
+      !offered<Validity>(*tether()).end_of_validity(state(0, r, 0, 0, v), state(1, 0, r, -v, 0)));
   // The straight way between the two ends is shorter.
-  BOOST_TEST(tether()->stops_holding(state(0, r, 0, -r, r), state(1, 0, r, -r, r)).has_value());
+  BOOST_TEST(offered<Validity>(*tether())
+                 .end_of_validity(state(0, r, 0, -r, r), state(1, 0, r, -r, r))
+                 .has_value());
 }
 
 BOOST_AUTO_TEST_CASE(speeds_along_a_stiff_spring_take_it_no_farther_than_it_can_swing) {
   // w = 1000 rad/s: at 1 m/s it swings by 1e-3 m, which is less than the 1e-2 m that it is drawn
   // out by; the plain cubic over a step of 1 s would go down by 0.25 m.
   const State from = state(0, 1.01, 0, -1, 0), to = state(1, 1.01, 0, 1, 0);
-  BOOST_TEST(!tether(1e6)->stops_holding(from, to));
-  BOOST_TEST(tether(1)->stops_holding(from, to).has_value());
+  BOOST_TEST(!offered<Validity>(*tether(1e6)).end_of_validity(from, to));
+  BOOST_TEST(offered<Validity>(*tether(1)).end_of_validity(from, to).has_value());
 }
 
 BOOST_AUTO_TEST_CASE(of_several_parts_the_first_counts) {
   std::vector<std::unique_ptr<System>> parts;
   parts.push_back(tether());
   parts.push_back(tether());
-  const Divided both(std::move(parts));
+  const BlockDiagonalSystem both(std::move(parts));
   const State from{0, Vec{{1.1, 0, 1.05, 0}}, Vec{{-1, 0, -1, 0}}};
   const State to{1, Vec{{1.1, 0, 1.05, 0}}, Vec{{1, 0, 1, 0}}};
-  BOOST_REQUIRE(both.stops_holding(from, to));
-  BOOST_TEST(std::abs(*both.stops_holding(from, to) - (0.5 - std::sqrt(0.2))) < 1e-5);
+  BOOST_REQUIRE(offered<Validity>(both).end_of_validity(from, to));
+  BOOST_TEST(std::abs(*offered<Validity>(both).end_of_validity(from, to) - (0.5 - std::sqrt(0.2))) <
+             1e-5);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -3,15 +3,13 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/divided.hpp"
-#include "qddot/model/held.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
+#include "qddot/model/constrained_system.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
 using namespace qddot;
-
-BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::HasLaplacian)
 
 BOOST_AUTO_TEST_SUITE(laplacian)
 
@@ -43,13 +41,13 @@ Network without_quartic(Network network) {
 SymmetricMatrix laplacian_of(const System& system) {
   SymmetricMatrix l = system.stiffness_pattern();
   l.coeffs().setConstant(NAN);  // whatever was in it before
-  system.laplacian(l);
+  offered<Laplacian>(system).laplacian(l);
   return l;
 }
 
 SymmetricMatrix clamped_at(const System& system, const Vec& q) {
   SymmetricMatrix k = system.stiffness_pattern();
-  system.softened_stiffness(q, 0, k);
+  offered<SplitStiffness>(system).weighted_stiffness(q, 0, k);
   return k;
 }
 
@@ -76,7 +74,6 @@ BOOST_AUTO_TEST_CASE(it_is_minus_the_stiffness_of_the_network_at_rest_lengths_ze
     const auto system = make_mass_spring(s.network), straight = make_mass_spring(twin(s.network));
     const Eigen::MatrixXd l = dense(laplacian_of(*system));
     BOOST_TEST(distance(l, -dense(stiffness_at(*straight, s.q))) < rounding);
-    BOOST_TEST((system->has_laplacian() != HasLaplacian::no));
     // Without the rest lengths taken off it is another matrix.
     BOOST_TEST(distance(l, -dense(stiffness_at(*system, s.q))) > 1);
   });
@@ -86,7 +83,7 @@ BOOST_AUTO_TEST_CASE(it_bounds_the_stiffness_of_springs_without_a_quartic_part_a
   std::mt19937 random(3);
   for_random_images([&](const ImageSample& s) {
     const auto system = make_mass_spring(without_quartic(s.network));
-    BOOST_TEST((system->has_laplacian() == HasLaplacian::as_bound));
+    BOOST_TEST(offered<Laplacian>(*system).bounds_stiffness());
     const Eigen::MatrixXd l = dense(laplacian_of(*system));
     for (int i = 0; i < 5; ++i) {
       const Eigen::MatrixXd k = dense(stiffness_at(*system, beside(s.q, random)));
@@ -99,7 +96,7 @@ BOOST_AUTO_TEST_CASE(it_does_not_bound_that_of_long_quartic_springs_and_does_not
   Network network{.dimension = 2, .node_mass = Vec::Ones(1)};
   network.anchors = {{0, {0, 0, 0}, {.stiffness = 10, .rest_length = 1, .quartic = 5}}};
   const auto system = make_mass_spring(network);
-  BOOST_TEST((system->has_laplacian() == HasLaplacian::yes));
+  BOOST_TEST(!offered<Laplacian>(*system).bounds_stiffness());
   const Eigen::MatrixXd l = dense(laplacian_of(*system));
   BOOST_TEST((l == 10 * Eigen::MatrixXd::Identity(2, 2)));
   // Along the spring, 3 c (l - l0)^2 = 15 N/m more than k.
@@ -130,20 +127,21 @@ BOOST_AUTO_TEST_CASE(that_of_held_unknowns_and_of_parts_is_that_of_their_stiffne
       parts.push_back(make_mass_spring(other));
       return parts;
     };
-    const Divided divided(parts_of(a, b)), straight(parts_of(twin(a), twin(b)));
+    const BlockDiagonalSystem divided(parts_of(a, b)), straight(parts_of(twin(a), twin(b)));
     const Vec q = Vec::LinSpaced(divided.size(), -1, 1);
     BOOST_TEST(distance(dense(laplacian_of(divided)), -dense(stiffness_at(straight, q))) <
                rounding);
     BOOST_TEST(distance(dense(clamped_at(divided, q)), dense(stiffness_at(straight, q))) > 1);
-    BOOST_TEST((divided.has_laplacian() == HasLaplacian::yes));
-    BOOST_TEST((Divided(parts_of(b, b)).has_laplacian() == HasLaplacian::as_bound));
+    BOOST_TEST(!divided.bounds_stiffness());
+    BOOST_TEST(BlockDiagonalSystem(parts_of(b, b)).bounds_stiffness());
 
     std::vector<bool> is_held(static_cast<std::size_t>(6 * dimension));
     for (std::size_t i = 0; i < is_held.size(); ++i) is_held[i] = random() % 3 == 0;
-    const Held held(make_mass_spring(a), is_held), held_twin(make_mass_spring(twin(a)), is_held);
+    const ConstrainedSystem held(make_mass_spring(a), is_held),
+        held_twin(make_mass_spring(twin(a)), is_held);
     const Vec at = Vec::LinSpaced(held.size(), -1, 1);
     BOOST_TEST(distance(dense(laplacian_of(held)), -dense(stiffness_at(held_twin, at))) < rounding);
-    BOOST_TEST((held.has_laplacian() == HasLaplacian::yes));
+    BOOST_TEST(!held.bounds_stiffness());
   }
 }
 

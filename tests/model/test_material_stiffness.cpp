@@ -4,8 +4,8 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/divided.hpp"
-#include "qddot/model/held.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
+#include "qddot/model/constrained_system.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
@@ -134,12 +134,12 @@ BOOST_AUTO_TEST_CASE(held_unknowns_have_none_and_parts_have_their_own) {
     expected.row(i).setZero();
     expected.col(i).setZero();
   }
-  const Held held(make_mass_spring(p.network), is_held);
+  const ConstrainedSystem held(make_mass_spring(p.network), is_held);
   BOOST_TEST((dense(material_stiffness_at(held, p.initial.q)) == expected));
 
   std::vector<std::unique_ptr<System>> parts;
   for (int i = 0; i < 2; ++i) parts.push_back(make_mass_spring(p.network));
-  const Divided divided(std::move(parts));
+  const BlockDiagonalSystem divided(std::move(parts));
   MatrixXd both = MatrixXd::Zero(2 * n, 2 * n);
   both.topLeftCorner(n, n) = both.bottomRightCorner(n, n) = k;
   Vec q(2 * n);

@@ -5,8 +5,8 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/divided.hpp"
-#include "qddot/model/held.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
+#include "qddot/model/constrained_system.hpp"
 #include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_SUITE(split)
 BOOST_AUTO_TEST_CASE(stiff_and_soft_forces_stiffnesses_and_energies_are_those_of_the_whole) {
   for_split_networks([](const Network& network, const Vec& q) {
     const auto whole = make_mass_spring(network);
-    const Split* split = whole->split();
+    const Split* split = split_of(*whole);
     BOOST_TEST_REQUIRE(split);
     BOOST_TEST(adds_up(*whole, *split->stiff, *split->soft, q));
     BOOST_TEST(adds_up(*whole, *split->stiff, *split->soft, 1.3 * q));
@@ -98,11 +98,11 @@ BOOST_AUTO_TEST_CASE(a_spring_counted_twice_or_not_at_all_is_noticed) {
     for (const bool stiff : {false, true}) {
       Network other = network;
       other.anchors.front().stiff = stiff;
-      const Split* split = whole->split();
+      const Split* split = split_of(*whole);
       const auto changed = make_mass_spring(other);
       const bool is_same = stiff == network.anchors.front().stiff;
-      BOOST_TEST(adds_up(*whole, *changed->split()->stiff, *split->soft, q) == is_same);
-      BOOST_TEST(adds_up(*whole, *split->stiff, *changed->split()->soft, q) == is_same);
+      BOOST_TEST(adds_up(*whole, *split_of(*changed)->stiff, *split->soft, q) == is_same);
+      BOOST_TEST(adds_up(*whole, *split->stiff, *split_of(*changed)->soft, q) == is_same);
     }
   });
 }
@@ -112,31 +112,31 @@ BOOST_AUTO_TEST_CASE(each_is_the_network_of_its_springs_alone_with_the_pattern_o
   for_split_networks([&](const Network& network, const Vec& q) {
     const auto whole = make_mass_spring(network);
     for (const bool stiff : {true, false}) {
-      const System& half = stiff ? *whole->split()->stiff : *whole->split()->soft;
+      const System& half = stiff ? *split_of(*whole)->stiff : *split_of(*whole)->soft;
       const auto expected = alone(network, stiff);
       BOOST_TEST(same_pattern(half, *expected));
       BOOST_TEST(half.potential(q) == expected->potential(q));
       BOOST_TEST((force_at(half, q) == force_at(*expected, q)));
       BOOST_TEST((dense(stiffness_at(half, q)) == dense(stiffness_at(*expected, q))));
-      BOOST_TEST(!half.split());
+      BOOST_TEST(!split_of(half));
     }
-    fewer += !same_pattern(*whole->split()->stiff, *whole);
+    fewer += !same_pattern(*split_of(*whole)->stiff, *whole);
     ++all;
   });
   // A third of the springs seldom joins all that all of them join.
   BOOST_TEST(fewer > all / 2);
 }
 
-BOOST_AUTO_TEST_CASE(the_core_is_the_stiff_one_over_the_unknowns_that_it_acts_on) {
+BOOST_AUTO_TEST_CASE(the_stiff_block_is_the_stiff_one_over_the_unknowns_that_it_acts_on) {
   int smaller = 0;
   for_split_networks([&](const Network& network, const Vec& q) {
     const auto whole = make_mass_spring(network);
-    const auto& [stiff, soft, core, unknowns] = *whole->split();
-    BOOST_TEST_REQUIRE(core->size() == std::ssize(unknowns));
+    const auto& [stiff, soft, block, unknowns] = *split_of(*whole);
+    BOOST_TEST_REQUIRE(block->size() == std::ssize(unknowns));
     BOOST_TEST(std::ranges::is_sorted(unknowns));
-    BOOST_TEST((core->mass() == whole->mass()(unknowns)));
+    BOOST_TEST((block->mass() == whole->mass()(unknowns)));
     const Vec own = q(unknowns);
-    BOOST_TEST((force_at(*core, own) == force_at(*stiff, q)(unknowns)));
+    BOOST_TEST((force_at(*block, own) == force_at(*stiff, q)(unknowns)));
     Vec elsewhere = force_at(*stiff, q);
     elsewhere(unknowns).setZero();
     BOOST_TEST((elsewhere.array() == 0).all());
@@ -146,10 +146,10 @@ BOOST_AUTO_TEST_CASE(the_core_is_the_stiff_one_over_the_unknowns_that_it_acts_on
     BOOST_TEST((force_at(*stiff, moved) == force_at(*stiff, q)));
     for (const auto& matrix : {stiffness_at, material_stiffness_at}) {
       const Eigen::MatrixXd k = dense(matrix(*stiff, q));
-      BOOST_TEST((dense(matrix(*core, own)) == k(unknowns, unknowns)));
+      BOOST_TEST((dense(matrix(*block, own)) == k(unknowns, unknowns)));
     }
-    BOOST_TEST(std::abs(core->potential(own) - stiff->potential(q)) < 60 * eps * 1e5);
-    smaller += core->size() < whole->size();
+    BOOST_TEST(std::abs(block->potential(own) - stiff->potential(q)) < 60 * eps * 1e5);
+    smaller += block->size() < whole->size();
   });
   BOOST_TEST(smaller > 3);
 }
@@ -159,7 +159,7 @@ BOOST_AUTO_TEST_CASE(a_split_is_there_where_it_is_asked_for_and_changes_nothing_
     const auto with = make_mass_spring(network);
     network.offers_split = false;
     const auto without = make_mass_spring(network);
-    BOOST_TEST(!without->split());
+    BOOST_TEST(!split_of(*without));
     BOOST_TEST(with->potential(q) == without->potential(q));
     BOOST_TEST((force_at(*with, q) == force_at(*without, q)));
     BOOST_TEST((dense(stiffness_at(*with, q)) == dense(stiffness_at(*without, q))));
@@ -176,7 +176,7 @@ BOOST_AUTO_TEST_CASE(either_may_be_without_springs) {
       name_all(network.image_links);
       name_all(network.anchors);
       const auto whole = make_mass_spring(network);
-      const Split& split = *whole->split();
+      const Split& split = *split_of(*whole);
       const System &all = stiff ? *split.stiff : *split.soft,
                    &none = stiff ? *split.soft : *split.stiff;
       BOOST_TEST(adds_up(*whole, *split.stiff, *split.soft, q));
@@ -200,21 +200,21 @@ BOOST_AUTO_TEST_CASE(each_says_of_its_own_springs_whether_k_is_constant_and_the_
                      {1, {0, 0, 0}, {10, 1}, Holds::in_tension, false}};
   network.offers_split = true;
   const auto whole = make_mass_spring(network);
-  const Split& split = *whole->split();
+  const Split& split = *split_of(*whole);
   for (const auto& [q, stiff_holds, soft_holds] : {std::tuple(Vec{{1.5, 1.5}}, true, true),
                                                    {Vec{{0.5, 1.5}}, false, true},
                                                    {Vec{{1.5, 0.5}}, true, false}}) {
-    BOOST_TEST(split.stiff->holds_at(q) == stiff_holds);
-    BOOST_TEST(split.soft->holds_at(q) == soft_holds);
-    BOOST_TEST(whole->holds_at(q) == (stiff_holds && soft_holds));
+    BOOST_TEST(is_valid_at(*split.stiff, q) == stiff_holds);
+    BOOST_TEST(is_valid_at(*split.soft, q) == soft_holds);
+    BOOST_TEST(is_valid_at(*whole, q) == (stiff_holds && soft_holds));
   }
   network.anchors.pop_back();
   const auto soft_linear = make_mass_spring(network);
   BOOST_TEST(!soft_linear->stiffness_is_constant());
-  BOOST_TEST(!soft_linear->split()->stiff->stiffness_is_constant());
-  BOOST_TEST(soft_linear->split()->soft->stiffness_is_constant());
+  BOOST_TEST(!split_of(*soft_linear)->stiff->stiffness_is_constant());
+  BOOST_TEST(split_of(*soft_linear)->soft->stiffness_is_constant());
   network.uses_constant_stiffness = false;
-  BOOST_TEST(!make_mass_spring(network)->split()->soft->stiffness_is_constant());
+  BOOST_TEST(!split_of(*make_mass_spring(network))->soft->stiffness_is_constant());
 }
 
 BOOST_AUTO_TEST_CASE(what_is_held_is_held_in_both) {
@@ -222,8 +222,8 @@ BOOST_AUTO_TEST_CASE(what_is_held_is_held_in_both) {
   for_split_networks([&](Network network, const Vec& q) {
     std::vector<bool> is_held(static_cast<std::size_t>(q.size()));
     for (std::size_t i = 0; i < is_held.size(); ++i) is_held[i] = random() % 3 == 0;
-    const Held held(make_mass_spring(network), is_held);
-    const Split* split = held.split();
+    const ConstrainedSystem held(make_mass_spring(network), is_held);
+    const Split* split = split_of(held);
     BOOST_TEST_REQUIRE(split);
     BOOST_TEST(adds_up(held, *split->stiff, *split->soft, q));
     const Vec stiff = force_at(*split->stiff, q), soft = force_at(*split->soft, q);
@@ -231,10 +231,10 @@ BOOST_AUTO_TEST_CASE(what_is_held_is_held_in_both) {
       if (is_held[i]) BOOST_TEST((stiff[Index(i)] == 0 && soft[Index(i)] == 0));
     }
     BOOST_TEST(same_pattern(*split->stiff, *alone(network, true)));
-    const Vec own = q(split->core_unknowns);
-    BOOST_TEST((force_at(*split->core, own) == stiff(split->core_unknowns)));
+    const Vec own = q(split->stiff_unknowns);
+    BOOST_TEST((force_at(*split->stiff_block, own) == stiff(split->stiff_unknowns)));
     network.offers_split = false;
-    BOOST_TEST(!Held(make_mass_spring(network), is_held).split());
+    BOOST_TEST(!split_of(ConstrainedSystem(make_mass_spring(network), is_held)));
   });
 }
 
@@ -243,9 +243,9 @@ BOOST_AUTO_TEST_CASE(parts_have_a_split_each_and_their_sum_has_none) {
   for (const int dimension : {2, 3}) {
     parts.push_back(make_mass_spring(with_split(hammock(dimension).network)));
   }
-  const Divided divided(std::move(parts));
-  BOOST_TEST(!divided.split());
-  for (const auto& part : divided.parts()) BOOST_TEST(part->split());
+  const BlockDiagonalSystem divided(std::move(parts));
+  BOOST_TEST(!split_of(divided));
+  for (const auto& part : divided.blocks()) BOOST_TEST(split_of(*part));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

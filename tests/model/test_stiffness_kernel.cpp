@@ -18,13 +18,13 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 Vec values(const System& system, const Vec& q, double compression) {
   SymmetricMatrix k = system.stiffness_pattern();
   k.coeffs().setConstant(std::numeric_limits<double>::quiet_NaN());  // every one must be written
-  system.softened_stiffness(q, compression, k);
+  offered<SplitStiffness>(system).weighted_stiffness(q, compression, k);
   return k.coeffs();
 }
 Vec material_values(const System& system, const Vec& q) {
   SymmetricMatrix k = system.stiffness_pattern();
   k.coeffs().setConstant(std::numeric_limits<double>::quiet_NaN());
-  system.material_stiffness(q, k);
+  offered<SplitStiffness>(system).material_stiffness(q, k);
   return k.coeffs();
 }
 

@@ -21,7 +21,7 @@ struct Sample {
   Network network;
   Vec q;
 
-  bool holds() const { return make_mass_spring(network)->holds_at(q); }
+  bool holds() const { return is_valid_at(*make_mass_spring(network), q); }
 };
 
 Sample sample(Kind kind, int dimension, double length, bool needs_tension = true) {

@@ -19,11 +19,12 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 // A system, or each of its parts, with its own unknowns of q.
 template <class Action>
 void for_each_whole(const System& system, const Vec& q, const Action& action) {
-  if (system.parts().empty()) return action(system, q);
+  const auto blocks = blocks_of(system);
+  if (blocks.empty()) return action(system, q);
   Index at = 0;
-  for (const auto& part : system.parts()) {
-    action(*part, Vec(q.segment(at, part->size())));
-    at += part->size();
+  for (const auto& block : blocks) {
+    action(*block, Vec(q.segment(at, block->size())));
+    at += block->size();
   }
 }
 
@@ -35,8 +36,8 @@ struct Stiff {
 Stiff stiff_of(const ReducedScene& reduced, const Vec& q) {
   Stiff sum;
   for_each_whole(reduced.system(), q, [&](const System& part, const Vec& own) {
-    BOOST_TEST_REQUIRE(part.split());
-    const System& stiff = *part.split()->stiff;
+    BOOST_TEST_REQUIRE(split_of(part));
+    const System& stiff = *split_of(part)->stiff;
     sum.v += stiff.potential(own);
     sum.half_trace -= 0.5 * dense(stiffness_at(stiff, own)).trace();
     sum.pattern += stiff.stiffness_pattern().nonZeros();
@@ -61,8 +62,8 @@ double stiff_potential_by_hand(const Scene& scene, const std::vector<Node>& node
 bool adds_up(const ReducedScene& reduced, const Vec& q) {
   bool good = true;
   for_each_whole(reduced.system(), q, [&](const System& part, const Vec& own) {
-    BOOST_TEST_REQUIRE(part.split());
-    const System &stiff = *part.split()->stiff, &soft = *part.split()->soft;
+    BOOST_TEST_REQUIRE(split_of(part));
+    const System &stiff = *split_of(part)->stiff, &soft = *split_of(part)->soft;
     const auto close = [&](const auto& one, const auto& two, const auto& all) {
       const double scale = one.cwiseAbs().sum() + two.cwiseAbs().sum() + all.cwiseAbs().sum();
       good = good && distance(one + two, all) <= 100 * eps * scale;
@@ -142,7 +143,7 @@ BOOST_AUTO_TEST_CASE(naming_stiff_springs_changes_no_bit_of_anything_else) {
       BOOST_TEST(a.system().stiffness_is_constant() == b.system().stiffness_is_constant());
       BOOST_TEST(a.findings().size() == b.findings().size());
       for_each_whole(b.system(), q,
-                     [](const System& part, const Vec&) { BOOST_TEST(!part.split()); });
+                     [](const System& part, const Vec&) { BOOST_TEST(!split_of(part)); });
     }
   }
 }
@@ -246,13 +247,13 @@ BOOST_AUTO_TEST_CASE(on_a_line_stiff_springs_keep_their_rest_length) {
   const ReducedScene reduced(scene);
   BOOST_TEST(reduced.parts().front().is_straightened());
   const Vec& q = reduced.initial().q;
-  const System& stiff = *reduced.system().split()->stiff;
+  const System& stiff = *split_of(reduced.system())->stiff;
   BOOST_TEST(stiff.stiffness_is_constant());
   BOOST_TEST(adds_up(reduced, q));
   // tau = -100, 1000 and -200 N; each term k l of up to 4e4 is rounded.
   BOOST_TEST(distance(force_at(stiff, q), Vec{{100 + 1000, -1000, -200}}) < 10 * eps * 4e4);
   const Vec weight_and_soft{{2 * 2., 3 * 2. - 40, 4 * 2. + 40}};
-  BOOST_TEST(distance(force_at(*reduced.system().split()->soft, q), weight_and_soft) <
+  BOOST_TEST(distance(force_at(*split_of(reduced.system())->soft, q), weight_and_soft) <
              10 * eps * 4e4);
 }
 
@@ -266,13 +267,13 @@ BOOST_AUTO_TEST_CASE(every_part_offers_a_split_whatever_springs_it_has) {
     scene.springs.push_back({{first, first + 1}, {k, 0.9}});
   }
   const ReducedScene reduced(scene);
-  BOOST_TEST_REQUIRE(reduced.system().parts().size() == 2u);
-  for (const auto& part : reduced.system().parts()) BOOST_TEST_REQUIRE(part->split());
+  BOOST_TEST_REQUIRE(blocks_of(reduced.system()).size() == 2u);
+  for (const auto& block : blocks_of(reduced.system())) BOOST_TEST_REQUIRE(split_of(*block));
   BOOST_TEST(stiff_of(reduced, reduced.initial().q).v == 250 * 0.1 * 0.1,
              boost::test_tools::tolerance(100 * eps));
   for (Node& node : scene.nodes) node.pinned = true;
-  BOOST_TEST(ReducedScene(scene).system().split());
-  BOOST_TEST(ReducedScene(scene, Reductions::only({})).system().split());
+  BOOST_TEST(split_of(ReducedScene(scene).system()));
+  BOOST_TEST(split_of(ReducedScene(scene, Reductions::only({})).system()));
 }
 
 BOOST_AUTO_TEST_CASE(a_border_that_is_no_positive_number_is_refused) {

@@ -8,13 +8,13 @@ namespace qddot::measure {
 
 double resolved_frequency(const Method& method, const System& system, const Vec& q) {
   if (!method.needs_split || method.implicit) return frequency_bound(system, q);
-  if (system.split()) return frequency_bound(*system.split()->soft, q);
+  if (const Split* split = split_of(system)) return frequency_bound(*split->soft, q);
   double largest = 0;
   Index first = 0;
-  for (const auto& part : system.parts()) {
-    const Vec own = q.segment(first, part->size());
-    largest = std::max(largest, resolved_frequency(method, *part, own));
-    first += part->size();
+  for (const auto& block : blocks_of(system)) {
+    const Vec own = q.segment(first, block->size());
+    largest = std::max(largest, resolved_frequency(method, *block, own));
+    first += block->size();
   }
   return largest;
 }

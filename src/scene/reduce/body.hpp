@@ -25,7 +25,7 @@ struct Body {
   Eigen::Vector3d gravity =
       Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
   Fall fall{};                  // the frame that v and gravity are seen from, see let_fall
-  bool offers_split = false;    // whether its system is to have a split() by stiff springs
+  bool offers_split = false;    // whether its system is to offer SplitForces
 };
 
 Body make_body(const Component& component, const std::vector<Node>& nodes,

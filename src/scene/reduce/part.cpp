@@ -1,6 +1,6 @@
 #include "qddot/scene/reduce/part.hpp"
 
-#include "qddot/model/held.hpp"
+#include "qddot/model/constrained_system.hpp"
 #include "qddot/scene/reduce/folded.hpp"
 #include "qddot/scene/reduce/straight.hpp"
 
@@ -114,7 +114,7 @@ Part::Part(const Body& body, int dimension, const Reductions& reductions)
     }
   }
   system_ = make_mass_spring(network);
-  if (with_pins) system_ = std::make_unique<Held>(std::move(system_), is_held);
+  if (with_pins) system_ = std::make_unique<ConstrainedSystem>(std::move(system_), is_held);
 }
 
 Part::Motion Part::motion(std::size_t i, const Eigen::Ref<const Vec>& q,

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "qddot/model/divided.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
 #include "qddot/scene/reduce/as_drawn.hpp"
 #include "qddot/scene/reduce/springs.hpp"
 #include "qddot/scene/reduce/words.hpp"
@@ -149,7 +149,7 @@ void Reduced::build(const std::vector<Component>& components, const std::vector<
   } else if (systems.size() == 1) {
     system_ = std::move(systems.front());
   } else {
-    system_ = std::make_unique<Divided>(std::move(systems));
+    system_ = std::make_unique<BlockDiagonalSystem>(std::move(systems));
   }
 }
 

@@ -27,7 +27,7 @@ class Reduced;
 //   reduce/part.hpp constant_stiffness  springs of rest length zero; on a line, see
 //   reduce/straight.hpp
 // Dimension, mirror and constant stiffness are found for each part by itself. Where the scene names
-// stiff springs, each part's system offers a split() by them; everything else is as without.
+// stiff springs, each part's system offers SplitForces by them; everything else is as without.
 //
 // That the start is the drawn one is not taken on trust: every part is compared with its nodes and
 // springs (Part::difference_from), and a reduction that fails is left out of that part and said to

@@ -23,7 +23,7 @@ namespace qddot::reduce {
 //
 // That is proven for the true motion. A run whose steps are too long may leave it and turn springs
 // over: forces, energies and K stay those of the laws, so that it goes on as the drawn network
-// does; what takes f as linear asks first whether it is (System::is_linear_at).
+// does; what takes f as linear asks first whether it is (see PiecewiseLinear).
 std::optional<Network> straightened(const Network& network, const Vec& q, const Vec& v);
 
 }  // namespace qddot::reduce

@@ -2,23 +2,23 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/divided.hpp"
-#include "qddot/model/held.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
+#include "qddot/model/constrained_system.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
 using namespace qddot;
 
-BOOST_AUTO_TEST_SUITE(mean_force)
+BOOST_AUTO_TEST_SUITE(discrete_gradient)
 
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-Vec mean_force_at(const System& system, const Vec& a, const Vec& b) {
+Vec discrete_gradient_at(const System& system, const Vec& a, const Vec& b) {
   Vec f(system.size());
-  system.mean_force(a, b, f);
+  offered<DiscreteGradient>(system).discrete_gradient(a, b, f);
   return f;
 }
 
@@ -30,7 +30,7 @@ Vec random_vector(std::mt19937& random, Index n, double size) {
 // |f.(b - a) + V(b) - V(a)| in units of its rounding: of V, sums of some 50 terms.
 double work_error(const System& system, const Vec& a, const Vec& b) {
   const double va = system.potential(a), vb = system.potential(b);
-  const double work = mean_force_at(system, a, b).dot(b - a);
+  const double work = discrete_gradient_at(system, a, b).dot(b - a);
   return std::abs(work + vb - va) / (50 * eps * (std::abs(va) + std::abs(vb) + std::abs(work)));
 }
 
@@ -74,10 +74,11 @@ BOOST_AUTO_TEST_CASE(the_force_in_the_middle_does_other_work) {
 BOOST_AUTO_TEST_CASE(it_is_the_force_where_both_ends_are_one_and_the_same_in_both_directions) {
   for_systems([](const System& system, const Vec& a, std::mt19937& random) {
     const double scale = force_at(system, a).lpNorm<Eigen::Infinity>();
-    BOOST_TEST(distance(mean_force_at(system, a, a), force_at(system, a)) < 50 * eps * scale);
+    BOOST_TEST(distance(discrete_gradient_at(system, a, a), force_at(system, a)) <
+               50 * eps * scale);
     const Vec b = a + random_vector(random, a.size(), 0.3);
-    BOOST_TEST(distance(mean_force_at(system, a, b), mean_force_at(system, b, a)) <
-               50 * eps * mean_force_at(system, a, b).lpNorm<Eigen::Infinity>());
+    BOOST_TEST(distance(discrete_gradient_at(system, a, b), discrete_gradient_at(system, b, a)) <
+               50 * eps * discrete_gradient_at(system, a, b).lpNorm<Eigen::Infinity>());
   });
 }
 
@@ -86,7 +87,7 @@ BOOST_AUTO_TEST_CASE(it_is_the_force_in_the_middle_to_second_order) {
     const Vec way = random_vector(random, a.size(), 1);
     const auto difference = [&](double part) {
       const Vec b = a + part * way;
-      return distance(mean_force_at(system, a, b), force_at(system, (a + b) / 2));
+      return distance(discrete_gradient_at(system, a, b), force_at(system, (a + b) / 2));
     };
     if (difference(0.01) == 0) return;  // linear springs alone
     // A quarter of the distance: a sixteenth, but for third-order terms of a few percent.
@@ -102,7 +103,7 @@ BOOST_AUTO_TEST_CASE(without_pins_it_has_no_sum_and_no_moment_about_the_way_s_mi
     p.network.gravity.setZero();
     const auto system = make_mass_spring(p.network);
     const Vec a = p.initial.q, b = a + random_vector(random, a.size(), 0.5);
-    const Vec f = mean_force_at(*system, a, b);
+    const Vec f = discrete_gradient_at(*system, a, b);
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), moment = sum;
     for (Index i = 0; i < a.size(); i += 3) {
       sum += f.segment<3>(i);
@@ -122,23 +123,23 @@ BOOST_AUTO_TEST_CASE(held_unknowns_feel_none_and_parts_have_their_own) {
   const auto system = make_mass_spring(p.network);
   std::vector<bool> is_held(static_cast<std::size_t>(a.size()));
   is_held[2] = is_held[5] = true;
-  const Held held(make_mass_spring(p.network), is_held);
-  Vec expected = mean_force_at(*system, a, b);
+  const ConstrainedSystem held(make_mass_spring(p.network), is_held);
+  Vec expected = discrete_gradient_at(*system, a, b);
   expected[2] = expected[5] = 0;
-  BOOST_TEST(distance(mean_force_at(held, a, b), expected) == 0);
+  BOOST_TEST(distance(discrete_gradient_at(held, a, b), expected) == 0);
 
   std::vector<std::unique_ptr<System>> parts;
   parts.push_back(make_mass_spring(p.network));
   parts.push_back(make_mass_spring(other.network));
   const auto second = make_mass_spring(other.network);
-  const Divided divided(std::move(parts));
+  const BlockDiagonalSystem divided(std::move(parts));
   Vec both_a(a.size() + other.initial.q.size()), both_b = both_a;
   both_a << a, other.initial.q;
   both_b << b, 1.1 * other.initial.q;
   Vec both(both_a.size());
-  both << mean_force_at(*system, a, b),
-      mean_force_at(*second, other.initial.q, 1.1 * other.initial.q);
-  BOOST_TEST(distance(mean_force_at(divided, both_a, both_b), both) == 0);
+  both << discrete_gradient_at(*system, a, b),
+      discrete_gradient_at(*second, other.initial.q, 1.1 * other.initial.q);
+  BOOST_TEST(distance(discrete_gradient_at(divided, both_a, both_b), both) == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

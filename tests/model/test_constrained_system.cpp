@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/held.hpp"
+#include "qddot/model/constrained_system.hpp"
 #include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
@@ -41,12 +41,12 @@ Eigen::MatrixXd selection(const std::vector<bool>& is_held) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(held)
+BOOST_AUTO_TEST_SUITE(constrained_system)
 
 BOOST_AUTO_TEST_CASE(force_and_stiffness_are_those_of_the_system_with_zeros_where_it_is_held) {
   for_random_networks([](const Problem& p, const std::vector<bool>& is_held) {
     const auto free = make_mass_spring(p.network);
-    const Held held(make_mass_spring(p.network), is_held);
+    const ConstrainedSystem held(make_mass_spring(p.network), is_held);
     const Eigen::MatrixXd s = selection(is_held);
     const Vec& q = p.initial.q;
     const Eigen::MatrixXd k = dense(stiffness_at(*free, q));
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(force_and_stiffness_are_those_of_the_system_with_zeros_wher
 BOOST_AUTO_TEST_CASE(the_pattern_stays_with_its_diagonal) {
   for_random_networks([](const Problem& p, const std::vector<bool>& is_held) {
     const auto free = make_mass_spring(p.network);
-    const Held held(make_mass_spring(p.network), is_held);
+    const ConstrainedSystem held(make_mass_spring(p.network), is_held);
     const SymmetricMatrix &a = held.stiffness_pattern(), &b = free->stiffness_pattern();
     BOOST_TEST_REQUIRE(a.nonZeros() == b.nonZeros());
     BOOST_TEST(std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr()));
@@ -73,8 +73,10 @@ BOOST_AUTO_TEST_CASE(the_pattern_stays_with_its_diagonal) {
 BOOST_AUTO_TEST_CASE(with_nothing_held_it_is_the_system_and_with_all_of_it_nothing_moves) {
   for_random_networks([](const Problem& p, const std::vector<bool>& is_held) {
     const auto free = make_mass_spring(p.network);
-    const Held none(make_mass_spring(p.network), std::vector<bool>(is_held.size(), false));
-    const Held all(make_mass_spring(p.network), std::vector<bool>(is_held.size(), true));
+    const ConstrainedSystem none(make_mass_spring(p.network),
+                                 std::vector<bool>(is_held.size(), false));
+    const ConstrainedSystem all(make_mass_spring(p.network),
+                                std::vector<bool>(is_held.size(), true));
     const Vec& q = p.initial.q;
     BOOST_TEST((force_at(none, q) == force_at(*free, q)));
     BOOST_TEST((dense(stiffness_at(none, q)) == dense(stiffness_at(*free, q))));
@@ -104,7 +106,7 @@ BOOST_AUTO_TEST_CASE(what_is_free_feels_held_nodes_as_points) {
     }
     std::vector<bool> is_held(p.initial.q.size(), false);
     std::fill_n(is_held.begin(), dimension, true);
-    const Held held(make_mass_spring(p.network), is_held);
+    const ConstrainedSystem held(make_mass_spring(p.network), is_held);
     const auto pinned = make_mass_spring(rest);
     const Index n = 5 * dimension;
     const Vec &q = p.initial.q, few = q.tail(n);
@@ -121,13 +123,13 @@ BOOST_AUTO_TEST_CASE(what_is_free_feels_held_nodes_as_points) {
 BOOST_AUTO_TEST_CASE(whether_stiffness_is_constant_and_the_system_holds_is_up_to_the_system) {
   const auto held = [](const SpringLaw& law, Holds holds = Holds::always) {
     Network network{.dimension = 1, .node_mass = Vec::Ones(2), .links = {{0, 1, law, holds}}};
-    return Held(make_mass_spring(network), {true, false});
+    return ConstrainedSystem(make_mass_spring(network), {true, false});
   };
   BOOST_TEST(held({.stiffness = 1}).stiffness_is_constant());
   BOOST_TEST(!held({1, 1}).stiffness_is_constant());
-  const Held string = held({1, 1}, Holds::in_tension);
-  BOOST_TEST(string.holds_at(Vec{{0, 1.5}}));
-  BOOST_TEST(!string.holds_at(Vec{{0, 0.5}}));
+  const ConstrainedSystem string = held({1, 1}, Holds::in_tension);
+  BOOST_TEST(is_valid_at(string, Vec{{0, 1.5}}));
+  BOOST_TEST(!is_valid_at(string, Vec{{0, 0.5}}));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/divided.hpp"
+#include "qddot/model/block_diagonal_system.hpp"
 #include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
@@ -18,10 +18,10 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 using Parts = std::vector<std::unique_ptr<System>>;
 
 template <class... Networks>
-Divided in_parts(const Networks&... networks) {
+BlockDiagonalSystem in_parts(const Networks&... networks) {
   Parts parts;
   (parts.push_back(make_mass_spring(networks)), ...);
-  return Divided(std::move(parts));
+  return BlockDiagonalSystem(std::move(parts));
 }
 
 // All that a system says of a point.
@@ -64,7 +64,7 @@ struct Three {
       first += count;
     }
   }
-  Divided as_parts() const {
+  BlockDiagonalSystem as_parts() const {
     return in_parts(parts[0].network, parts[1].network, parts[2].network);
   }
 
@@ -80,12 +80,12 @@ Network loose(int dimension, const SpringLaw& law, Holds holds = Holds::always) 
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(divided)
+BOOST_AUTO_TEST_SUITE(block_diagonal_system)
 
 BOOST_AUTO_TEST_CASE(parts_are_together_what_they_are_as_one_network) {
   for (const int dimension : {1, 2, 3}) {
     const Three three(dimension);
-    const Divided system = three.as_parts();
+    const BlockDiagonalSystem system = three.as_parts();
     const auto one = make_mass_spring(three.whole.network);
     const Vec& q = three.whole.initial.q;
     const Said a(system, q), b(*one, q);
@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(parts_are_together_what_they_are_as_one_network) {
 BOOST_AUTO_TEST_CASE(the_pattern_is_that_of_one_network_entry_by_entry) {
   for (const int dimension : {1, 2, 3}) {
     const Three three(dimension);
-    const Divided system = three.as_parts();
+    const BlockDiagonalSystem system = three.as_parts();
     const auto one = make_mass_spring(three.whole.network);
     const SymmetricMatrix &a = system.stiffness_pattern(), &b = one->stiffness_pattern();
     BOOST_TEST_REQUIRE(a.nonZeros() == b.nonZeros());
@@ -114,13 +114,13 @@ BOOST_AUTO_TEST_CASE(the_pattern_is_that_of_one_network_entry_by_entry) {
 BOOST_AUTO_TEST_CASE(parts_of_other_dimensions_follow_one_another_as_blocks) {
   std::mt19937 random(5);
   const Problem line = random_network(random, 1, 4, 1.3), space = random_network(random, 3, 3, 0.8);
-  const Divided system = in_parts(line.network, space.network);
+  const BlockDiagonalSystem system = in_parts(line.network, space.network);
   const auto a = make_mass_spring(line.network), b = make_mass_spring(space.network);
   Vec q(13);
   q << line.initial.q, space.initial.q;
   const Said both(system, q), first(*a, line.initial.q), second(*b, space.initial.q);
   BOOST_TEST(system.size() == 13);
-  BOOST_TEST(system.parts().size() == 2);
+  BOOST_TEST(system.blocks().size() == 2);
   BOOST_TEST((system.mass().head(4) == a->mass() && system.mass().tail(9) == b->mass()));
   BOOST_TEST(both.v == first.v + second.v);
   BOOST_TEST((both.f.head(4) == first.f && both.f.tail(9) == second.f));
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(parts_of_other_dimensions_follow_one_another_as_blocks) {
 
 BOOST_AUTO_TEST_CASE(one_part_does_not_feel_where_another_is) {
   const Three three(2);
-  const Divided system = three.as_parts();
+  const BlockDiagonalSystem system = three.as_parts();
   Vec q = three.whole.initial.q;
   const Said before(system, q);
   q.segment(10, 2) += Vec{{0.25, 0.5}};  // of the second
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(one_part_does_not_feel_where_another_is) {
 
 BOOST_AUTO_TEST_CASE(stiffness_does_not_depend_on_what_the_matrix_held) {
   const Three three(3);
-  const Divided system = three.as_parts();
+  const BlockDiagonalSystem system = three.as_parts();
   const Vec& q = three.whole.initial.q;
   SymmetricMatrix used = stiffness_at(system, 1.5 * q);
   system.stiffness(q, used);
@@ -163,10 +163,10 @@ BOOST_AUTO_TEST_CASE(stiffness_is_constant_where_it_is_in_every_part) {
 
 BOOST_AUTO_TEST_CASE(it_holds_where_every_part_holds) {
   const Network string = loose(1, {1, 1}, Holds::in_tension);
-  const Divided system = in_parts(string, loose(1, {1, 1}), string);
-  BOOST_TEST(system.holds_at(Vec{{1.5, 0.1, 1.5}}));
-  BOOST_TEST(!system.holds_at(Vec{{0.5, 3, 1.5}}));
-  BOOST_TEST(!system.holds_at(Vec{{1.5, 3, 0.5}}));
+  const BlockDiagonalSystem system = in_parts(string, loose(1, {1, 1}), string);
+  BOOST_TEST(is_valid_at(system, Vec{{1.5, 0.1, 1.5}}));
+  BOOST_TEST(!is_valid_at(system, Vec{{0.5, 3, 1.5}}));
+  BOOST_TEST(!is_valid_at(system, Vec{{1.5, 3, 0.5}}));
 }
 
 BOOST_AUTO_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing) {
@@ -176,27 +176,27 @@ BOOST_AUTO_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing) {
   inner.push_back(make_mass_spring(three.parts[0].network));
   inner.push_back(make_mass_spring(nothing));
   inner.push_back(make_mass_spring(three.parts[1].network));
-  outer.push_back(std::make_unique<Divided>(Parts()));
-  outer.push_back(std::make_unique<Divided>(std::move(inner)));
+  outer.push_back(std::make_unique<BlockDiagonalSystem>(Parts()));
+  outer.push_back(std::make_unique<BlockDiagonalSystem>(std::move(inner)));
   outer.push_back(make_mass_spring(three.parts[2].network));
-  const Divided nested(std::move(outer)), flat = three.as_parts();
+  const BlockDiagonalSystem nested(std::move(outer)), flat = three.as_parts();
   const Vec& q = three.whole.initial.q;
   const Said a(nested, q), b(flat, q);
-  BOOST_TEST(nested.parts().size() == 3);
+  BOOST_TEST(nested.blocks().size() == 3);
   BOOST_TEST(std::abs(a.v - b.v - 64) < 40 * eps * (std::abs(b.v) + 1000));
   BOOST_TEST((a.f == b.f));
   BOOST_TEST((a.k == b.k));
 }
 
 BOOST_AUTO_TEST_CASE(no_parts_are_a_system_without_unknowns) {
-  const Divided system{Parts()};
+  const BlockDiagonalSystem system{Parts()};
   BOOST_TEST(system.size() == 0);
-  BOOST_TEST(system.parts().empty());
+  BOOST_TEST(system.blocks().empty());
   BOOST_TEST(system.potential(Vec()) == 0);
   BOOST_TEST(force_at(system, Vec()).size() == 0);
   BOOST_TEST(stiffness_at(system, Vec()).size() == 0);
   BOOST_TEST(system.stiffness_is_constant());
-  BOOST_TEST(system.holds_at(Vec()));
+  BOOST_TEST(is_valid_at(system, Vec()));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

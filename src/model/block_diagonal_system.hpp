@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "qddot/model/capabilities.hpp"
+#include "qddot/model/kinks.hpp"
+
+namespace qddot {
+
+// Systems that no force couples, one after the other as one: M and K are block diagonal, V is the
+// sum. What runs through time may take each block by itself (see Blocks), so an evaluation of the
+// whole may allocate.
+//
+// It has K where all blocks have, and offers what all blocks offer. Three capabilities tell of an
+// exception that a system without them does not have: Kinks, Validity and PiecewiseLinear. These it
+// offers where any block does.
+class BlockDiagonalSystem final : public System,
+                                  public SplitStiffness,
+                                  public DiscreteGradient,
+                                  public Laplacian,
+                                  public PiecewiseLinear,
+                                  public Validity,
+                                  public Kinks,
+                                  public Blocks {
+ public:
+  explicit BlockDiagonalSystem(std::vector<std::unique_ptr<System>> blocks);
+
+  double potential(const Vec& q) const override;
+  void force(const Vec& q, Vec& f) const override;
+  void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
+  bool stiffness_is_constant() const override;
+  bool offers(const std::type_info& type) const override;
+
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  void weighted_stiffness(const Vec& q, double compression_weight,
+                          SymmetricMatrix& k) const override;
+  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override;
+  void laplacian(SymmetricMatrix& l) const override;
+  bool bounds_stiffness() const override;
+  bool is_linear_at(const Vec& q) const override;
+  bool is_valid_at(const Vec& q) const override;
+  std::optional<double> end_of_validity(const State& from, const State& to) const override;
+  Index kinks() const override;
+  void kink_lengths(const Vec& q, Vec& lengths) const override;
+  std::span<const std::unique_ptr<System>> blocks() const override { return blocks_; }
+
+ private:
+  // The blocks' columns follow one another in `k`, and so do their entries: evaluate(block, its
+  // segment of q, its matrix) for each.
+  template <class Evaluate>
+  void assemble(const Vec& q, SymmetricMatrix& k, const Evaluate& evaluate) const;
+
+  std::vector<std::unique_ptr<System>> blocks_;
+  SymmetricMatrix pattern_;
+};
+
+}  // namespace qddot

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "qddot/model/capabilities.hpp"
+#include "qddot/model/kinks.hpp"
+
+namespace qddot {
+
+// A system in which some unknowns are held where they are: their forces, and the rows and columns
+// of K that belong to them, are zero, as if whatever holds them always pushed back. Where such an
+// unknown starts at rest it stays at rest. What remains of pinned nodes that are unknowns all the
+// same, for comparison with the system that does without them.
+//
+// It has K where that system has, and offers what that system offers, but for Blocks.
+class ConstrainedSystem final : public System,
+                                public SplitStiffness,
+                                public DiscreteGradient,
+                                public Laplacian,
+                                public PiecewiseLinear,
+                                public Validity,
+                                public Kinks,
+                                public SplitForces {
+ public:
+  // `is_held`: for each unknown of `system`.
+  ConstrainedSystem(std::shared_ptr<const System> system, std::vector<bool> is_held);
+
+  double potential(const Vec& q) const override { return system_->potential(q); }
+  void force(const Vec& q, Vec& f) const override;
+  void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
+  bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
+  bool offers(const std::type_info& type) const override;
+
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  void weighted_stiffness(const Vec& q, double compression_weight,
+                          SymmetricMatrix& k) const override;
+  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override;
+  void laplacian(SymmetricMatrix& l) const override;
+  bool bounds_stiffness() const override { return laplacian_->bounds_stiffness(); }
+  bool is_linear_at(const Vec& q) const override { return pieces_->is_linear_at(q); }
+  bool is_valid_at(const Vec& q) const override { return validity_->is_valid_at(q); }
+  std::optional<double> end_of_validity(const State& from, const State& to) const override {
+    return validity_->end_of_validity(from, to);
+  }
+  Index kinks() const override { return kinks_->kinks(); }
+  void kink_lengths(const Vec& q, Vec& lengths) const override { kinks_->kink_lengths(q, lengths); }
+  const Split& split() const override { return *split_; }
+
+ private:
+  void clear_held(SymmetricMatrix& k) const;
+
+  std::shared_ptr<const System> system_;
+  // What the system offers.
+  const SplitStiffness* split_stiffness_;
+  const DiscreteGradient* discrete_gradient_;
+  const Laplacian* laplacian_;
+  const PiecewiseLinear* pieces_;
+  const Validity* validity_;
+  const Kinks* kinks_;
+  std::vector<Index> unknowns_;  // the held ones
+  std::vector<Index> entries_;   // of the pattern, those in a row or column of a held one
+  std::optional<Split> split_;   // of the system, held likewise
+};
+
+}  // namespace qddot

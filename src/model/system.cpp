@@ -1,0 +1,16 @@
+#include "qddot/model/system.hpp"
+
+#include <stdexcept>
+
+namespace qddot {
+
+const SymmetricMatrix& System::stiffness_pattern() const {
+  static const SymmetricMatrix none;
+  return none;
+}
+
+void System::stiffness(const Vec&, SymmetricMatrix&) const {
+  throw std::logic_error("the system computes no stiffness matrix K");
+}
+
+}  // namespace qddot
