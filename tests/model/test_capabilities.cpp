@@ -1,0 +1,257 @@
+#include <functional>
+#include <random>
+
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/model/block_diagonal_system.hpp"
+#include "qddot/model/constrained_system.hpp"
+#include "qddot/model/mass_spring.hpp"
+#include "tests/measure.hpp"
+#include "tests/problems.hpp"
+
+using namespace qddot;
+
+namespace {
+
+// A mass on a spring of V = q^2/2, by V and f alone.
+class Plain : public System {
+ public:
+  Plain() : System(Vec::Ones(1)) {}
+  double potential(const Vec& q) const override { return 0.5 * q.squaredNorm(); }
+  void force(const Vec& q, Vec& f) const override { f = -q; }
+};
+
+// The same with K.
+class WithStiffness : public Plain {
+ public:
+  WithStiffness() : pattern_(1, 1) { pattern_.insert(0, 0) = 0; }
+  const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
+  void stiffness(const Vec&, SymmetricMatrix& k) const override { k.coeffs()[0] = -1; }
+
+ private:
+  SymmetricMatrix pattern_;
+};
+
+// With one capability more; where it says a place, that is at q = 1.
+class WithSplitStiffness final : public WithStiffness, public SplitStiffness {
+ public:
+  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override { stiffness(q, k); }
+  void weighted_stiffness(const Vec& q, double, SymmetricMatrix& k) const override {
+    stiffness(q, k);
+  }
+};
+class WithDiscreteGradient final : public Plain, public DiscreteGradient {
+ public:
+  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override { f = -(a + b) / 2; }
+};
+class WithLaplacian final : public WithStiffness, public Laplacian {
+ public:
+  void laplacian(SymmetricMatrix& l) const override { l.coeffs()[0] = 1; }
+  bool bounds_stiffness() const override { return true; }
+};
+class WithPieces final : public Plain, public PiecewiseLinear {
+ public:
+  bool is_linear_at(const Vec& q) const override { return q[0] < 1; }
+};
+class WithValidity final : public Plain, public Validity {
+ public:
+  bool is_valid_at(const Vec& q) const override { return q[0] < 1; }
+};
+class WithKink final : public Plain, public Kinks {
+ public:
+  Index kinks() const override { return 1; }
+  void kink_lengths(const Vec& q, Vec& lengths) const override { lengths[0] = q[0] - 1; }
+};
+class WithSplit final : public Plain, public SplitForces {
+ public:
+  const Split& split() const override { return split_; }
+
+ private:
+  Split split_{
+      std::make_shared<Plain>(), std::make_shared<Plain>(), std::make_shared<Plain>(), {0}};
+};
+
+// A class that implements a capability, whose objects have it or not.
+class Declines final : public Plain, public DiscreteGradient {
+ public:
+  explicit Declines(bool offers) : offers_(offers) {}
+  bool offers(const std::type_info& type) const override {
+    return type != typeid(DiscreteGradient) || offers_;
+  }
+  void discrete_gradient(const Vec&, const Vec&, Vec&) const override {}
+
+ private:
+  bool offers_;
+};
+
+// All that a system may offer, in a fixed order.
+struct Offers {
+  bool stiffness = false, split_stiffness = false, discrete_gradient = false, laplacian = false,
+       pieces = false, validity = false, kinks = false, blocks = false, split = false;
+  bool operator==(const Offers&) const = default;
+};
+Offers offers_of(const System& s) {
+  return {s.has_stiffness(),
+          capability<SplitStiffness>(s) != nullptr,
+          capability<DiscreteGradient>(s) != nullptr,
+          capability<Laplacian>(s) != nullptr,
+          capability<PiecewiseLinear>(s) != nullptr,
+          capability<Validity>(s) != nullptr,
+          capability<Kinks>(s) != nullptr,
+          capability<Blocks>(s) != nullptr,
+          capability<SplitForces>(s) != nullptr};
+}
+
+std::vector<std::function<std::unique_ptr<System>()>> kinds() {
+  return {[] { return std::make_unique<Plain>(); },
+          [] { return std::make_unique<WithStiffness>(); },
+          [] { return std::make_unique<WithSplitStiffness>(); },
+          [] { return std::make_unique<WithDiscreteGradient>(); },
+          [] { return std::make_unique<WithLaplacian>(); },
+          [] { return std::make_unique<WithPieces>(); },
+          [] { return std::make_unique<WithValidity>(); },
+          [] { return std::make_unique<WithKink>(); },
+          [] { return std::make_unique<WithSplit>(); },
+          [] { return std::make_unique<Declines>(true); },
+          [] { return std::make_unique<Declines>(false); },
+          [] {
+            Network network = with_split(hammock(1).network);
+            return make_mass_spring(network);
+          },
+          [] {
+            Network network{.dimension = 2, .node_mass = Vec::Ones(1)};
+            network.anchors = {{0, {0, 0, 0}, {1, 1}, Holds::in_tension}};
+            return make_mass_spring(network);
+          }};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(capabilities)
+
+BOOST_AUTO_TEST_CASE(a_system_of_v_and_f_alone_has_none) {
+  const Plain plain;
+  BOOST_TEST((offers_of(plain) == Offers{}));
+  BOOST_TEST(!plain.stiffness_is_constant());
+  BOOST_TEST(blocks_of(plain).empty());
+  BOOST_TEST(!split_of(plain));
+  SymmetricMatrix k = plain.stiffness_pattern();
+  BOOST_TEST(k.size() == 0);
+  BOOST_CHECK_THROW(plain.stiffness(Vec::Zero(1), k), std::logic_error);
+}
+
+BOOST_AUTO_TEST_CASE(each_is_found_where_a_class_implements_it_and_nowhere_else) {
+  BOOST_TEST((offers_of(WithStiffness()) == Offers{.stiffness = true}));
+  BOOST_TEST(
+      (offers_of(WithSplitStiffness()) == Offers{.stiffness = true, .split_stiffness = true}));
+  BOOST_TEST((offers_of(WithDiscreteGradient()) == Offers{.discrete_gradient = true}));
+  BOOST_TEST((offers_of(WithLaplacian()) == Offers{.stiffness = true, .laplacian = true}));
+  BOOST_TEST((offers_of(WithPieces()) == Offers{.pieces = true}));
+  BOOST_TEST((offers_of(WithValidity()) == Offers{.validity = true}));
+  BOOST_TEST((offers_of(WithKink()) == Offers{.kinks = true}));
+  BOOST_TEST((offers_of(WithSplit()) == Offers{.split = true}));
+}
+
+BOOST_AUTO_TEST_CASE(an_object_may_decline_what_its_class_implements) {
+  BOOST_TEST(capability<DiscreteGradient>(Declines(true)));
+  BOOST_TEST(!capability<DiscreteGradient>(Declines(false)));
+}
+
+BOOST_AUTO_TEST_CASE(a_network_offers_what_it_has) {
+  const Offers always{
+      .stiffness = true, .split_stiffness = true, .discrete_gradient = true, .laplacian = true};
+  const auto offers = [](const Network& network) { return offers_of(*make_mass_spring(network)); };
+  for (const int dimension : {2, 3}) {
+    BOOST_TEST((offers(hammock(dimension).network) == always));
+    Offers split = always;
+    split.split = true;
+    BOOST_TEST((offers(with_split(hammock(dimension).network)) == split));
+  }
+  Offers on_a_line = always;
+  on_a_line.kinks = true;
+  BOOST_TEST((offers(hammock(1).network) == on_a_line));
+
+  Network spring{.dimension = 1, .node_mass = Vec::Ones(1)};
+  spring.anchors = {{0, {0, 0, 0}, {1, 1}}};
+  BOOST_TEST((offers(spring) == on_a_line));
+  spring.anchors[0].holds = Holds::in_tension;
+  Offers string = on_a_line;
+  string.validity = true;
+  BOOST_TEST((offers(spring) == string));
+  spring.anchors[0].holds = Holds::always;
+  spring.anchors[0].direction = 1;
+  Offers directed = always;
+  directed.pieces = true;
+  BOOST_TEST((offers(spring) == directed));
+}
+
+BOOST_AUTO_TEST_CASE(a_constrained_system_offers_what_the_system_in_it_offers) {
+  for (const auto& make : kinds()) {
+    const std::shared_ptr<System> inner = make();
+    std::vector<bool> is_held(static_cast<std::size_t>(inner->size()));
+    BOOST_TEST((offers_of(ConstrainedSystem(inner, is_held)) == offers_of(*inner)));
+    is_held[0] = true;
+    const auto once = std::make_shared<ConstrainedSystem>(inner, is_held);
+    BOOST_TEST((offers_of(*once) == offers_of(*inner)));
+    BOOST_TEST((offers_of(ConstrainedSystem(once, is_held)) == offers_of(*inner)));
+    Vec f = force_at(*once, Vec::Constant(inner->size(), 0.5));
+    BOOST_TEST(f[0] == 0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(blocks_offer_together_what_all_of_them_offer_and_exceptions_of_any) {
+  for (const auto& one : kinds()) {
+    for (const auto& other : kinds()) {
+      std::vector<std::unique_ptr<System>> blocks;
+      blocks.push_back(one());
+      blocks.push_back(other());
+      const Offers a = offers_of(*blocks[0]), b = offers_of(*blocks[1]);
+      const BlockDiagonalSystem both(std::move(blocks));
+      const Offers expected{.stiffness = a.stiffness && b.stiffness,
+                            .split_stiffness = a.split_stiffness && b.split_stiffness,
+                            .discrete_gradient = a.discrete_gradient && b.discrete_gradient,
+                            .laplacian = a.laplacian && b.laplacian,
+                            .pieces = a.pieces || b.pieces,
+                            .validity = a.validity || b.validity,
+                            .kinks = a.kinks || b.kinks,
+                            .blocks = true,
+                            .split = false};
+      BOOST_TEST((offers_of(both) == expected));
+      // What is offered can be used.
+      const Vec q = Vec::Constant(both.size(), 0.5);
+      BOOST_TEST(force_at(both, q).allFinite());
+      if (expected.stiffness) {
+        BOOST_TEST(stiffness_at(both, q).coeffs().allFinite());
+      } else {
+        SymmetricMatrix k = both.stiffness_pattern();
+        BOOST_TEST(k.size() == 0);
+        BOOST_CHECK_THROW(both.stiffness(q, k), std::logic_error);
+      }
+      if (expected.split_stiffness) {
+        BOOST_TEST(material_stiffness_at(both, q).coeffs().allFinite());
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(exceptions_of_one_block_are_those_of_the_whole) {
+  std::vector<std::unique_ptr<System>> blocks;
+  blocks.push_back(std::make_unique<Plain>());
+  blocks.push_back(std::make_unique<WithValidity>());
+  blocks.push_back(std::make_unique<WithKink>());
+  const BlockDiagonalSystem system(std::move(blocks));
+  const Vec inside{{5, 0, 3}}, outside{{0, 2, 3}};
+  const Validity& validity = offered<Validity>(system);
+  BOOST_TEST(validity.is_valid_at(inside));
+  BOOST_TEST(!validity.is_valid_at(outside));
+  const Vec v = Vec::Zero(3);
+  BOOST_TEST(!validity.end_of_validity({1, outside, v}, {2, inside, v}));
+  BOOST_TEST(validity.end_of_validity({1, inside, v}, {2, outside, v}).value() == 2);
+  const Kinks& kinks = offered<Kinks>(system);
+  BOOST_TEST_REQUIRE(kinks.kinks() == 1);
+  Vec lengths(1);
+  kinks.kink_lengths(inside, lengths);
+  BOOST_TEST(lengths[0] == 2);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
