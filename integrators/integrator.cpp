@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,39 @@ constexpr double shortest_squared = 1e-290;
 // How far below zero an eigenvalue of the balance of massless nodes must be to count, beside the
 // relative tolerance of adaptive methods, which leave their places as uncertain.
 constexpr double balance_tolerance = 1e-6;
+
+// Throws std::invalid_argument unless a run can be asked for so. Numbers that are not finite are
+// the run's own failure.
+void check_arguments(const System& system, const State& state, double t_end,
+                     const Observer& observer) {
+  const auto check_size = [&](const char* which, const Vec& x) {
+    if (x.size() == system.size()) return;
+    throw std::invalid_argument(
+        fmt::format("advance: {} has {} entries, and the system has {} "
+                    "unknowns",
+                    which, x.size(), system.size()));
+  };
+  check_size("q", state.q);
+  check_size("v", state.v);
+  if (std::isfinite(t_end) && t_end < state.t) {
+    throw std::invalid_argument(
+        fmt::format("advance: the end t = {:g} s is before the start t = {:g} s", t_end, state.t));
+  }
+  if (!std::isfinite(state.t) || !std::isfinite(t_end)) return;
+  double last = state.t;
+  for (const double t : observer.times) {
+    if (t >= last && t <= t_end) {
+      last = t;
+      continue;
+    }
+    throw std::invalid_argument(
+        fmt::format("advance: the observer's time {:g} s is not allowed; its times ascend from "
+                    "{:g} s to {:g} s",
+                    t, state.t, t_end));
+  }
+  if (!observer.times.empty() && !observer.see)
+    throw std::invalid_argument("advance: the observer has times, but no function to call");
+}
 
 }  // namespace
 
@@ -129,13 +163,13 @@ Seconds& Seconds::operator+=(const Seconds& more) {
   return *this;
 }
 
-Integrator::Integrator(const Method& method, const System& system, const Knobs& knobs)
+Integrator::Integrator(const Method& method, const System& system, const Options& options)
     : method_(method),
       system_(system),
       split_stiffness_(capability<SplitStiffness>(system)),
       discrete_gradient_(capability<DiscreteGradient>(system)),
       validity_(capability<Validity>(system)),
-      knobs_(knobs),
+      options_(options),
       growth_(system) {}
 
 Integrator::~Integrator() = default;
@@ -150,34 +184,33 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
   has_begun_ = false;
   Outcome outcome;
   double growth = 1;
+  check_arguments(system_, state, t_end, observer);
   try {
     outcome = run(state, t_end, observer);
   } catch (const std::bad_alloc&) {
     outcome = Outcome::solver_failed;
-    explain(
+    set_message(
         "memory ran out: take a scene of fewer nodes, or a method or solver that factorises "
         "nothing (verlet; conjugate gradients)");
-  } catch (const std::exception& error) {
+  } catch (const SolverFailure& error) {
     outcome = Outcome::solver_failed;
-    explain(error.what());
+    set_message(error.what());
   }
-  try {
-    if (has_begun_) growth = energy_growth(state);
-  } catch (const std::exception&) {  // of an energy that cannot be computed there is nothing to say
-  }
+  if (has_begun_) growth = energy_growth(state);
   if (outcome == Outcome::reached_end) return {outcome, state.t, counts_, seconds_, {}, growth};
   if (failed_step_ == 0) failed_step_ = counts_.steps + 1;
   return {outcome, state.t, counts_, seconds_, words_on(outcome), growth, failed_step_};
 }
 
-Outcome Integrator::judge(SolveOutcome solution) {
+Outcome Integrator::check_solve(SolveOutcome solution) {
   if (solution == SolveOutcome::found) return Outcome::reached_end;
   if (solution == SolveOutcome::indefinite) return Outcome::indefinite_matrix;
-  explain("conjugate gradients did not converge; take a shorter step or the multifrontal solver");
+  set_message(
+      "conjugate gradients did not converge; take a shorter step or the multifrontal solver");
   return Outcome::solver_failed;
 }
 
-Outcome Integrator::judge(const State& from, const State& to) {
+Outcome Integrator::check_step(const State& from, const State& to) {
   const double speed_squared = to.v.squaredNorm();
   if (std::isnan(speed_squared)) return Outcome::not_finite;
   if (!(speed_squared < largest_speed_squared)) return Outcome::diverged;
@@ -222,7 +255,7 @@ void Integrator::set_out(const State& state) {
     growth_.start(state);
     if (system_.has_massless() && system_.has_stiffness()) {
       balance_ =
-          std::make_unique<MasslessBalance>(system_, std::max(balance_tolerance, knobs_.rtol));
+          std::make_unique<MasslessBalance>(system_, std::max(balance_tolerance, options_.rtol));
     }
   }
   begin(state);
@@ -232,13 +265,13 @@ void Integrator::set_out(const State& state) {
 Outcome Integrator::run(State& state, double t_end, const Observer& observer) {
   if (!std::isfinite(state.t) || !state.q.allFinite() || !state.v.allFinite() ||
       !std::isfinite(t_end)) {
-    explain("the start is not finite");
+    set_message("the start is not finite");
     return Outcome::not_finite;
   }
-  if (system_.has_massless() && !method_.accepts_massless) return Outcome::singular_mass;
+  if (system_.has_massless() && !method_.is(Trait::accepts_massless)) return Outcome::singular_mass;
   if (const auto why = misfit(method_, system_)) return *why;
   if (const double whole = t_end - state.t; whole > 0 && !(whole * whole > shortest_squared)) {
-    explain(fmt::format(
+    set_message(fmt::format(
         "the {:g} s to run are too short for their square to be a number: ask for a later end",
         whole));
     return Outcome::step_too_small;

@@ -13,6 +13,7 @@
 
 #include "qddot/algebra/solver.hpp"
 #include "qddot/integrators/energy_growth.hpp"
+#include "qddot/integrators/options.hpp"
 #include "qddot/model/capabilities.hpp"
 
 namespace qddot {
@@ -55,7 +56,7 @@ struct Counts {
   Counts& operator+=(const Counts& more);
 };
 
-// Where the time of a run went [s]; zero unless Knobs::timed.
+// Where the time of a run went [s]; zero unless Options::timed.
 struct Seconds {
   double force = 0, stiffness = 0, factorization = 0, solve = 0;
 
@@ -100,29 +101,6 @@ struct Summary {
   std::int64_t failed_step = 0;
 };
 
-// What a method is told before it runs: the one that belongs to its kind.
-struct Knobs {
-  double step_size = 0;  // h [s], of fixed-step methods
-  double rtol = 0;       // relative tolerance of adaptive ones,
-  double atol = 0;       // and the absolute one, in m for q and m/s for v; 0: rtol times these:
-  double length = 1;     // [m], what a position is large or small by
-  double speed = 1;      // [m/s], likewise a velocity
-  int max_order = 0;     // of methods of variable order; 0: their own
-  bool stability_detection = false;  // CVODE's, which lowers the order where BDF is not stable
-  int iterations = 0;  // a step, of methods that take as many as they are told; 0: their own
-  bool timed = false;  // whether to fill Summary::seconds
-  // Of hand-written implicit methods: what part of the error of a stage's prediction, which is of
-  // the size of the step's own error, a nonlinear solve may leave; 0: the method's own choice.
-  double solve_tolerance = 0;
-  // Of generalised-alpha methods: what a step multiplies a vibration of infinite frequency by, from
-  // 0 (gone at once) to 1 (undamped).
-  double spectral_radius = 0.8;
-  Solver solver = Solver::automatic;  // of methods that solve with M - s K
-  // Of splittings: whether to keep what rounding takes from q and v at each addition, and add it
-  // with the next (see compensated_sum.hpp).
-  bool compensated = false;
-};
-
 // Looks at a run from outside: `see` is called at each of `times` [s] (ascending, after the start,
 // at most t_end) and at no other. Methods of fixed steps, and those that interpolate
 // (Method::interpolates), take the same steps with and without an observer; what it sees between
@@ -136,14 +114,16 @@ struct Observer {
 // Steps a System through time. Borrows the system, which must outlive it; owns its scratch space.
 class Integrator {
  public:
-  Integrator(const Method& method, const System& system, const Knobs& knobs);
+  Integrator(const Method& method, const System& system, const Options& options);
   virtual ~Integrator();
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
   // Runs from `state` to t_end >= state.t [s]; each call is a fresh run. On failure `state` is the
-  // last accepted one, or the one last observed where no step was taken after it. Never throws;
-  // `stop` ends the run after the step at hand (over_budget).
+  // last accepted one, or the one last observed where no step was taken after it.
+  // `stop` ends the run after the step at hand (over_budget). Throws std::invalid_argument where
+  // sizes, times or the observer cannot be, and what the system's own functions or the observer
+  // throw, memory that runs out excepted.
   Summary advance(State& state, double t_end, const Observer& observer = {},
                   std::stop_token stop = {});
 
@@ -162,16 +142,16 @@ class Integrator {
 
   const System& system() const { return system_; }
   const Method& method() const { return method_; }
-  const Knobs& knobs() const { return knobs_; }
+  const Options& options() const { return options_; }
   Counts& counts() { return counts_; }
   // Where to add the time that something takes, if anywhere.
-  Seconds* seconds() { return knobs_.timed ? &seconds_ : nullptr; }
+  Seconds* seconds() { return options_.timed ? &seconds_ : nullptr; }
   // Where the run is to end [s]; known from start() on.
   double t_end() const { return t_end_; }
   bool must_stop() const { return stop_.stop_requested(); }
   // Whether the state after a step from the one before can be accepted: reached_end, or else why
   // not (not_finite, diverged, went_slack).
-  Outcome judge(const State& from, const State& to);
+  Outcome check_step(const State& from, const State& to);
   // To be called with each state that is accepted.
   void note(const State& state) {
     growth_.note(state);
@@ -187,9 +167,9 @@ class Integrator {
   std::string words_on(Outcome outcome) const;
   // Whether a solve found what it was to find: reached_end, or else why not (indefinite_matrix, or
   // solver_failed, which is explained).
-  Outcome judge(SolveOutcome solution);
+  Outcome check_solve(SolveOutcome solution);
   // Says more than the outcome's advice does.
-  void explain(std::string message) { message_ = std::move(message); }
+  void set_message(std::string message) { message_ = std::move(message); }
 
   // The force and stiffness of the system, or of one that is a part of its forces; counted.
   void force(const Vec& q, Vec& f) { force(system_, q, f); }
@@ -236,7 +216,7 @@ class Integrator {
   const SplitStiffness* split_stiffness_;
   const DiscreteGradient* discrete_gradient_;
   const Validity* validity_;
-  Knobs knobs_;
+  Options options_;
   Counts counts_;
   Seconds seconds_;
   double t_end_ = 0;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "qddot/integrators/integrator.hpp"
+#include "qddot/integrators/set_of.hpp"
 
 namespace qddot {
 
@@ -21,6 +22,40 @@ constexpr const char* knob_name(Knob knob) {
   return knob == Knob::step_size ? "step_size" : "rtol";
 }
 
+// What a method is.
+enum class Trait {
+  implicit,           // solves equations in each step
+  linearly_implicit,  // solves with M - h^2 K(q_n) once a step, whatever its signs: where
+                      // compressed springs make that singular a step may go anywhere
+  symplectic,
+  cancels_torques,   // keeps angular momentum without being symplectic
+  accepts_massless,  // runs systems with nodes of no mass
+  interpolates,      // between its steps, for an Observer
+  bounds_steps,      // holds its steps to 1/w_max, where the system has K
+  stock_solver,      // one of SUNDIALS' own matrices and solvers, which a twin does without
+};
+
+// What a method asks of a system beside its forces.
+enum class Need {
+  stiffness,           // K
+  constant_stiffness,  // K that is the same everywhere
+  split_forces,        // SplitForces, of which a system may have none when the method is made: the
+                       // method asks for it from start() on
+  discrete_gradient,   // DiscreteGradient
+  laplacian,           // Laplacian
+};
+
+// Which of Options a method listens to, beside its knob and scales.
+enum class Option {
+  max_order,  // then `order` is the highest that it can take
+  stability_detection,
+  iterations,
+  solve_tolerance,
+  spectral_radius,
+  solver,
+  compensated,
+};
+
 // What the registry knows of a method. Tables, tests and experiments are driven by this alone.
 struct Method {
   std::string name;
@@ -29,35 +64,23 @@ struct Method {
   int order = 1;        // of the global error in q and v; 0: there is none, whatever the step
   Family family = Family::hand_written;
   Knob knob = Knob::step_size;
-  bool implicit = false;
   // To be declared for explicit methods of fixed steps: on q'' = -w^2 q the motion grows where h w
   // is above it, by theory; 0 where it does so at every h. Others have none (linear_limit below).
   std::optional<double> stability_limit{};
-  // Solves with M - h^2 K(q_n) once a step, whatever its signs: where compressed springs make it
-  // singular a step may go anywhere.
-  bool linearly_implicit = false;
-  bool symplectic = false;
-  bool needs_stiffness = false;
-  bool accepts_massless = false;
-  bool needs_constant_stiffness = false;
-  bool varies_order = false;         // up to `order`, or to Knobs::max_order
-  bool detects_instability = false;  // listens to Knobs::stability_detection
-  bool interpolates = false;         // between its steps, for an Observer
-  // Takes the forces of SplitForces, of which a system may have none when the method is made:
-  // it may be asked for from start() on.
-  bool needs_split = false;
-  bool needs_discrete_gradient = false;  // takes the f of DiscreteGradient
-  bool needs_laplacian = false;          // takes the L of Laplacian
-  bool takes_iterations = false;         // listens to Knobs::iterations,
-  bool takes_solve_tolerance = false;    // Knobs::solve_tolerance
-  bool takes_spectral_radius = false;    // Knobs::spectral_radius,
-  bool takes_solver = false;             // Knobs::solver
-  bool takes_compensation = false;       // and Knobs::compensated
-  std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Knobs&) = nullptr;
+  SetOf<Trait> traits{};
+  SetOf<Need> needs{};
+  SetOf<Option> takes{};
+  std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Options&) = nullptr;
+
+  bool is(Trait trait) const { return traits.has(trait); }
+  bool asks(Need need) const { return needs.has(need); }
+  bool listens_to(Option option) const { return takes.has(option); }
+  // Whether it changes its order as it goes.
+  bool varies_order() const { return listens_to(Option::max_order); }
 };
 
-// The largest h w at which the method of fixed steps does not let q'' = -w^2 q grow; infinite for
-// implicit ones, which are A-stable, for the exact motion, and where no limit is known.
+// The largest h w at which the method of fixed steps does not let q'' = -w^2 q grow; infinite where
+// there is no limit or none is known.
 inline double linear_limit(const Method& method) {
   return method.stability_limit.value_or(std::numeric_limits<double>::infinity());
 }
@@ -72,13 +95,14 @@ inline bool is_split(const System& system) {
 
 // Why the method cannot be used on the system at all, whatever its masses; nothing where it can.
 inline std::optional<Outcome> misfit(const Method& method, const System& system) {
-  if (method.needs_stiffness && !system.has_stiffness()) return Outcome::no_stiffness;
-  if (method.needs_constant_stiffness && !system.stiffness_is_constant())
+  if (method.asks(Need::stiffness) && !system.has_stiffness()) return Outcome::no_stiffness;
+  if (method.asks(Need::constant_stiffness) && !system.stiffness_is_constant())
     return Outcome::stiffness_varies;
-  if (method.needs_split && !is_split(system)) return Outcome::no_stiff_set;
-  if (method.needs_laplacian && system.size() > 0 && !capability<Laplacian>(system))
+  if (method.asks(Need::split_forces) && !is_split(system)) return Outcome::no_stiff_set;
+  if (method.asks(Need::laplacian) && system.size() > 0 && !capability<Laplacian>(system))
     return Outcome::no_laplacian;
-  if (method.needs_discrete_gradient && system.size() > 0 && !capability<DiscreteGradient>(system))
+  if (method.asks(Need::discrete_gradient) && system.size() > 0 &&
+      !capability<DiscreteGradient>(system))
     return Outcome::no_discrete_gradient;
   return {};
 }
@@ -88,8 +112,9 @@ inline bool applies_to(const Method& method, const System& system) {
 
 // For Method::make: constructs an integrator of class T.
 template <class T>
-std::unique_ptr<Integrator> create(const Method& method, const System& system, const Knobs& knobs) {
-  return std::make_unique<T>(method, system, knobs);
+std::unique_ptr<Integrator> create(const Method& method, const System& system,
+                                   const Options& options) {
+  return std::make_unique<T>(method, system, options);
 }
 
 }  // namespace qddot

@@ -1,16 +1,17 @@
 #include "qddot/integrators/parts.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot {
 
-Parts::Parts(const Method& method, const System& system, const Knobs& knobs)
-    : Integrator(method, system, knobs) {
+Parts::Parts(const Method& method, const System& system, const Options& options)
+    : Integrator(method, system, options) {
   Index first = 0;
   for (const auto& block : blocks_of(system)) {
-    pieces_.push_back({first, make_integrator(method, *block, knobs), {}, {}, 1});
+    pieces_.push_back({first, make_integrator(method, *block, options), {}, {}, 1});
     first += block->size();
   }
 }
@@ -35,6 +36,7 @@ Outcome Parts::run_to(State& state, double t_stop) {
   for (Piece& piece : pieces_) piece.begin = piece.state;
   Outcome outcome = Outcome::reached_end;
   double t_end = t_stop;
+  std::exception_ptr thrown;  // by the piece that decides
   const auto is_there = [&](const Piece& piece) { return piece.state.t == t_end; };
   // Each failure is a new end, earlier than the last; pieces that went beyond it run to it anew.
   while (!std::ranges::all_of(pieces_, is_there)) {
@@ -43,13 +45,15 @@ Outcome Parts::run_to(State& state, double t_stop) {
       const Outcome own = run_piece(piece, t_end);
       if (own == Outcome::reached_end) continue;
       outcome = own;
-      explain(piece.integrator->words_on(own));
+      set_message(piece.integrator->words_on(own));
       slack_at_ = piece.integrator->slack_at_;
       failed_step_ = piece.integrator->counts_.steps + 1;
+      thrown = std::exchange(piece.thrown, nullptr);
       t_end = piece.state.t;
     }
   }
   gather(state);
+  if (thrown) std::rethrow_exception(thrown);
   return outcome;
 }
 
@@ -63,8 +67,10 @@ Outcome Parts::run_piece(Piece& piece, double t_end) {
     }
     if (piece.state.t == t_end) return Outcome::reached_end;
     outcome = piece.integrator->run_to(piece.state, t_end);
-  } catch (const std::exception& error) {
-    piece.integrator->explain(error.what());
+  } catch (const SolverFailure& error) {
+    piece.integrator->set_message(error.what());
+  } catch (...) {  // kept until the others have come to the same time
+    piece.thrown = std::current_exception();
   }
   if (outcome == Outcome::reached_end) piece.state.t = t_end;
   return outcome;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace qddot {
 // farther.
 class Parts final : public Integrator {
  public:
-  Parts(const Method& method, const System& system, const Knobs& knobs);
+  Parts(const Method& method, const System& system, const Options& options);
 
   // The mean over the parts, which run one after another.
   double reached() const override;
@@ -24,8 +25,9 @@ class Parts final : public Integrator {
   struct Piece {
     Index first;  // of its unknowns
     std::unique_ptr<Integrator> integrator;
-    State state, begin;  // now, and where the present run_to began
-    double growth;       // of the energy in runs that were taken back
+    State state, begin;           // now, and where the present run_to began
+    double growth;                // of the energy in runs that were taken back
+    std::exception_ptr thrown{};  // by its system or by the observer, in the present run_to
   };
 
   void start(const State& state) override;

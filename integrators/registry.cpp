@@ -96,12 +96,13 @@ const Method* find_method(std::string_view name) {
 }
 
 std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
-                                            const Knobs& knobs) {
+                                            const Options& options) {
+  check_options(method, options);
   if (system.size() == 0 || !applies_to(method, system)) {
-    return std::make_unique<Rest>(method, system, knobs);
+    return std::make_unique<Rest>(method, system, options);
   }
-  if (!blocks_of(system).empty()) return std::make_unique<Parts>(method, system, knobs);
-  return method.make(method, system, knobs);
+  if (!blocks_of(system).empty()) return std::make_unique<Parts>(method, system, options);
+  return method.make(method, system, options);
 }
 
 }  // namespace qddot

@@ -15,8 +15,10 @@ const Method* find_method(std::string_view name);
 
 // An integrator for `system`, which must outlive it; allocates and analyses all it needs. Of a
 // system that consists of blocks, each gets an integrator of its own. Where the method does not fit
-// the system (see misfit), advance() says why and does nothing.
+// the system (see misfit), advance() says why and does nothing. Throws
+// std::invalid_argument, naming the option, its value and what is allowed, where an option cannot
+// be (check_options).
 std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
-                                            const Knobs& knobs);
+                                            const Options& options);
 
 }  // namespace qddot

@@ -15,7 +15,7 @@ namespace {
 // A run of one integrator over either system, its end as that of all free nodes.
 Run run_of(const Method& method, const System& system, const ReducedScene& scene,
            const Problem& problem, double value, double limit) {
-  const auto integrator = make_integrator(method, system, knobs_for(method, value, scene));
+  const auto integrator = make_integrator(method, system, options_for(method, value, scene));
   State state = scene.initial();
   const Deadline deadline(limit);
   Summary summary;

@@ -57,7 +57,7 @@ Problem::Problem(const Scene& drawn, const Scene& started, double horizon,
       reference(reference_of(drawn, start, smallest, until, folder, origin)),
       scene(start, Reductions::only({Reduction::pins})),
       own(in_all_unknowns(reference, smallest, start.dimension)) {
-  const Knobs scales = with_tolerance_scales({}, scene);
+  const Options scales = with_tolerance_scales({}, scene);
   length = scales.length;
   speed = scales.speed;
 }

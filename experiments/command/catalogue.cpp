@@ -23,10 +23,10 @@ std::string method_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string names_where(bool Method::*has) {
+std::string names_where(const std::function<bool(const Method&)>& has) {
   std::vector<std::string> names;
   for (const Method& method : methods()) {
-    if (method.*has) names.push_back(method.name);
+    if (has(method)) names.push_back(method.name);
   }
   return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -37,10 +37,12 @@ void print_methods(bool as_csv) {
              "accepts_massless", "needs_constant_stiffness", "needs_split", "needs_laplacian",
              "takes_iterations", "summary", "source"});
     for (const Method& m : methods()) {
-      csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.implicit),
-              yes(m.symplectic), yes(m.needs_stiffness), yes(m.accepts_massless),
-              yes(m.needs_constant_stiffness), yes(m.needs_split), yes(m.needs_laplacian),
-              yes(m.takes_iterations), m.summary, m.source);
+      csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.is(Trait::implicit)),
+              yes(m.is(Trait::symplectic)),
+              yes(m.asks(Need::stiffness) || m.is(Trait::bounds_steps)),
+              yes(m.is(Trait::accepts_massless)), yes(m.asks(Need::constant_stiffness)),
+              yes(m.asks(Need::split_forces)), yes(m.asks(Need::laplacian)),
+              yes(m.listens_to(Option::iterations)), m.summary, m.source);
     }
     fmt::print("{}", csv.text());
     return;

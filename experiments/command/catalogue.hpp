@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "qddot/integrators/method.hpp"
@@ -9,8 +10,8 @@ namespace qddot::command {
 // The names of all methods, as "a, b, c".
 std::string method_names();
 
-// The names of those methods that have the given property.
-std::string names_where(bool Method::*has);
+// The names of those methods that have the given property, likewise.
+std::string names_where(const std::function<bool(const Method&)>& has);
 
 // Prints the methods, or the scene generators with their parameters, as a table or as CSV.
 void print_methods(bool as_csv);

@@ -45,8 +45,8 @@ std::uint32_t get(const std::uint8_t* bytes) {
 
 struct Contents {
   bool is_own = false;  // a journal, or the beginning of one
-  nlohmann::json key;
-  std::map<std::string, nlohmann::json> pieces;
+  nlohmann::json key{};
+  std::map<std::string, nlohmann::json> pieces{};
   std::size_t whole = 0;  // bytes up to the end of the last whole record
 };
 

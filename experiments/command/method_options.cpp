@@ -26,7 +26,7 @@ std::string solver_list() {
   return fmt::format("one of {}", fmt::join(solver_names | std::views::values, ", "));
 }
 
-void require_values(const CLI::App& app, const MethodOptions& o, int highest_order) {
+void require_values(const CLI::App& app, const Options& o, int highest_order) {
   if (app.count("--max-order") > 0) {
     require_that(o.max_order >= 1 && o.max_order <= highest_order, "--max-order", o.max_order,
                  fmt::format("a whole number from 1 to {}", highest_order));
@@ -41,12 +41,11 @@ void require_values(const CLI::App& app, const MethodOptions& o, int highest_ord
   }
   require_that(o.spectral_radius >= 0 && o.spectral_radius <= 1, "--spectral-radius",
                o.spectral_radius, "from 0 to 1");
-  require_that(find_solver(o.solver).has_value(), "--solver", o.solver, solver_list());
 }
 
 }  // namespace
 
-void add_method_options(CLI::App& app, MethodOptions& options) {
+void add_method_options(CLI::App& app, Options& options) {
   app.add_option("--max-order", options.max_order,
                  "the highest order that methods of variable order may take (default: their own)")
       ->take_last();
@@ -68,32 +67,39 @@ void add_method_options(CLI::App& app, MethodOptions& options) {
                  "frequency, from 0 to 1")
       ->take_last()
       ->capture_default_str();
-  app.add_option("--solver", options.solver,
-                 "what solves with the n x n matrices of implicit steps: " + solver_list())
+  app.add_option_function<std::string>(
+         "--solver",
+         [&options](const std::string& name) {
+           const auto solver = find_solver(name);
+           require_that(solver.has_value(), "--solver", name, solver_list());
+           options.solver = *solver;
+         },
+         "what solves with the n x n matrices of implicit steps: " + solver_list())
       ->take_last()
-      ->capture_default_str();
+      ->default_str(std::string(name(options.solver)));
 }
 
-void require_options(const CLI::App& app, const MethodOptions& options) {
+void require_options(const CLI::App& app, const Options& options) {
   int highest = 0;
   for (const Method& method : methods()) {
-    if (method.varies_order) highest = std::max(highest, method.order);
+    if (method.varies_order()) highest = std::max(highest, method.order);
   }
   require_values(app, options, highest);
 }
 
-void require_options(const CLI::App& app, const MethodOptions& options, const Method& method) {
-  const auto require = [&](const char* option, bool Method::*has) {
-    if (app.count(option) == 0 || method.*has) return;
+void require_options(const CLI::App& app, const Options& options, const Method& method) {
+  const auto require = [&](const char* name, Option option) {
+    if (app.count(name) == 0 || method.listens_to(option)) return;
     throw InvalidInput(
-        fmt::format("{} is not for {}; it is for {}", option, method.name, names_where(has)));
+        fmt::format("{} is not for {}; it is for {}", name, method.name,
+                    names_where([&](const Method& other) { return other.listens_to(option); })));
   };
-  require("--max-order", &Method::varies_order);
-  require("--stability-detection", &Method::detects_instability);
-  require("--iterations", &Method::takes_iterations);
-  require("--solve-tolerance", &Method::takes_solve_tolerance);
-  require("--spectral-radius", &Method::takes_spectral_radius);
-  require("--solver", &Method::takes_solver);
+  require("--max-order", Option::max_order);
+  require("--stability-detection", Option::stability_detection);
+  require("--iterations", Option::iterations);
+  require("--solve-tolerance", Option::solve_tolerance);
+  require("--spectral-radius", Option::spectral_radius);
+  require("--solver", Option::solver);
   require_values(app, options, method.order);
 }
 

@@ -12,10 +12,10 @@ using namespace measure;
 
 // Adds --max-order, --stability-detection, --iterations, --solve-tolerance, --spectral-radius and
 // --solver.
-void add_method_options(CLI::App& app, MethodOptions& options);
+void add_method_options(CLI::App& app, Options& options);
 
 // Throws InvalidInput unless each option that is given is allowed for some method, or for this one.
-void require_options(const CLI::App& app, const MethodOptions& options);
-void require_options(const CLI::App& app, const MethodOptions& options, const Method& method);
+void require_options(const CLI::App& app, const Options& options);
+void require_options(const CLI::App& app, const Options& options, const Method& method);
 
 }  // namespace qddot::command

@@ -18,19 +18,6 @@
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::command {
-namespace {
-
-template <class Fits>
-std::string names_where(const Fits& fits) {
-  std::vector<std::string> names;
-  for (const Method& method : methods()) {
-    if (fits(method)) names.push_back(method.name);
-  }
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-}  // namespace
-
 void add_scene_options(CLI::App& app, SceneChoice& choice) {
   app.add_option("--scene", choice.name, "a generator's name or a scene file");
   app.add_option("--no-reduce", choice.no_reduce,
@@ -92,12 +79,12 @@ void require_fit(const Method& method, const ReducedScene& scene, const std::str
                     source, method.name, others()));
   }
   const auto massless = scene.massless_nodes();
-  if (!massless.empty() && !method.accepts_massless) {
+  if (!massless.empty() && !method.is(Trait::accepts_massless)) {
     throw InvalidInput(fmt::format(
         "{}: nodes[{}].mass: 0 is not allowed with {}, which divides by it; allowed are masses "
         "above 0, or the methods {}",
         source, massless.front(), method.name,
-        names_where([](const Method& other) { return other.accepts_massless; })));
+        names_where([](const Method& other) { return other.is(Trait::accepts_massless); })));
   }
 }
 

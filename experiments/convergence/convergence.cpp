@@ -89,7 +89,7 @@ double rounding_of_steps(const Reference& reference, double steps) {
 std::vector<Point> halvings(const Method& method, const ReducedScene& scene, double until,
                             const Reference& reference, const Effort& effort) {
   const double w = resolved_frequency(method, scene.system(), scene.initial().q);
-  const double coarsest = method.implicit ? 16 : std::max(16.0, std::ceil(until * w));
+  const double coarsest = method.is(Trait::implicit) ? 16 : std::max(16.0, std::ceil(until * w));
   std::vector<Point> points;
   for (int halving = 0; halving <= most_halvings; ++halving) {
     const double h = until / (coarsest * std::exp2(halving));

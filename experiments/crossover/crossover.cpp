@@ -139,7 +139,7 @@ std::vector<Rung> rungs(const Arguments& a, const StiffFamily& family, double un
 std::vector<const Method*> competitors(const Arguments& a, const Rung& stiffest) {
   auto selected = select_methods(a.methods, *stiffest.scene, a.family);
   if (a.methods.empty()) {
-    std::erase_if(selected, [](const Method* method) { return method->name.ends_with("_klu"); });
+    std::erase_if(selected, [](const Method* method) { return method->is(Trait::stock_solver); });
   }
   return selected;
 }

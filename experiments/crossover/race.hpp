@@ -20,8 +20,8 @@ constexpr const char* kind_name(Kind kind) {
 
 // Split is what takes stiff and soft forces apart, whichever of them it takes implicitly.
 inline Kind kind_of(const Method& method) {
-  if (method.needs_split) return Kind::split;
-  return method.implicit ? Kind::implicit_steps : Kind::explicit_steps;
+  if (method.asks(Need::split_forces)) return Kind::split;
+  return method.is(Trait::implicit) ? Kind::implicit_steps : Kind::explicit_steps;
 }
 
 // The fastest at one accuracy: of all methods, of all others than that one, and of each kind.

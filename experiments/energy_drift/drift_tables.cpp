@@ -107,7 +107,7 @@ void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated
   csv.field(e.verdict == Verdict::blows_up ? e.blow_up_time : nothing);
   write_momentum(csv, run.linear);
   write_momentum(csv, run.angular);
-  csv.field(compensated && run.method->takes_compensation ? "yes" : "no");
+  csv.field(compensated && run.method->listens_to(Option::compensated) ? "yes" : "no");
   csv.field(run.seconds);
   csv.field(verdict_name(e.verdict));
   csv.field(e.settled);

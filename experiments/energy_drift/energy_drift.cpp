@@ -25,7 +25,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/allowed_options.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/program.hpp"
@@ -60,7 +60,7 @@ struct Arguments {
   std::vector<std::string> methods;
   std::vector<double> rtols = {1e-4, 1e-6, 1e-8};
   bool compensated = false;
-  MethodOptions options{.solve_tolerance = standard_solve_tolerance};
+  Options options{.solve_tolerance = standard_solve_tolerance};
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -130,7 +130,7 @@ struct Job {
 std::vector<Job> jobs_of(const Arguments& a, double step_size, const ReducedScene& scene) {
   std::vector<Job> jobs;
   for (const Method* method : select_methods(a.methods, scene, a.scene.name)) {
-    if (a.methods.empty() && method->name.ends_with("_klu")) continue;
+    if (a.methods.empty() && method->is(Trait::stock_solver)) continue;
     if (method->knob == Knob::step_size) {
       jobs.push_back({method, step_size, a.method_limit});
     } else {
@@ -151,11 +151,11 @@ std::vector<DriftRun> run_all(Study& study, const std::vector<Job>& jobs, const 
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     try {
-      Knobs knobs = knobs_for(*jobs[i].method, jobs[i].value, scene, a.options);
-      knobs.compensated = a.compensated && jobs[i].method->takes_compensation;
+      Options options = options_for(*jobs[i].method, jobs[i].value, scene, a.options);
+      options.compensated = a.compensated && jobs[i].method->listens_to(Option::compensated);
       const std::string name = fmt::format("{} {:.17g}", jobs[i].method->name, jobs[i].value);
       runs[i] = drift_run_of(study.piece(name, [&] {
-        return record_of(run_drift(*jobs[i].method, knobs, scene, momenta, scales,
+        return record_of(run_drift(*jobs[i].method, options, scene, momenta, scales,
                                    {horizon.step_size, horizon.until, jobs[i].seconds}));
       }));
 #pragma omp critical

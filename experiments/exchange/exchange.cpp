@@ -32,7 +32,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/allowed_options.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
@@ -160,9 +160,9 @@ Result run_of(const Excitation& excitation, const Method& method, double knob,
   State state = excitation.scene.initial();
   see(state);
   const Deadline deadline(longest_run);
-  result.summary =
-      make_integrator(method, excitation.scene.system(), knobs_for(method, knob, excitation.scene))
-          ->advance(state, excitation.until, {times, see}, deadline.token());
+  result.summary = make_integrator(method, excitation.scene.system(),
+                                   options_for(method, knob, excitation.scene))
+                       ->advance(state, excitation.until, {times, see}, deadline.token());
   return result;
 }
 

@@ -28,7 +28,7 @@ class Newton final : public FixedStep {
     move_to(now.v);
     compression_.start();
     double g = energy();
-    for (int i = 0; i < knobs().iterations; ++i) {
+    for (int i = 0; i < options().iterations; ++i) {
       force(next.q, f_);
       r_ = system().mass().cwiseProduct(next.v - now.v) - h * f_;
       if (!factorize(next.q, h * h)) return Outcome::indefinite_matrix;
@@ -71,10 +71,9 @@ Method newton(const char* name, const char* summary) {
   return {.name = name,
           .summary = summary,
           .source = "Nocedal and Wright, Numerical Optimization, chapter 3",
-          .implicit = true,
-          .needs_stiffness = true,
-          .accepts_massless = true,
-          .takes_iterations = true,
+          .traits = {Trait::implicit, Trait::accepts_massless},
+          .needs = {Need::stiffness},
+          .takes = {Option::iterations},
           .make = create<Newton<is_clamped>>};
 }
 

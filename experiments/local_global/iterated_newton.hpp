@@ -4,7 +4,7 @@
 
 namespace qddot::local_global {
 
-// Implicit Euler by a given number of Newton's iterations (Knobs::iterations), to be laid over
+// Implicit Euler by a given number of Newton's iterations (Options::iterations), to be laid over
 // those of the methods that take a number of iterations, too: from v = v_n
 //   r = M (v - v_n) - h f(q_n + h v),  p = (M - h^2 K)^-1 r,  v = v - alpha p
 // with the first alpha of 1, 1/2, 1/4, ... that lowers the energy by Armijo's rule (none: v stays).

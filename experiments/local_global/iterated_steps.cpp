@@ -18,7 +18,7 @@ namespace {
 std::vector<const Method*> solvers() {
   std::vector<const Method*> all;
   for (const Method& method : methods()) {
-    if (method.takes_iterations) all.push_back(&method);
+    if (method.listens_to(Option::iterations)) all.push_back(&method);
   }
   all.push_back(&newton_exact());
   all.push_back(&newton_clamped());
@@ -36,12 +36,12 @@ Solved solve(const Method& method, const SwingingCloth& cloth, double h, int mos
   Solved solved{.method = &method};
   solved.steps.push_back(
       {0, 0, {cloth.start.t + h, cloth.start.q + h * cloth.start.v, cloth.start.v}});
-  if (!method.needs_laplacian) most = std::min(most, most_newton_iterations);
+  if (!method.asks(Need::laplacian)) most = std::min(most, most_newton_iterations);
   for (const int iterations : iteration_counts(most)) {
-    const Knobs knobs{.step_size = h, .iterations = iterations, .timed = true};
+    const Options options{.step_size = h, .iterations = iterations, .timed = true};
     std::unique_ptr<Integrator> integrator;
     const double analysis =
-        seconds_of([&] { integrator = make_integrator(method, cloth.system(), knobs); });
+        seconds_of([&] { integrator = make_integrator(method, cloth.system(), options); });
     std::vector<double> times, factorizations;
     Step step{.iterations = iterations};
     // Of several the first is not timed.
@@ -56,7 +56,7 @@ Solved solve(const Method& method, const SwingingCloth& cloth, double h, int mos
             fmt::format("{} at {} iterations: {}", method.name, iterations, summary.message);
         return solved;
       }
-      const double constant = method.needs_laplacian ? summary.seconds.factorization : 0;
+      const double constant = method.asks(Need::laplacian) ? summary.seconds.factorization : 0;
       if (i < 0) continue;
       times.push_back(all - constant);
       factorizations.push_back(constant);
@@ -94,7 +94,7 @@ Comparison::Comparison(const SwingingCloth& on, double h, int most, int repeats)
 double iterations_of_comparison(int most, int repeats) {
   double sum = 0;
   for (const Method* method : solvers()) {
-    const int own = method->needs_laplacian ? most : std::min(most, most_newton_iterations);
+    const int own = method->asks(Need::laplacian) ? most : std::min(most, most_newton_iterations);
     for (const int count : iteration_counts(own)) sum += count;
   }
   return sum * (repeats > 1 ? repeats + 1 : 1);

@@ -30,7 +30,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/allowed_options.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/pace.hpp"
 #include "experiments/command/program.hpp"
@@ -233,7 +233,7 @@ void write_run(Study& study, const Arguments& a, CsvFile& csv) {
     fmt::print("{}", piece.at("line").get<std::string>());
   };
   for (const Method& method : methods()) {
-    if (!method.takes_iterations) continue;
+    if (!method.listens_to(Option::iterations)) continue;
     for (const int iterations : iterations_of_runs) add(method, iterations);
   }
   for (const int iterations : {1, 2, 3, 5, 10, 20}) add(newton_clamped(), iterations);

@@ -30,7 +30,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/allowed_options.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/memory.hpp"
 #include "experiments/command/program.hpp"
@@ -151,7 +151,7 @@ std::vector<SolvedMethod> select(const SizedScenes& scenes, const Arguments& a) 
           "--methods: {} chooses its steps by itself; allowed are methods of fixed step",
           method->name));
     }
-    if (!method->takes_solver) {
+    if (!method->listens_to(Option::solver)) {
       selected.push_back({method, Solver::multifrontal});
       continue;
     }

@@ -151,7 +151,7 @@ void ScalingRun::measure_methods(const SizedScenes& scenes, const ReducedScene& 
   std::erase_if(methods, [&](const SolvedMethod& solved) {
     stop_if_interrupted();
     if (!fits(scenes, solved.name(), phases_of_method, nodes, 1)) return true;
-    const bool implicit = solved.method->implicit;
+    const bool implicit = solved.method->is(Trait::implicit);
     if (!implicit && stable == 0) {
       stable = 1 / frequency_bound(scene.system(), scene.initial().q);
     }
@@ -174,7 +174,7 @@ void ScalingRun::measure_method(const SolvedMethod& solved, const ReducedScene& 
   const std::string name = solved.name();
   const System& system = scene.system();
   double stiffness_bytes = nothing, factor_bytes = nothing;
-  if (method.implicit && method.needs_stiffness) {
+  if (method.is(Trait::implicit) && method.asks(Need::stiffness)) {
     std::optional<EffectiveMass> matrix;
     const Making analysis = make(matrix, [&] { return EffectiveMass(system, solved.solver); });
     add(name, "symbolic", analysis.seconds, analysis.bytes);

@@ -17,7 +17,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/allowed_options.hpp"
 #include "experiments/command/catalogue.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/interruptible.hpp"
@@ -56,7 +56,7 @@ struct Arguments {
   SceneChoice scene;
   std::string method, final_path, trajectory_path, energy_path, written_scene_path;
   double step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0, energy_every = 0;
-  MethodOptions options;
+  Options options;
   std::vector<double> every;
   bool list_methods = false, list_scenes = false, csv = false, explain = false;
 };
@@ -166,7 +166,7 @@ const Method& require_method(const std::string& name) {
       fmt::format("--method: {} is not a method; allowed are {}", name, method_names()));
 }
 
-Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& method) {
+Options checked_options(const CLI::App& app, const Arguments& a, const Method& method) {
   const bool fixed = method.knob == Knob::step_size;
   const char* wanted = fixed ? "--step-size" : "--rtol";
   for (const char* other : {"--step-size", "--rtol", "--atol"}) {
@@ -185,15 +185,11 @@ Knobs require_knobs(const CLI::App& app, const Arguments& a, const Method& metho
   if (!fixed) require_rtol(a.rtol, "--rtol");
   if (app.count("--atol") > 0) require_positive(a.atol, "--atol", "an absolute tolerance");
   require_options(app, a.options, method);
-  return {.step_size = a.step_size,
-          .rtol = a.rtol,
-          .atol = a.atol,
-          .max_order = a.options.max_order,
-          .stability_detection = a.options.stability_detection,
-          .iterations = a.options.iterations,
-          .solve_tolerance = a.options.solve_tolerance,
-          .spectral_radius = a.options.spectral_radius,
-          .solver = find_solver(a.options.solver).value()};
+  Options options = a.options;
+  options.step_size = a.step_size;
+  options.rtol = a.rtol;
+  options.atol = a.atol;
+  return options;
 }
 
 // A place for the scene that is asked for, taken before anything else is done.
@@ -320,7 +316,7 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   }
   if (a.explain) return explain_only(a);
   const Method& method = require_method(a.method);
-  const Knobs knobs = require_knobs(app, a, method);
+  const Options options = checked_options(app, a, method);
   assign_every(app, a);
   require_distinct_outputs(app, a);
   const Scene drawn = load(a.scene);
@@ -329,10 +325,10 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   const Scene start = started(drawn, a.scene);
   Reductions reductions = reductions_of(a.scene);
   // Springs in series are one in tension only: who takes the node between them need not care.
-  if (method.accepts_massless) reductions = reductions.without(Reduction::massless);
+  if (method.is(Trait::accepts_massless)) reductions = reductions.without(Reduction::massless);
   const ReducedScene scene(start, reductions);
   require_fit(method, scene, a.scene.name);
-  const Knobs scaled = with_tolerance_scales(knobs, scene);
+  const Options scaled = with_tolerance_scales(options, scene);
   require_atol(scaled);
 
   WrittenScene written_scene(a.written_scene_path);
@@ -372,11 +368,11 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
   }
   if (summary.outcome != Outcome::diverged) warn(growth_warning(method, summary));
   if (summary.outcome == Outcome::reached_end) {
-    warn(step_warning(method, knobs, scene));
+    warn(step_warning(method, options, scene));
     return done;
   }
   const double patience = std::clamp(20 * seconds, shortest_patience, longest_patience);
-  const std::string more = diagnosis(method, knobs, scene, until, summary, patience);
+  const std::string more = diagnosis(method, options, scene, until, summary, patience);
   fmt::print(stderr, "simulate: {} of {} s reached: {}{}{}\n", summary.t_reached, until,
              summary.message, more.empty() ? "" : "; ", more);
   return end_not_reached;

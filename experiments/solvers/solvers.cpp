@@ -22,7 +22,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/allowed_options.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"

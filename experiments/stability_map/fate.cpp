@@ -32,9 +32,10 @@ struct Sample {
 
 // Every step at first, which a fast growth needs, then evenly; multiples of h, so that no step is
 // another one.
-std::vector<double> looks(const Knobs& knobs, double until) {
+std::vector<double> looks(const Options& options, double until) {
   std::vector<double> times;
-  const double h = knobs.step_size > 0 ? knobs.step_size : until / (watched_steps + samples_more);
+  const double h =
+      options.step_size > 0 ? options.step_size : until / (watched_steps + samples_more);
   const double steps = std::clamp(std::round(until / h), 1.0, most_steps);
   const double stride = std::max(1.0, std::floor(steps / samples_more));
   for (double n = 1; n <= steps; n += n < watched_steps ? 1 : stride) times.push_back(n * h);
@@ -51,20 +52,20 @@ struct Run {
   std::optional<double> pushed{};
 };
 
-Run run(const Method& method, const Knobs& knobs, const ReducedScene& scene, double until,
-        const FateOptions& options) {
+Run run(const Method& method, const Options& options, const ReducedScene& scene, double until,
+        const FatePlan& plan) {
   Run result{.summary = {}, .samples = {}, .end = scene.initial()};
-  const double start = scene.energy(result.end) - options.rest_energy;
-  const Deadline deadline(options.seconds);
+  const double start = scene.energy(result.end) - plan.rest_energy;
+  const Deadline deadline(plan.seconds);
   std::stop_source stop;
   const std::stop_callback pass_on(deadline.token(), [&] { stop.request_stop(); });
   Vec before = result.end.q;
   const auto see = [&](const State& state) {
-    const double ratio = (scene.energy(state) - options.rest_energy) / start;
-    if (method.linearly_implicit && !result.pushed && !(ratio < suspicious)) {
-      result.pushed = knobs.step_size * buckling_rate(scene.system(), before);
+    const double ratio = (scene.energy(state) - plan.rest_energy) / start;
+    if (method.is(Trait::linearly_implicit) && !result.pushed && !(ratio < suspicious)) {
+      result.pushed = options.step_size * buckling_rate(scene.system(), before);
     }
-    if (method.linearly_implicit) before = state.q;
+    if (method.is(Trait::linearly_implicit)) before = state.q;
     if (std::isfinite(ratio)) result.samples.push_back({state.t, ratio});
     if (!(ratio < enough)) {
       result.was_stopped = true;
@@ -72,8 +73,8 @@ Run run(const Method& method, const Knobs& knobs, const ReducedScene& scene, dou
     }
   };
   result.samples.push_back({0, 1});
-  const std::vector<double> times = looks(knobs, until);
-  result.summary = make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene))
+  const std::vector<double> times = looks(options, until);
+  result.summary = make_integrator(method, scene.system(), with_tolerance_scales(options, scene))
                        ->advance(result.end, times.back(), {times, see}, stop.get_token());
   return result;
 }
@@ -144,10 +145,10 @@ double difference(const ReducedScene& scene, const State& a, const State& b) {
 
 }  // namespace
 
-Fate fate_of(const Method& method, const Knobs& knobs, const ReducedScene& scene,
-             const FateOptions& options) {
-  const double until = std::max(options.until, least_steps * knobs.step_size);
-  const Run r = run(method, knobs, scene, until, options);
+Fate fate_of(const Method& method, const Options& options, const ReducedScene& scene,
+             const FatePlan& plan) {
+  const double until = std::max(plan.until, least_steps * options.step_size);
+  const Run r = run(method, options, scene, until, plan);
   Fate fate{.outcome = "",
             .growth_rate = growth_rate(r.samples),
             .t_reached = r.summary.t_reached,
@@ -156,11 +157,11 @@ Fate fate_of(const Method& method, const Knobs& knobs, const ReducedScene& scene
             .mean_step = r.summary.t_reached /
                          static_cast<double>(std::max<std::int64_t>(1, r.summary.counts.steps)),
             .counts = r.summary.counts};
-  fate.outcome = judged(r, fate, options.tolerated);
-  if (method.takes_iterations && r.summary.outcome == Outcome::reached_end) {
-    Knobs to_the_end = knobs;
-    to_the_end.iterations = more_iterations * std::max(10, knobs.iterations);
-    const Run solved = run(method, to_the_end, scene, until, options);
+  fate.outcome = judged(r, fate, plan.tolerated);
+  if (method.listens_to(Option::iterations) && r.summary.outcome == Outcome::reached_end) {
+    Options to_the_end = options;
+    to_the_end.iterations = more_iterations * std::max(10, options.iterations);
+    const Run solved = run(method, to_the_end, scene, until, plan);
     if (solved.summary.outcome == Outcome::reached_end &&
         difference(scene, r.end, solved.end) > other_motion) {
       fate.outcome = "unconverged";

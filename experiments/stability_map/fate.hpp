@@ -9,7 +9,7 @@ namespace qddot::stability_map {
 
 // How a run is made and judged: by its energy above that at rest, X = E - V(rest), which the exact
 // motion keeps.
-struct FateOptions {
+struct FatePlan {
   double rest_energy = 0;  // V at rest [J]
   double tolerated = 0.5;  // the part of X that may be lost or gained
   double until = 0;        // [s]; at least `least_steps` steps are taken
@@ -41,7 +41,7 @@ struct Fate {
 // Runs the method from scene.initial() and judges. X is looked at after each of the first 200 steps
 // and 400 times more. Growth is fitted to the later half of where X exceeds three times what it was
 // (all of it where that is short), or, where it does not stay there, of the run.
-Fate fate_of(const Method& method, const Knobs& knobs, const ReducedScene& scene,
-             const FateOptions& options);
+Fate fate_of(const Method& method, const Options& options, const ReducedScene& scene,
+             const FatePlan& plan);
 
 }  // namespace qddot::stability_map

@@ -24,11 +24,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fate, outcome, growth_rate, t_reached, energy
 
 namespace {
 
-Knobs knobs_of(const Cell& cell) {
-  Knobs knobs;
-  knobs.rtol = cell.rtol;
-  if (cell.method->knob == Knob::step_size) knobs.step_size = cell.h_omega / cell.row->omega_max;
-  return knobs;
+Options options_of(const Cell& cell) {
+  Options options;
+  options.rtol = cell.rtol;
+  if (cell.method->knob == Knob::step_size) options.step_size = cell.h_omega / cell.row->omega_max;
+  return options;
 }
 
 // What tells two cells apart, whatever others there are.
@@ -39,7 +39,7 @@ std::string name_of(const Cell& cell) {
 
 Fate fate_in(const Cell& cell, const MapSettings& settings) {
   try {
-    return fate_of(*cell.method, knobs_of(cell), *cell.row->scene,
+    return fate_of(*cell.method, options_of(cell), *cell.row->scene,
                    {.rest_energy = cell.row->rest_energy,
                     .tolerated = settings.tolerated,
                     .until = settings.until,

@@ -39,27 +39,27 @@ int stride_in(double h_omega, bool others_grow) {
 }
 
 // One run from the scene at rest; `see` takes the state after each stride. How it ended.
-Summary run(const Method& method, const ReducedScene& rest, State state, const Knobs& knobs,
+Summary run(const Method& method, const ReducedScene& rest, State state, const Options& options,
             int stride, const std::function<void(const State&)>& see) {
   Observer each{{}, see};
   for (int n = 1; n <= steps_observed; ++n) {
-    each.times.push_back(n * stride * knobs.step_size);
+    each.times.push_back(n * stride * options.step_size);
   }
-  return make_integrator(method, rest.system(), knobs)->advance(state, each.times.back(), each);
+  return make_integrator(method, rest.system(), options)->advance(state, each.times.back(), each);
 }
 
 }  // namespace
 
 LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode& mode,
-                      Knobs knobs) {
-  knobs = with_tolerance_scales(knobs, rest);
-  knobs.solve_tolerance = solved;
-  const double h_omega = knobs.step_size * mode.omega;
+                      Options options) {
+  options = with_tolerance_scales(options, rest);
+  options.solve_tolerance = solved;
+  const double h_omega = options.step_size * mode.omega;
   const bool others_grow = linear_step(method, h_omega / mode.part).spectral_radius() > 1 + growing;
   const int stride = stride_in(h_omega, others_grow);
   const Vec& q = rest.initial().q;
   const Vec weights = rest.system().mass().cwiseProduct(mode.shape);
-  const double size = displacement_in(mode) * knobs.length / mode.shape.lpNorm<Eigen::Infinity>();
+  const double size = displacement_in(mode) * options.length / mode.shape.lpNorm<Eigen::Infinity>();
   Responses y(steps_observed + 1, Eigen::Matrix2d::Identity());
   for (std::size_t n = 1; n < y.size(); ++n) y[n].setZero();
   for (const int start : {0, 1}) {
@@ -68,7 +68,7 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
       if (start == 0) state.q += side * size * mode.shape;
       if (start == 1) state.v += side * size * mode.omega * mode.shape;
       std::size_t n = 0;
-      const Summary summary = run(method, rest, state, knobs, stride, [&](const State& seen) {
+      const Summary summary = run(method, rest, state, options, stride, [&](const State& seen) {
         y[++n].col(start) +=
             side / (2 * size) *
             Eigen::Vector2d(weights.dot(seen.q - q), weights.dot(seen.v) / mode.omega);

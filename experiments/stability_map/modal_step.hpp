@@ -15,7 +15,7 @@ using namespace measure;
 // (unfinished iterations, or matrices that mix modes). `rest` is at rest in scene.initial().q.
 // Nonlinear solves are carried to the end. Throws as linear_step does.
 LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode& mode,
-                      Knobs knobs);
+                      Options options);
 
 // In a word: blows up (grows by more than 1e-6 a step), lives (keeps half of its energy for ten
 // periods and more), is killed (loses nine tenths of its amplitude within one period), is damped.

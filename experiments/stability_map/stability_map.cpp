@@ -25,7 +25,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/allowed_options.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
@@ -176,7 +176,8 @@ void tabulate_linear(Csv& csv, const std::vector<const Method*>& methods) {
 
 void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>& methods) {
   for (const Method* method : methods) {
-    if (method->knob != Knob::rtol || method->needs_split || method->name.ends_with("_klu")) {
+    if (method->knob != Knob::rtol || method->asks(Need::split_forces) ||
+        method->is(Trait::stock_solver)) {
       continue;
     }
     for (const double rtol : tolerances) {

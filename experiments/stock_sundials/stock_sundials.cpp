@@ -18,7 +18,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/allowed_options.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
@@ -94,8 +94,8 @@ class Runs {
         scene_(scene),
         until_(until),
         limit_(limit),
-        knobs_(knobs_for(method, rtol, scene)),
-        integrator_(make_integrator(method, scene.system(), knobs_)) {}
+        options_(options_for(method, rtol, scene)),
+        integrator_(make_integrator(method, scene.system(), options_)) {}
 
   // Seconds that one run takes, set-up left out.
   double once() {
@@ -108,8 +108,8 @@ class Runs {
 
   // A run that is slowed by clocks, and what fraction of it went where.
   Seconds shares() {
-    knobs_.timed = true;
-    integrator_ = make_integrator(method_, scene_.system(), knobs_);
+    options_.timed = true;
+    integrator_ = make_integrator(method_, scene_.system(), options_);
     const double all = once();
     const Seconds& s = summary_.seconds;
     return {s.force / all, s.stiffness / all, s.factorization / all, s.solve / all};
@@ -123,7 +123,7 @@ class Runs {
   const Method& method_;
   const ReducedScene& scene_;
   double until_, limit_;
-  Knobs knobs_;
+  Options options_;
   std::unique_ptr<Integrator> integrator_;
   State state_;
   Summary summary_;

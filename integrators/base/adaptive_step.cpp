@@ -30,12 +30,12 @@ constexpr double roundings_over_jump = 8 * std::numeric_limits<double>::epsilon(
 
 }  // namespace
 
-AdaptiveStep::AdaptiveStep(const Method& method, const System& system, const Knobs& knobs,
+AdaptiveStep::AdaptiveStep(const Method& method, const System& system, const Options& options,
                            const Accuracy& accuracy)
-    : Integrator(method, system, knobs),
+    : Integrator(method, system, options),
       accuracy_(accuracy),
-      atol_q_(knobs.atol > 0 ? knobs.atol : knobs.rtol * knobs.length),
-      atol_v_(knobs.atol > 0 ? knobs.atol : knobs.rtol * knobs.speed),
+      atol_q_(options.atol > 0 ? options.atol : options.rtol * options.length),
+      atol_v_(options.atol > 0 ? options.atol : options.rtol * options.speed),
       per_mass_(system.mass().cwiseInverse()),
       error_q_(system.size()),
       error_v_(system.size()),
@@ -52,7 +52,7 @@ void AdaptiveStep::acceleration(const Vec& q, Vec& a) {
 }
 
 double AdaptiveStep::norm(const State& at, const Vec& q, const Vec& v) const {
-  const double rtol = knobs().rtol;
+  const double rtol = options().rtol;
   const double sum = (q.array() / (rtol * at.q.array().abs() + atol_q_)).square().sum() +
                      (v.array() / (rtol * at.v.array().abs() + atol_v_)).square().sum();
   return std::sqrt(sum / static_cast<double>(2 * q.size()));
@@ -130,7 +130,7 @@ Outcome AdaptiveStep::show(double t, State& state) {
   Instant& at = last(instants_.size() - 1);
   Outcome outcome = attempt(from, t - from.state.t, at, error_q_, error_v_);
   at.state.t = t;
-  if (outcome == Outcome::reached_end) outcome = judge(from.state, at.state);
+  if (outcome == Outcome::reached_end) outcome = check_step(from.state, at.state);
   state = outcome == Outcome::reached_end ? at.state : from.state;
   return outcome;
 }
@@ -158,7 +158,7 @@ Outcome AdaptiveStep::take_step() {
     double error = INFINITY;
     if (outcome == Outcome::reached_end) {
       error = norm(now.state, error_q_, error_v_);
-      outcome = std::isfinite(error) ? judge(now.state, next.state) : Outcome::not_finite;
+      outcome = std::isfinite(error) ? check_step(now.state, next.state) : Outcome::not_finite;
     }
     const Jump jump_here =
         kinks_.has_kinks() && outcome == Outcome::reached_end ? jump(now, next, h) : Jump::none;

@@ -12,7 +12,7 @@ namespace qddot {
 // A one-step method that chooses its steps by an estimate of their errors: what remains of it is
 // one attempt. An attempt is accepted where the weighted root mean square of the 2n errors,
 //   err^2 = 1/(2n) sum_i (e_q,i / (rtol |q_i| + atol_q))^2 + (e_v,i / (rtol |v_i| + atol_v))^2,
-// is at most 1 (the norm of SUNDIALS, with its weights: see Knobs). Step sizes are a PI
+// is at most 1 (the norm of SUNDIALS, with its weights: see Options). Step sizes are a PI
 // controller's (Gustafsson; Hairer and Wanner, Solving ODEs II, eq. IV.2.43c), the first one is
 // that of Hairer, Norsett and Wanner, Solving ODEs I, II.4. Steps land on the end of the run only;
 // what an observer sees between them is interpolated, or is the end of an attempt of its own.
@@ -28,7 +28,7 @@ class AdaptiveStep : public Integrator {
     int error_order;
     std::size_t instants;
   };
-  AdaptiveStep(const Method& method, const System& system, const Knobs& knobs,
+  AdaptiveStep(const Method& method, const System& system, const Options& options,
                const Accuracy& accuracy);
 
   // Computes q and v a step h [s] after `now` into `next`, and an estimate of their errors.

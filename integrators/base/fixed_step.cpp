@@ -4,8 +4,8 @@
 
 namespace qddot {
 
-FixedStep::FixedStep(const Method& method, const System& system, const Knobs& knobs)
-    : Integrator(method, system, knobs),
+FixedStep::FixedStep(const Method& method, const System& system, const Options& options)
+    : Integrator(method, system, options),
       now_{0, Vec(system.size()), Vec(system.size())},
       next_{0, Vec(system.size()), Vec(system.size())} {}
 
@@ -13,7 +13,7 @@ void FixedStep::resume(const FixedStep&, const State& now) { start(now); }
 
 void FixedStep::begin(const State& state) {
   now_ = state;
-  times_.emplace(state.t, t_end(), knobs().step_size);
+  times_.emplace(state.t, t_end(), options().step_size);
   taken_ = 0;
 }
 
@@ -52,7 +52,7 @@ Outcome FixedStep::take_steps(double t_stop) {
     const double i = taken_ + 1;
     Outcome outcome = step(now_, times.length(i), next_);
     next_.t = times.after(i);
-    if (outcome == Outcome::reached_end) outcome = judge(now_, next_);
+    if (outcome == Outcome::reached_end) outcome = check_step(now_, next_);
     if (outcome != Outcome::reached_end) return outcome;
     std::swap(now_, next_);
     taken_ = i;
@@ -65,7 +65,7 @@ Outcome FixedStep::take_steps(double t_stop) {
 // From the last step to a time before the next one, into next_.
 Outcome FixedStep::step_aside(double t) {
   if (!aside_) {
-    auto made = method().make(method(), system(), knobs());
+    auto made = method().make(method(), system(), options());
     aside_.reset(&dynamic_cast<FixedStep&>(*made));
     made.release();
   }
@@ -74,7 +74,7 @@ Outcome FixedStep::step_aside(double t) {
   Outcome outcome = aside_->step(now_, t - now_.t, next_);
   next_.t = t;
   take_over(*aside_);
-  if (outcome == Outcome::reached_end) outcome = judge(now_, next_);
+  if (outcome == Outcome::reached_end) outcome = check_step(now_, next_);
   return outcome;
 }
 

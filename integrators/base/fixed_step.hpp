@@ -8,13 +8,13 @@
 
 namespace qddot {
 
-// A one-step method of constant step size h = knobs.step_size: what remains of it is one step. The
-// steps of a run are the same whatever is observed. A state between two of them is the end of a
+// A one-step method of constant step size h = options.step_size: what remains of it is one step.
+// The steps of a run are the same whatever is observed. A state between two of them is the end of a
 // shorter step from the first, taken by another object of the same method, so that nothing that
 // this one remembers of its steps changes.
 class FixedStep : public Integrator {
  public:
-  FixedStep(const Method& method, const System& system, const Knobs& knobs);
+  FixedStep(const Method& method, const System& system, const Options& options);
 
  protected:
   // Prepares for one step from `now`, to which `run`, of the same class, has come. start() is

@@ -20,12 +20,12 @@ constexpr double rounding = 1e-12;
 
 }  // namespace
 
-ImplicitStep::ImplicitStep(const Method& method, const System& system, const Knobs& knobs,
+ImplicitStep::ImplicitStep(const Method& method, const System& system, const Options& options,
                            double solve_tolerance)
-    : FixedStep(method, system, knobs),
+    : FixedStep(method, system, options),
       free_(system.size()),
       u_(system.size()),
-      tolerance_(knobs.solve_tolerance > 0 ? knobs.solve_tolerance : solve_tolerance),
+      tolerance_(options.solve_tolerance > 0 ? options.solve_tolerance : solve_tolerance),
       kinks_(capability<Kinks>(system)),
       pieces_(capability<PiecewiseLinear>(system)),
       x_(system.size()),
@@ -35,7 +35,7 @@ ImplicitStep::ImplicitStep(const Method& method, const System& system, const Kno
       before_(system.size()),
       start_(system.size()),
       k_(system.stiffness_pattern()),
-      matrix_(system, knobs.solver) {
+      matrix_(system, options.solver) {
   matrix_.set_tolerance(linear_share * tolerance_);
   if (kinks_ && kinks_->kinks() == 0) kinks_ = nullptr;
   if (!kinks_) return;
@@ -181,7 +181,7 @@ Outcome ImplicitStep::correction() {
   const Stopwatch watch(seconds(), &Seconds::solve);
   ++counts().solves;
   ++counts().newton_iterations;
-  if (const Outcome outcome = judge(matrix_.solve(r_, p_)); outcome != Outcome::reached_end) {
+  if (const Outcome outcome = check_solve(matrix_.solve(r_, p_)); outcome != Outcome::reached_end) {
     return outcome;
   }
   p_ = -p_;

@@ -25,8 +25,8 @@ class ImplicitStep : public FixedStep {
   // an invariant keeps it no better than its stages are solved.
   static constexpr double enough = 1e-4, enough_for_invariants = 1e-9;
 
-  // `solve_tolerance`: where the knobs do not say.
-  ImplicitStep(const Method& method, const System& system, const Knobs& knobs,
+  // `solve_tolerance`: where the options do not say.
+  ImplicitStep(const Method& method, const System& system, const Options& options,
                double solve_tolerance = enough);
 
  protected:

@@ -11,13 +11,13 @@ std::vector<double> mirrored(std::vector<double> half, std::size_t size) {
   return half;
 }
 
-KickDrift::KickDrift(const Method& method, const System& system, const Knobs& knobs,
+KickDrift::KickDrift(const Method& method, const System& system, const Options& options,
                      const Splitting& splitting)
-    : FixedStep(method, system, knobs),
+    : FixedStep(method, system, options),
       splitting_(splitting),
       kicks_first_(splitting.kicks.size() > splitting.drifts.size()),
-      q_(knobs.compensated, system.size()),
-      v_(knobs.compensated, system.size()),
+      q_(options.compensated, system.size()),
+      v_(options.compensated, system.size()),
       f_(system.size()) {}
 
 void KickDrift::start(const State& state) {

@@ -23,7 +23,7 @@ std::vector<double> mirrored(std::vector<double> half, std::size_t size);
 // next: one evaluation a drift, and one to begin. Else one evaluation a kick.
 class KickDrift final : public FixedStep {
  public:
-  KickDrift(const Method& method, const System& system, const Knobs& knobs,
+  KickDrift(const Method& method, const System& system, const Options& options,
             const Splitting& splitting);
 
  private:
@@ -41,8 +41,8 @@ class KickDrift final : public FixedStep {
 // For Method::make.
 template <const Splitting& (*splitting)()>
 std::unique_ptr<Integrator> create_splitting(const Method& method, const System& system,
-                                             const Knobs& knobs) {
-  return std::make_unique<KickDrift>(method, system, knobs, splitting());
+                                             const Options& options) {
+  return std::make_unique<KickDrift>(method, system, options, splitting());
 }
 
 // Those that there are, each in the file of its method.

@@ -10,9 +10,9 @@ constexpr int most_halvings = 60;
 
 }  // namespace
 
-LocalGlobal::LocalGlobal(const Method& method, const System& system, const Knobs& knobs)
-    : FixedStep(method, system, knobs),
-      iterations_(knobs.iterations > 0 ? knobs.iterations : usual_iterations),
+LocalGlobal::LocalGlobal(const Method& method, const System& system, const Options& options)
+    : FixedStep(method, system, options),
+      iterations_(options.iterations > 0 ? options.iterations : usual_iterations),
       descends_(capability<Laplacian>(system)->bounds_stiffness()),
       matrix_(system) {}
 

@@ -14,7 +14,7 @@ namespace qddot {
 // others make of the same r and p is theirs to say. The matrix is factorised once a step size.
 class LocalGlobal : public FixedStep {
  public:
-  LocalGlobal(const Method& method, const System& system, const Knobs& knobs);
+  LocalGlobal(const Method& method, const System& system, const Options& options);
 
  protected:
   // Called before the first iteration of each step.

@@ -9,9 +9,9 @@ bool NystromPair::is_first_same_as_last() const {
   return c.back() == 1 && std::equal(a.back().begin(), a.back().end(), b.begin()) && b.back() == 0;
 }
 
-Nystrom::Nystrom(const Method& method, const System& system, const Knobs& knobs,
+Nystrom::Nystrom(const Method& method, const System& system, const Options& options,
                  const NystromPair& pair, std::size_t instants)
-    : AdaptiveStep(method, system, knobs, {pair.lower_order, instants}),
+    : AdaptiveStep(method, system, options, {pair.lower_order, instants}),
       pair_(pair),
       b_(as_vec(pair.b)),
       b_prime_(as_vec(pair.b_prime)),

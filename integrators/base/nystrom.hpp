@@ -31,8 +31,8 @@ struct NystromPair {
 // and the error test has to do.
 class Nystrom final : public AdaptiveStep {
  public:
-  Nystrom(const Method& method, const System& system, const Knobs& knobs, const NystromPair& pair,
-          std::size_t instants);
+  Nystrom(const Method& method, const System& system, const Options& options,
+          const NystromPair& pair, std::size_t instants);
 
  private:
   void start(const State& state) override;

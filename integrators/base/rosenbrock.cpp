@@ -19,9 +19,9 @@ constexpr double tightest = 1e-15;
 
 }  // namespace
 
-Rosenbrock::Rosenbrock(const Method& method, const System& system, const Knobs& knobs,
+Rosenbrock::Rosenbrock(const Method& method, const System& system, const Options& options,
                        const RosenbrockTable& table, int error_order)
-    : AdaptiveStep(method, system, knobs, {error_order, instants}),
+    : AdaptiveStep(method, system, options, {error_order, instants}),
       table_(table),
       u_q_(system.size(), std::ssize(table.a)),
       u_v_(system.size(), std::ssize(table.a)),
@@ -29,7 +29,7 @@ Rosenbrock::Rosenbrock(const Method& method, const System& system, const Knobs& 
       s_(system.size()),
       x_(system.size()),
       k_(system.stiffness_pattern()),
-      matrix_(system, knobs.solver) {}
+      matrix_(system, options.solver) {}
 
 // With A = M - g^2 K, A U_q = b = M u and e the error of U_q, that of U_v = (U_q - r)/g is e/g, and
 // |e|_M <= |e|_A <= tau |b|_{A^-1} <= tau |u|_M where A >= M. So tau = share g |w|_M / |u|_M leaves
@@ -37,11 +37,11 @@ Rosenbrock::Rosenbrock(const Method& method, const System& system, const Knobs& 
 // stiff springs, which cancel in the sum of the stages, make u large and tau small. Where the
 // absolute tolerance outweighs the velocities, the same part of rtol alone.
 double Rosenbrock::tolerance(const State& now, double g, const Vec& u) const {
-  const double atol = knobs().atol > 0 ? knobs().atol : knobs().rtol * knobs().speed;
+  const double atol = options().atol > 0 ? options().atol : options().rtol * options().speed;
   const auto& mass = system().mass().array();
-  const double weights = (mass * (knobs().rtol * now.v.array().abs() + atol).square()).sum();
+  const double weights = (mass * (options().rtol * now.v.array().abs() + atol).square()).sum();
   const double size = (mass * u.array().square()).sum();
-  const double asked = std::min(g * std::sqrt(weights / size), knobs().rtol);
+  const double asked = std::min(g * std::sqrt(weights / size), options().rtol);
   return std::max(linear_share * asked, tightest);
 }
 
@@ -80,7 +80,8 @@ Outcome Rosenbrock::attempt(const Instant& now, double h, Instant& next, Vec& er
     s_ = system().mass().cwiseProduct(x_);
     const Stopwatch watch(seconds(), &Seconds::solve);
     ++counts().solves;
-    if (const Outcome outcome = judge(matrix_.solve(s_, x_)); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = check_solve(matrix_.solve(s_, x_));
+        outcome != Outcome::reached_end) {
       return outcome;
     }
     u_q_.col(i) = x_;

@@ -27,7 +27,7 @@ const RosenbrockTable& rodas4_table();
 // and a step one factorisation, whether or not the matrix is positive definite.
 class Rosenbrock final : public AdaptiveStep {
  public:
-  Rosenbrock(const Method& method, const System& system, const Knobs& knobs,
+  Rosenbrock(const Method& method, const System& system, const Options& options,
              const RosenbrockTable& table, int error_order);
 
  private:

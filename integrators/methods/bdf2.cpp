@@ -60,11 +60,9 @@ Method bdf2() {
       .summary = "two-step backward differentiation; one solve a step, damps fast vibrations",
       .source = "Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.1, III.5",
       .order = 2,
-      .implicit = true,
-      .needs_stiffness = true,
-      .accepts_massless = true,
-      .takes_solve_tolerance = true,
-      .takes_solver = true,
+      .traits = {Trait::implicit, Trait::accepts_massless},
+      .needs = {Need::stiffness},
+      .takes = {Option::solve_tolerance, Option::solver},
       .make = create<Bdf2>};
 }
 

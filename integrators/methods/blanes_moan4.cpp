@@ -26,8 +26,8 @@ Method blanes_moan4() {
               "table 3, SRKN_6^b",
           .order = 4,
           .stability_limit = 3.1634650665581848,  // where the trace of one step first exceeds 2
-          .symplectic = true,
-          .takes_compensation = true,
+          .traits = {Trait::symplectic},
+          .takes = {Option::compensated},
           .make = create_splitting<blanes_moan4_splitting>};
 }
 

@@ -14,8 +14,8 @@ namespace {
 
 class EnergyMomentum final : public ImplicitStep {
  public:
-  EnergyMomentum(const Method& method, const System& system, const Knobs& knobs)
-      : ImplicitStep(method, system, knobs, enough_for_invariants) {}
+  EnergyMomentum(const Method& method, const System& system, const Options& options)
+      : ImplicitStep(method, system, options, enough_for_invariants) {}
 
  private:
   void start(const State& state) override {
@@ -60,11 +60,9 @@ Method discrete_gradient() {
           .summary = "keeps energy and momenta at every h, to what its nonlinear solve leaves",
           .source = "Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467, section 4",
           .order = 2,
-          .implicit = true,
-          .needs_stiffness = true,
-          .needs_discrete_gradient = true,
-          .takes_solve_tolerance = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit, Trait::cancels_torques},
+          .needs = {Need::stiffness, Need::discrete_gradient},
+          .takes = {Option::solve_tolerance, Option::solver},
           .make = create<EnergyMomentum>};
 }
 

@@ -105,9 +105,9 @@ const NystromPair& dprkn12_pair() {
 namespace {
 
 std::unique_ptr<Integrator> make_dprkn12(const Method& method, const System& system,
-                                         const Knobs& knobs) {
+                                         const Options& options) {
   // Steps are so long that no polynomial through their ends is as accurate as they are.
-  return std::make_unique<Nystrom>(method, system, knobs, dprkn12_pair(), 0);
+  return std::make_unique<Nystrom>(method, system, options, dprkn12_pair(), 0);
 }
 
 }  // namespace
@@ -122,7 +122,7 @@ Method dprkn12() {
               "RKN12(10)17M",
           .order = 12,
           .knob = Knob::rtol,
-          .interpolates = true,
+          .traits = {Trait::interpolates, Trait::bounds_steps},
           .make = make_dprkn12};
 }
 

@@ -39,8 +39,8 @@ const NystromPair& dprkn6_pair() {
 namespace {
 
 std::unique_ptr<Integrator> make_dprkn6(const Method& method, const System& system,
-                                        const Knobs& knobs) {
-  return std::make_unique<Nystrom>(method, system, knobs, dprkn6_pair(), 4);
+                                        const Options& options) {
+  return std::make_unique<Nystrom>(method, system, options, dprkn6_pair(), 4);
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ Method dprkn6() {
               "937-949, RKN6(4)6FD",
           .order = 6,
           .knob = Knob::rtol,
-          .interpolates = true,
+          .traits = {Trait::interpolates, Trait::bounds_steps},
           .make = make_dprkn6};
 }
 

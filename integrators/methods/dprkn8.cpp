@@ -38,8 +38,8 @@ const NystromPair& dprkn8_pair() {
 namespace {
 
 std::unique_ptr<Integrator> make_dprkn8(const Method& method, const System& system,
-                                        const Knobs& knobs) {
-  return std::make_unique<Nystrom>(method, system, knobs, dprkn8_pair(), 4);
+                                        const Options& options) {
+  return std::make_unique<Nystrom>(method, system, options, dprkn8_pair(), 4);
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ Method dprkn8() {
               "RKN8(6)9FM",
           .order = 8,
           .knob = Knob::rtol,
-          .interpolates = true,
+          .traits = {Trait::interpolates, Trait::bounds_steps},
           .make = make_dprkn8};
 }
 

@@ -34,8 +34,8 @@ class Exact final : public FixedStep {
 
   Outcome step(const State& now, double h, State& next) override {
     if (!motion_) {
-      explain(fmt::format("{} unknowns are too many for all modes; at most {} are allowed",
-                          system().size(), largest_size));
+      set_message(fmt::format("{} unknowns are too many for all modes; at most {} are allowed",
+                              system().size(), largest_size));
       return Outcome::solver_failed;
     }
     motion_->propagate(now, h, next, scratch_);
@@ -54,9 +54,8 @@ Method exact() {
           .summary = "the exact motion mode by mode, at every step size; where K is constant",
           .source = "superposition of modes, derived in src/analysis/linear_motion.hpp",
           .order = 0,
-          .symplectic = true,
-          .needs_stiffness = true,
-          .needs_constant_stiffness = true,
+          .traits = {Trait::symplectic},
+          .needs = {Need::stiffness, Need::constant_stiffness},
           .make = create<Exact>};
 }
 

@@ -33,9 +33,9 @@ Alphas without_alpha_m(double rho) {
 
 class GeneralizedAlpha : public ImplicitStep {
  public:
-  GeneralizedAlpha(const Method& method, const System& system, const Knobs& knobs,
+  GeneralizedAlpha(const Method& method, const System& system, const Options& options,
                    const Alphas& alpha)
-      : ImplicitStep(method, system, knobs), alpha_(alpha) {}
+      : ImplicitStep(method, system, options), alpha_(alpha) {}
 
  private:
   void start(const State& state) override {
@@ -79,14 +79,14 @@ class GeneralizedAlpha : public ImplicitStep {
 
 class ChungHulbert final : public GeneralizedAlpha {
  public:
-  ChungHulbert(const Method& method, const System& system, const Knobs& knobs)
-      : GeneralizedAlpha(method, system, knobs, least_damping(knobs.spectral_radius)) {}
+  ChungHulbert(const Method& method, const System& system, const Options& options)
+      : GeneralizedAlpha(method, system, options, least_damping(options.spectral_radius)) {}
 };
 
 class Hht final : public GeneralizedAlpha {
  public:
-  Hht(const Method& method, const System& system, const Knobs& knobs)
-      : GeneralizedAlpha(method, system, knobs, without_alpha_m(knobs.spectral_radius)) {}
+  Hht(const Method& method, const System& system, const Options& options)
+      : GeneralizedAlpha(method, system, options, without_alpha_m(options.spectral_radius)) {}
 };
 
 }  // namespace
@@ -96,11 +96,9 @@ Method generalized_alpha() {
           .summary = "second order; damps infinite frequencies by the spectral radius a step",
           .source = "Chung and Hulbert, Journal of Applied Mechanics 60 (1993) 371-375, eq. 25",
           .order = 2,
-          .implicit = true,
-          .needs_stiffness = true,
-          .takes_solve_tolerance = true,
-          .takes_spectral_radius = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::stiffness},
+          .takes = {Option::solve_tolerance, Option::spectral_radius, Option::solver},
           .make = create<ChungHulbert>};
 }
 
@@ -109,11 +107,9 @@ Method hht() {
           .summary = "HHT-alpha: Newmark with damping, the finite-element codes' default",
           .source = "Hilber, Hughes, Taylor, Earthquake Eng. Struct. Dyn. 5 (1977) 283-292",
           .order = 2,
-          .implicit = true,
-          .needs_stiffness = true,
-          .takes_solve_tolerance = true,
-          .takes_spectral_radius = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::stiffness},
+          .takes = {Option::solve_tolerance, Option::spectral_radius, Option::solver},
           .make = create<Hht>};
 }
 

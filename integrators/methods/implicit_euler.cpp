@@ -32,11 +32,9 @@ Method implicit_euler() {
   return {.name = "implicit_euler",
           .summary = "backward Euler by Newton on the incremental potential; damps at every h",
           .source = "Martin, Thomaszewski, Grinspun, Gross, SIGGRAPH 2011, section 4",
-          .implicit = true,
-          .needs_stiffness = true,
-          .accepts_massless = true,
-          .takes_solve_tolerance = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit, Trait::accepts_massless},
+          .needs = {Need::stiffness},
+          .takes = {Option::solve_tolerance, Option::solver},
           .make = create<ImplicitEuler>};
 }
 

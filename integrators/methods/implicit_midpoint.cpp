@@ -11,8 +11,8 @@ namespace {
 
 class ImplicitMidpoint final : public ImplicitStep {
  public:
-  ImplicitMidpoint(const Method& method, const System& system, const Knobs& knobs)
-      : ImplicitStep(method, system, knobs, enough_for_invariants) {}
+  ImplicitMidpoint(const Method& method, const System& system, const Options& options)
+      : ImplicitStep(method, system, options, enough_for_invariants) {}
 
  private:
   void start(const State& state) override {
@@ -43,11 +43,9 @@ Method implicit_midpoint() {
           .summary = "symplectic and A-stable; keeps momenta, and energy where f is linear",
           .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, eq. II.1.7",
           .order = 2,
-          .implicit = true,
-          .symplectic = true,
-          .needs_stiffness = true,
-          .takes_solve_tolerance = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit, Trait::symplectic},
+          .needs = {Need::stiffness},
+          .takes = {Option::solve_tolerance, Option::solver},
           .make = create<ImplicitMidpoint>};
 }
 

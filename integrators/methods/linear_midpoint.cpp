@@ -49,8 +49,8 @@ constexpr std::array<double, 5> suzuki = [] {
 template <const auto& gamma>
 class LinearMidpoint final : public FixedStep {
  public:
-  LinearMidpoint(const Method& method, const System& system, const Knobs& knobs)
-      : FixedStep(method, system, knobs),
+  LinearMidpoint(const Method& method, const System& system, const Options& options)
+      : FixedStep(method, system, options),
         split_(split_of(system)),
         implicit_(split_ ? *split_->stiff_block : system),
         split_stiffness_(capability<SplitStiffness>(implicit_)),
@@ -59,7 +59,7 @@ class LinearMidpoint final : public FixedStep {
         change_(system.size()),
         own_(implicit_.size()),
         own_change_(implicit_.size()) {
-    if (implicit_.size() > 0) matrix_ = std::make_unique<EffectiveMass>(implicit_, knobs.solver);
+    if (implicit_.size() > 0) matrix_ = std::make_unique<EffectiveMass>(implicit_, options.solver);
   }
 
  private:
@@ -131,7 +131,7 @@ class LinearMidpoint final : public FixedStep {
   Outcome solve(const Vec& b, Vec& x) {
     ++counts().solves;
     const Stopwatch watch(seconds(), &Seconds::solve);
-    return judge(matrix_->solve(b, x));
+    return check_solve(matrix_->solve(b, x));
   }
 
   const Split* split_;                     // none: every spring is in the matrix
@@ -152,9 +152,9 @@ Method linear_midpoint() {
               "Stern and Grinspun, Multiscale Modeling and Simulation 7:4 (2009) 1779-1794, "
               "of which this is one iteration",
           .order = 2,
-          .implicit = true,
-          .needs_stiffness = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit, Trait::cancels_torques},
+          .needs = {Need::stiffness},
+          .takes = {Option::solver},
           .make = create<LinearMidpoint<plain>>};
 }
 
@@ -163,9 +163,9 @@ Method linear_midpoint4() {
           .summary = "five steps of linear_midpoint, one of them backwards, composed to order 4",
           .source = "Suzuki, Physics Letters A 146 (1990) 319-323",
           .order = 4,
-          .implicit = true,
-          .needs_stiffness = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit, Trait::cancels_torques},
+          .needs = {Need::stiffness},
+          .takes = {Option::solver},
           .make = create<LinearMidpoint<suzuki>>};
 }
 

@@ -41,9 +41,9 @@ Method local_global() {
           .source =
               "Liu, Bargteil, O'Brien, Kavan, Fast Simulation of Mass-Spring Systems, "
               "SIGGRAPH Asia 2013",
-          .implicit = true,
-          .needs_laplacian = true,
-          .takes_iterations = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::laplacian},
+          .takes = {Option::iterations},
           .make = create<Plain>};
 }
 

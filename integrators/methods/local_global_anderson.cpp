@@ -17,8 +17,8 @@ constexpr int window = 5;
 
 class Anderson final : public LocalGlobal {
  public:
-  Anderson(const Method& method, const System& system, const Knobs& knobs)
-      : LocalGlobal(method, system, knobs) {
+  Anderson(const Method& method, const System& system, const Options& options)
+      : LocalGlobal(method, system, options) {
     for (int i = 0; i < window; ++i) dp_[i] = dg_[i] = Vec(system.size());
   }
 
@@ -96,9 +96,9 @@ Method local_global_anderson() {
           .source =
               "Peng, Deng, Zhang, Geng, Qin, Liu, Anderson Acceleration for Geometry "
               "Optimization and Physics Simulation, SIGGRAPH 2018",
-          .implicit = true,
-          .needs_laplacian = true,
-          .takes_iterations = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::laplacian},
+          .takes = {Option::iterations},
           .make = create<Anderson>};
 }
 

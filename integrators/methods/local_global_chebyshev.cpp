@@ -21,8 +21,8 @@ namespace {
 
 class Chebyshev final : public LocalGlobal {
  public:
-  Chebyshev(const Method& method, const System& system, const Knobs& knobs)
-      : LocalGlobal(method, system, knobs) {
+  Chebyshev(const Method& method, const System& system, const Options& options)
+      : LocalGlobal(method, system, options) {
     SymmetricMatrix l = system.stiffness_pattern();
     capability<Laplacian>(system)->laplacian(l);
     Vec row_sums;
@@ -85,9 +85,9 @@ Method local_global_chebyshev() {
           .source =
               "Wang, A Chebyshev Semi-Iterative Approach for Accelerating Projective and "
               "Position-Based Dynamics, SIGGRAPH Asia 2015",
-          .implicit = true,
-          .needs_laplacian = true,
-          .takes_iterations = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::laplacian},
+          .takes = {Option::iterations},
           .make = create<Chebyshev>};
 }
 

@@ -21,8 +21,8 @@ constexpr double hidden = 100 * epsilon;
 
 class Lbfgs final : public LocalGlobal {
  public:
-  Lbfgs(const Method& method, const System& system, const Knobs& knobs)
-      : LocalGlobal(method, system, knobs) {
+  Lbfgs(const Method& method, const System& system, const Options& options)
+      : LocalGlobal(method, system, options) {
     for (Pair& pair : pairs_) pair.s = pair.y = Vec(system.size());
   }
 
@@ -97,9 +97,9 @@ Method local_global_lbfgs() {
           .source =
               "Liu, Bouaziz, Kavan, Quasi-Newton Methods for Real-Time Simulation of "
               "Hyperelastic Materials, ACM TOG 36:3, 2017",
-          .implicit = true,
-          .needs_laplacian = true,
-          .takes_iterations = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::laplacian},
+          .takes = {Option::iterations},
           .make = create<Lbfgs>};
 }
 

@@ -21,8 +21,8 @@ Method position_verlet() {
               "position Verlet",
           .order = 2,
           .stability_limit = 2,
-          .symplectic = true,
-          .takes_compensation = true,
+          .traits = {Trait::symplectic},
+          .takes = {Option::compensated},
           .make = create_splitting<position_verlet_splitting>};
 }
 

@@ -26,8 +26,9 @@ const RosenbrockTable& rodas4_table() {
 
 namespace {
 
-std::unique_ptr<Integrator> make(const Method& method, const System& system, const Knobs& knobs) {
-  return std::make_unique<Rosenbrock>(method, system, knobs, rodas4_table(), 3);
+std::unique_ptr<Integrator> make(const Method& method, const System& system,
+                                 const Options& options) {
+  return std::make_unique<Rosenbrock>(method, system, options, rodas4_table(), 3);
 }
 
 }  // namespace
@@ -38,10 +39,9 @@ Method rodas4() {
           .source = "Hairer and Wanner, Solving Ordinary Differential Equations II, IV.10",
           .order = 4,
           .knob = Knob::rtol,
-          .implicit = true,
-          .needs_stiffness = true,
-          .interpolates = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit, Trait::interpolates},
+          .needs = {Need::stiffness},
+          .takes = {Option::solver},
           .make = make};
 }
 

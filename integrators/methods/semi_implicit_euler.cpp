@@ -44,9 +44,9 @@ class SemiImplicitEuler final : public FixedStep {
   Outcome solve(const Vec& b, Vec& x) {
     const Stopwatch watch(seconds(), &Seconds::solve);
     ++counts().solves;
-    const Outcome outcome = judge(matrix_.solve(b, x));
+    const Outcome outcome = check_solve(matrix_.solve(b, x));
     if (outcome == Outcome::indefinite_matrix) {
-      explain(
+      set_message(
           "compressed springs make M - h^2 K indefinite, with which conjugate gradients cannot "
           "solve: take --solver multifrontal, which can, or a shorter step");
     }
@@ -55,7 +55,7 @@ class SemiImplicitEuler final : public FixedStep {
 
   Vec f_{system().size()}, b_{system().size()};
   SymmetricMatrix k_{system().stiffness_pattern()};
-  EffectiveMass matrix_{system(), knobs().solver};
+  EffectiveMass matrix_{system(), options().solver};
   double factorized_h_ = 0;
 };
 
@@ -65,11 +65,9 @@ Method semi_implicit_euler() {
   return {.name = "semi_implicit_euler",
           .summary = "linearly implicit Euler; one linear solve a step, damps",
           .source = "Baraff and Witkin, Large Steps in Cloth Simulation, SIGGRAPH 1998, eq. 6",
-          .implicit = true,
-          .linearly_implicit = true,
-          .needs_stiffness = true,
-          .accepts_massless = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit, Trait::linearly_implicit, Trait::accepts_massless},
+          .needs = {Need::stiffness},
+          .takes = {Option::solver},
           .make = create<SemiImplicitEuler>};
 }
 

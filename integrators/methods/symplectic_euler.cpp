@@ -27,8 +27,8 @@ class SymplecticEuler final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  CompensatedSum q_{knobs().compensated, system().size()};
-  CompensatedSum v_{knobs().compensated, system().size()};
+  CompensatedSum q_{options().compensated, system().size()};
+  CompensatedSum v_{options().compensated, system().size()};
   Vec f_{system().size()};
 };
 
@@ -39,8 +39,8 @@ Method symplectic_euler() {
           .summary = "kick, then drift; energy error stays bounded below h = 2/w_max",
           .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.9",
           .stability_limit = 2,
-          .symplectic = true,
-          .takes_compensation = true,
+          .traits = {Trait::symplectic},
+          .takes = {Option::compensated},
           .make = create<SymplecticEuler>};
 }
 

@@ -42,10 +42,9 @@ Method trapezoidal() {
           .summary = "Newmark's beta = 1/4, gamma = 1/2 (average acceleration); damps nothing",
           .source = "Newmark, Journal of the Engineering Mechanics Division 85 (1959) 67-94",
           .order = 2,
-          .implicit = true,
-          .needs_stiffness = true,
-          .takes_solve_tolerance = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::stiffness},
+          .takes = {Option::solve_tolerance, Option::solver},
           .make = create<Trapezoidal>};
 }
 

@@ -55,10 +55,9 @@ Method trbdf2() {
           .summary = "trapezoidal rule, then BDF2; two solves a step with one matrix, L-stable",
           .source = "Hosea and Shampine, Applied Numerical Mathematics 20 (1996) 21-37",
           .order = 2,
-          .implicit = true,
-          .needs_stiffness = true,
-          .takes_solve_tolerance = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::stiffness},
+          .takes = {Option::solve_tolerance, Option::solver},
           .make = create<TrBdf2>};
 }
 

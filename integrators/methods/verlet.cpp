@@ -30,8 +30,8 @@ class Verlet final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  CompensatedSum q_{knobs().compensated, system().size()};
-  CompensatedSum v_{knobs().compensated, system().size()};
+  CompensatedSum q_{options().compensated, system().size()};
+  CompensatedSum v_{options().compensated, system().size()};
   Vec f_{system().size()};  // at the present state
 };
 
@@ -43,8 +43,8 @@ Method verlet() {
           .source = "Hairer, Lubich, Wanner, Acta Numerica 12 (2003) 399-450, eq. 1.5",
           .order = 2,
           .stability_limit = 2,
-          .symplectic = true,
-          .takes_compensation = true,
+          .traits = {Trait::symplectic},
+          .takes = {Option::compensated},
           .make = create<Verlet>};
 }
 

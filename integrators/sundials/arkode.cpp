@@ -13,10 +13,10 @@ constexpr double fraction = 0.99;
 
 }  // namespace
 
-Arkode::Arkode(const Method& method, const System& system, const Knobs& knobs, const Tables& tables,
-               ARKRhsFn explicit_rate, ARKRhsFn implicit_rate, MakeMatrix make_matrix,
-               const System& implicit_part)
-    : Stepper(method, system, knobs, make_matrix, implicit_part),
+Arkode::Arkode(const Method& method, const System& system, const Options& options,
+               const Tables& tables, ARKRhsFn explicit_rate, ARKRhsFn implicit_rate,
+               MakeMatrix make_matrix, const System& implicit_part)
+    : Stepper(method, system, options, make_matrix, implicit_part),
       explicit_rate_(explicit_rate),
       implicit_rate_(implicit_rate),
       memory_(check(ARKStepCreate(explicit_rate, implicit_rate, 0, y(), context()))) {

@@ -25,7 +25,7 @@ class Arkode : public Stepper {
  public:
   // With an implicit table, `implicit_rate` is what it is for, and Newton's matrix is that of
   // `implicit_part`; with an explicit one, `explicit_rate`.
-  Arkode(const Method& method, const System& system, const Knobs& knobs, const Tables& tables,
+  Arkode(const Method& method, const System& system, const Options& options, const Tables& tables,
          ARKRhsFn explicit_rate, ARKRhsFn implicit_rate, MakeMatrix make_matrix,
          const System& implicit_part);
 

@@ -17,9 +17,9 @@ using namespace sundials;
 
 class Cvode : public Stepper {
  public:
-  Cvode(const Method& method, const System& system, const Knobs& knobs, int formula,
+  Cvode(const Method& method, const System& system, const Options& options, int formula,
         MakeMatrix make_matrix)
-      : Stepper(method, system, knobs, make_matrix),
+      : Stepper(method, system, options, make_matrix),
         memory_(check(CVodeCreate(formula, context()))) {
     auto* self = static_cast<Stepper*>(this);
     check(CVodeSetErrHandlerFn(memory(), keep_message, self), "CVodeSetErrHandlerFn");
@@ -27,14 +27,14 @@ class Cvode : public Stepper {
     check(CVodeSetUserData(memory(), self), "CVodeSetUserData");
     check(CVodeSVtolerances(memory(), rtol(), atol()), "CVodeSVtolerances");
     check(CVodeSetMaxHnilWarns(memory(), -1), "CVodeSetMaxHnilWarns");
-    if (knobs.max_order > 0) {
-      check(CVodeSetMaxOrd(memory(), std::min(knobs.max_order, method.order)), "CVodeSetMaxOrd");
+    if (options.max_order > 0) {
+      check(CVodeSetMaxOrd(memory(), std::min(options.max_order, method.order)), "CVodeSetMaxOrd");
     }
     if (has_matrix()) {
       check(CVodeSetLinearSolver(memory(), matrix().solver(), matrix().matrix()),
             "CVodeSetLinearSolver");
       check(CVodeSetLinSysFn(memory(), linear_system), "CVodeSetLinSysFn");
-      check(CVodeSetStabLimDet(memory(), knobs.stability_detection), "CVodeSetStabLimDet");
+      check(CVodeSetStabLimDet(memory(), options.stability_detection), "CVodeSetStabLimDet");
     } else {
       fixed_point_.reset(check(SUNNonlinSol_FixedPoint(y(), 0, context())));
       check(CVodeSetNonlinearSolver(memory(), fixed_point_.get()), "CVodeSetNonlinearSolver");
@@ -117,29 +117,29 @@ class Cvode : public Stepper {
 template <MakeMatrix make_matrix>
 class Bdf final : public Cvode {
  public:
-  Bdf(const Method& method, const System& system, const Knobs& knobs)
-      : Cvode(method, system, knobs, CV_BDF, make_matrix) {}
+  Bdf(const Method& method, const System& system, const Options& options)
+      : Cvode(method, system, options, CV_BDF, make_matrix) {}
 };
 class Adams final : public Cvode {
  public:
-  Adams(const Method& method, const System& system, const Knobs& knobs)
-      : Cvode(method, system, knobs, CV_ADAMS, nullptr) {}
+  Adams(const Method& method, const System& system, const Options& options)
+      : Cvode(method, system, options, CV_ADAMS, nullptr) {}
 };
 
 template <MakeMatrix make_matrix>
 Method bdf(const char* name, const char* solver) {
-  return {.name = name,
-          .summary = fmt::format("SUNDIALS CVODE, adaptive BDF of order 1 to 5, {}", solver),
-          .source = "Hindmarsh et al., SUNDIALS, ACM TOMS 31:3 (2005) 363-396, section 2.1",
-          .order = 5,
-          .family = Family::sundials,
-          .knob = Knob::rtol,
-          .implicit = true,
-          .needs_stiffness = true,
-          .varies_order = true,
-          .detects_instability = true,
-          .takes_solver = make_matrix == make_structured,
-          .make = create<Bdf<make_matrix>>};
+  return {
+      .name = name,
+      .summary = fmt::format("SUNDIALS CVODE, adaptive BDF of order 1 to 5, {}", solver),
+      .source = "Hindmarsh et al., SUNDIALS, ACM TOMS 31:3 (2005) 363-396, section 2.1",
+      .order = 5,
+      .family = Family::sundials,
+      .knob = Knob::rtol,
+      .traits = SetOf<Trait>{Trait::implicit}.with(Trait::stock_solver, make_matrix == make_klu),
+      .needs = {Need::stiffness},
+      .takes = SetOf<Option>{Option::max_order, Option::stability_detection}.with(
+          Option::solver, make_matrix == make_structured),
+      .make = create<Bdf<make_matrix>>};
 }
 
 }  // namespace
@@ -156,7 +156,7 @@ Method cvode_adams() {
           .order = 12,
           .family = Family::sundials,
           .knob = Knob::rtol,
-          .varies_order = true,
+          .takes = {Option::max_order},
           .make = create<Adams>};
 }
 

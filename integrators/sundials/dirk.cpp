@@ -31,8 +31,8 @@ class Dirk final : public Arkode {
   static constexpr Table table = tables[order - 2];
 
  public:
-  Dirk(const Method& method, const System& system, const Knobs& knobs)
-      : Arkode(method, system, knobs,
+  Dirk(const Method& method, const System& system, const Options& options)
+      : Arkode(method, system, options,
                {.implicit_table = ButcherTable(check(ARKodeButcherTable_LoadDIRK(table.id))).get()},
                nullptr, right_hand_side, make_matrix, system) {}
 };
@@ -41,17 +41,18 @@ template <int order, MakeMatrix make_matrix>
 Method dirk(const char* suffix, const char* solver) {
   static_assert(tables[order - 2].order == order);
   const Table& table = tables[order - 2];
-  return {.name = fmt::format("arkode_dirk{}{}", order, suffix),
-          .summary = fmt::format("SUNDIALS ARKODE, adaptive DIRK of order {}, ARKODE_{}, {}", order,
-                                 table.name, solver),
-          .source = table.source,
-          .order = order,
-          .family = Family::sundials,
-          .knob = Knob::rtol,
-          .implicit = true,
-          .needs_stiffness = true,
-          .takes_solver = make_matrix == make_structured,
-          .make = create<Dirk<order, make_matrix>>};
+  return {
+      .name = fmt::format("arkode_dirk{}{}", order, suffix),
+      .summary = fmt::format("SUNDIALS ARKODE, adaptive DIRK of order {}, ARKODE_{}, {}", order,
+                             table.name, solver),
+      .source = table.source,
+      .order = order,
+      .family = Family::sundials,
+      .knob = Knob::rtol,
+      .traits = SetOf<Trait>{Trait::implicit}.with(Trait::stock_solver, make_matrix == make_klu),
+      .needs = {Need::stiffness},
+      .takes = SetOf<Option>{}.with(Option::solver, make_matrix == make_structured),
+      .make = create<Dirk<order, make_matrix>>};
 }
 template <int order>
 Method structured() {

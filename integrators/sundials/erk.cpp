@@ -33,13 +33,13 @@ constexpr ExplicitTable explicit_tables[] = {
 template <int which>
 class Erk final : public Arkode {
  public:
-  Erk(const Method& method, const System& system, const Knobs& knobs)
-      : Erk(method, system, knobs,
+  Erk(const Method& method, const System& system, const Options& options)
+      : Erk(method, system, options,
             ButcherTable(check(ARKodeButcherTable_LoadERK(explicit_tables[which].id)))) {}
 
  private:
-  Erk(const Method& method, const System& system, const Knobs& knobs, ButcherTable table)
-      : Arkode(method, system, knobs, {.explicit_table = table.get()}, right_hand_side, nullptr,
+  Erk(const Method& method, const System& system, const Options& options, ButcherTable table)
+      : Arkode(method, system, options, {.explicit_table = table.get()}, right_hand_side, nullptr,
                nullptr, system) {
     limit_steps(system, imaginary_stability(*table));
   }
@@ -56,6 +56,7 @@ Method erk() {
           .order = table.order,
           .family = Family::sundials,
           .knob = Knob::rtol,
+          .traits = {Trait::bounds_steps},
           .make = create<Erk<which>>};
 }
 

@@ -42,8 +42,8 @@ ButcherTable trbdf2_table() {
 template <ButcherTable (*make_table)()>
 class FixedTable final : public Arkode {
  public:
-  FixedTable(const Method& method, const System& system, const Knobs& knobs)
-      : Arkode(method, system, knobs, {.implicit_table = make_table().get()}, nullptr,
+  FixedTable(const Method& method, const System& system, const Options& options)
+      : Arkode(method, system, options, {.implicit_table = make_table().get()}, nullptr,
                right_hand_side, make_structured, system) {}
 };
 
@@ -54,9 +54,9 @@ Method fixed(const char* name, int order, const char* what, const char* source) 
           .source = source,
           .order = order,
           .family = Family::sundials,
-          .implicit = true,
-          .needs_stiffness = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::stiffness},
+          .takes = {Option::solver},
           .make = create<FixedTable<make_table>>};
 }
 
@@ -71,7 +71,7 @@ Method arkode_implicit_midpoint() {
   Method method = fixed<implicit_midpoint_table>(
       "arkode_implicit_midpoint", 2, "the implicit midpoint rule",
       "Hairer, Lubich and Wanner, Geometric Numerical Integration, section I.1.2");
-  method.symplectic = true;
+  method.traits = method.traits.with(Trait::symplectic);
   return method;
 }
 

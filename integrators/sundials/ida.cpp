@@ -42,8 +42,8 @@ constexpr double most_times_as_fast = 1e8;
 template <MakeMatrix make_matrix>
 class Ida final : public Stepper {
  public:
-  Ida(const Method& method, const System& system, const Knobs& knobs)
-      : Stepper(method, system, knobs, make_matrix),
+  Ida(const Method& method, const System& system, const Options& options)
+      : Stepper(method, system, options, make_matrix),
         rate_(clone(y())),
         memory_(check(IDACreate(context()))) {
     auto* self = static_cast<Stepper*>(this);
@@ -53,8 +53,8 @@ class Ida final : public Stepper {
     check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
     check(IDASetLinearSolver(ida(), matrix().solver(), matrix().matrix()), "IDASetLinearSolver");
     check(IDASetJacFn(ida(), jacobian), "IDASetJacFn");
-    if (knobs.max_order > 0) {
-      check(IDASetMaxOrd(ida(), std::min(knobs.max_order, method.order)), "IDASetMaxOrd");
+    if (options.max_order > 0) {
+      check(IDASetMaxOrd(ida(), std::min(options.max_order, method.order)), "IDASetMaxOrd");
     }
     if (!system.has_massless()) return;
     std::vector<bool> has_mass;
@@ -117,7 +117,7 @@ class Ida final : public Stepper {
     if (flag < 0 || !massless_) return flag;
     if (is_rough_) tolerate_rounding();
     set_massless(Halves(y()).v, Halves(rate_.get()).q);
-    is_lost_ = !(massless_speed() < most_times_as_fast * (moving_speed() + knobs().speed));
+    is_lost_ = !(massless_speed() < most_times_as_fast * (moving_speed() + options().speed));
     if (is_lost_) return IDA_CONV_FAIL;
     // A last step that is short leaves q' as a difference of positions which are all good to the
     // tolerance.
@@ -129,7 +129,7 @@ class Ida final : public Stepper {
   // they do not, or only farther away than this along some axis [m].
   int make_consistent(double t_start, double farthest = std::numeric_limits<double>::infinity()) {
     Halves at(y());
-    const Equilibrium balance = find_equilibrium(*massless_, at.q, knobs().length);
+    const Equilibrium balance = find_equilibrium(*massless_, at.q, options().length);
     if (balance.outcome != Equilibrium::Outcome::reached) return IDA_CONV_FAIL;
     if ((balance.q - at.q).lpNorm<Eigen::Infinity>() > farthest) return IDA_CONV_FAIL;
     at.q = balance.q;
@@ -182,13 +182,13 @@ class Ida final : public Stepper {
 
   // How far errors of the tolerance alone may move a massless node [m].
   double farthest_by_errors() const {
-    return most_moved_by_errors * std::sqrt(rtol()) * knobs().length;
+    return most_moved_by_errors * std::sqrt(rtol()) * options().length;
   }
 
   // Two places at the bottom of a potential that are nearer to each other than this [m] differ in
   // it by its rounding: k s^2 = eps k L^2.
   double most_rounded() const {
-    return std::sqrt(std::numeric_limits<double>::epsilon()) * knobs().length;
+    return std::sqrt(std::numeric_limits<double>::epsilon()) * options().length;
   }
 
   // Positions of massless nodes are known no better than to where forces that are off by rounding
@@ -339,11 +339,11 @@ Method ida(const char* name, const char* solver) {
           .order = 5,
           .family = Family::sundials,
           .knob = Knob::rtol,
-          .implicit = true,
-          .needs_stiffness = true,
-          .accepts_massless = true,
-          .varies_order = true,
-          .takes_solver = make_matrix == make_structured,
+          .traits = SetOf<Trait>{Trait::implicit, Trait::accepts_massless}.with(
+              Trait::stock_solver, make_matrix == make_klu),
+          .needs = {Need::stiffness},
+          .takes =
+              SetOf<Option>{Option::max_order}.with(Option::solver, make_matrix == make_structured),
           .make = create<Ida<make_matrix>>};
 }
 

@@ -22,8 +22,8 @@ class Imex final : public Arkode {
   static constexpr AdditiveTable table = additive_tables[order - 3];
 
  public:
-  Imex(const Method& method, const System& system, const Knobs& knobs)
-      : Arkode(method, system, knobs,
+  Imex(const Method& method, const System& system, const Options& options)
+      : Arkode(method, system, options,
                {.explicit_table =
                     ButcherTable(check(ARKodeButcherTable_LoadERK(table.explicit_id))).get(),
                 .implicit_table =
@@ -62,10 +62,9 @@ Method imex() {
           .order = order,
           .family = Family::sundials,
           .knob = Knob::rtol,
-          .implicit = true,
-          .needs_stiffness = true,
-          .needs_split = true,
-          .takes_solver = true,
+          .traits = {Trait::implicit},
+          .needs = {Need::stiffness, Need::split_forces},
+          .takes = {Option::solver},
           .make = create<Imex<order>>};
 }
 

@@ -42,8 +42,8 @@ class Mri final : public Stepper {
   static constexpr Pair pair = pairs[order - 3];
 
  public:
-  Mri(const Method& method, const System& system, const Knobs& knobs)
-      : Stepper(method, system, knobs, nullptr),
+  Mri(const Method& method, const System& system, const Options& options)
+      : Stepper(method, system, options, nullptr),
         stiff_(stiff_of(system)),
         soft_(soft_of(system)),
         fast_(check(ARKStepCreate(stiff_rate, nullptr, 0, y(), context()))) {
@@ -137,8 +137,7 @@ Method mri() {
       .source = "Sandu, SIAM J. Numerical Analysis 57:5 (2019) 2300-2327",
       .order = order,
       .family = Family::sundials,
-      .needs_stiffness = true,
-      .needs_split = true,
+      .needs = {Need::stiffness, Need::split_forces},
       .make = create<Mri<order>>};
 }
 

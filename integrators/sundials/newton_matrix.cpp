@@ -29,22 +29,14 @@ NewtonMatrix::NewtonMatrix(SUNContext context)
 int NewtonMatrix::setup_callback(SUNLinearSolver solver, SUNMatrix) {
   auto& self = *static_cast<NewtonMatrix*>(solver->content);
   const Stopwatch watch(self.seconds_, &Seconds::factorization);
-  try {
-    return self.factorize();
-  } catch (const std::exception&) {  // out of memory: SUNDIALS gives up and says set-up failed
-    return -1;
-  }
+  return self.guarded([&] { return self.factorize(); });
 }
 
 int NewtonMatrix::solve_callback(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b,
                                  double) {
   auto& self = *static_cast<NewtonMatrix*>(solver->content);
   const Stopwatch watch(self.seconds_, &Seconds::solve);
-  try {
-    return self.solve(b, x);
-  } catch (const std::exception&) {
-    return -1;
-  }
+  return self.guarded([&] { return self.solve(b, x); });
 }
 
 }  // namespace qddot::sundials

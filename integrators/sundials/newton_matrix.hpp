@@ -1,6 +1,8 @@
 #pragma once
 
+#include <exception>
 #include <memory>
+#include <utility>
 
 #include "qddot/integrators/integrator.hpp"
 #include "qddot/integrators/sundials/support.hpp"
@@ -33,6 +35,10 @@ class NewtonMatrix {
   std::int64_t indefinite() const { return indefinite_; }
   // What a run made, its counts and KLU's pivots among it, is not for the next.
   virtual void begin_run() { indefinite_ = 0; }
+  // Throws what was thrown behind SUNDIALS' back since the last call.
+  void rethrow() {
+    if (parked_) std::rethrow_exception(std::exchange(parked_, nullptr));
+  }
 
  protected:
   void count_indefinite() { ++indefinite_; }
@@ -42,6 +48,16 @@ class NewtonMatrix {
   virtual int factorize() = 0;
   virtual int solve(N_Vector b, N_Vector x) = 0;
 
+  // Runs the body of a C callback, across which no exception passes: -1 with it parked.
+  template <class Body>
+  int guarded(Body body) noexcept {
+    try {
+      return body();
+    } catch (...) {
+      parked_ = std::current_exception();
+      return -1;
+    }
+  }
   static int setup_callback(SUNLinearSolver solver, SUNMatrix);
   static int solve_callback(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, double);
 
@@ -49,6 +65,7 @@ class NewtonMatrix {
   LinearSolver solver_;
   Seconds* seconds_ = nullptr;
   std::int64_t indefinite_ = 0;
+  std::exception_ptr parked_;
 };
 
 // The second-order structure: eliminating one half leaves the symmetric n x n matrix

@@ -20,9 +20,9 @@ constexpr double newton_rtol = 1e-10;
 
 }  // namespace
 
-Stepper::Stepper(const Method& method, const System& system, const Knobs& knobs,
+Stepper::Stepper(const Method& method, const System& system, const Options& options,
                  MakeMatrix make_matrix, const System& implicit_part)
-    : Integrator(method, system, knobs),
+    : Integrator(method, system, options),
       implicit_part_(implicit_part),
       context_(make_context()),
       y_(make_matrix == make_klu ? make_stock_vector(system.size(), context())
@@ -33,16 +33,16 @@ Stepper::Stepper(const Method& method, const System& system, const Knobs& knobs,
       f_(system.size()),
       next_{0, Vec(system.size()), Vec(system.size())} {
   Halves absolute(atol());
-  const bool is_given = knobs.atol > 0;
-  absolute.q.setConstant(is_given ? knobs.atol : rtol() * knobs.length);
-  absolute.v.setConstant(is_given ? knobs.atol : rtol() * knobs.speed);
+  const bool is_given = options.atol > 0;
+  absolute.q.setConstant(is_given ? options.atol : rtol() * options.length);
+  absolute.v.setConstant(is_given ? options.atol : rtol() * options.speed);
   if (!make_matrix) return;
   k_ = implicit_part.stiffness_pattern();
-  matrix_ = make_matrix(implicit_part, context(), knobs.solver);
+  matrix_ = make_matrix(implicit_part, context(), options.solver);
   matrix_->time_into(seconds());
 }
 
-double Stepper::rtol() const { return has_fixed_step() ? newton_rtol : knobs().rtol; }
+double Stepper::rtol() const { return has_fixed_step() ? newton_rtol : options().rtol; }
 
 void Stepper::load(const State& state) {
   Halves halves(y());
@@ -103,7 +103,7 @@ void Stepper::keep_message(int, const char*, const char*, char* message, void* s
 void Stepper::begin(const State& state) {
   if (!has_fixed_step()) return;
   now_ = state;
-  times_.emplace(state.t, t_end(), knobs().step_size);
+  times_.emplace(state.t, t_end(), options().step_size);
   taken_ = 0;
   beside_ = {};
 }
@@ -163,7 +163,7 @@ Outcome Stepper::take_fixed_steps(State& state, double t_stop) {
 
 Outcome Stepper::step_aside(State& state, double t) {
   if (!aside_) {
-    auto made = method().make(method(), system(), knobs());
+    auto made = method().make(method(), system(), options());
     aside_.reset(&dynamic_cast<Stepper&>(*made));
     made.release();
   }
@@ -192,12 +192,14 @@ Outcome Stepper::take_one(State& state, double t_stop) {
   double t = state.t;
   const int flag = take_step(t_stop, t);
   if (parked_) std::rethrow_exception(parked_);
+  if (has_matrix()) matrix().rethrow();
   if (flag < 0) return failure(flag, state.t);
   const Halves halves(y());
   next_.q = halves.q;
   next_.v = halves.v;
   next_.t = t;
-  if (const Outcome outcome = judge(state, next_); outcome != Outcome::reached_end) return outcome;
+  if (const Outcome outcome = check_step(state, next_); outcome != Outcome::reached_end)
+    return outcome;
   std::swap(state, next_);
   note(state);
   note_step();
@@ -217,9 +219,9 @@ Cause Stepper::named_cause(int flag, double t) {
 
 Outcome Stepper::failure(Cause cause, const std::string& flag, double t) {
   std::ranges::replace(said_, '\n', ' ');
-  explain(fmt::format("{} at t = {:.6g} s: {} ({}{}{})", what_happened(cause), t,
-                      what_to_turn(cause, has_fixed_step()), flag, said_.empty() ? "" : ": ",
-                      said_));
+  set_message(fmt::format("{} at t = {:.6g} s: {} ({}{}{})", what_happened(cause), t,
+                          what_to_turn(cause, has_fixed_step()), flag, said_.empty() ? "" : ": ",
+                          said_));
   return outcome_of(cause);
 }
 

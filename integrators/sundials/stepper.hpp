@@ -36,10 +36,11 @@ class Stepper : public Integrator {
  public:
   // Newton's matrix is that of `implicit_part`, which has the unknowns of the system: itself, or
   // the part of its forces that is treated implicitly.
-  Stepper(const Method& method, const System& system, const Knobs& knobs, MakeMatrix make_matrix,
-          const System& implicit_part);
-  Stepper(const Method& method, const System& system, const Knobs& knobs, MakeMatrix make_matrix)
-      : Stepper(method, system, knobs, make_matrix, system) {}
+  Stepper(const Method& method, const System& system, const Options& options,
+          MakeMatrix make_matrix, const System& implicit_part);
+  Stepper(const Method& method, const System& system, const Options& options,
+          MakeMatrix make_matrix)
+      : Stepper(method, system, options, make_matrix, system) {}
 
  protected:
   // One internal step that does not pass the stop time; sets t [s] to the time reached.

@@ -1,13 +1,13 @@
 #include "qddot/integrators/sundials/support.hpp"
 
-#include <stdexcept>
-
 #include <fmt/format.h>
+
+#include "qddot/algebra/solver.hpp"
 
 namespace qddot::sundials {
 
 void check(int flag, const char* call) {
-  if (flag < 0) throw std::runtime_error(fmt::format("{} failed with flag {}", call, flag));
+  if (flag < 0) throw SolverFailure(fmt::format("{} failed with flag {}", call, flag));
 }
 
 Context make_context() {

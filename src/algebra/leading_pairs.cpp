@@ -7,6 +7,8 @@
 
 #include <Spectra/SymEigsSolver.h>
 
+#include "qddot/algebra/solver.hpp"
+
 namespace qddot {
 namespace {
 
@@ -53,7 +55,7 @@ Spectra::SymEigsSolver<Deflated> lanczos(Deflated& a, Index count, double tol) {
   solver.init();
   solver.compute(Spectra::SortRule::LargestAlge, most_restarts, tol);
   if (solver.info() != Spectra::CompInfo::Successful) {
-    throw std::runtime_error("Lanczos' iteration for eigenvalues did not converge");
+    throw SolverFailure("Lanczos' iteration for eigenvalues did not converge");
   }
   return solver;
 }

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -25,6 +27,18 @@ inline std::optional<Solver> find_solver(std::string_view name) {
   }
   return {};
 }
+
+// The name of a solver.
+constexpr std::string_view name(Solver solver) {
+  return solver_names[static_cast<std::size_t>(solver)].second;
+}
+
+// Thrown where a numerical library gives up for a reason that no argument is to blame for; says so
+// in a sentence. An integrator makes an outcome of it.
+class SolverFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 // What became of a solve.
 enum class SolveOutcome {

@@ -110,7 +110,7 @@ Below by_pivots(const System& system, const SymmetricMatrix& k, Vec& e) {
     if (system.size() <= largest_dense) return by_decomposition(k, e);
     e *= std::isfinite(error) ? raised_to * error : 1e3;
   }
-  throw std::runtime_error("the stiffness matrix cannot be factorised, so its signs are not known");
+  throw SolverFailure("the stiffness matrix cannot be factorised, so its signs are not known");
 }
 
 }  // namespace

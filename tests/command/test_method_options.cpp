@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(orders_that_no_method_has_are_refused) {
 
 BOOST_AUTO_TEST_CASE(a_method_is_allowed_its_own_orders) {
   for (const Method& method : methods()) {
-    if (!method.varies_order) continue;
+    if (!method.varies_order()) continue;
     for (const int order : {1, method.order}) {
       const Exit good = simulate(method.name, {"--max-order", std::to_string(order)});
       BOOST_TEST(good.status == 0, method.name << ": " << good.err);
@@ -105,8 +105,8 @@ BOOST_AUTO_TEST_CASE(a_method_is_allowed_its_own_orders) {
 BOOST_AUTO_TEST_CASE(methods_of_one_order_are_told_whom_the_options_are_for) {
   Words variable, detecting;
   for (const Method& method : methods()) {
-    if (method.varies_order) variable.push_back(method.name);
-    if (method.detects_instability) detecting.push_back(method.name);
+    if (method.varies_order()) variable.push_back(method.name);
+    if (method.listens_to(Option::stability_detection)) detecting.push_back(method.name);
   }
   for (const char* name : {"verlet", "arkode_dirk4", "arkode_trbdf2"}) {
     BOOST_TEST(complains(simulate(name, {"--max-order", "2"}), 2, "simulate",
@@ -208,13 +208,13 @@ BOOST_AUTO_TEST_CASE(the_columns_are_empty_or_0_where_they_mean_nothing) {
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const Method& method = *find_method(table.text(row, "method"));
     BOOST_TEST_CONTEXT(method.name) {
-      const bool has_order = method.varies_order && table.value(row, "steps") > 0;
+      const bool has_order = method.varies_order() && table.value(row, "steps") > 0;
       BOOST_TEST((table.text(row, "order_mean") != "") == has_order);
       const double reductions = table.value(row, "order_reductions");
-      BOOST_TEST((reductions == 0 || method.varies_order));
+      BOOST_TEST((reductions == 0 || method.varies_order()));
       const double indefinite = table.value(row, "indefinite_factorizations");
       BOOST_TEST(indefinite <= table.value(row, "factorizations"));
-      BOOST_TEST((indefinite == 0 || method.implicit));
+      BOOST_TEST((indefinite == 0 || method.is(Trait::implicit)));
       const double held = table.value(row, "stability_limited_steps");
       BOOST_TEST(held <= table.value(row, "steps") + table.value(row, "rejected"));
       BOOST_TEST((held == 0 || method.name == "arkode_erk4"));

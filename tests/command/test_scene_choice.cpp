@@ -30,7 +30,8 @@ Scene pairs(std::optional<double> stiff_above) {
   return scene;
 }
 
-const Method split = {.name = "divider", .summary = "none", .source = "none", .needs_split = true};
+const Method split = {
+    .name = "divider", .summary = "none", .source = "none", .needs = {Need::split_forces}};
 
 }  // namespace
 

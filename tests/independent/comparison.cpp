@@ -134,12 +134,12 @@ struct End {
 };
 
 End run(const ReducedScene& reduced, const Method& method, double knob, double until) {
-  Knobs knobs;
-  (method.knob == Knob::step_size ? knobs.step_size : knobs.rtol) = knob;
+  Options options;
+  (method.knob == Knob::step_size ? options.step_size : options.rtol) = knob;
   State state = reduced.initial();
   const Deadline deadline(longest_run);
   const Summary summary =
-      make_integrator(method, reduced.system(), with_tolerance_scales(knobs, reduced))
+      make_integrator(method, reduced.system(), with_tolerance_scales(options, reduced))
           ->advance(state, until, {}, deadline.token());
   return {summary, reduced.expand(state)};
 }
@@ -153,28 +153,28 @@ double resolving_step(const ReducedScene& reduced, double until) {
 
 bool can_take(const Method& method, const ReducedScene& reduced) {
   return applies_to(method, reduced.system()) &&
-         (method.accepts_massless || !reduced.system().has_massless());
+         (method.is(Trait::accepts_massless) || !reduced.system().has_massless());
 }
 
-// Three runs at smaller and smaller knobs. What a method still changes by is about what is wrong
+// Three runs at smaller and smaller options. What a method still changes by is about what is wrong
 // with it. Springs that pass length zero closely make that irregular; a wrong model or formula is
 // off by what no knob changes.
 void compare_runs(const DrawnMotion& motion, const ReducedScene& reduced, const Method& method,
-                  std::array<double, 3> knobs, const std::string& where, Comparisons& all) {
+                  std::array<double, 3> options, const std::string& where, Comparisons& all) {
   constexpr double irregular = 30;
   std::array<End, 3> ends;
   for (std::size_t i = 0; i < 3; ++i) {
     ++all.runs;
-    ends[i] = run(reduced, method, knobs[i], motion.until());
+    ends[i] = run(reduced, method, options[i], motion.until());
     const Outcome outcome = ends[i].summary.outcome;
     const double t = ends[i].summary.t_reached;
     if (outcome == Outcome::over_budget) return;
-    if (method.implicit &&
+    if (method.is(Trait::implicit) &&
         (outcome == Outcome::newton_failed || outcome == Outcome::indefinite_matrix)) {
       ++all.given_up;  // beside such a spring K changes within any step
       return;
     }
-    const std::string run_name = fmt::format("{}, {} at {:.3g}", where, method.name, knobs[i]);
+    const std::string run_name = fmt::format("{}, {} at {:.3g}", where, method.name, options[i]);
     if (outcome != Outcome::reached_end && motion.is_known()) {
       all.disagreements.push_back(fmt::format("{}: ends with {} at {:.6g} of {:.6g} s: {}",
                                               run_name, name(outcome), t, motion.until(),
@@ -197,7 +197,7 @@ void compare_runs(const DrawnMotion& motion, const ReducedScene& reduced, const 
   if (!(error <= irregular * change + motion.floor())) {
     all.disagreements.push_back(fmt::format(
         "{}, {} at {:.3g}: {:.3g} off, where it changed by {:.3g} and rounding by {:.3g}", where,
-        method.name, knobs[2], error, change, motion.floor()));
+        method.name, options[2], error, change, motion.floor()));
   }
 }
 
@@ -337,9 +337,9 @@ Comparisons compare_methods(const DrawnMotion& motion) {
     // A method of order 1 gains or loses a part of h w^2 T / 2 of the motion.
     const double own = method.order == 1 ? h / 16 : h;
     const bool is_fixed = method.knob == Knob::step_size;
-    const std::array<double, 3> knobs =
+    const std::array<double, 3> options =
         is_fixed ? std::array{own, own / 2, own / 4} : std::array{1e-5, 1e-6, 1e-7};
-    compare_runs(motion, reduced, method, knobs, "all reductions", all);
+    compare_runs(motion, reduced, method, options, "all reductions", all);
   }
   return all;
 }

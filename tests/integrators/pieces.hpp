@@ -71,22 +71,23 @@ struct Together {
 // Pieces that the method applies to: of different sizes, dimensions and frequencies.
 inline std::vector<Piece> pieces_for(const Method& method) {
   std::vector<Piece> pieces;
-  for (Problem& p : std::array{method.needs_constant_stiffness ? linear_hammock(2) : hammock(2),
-                               Oscillator().problem(), linear_hammock(3)}) {
-    if (method.needs_split) p.network = with_split(p.network);
+  for (Problem& p :
+       std::array{method.asks(Need::constant_stiffness) ? linear_hammock(2) : hammock(2),
+                  Oscillator().problem(), linear_hammock(3)}) {
+    if (method.asks(Need::split_forces)) p.network = with_split(p.network);
     pieces.push_back(piece(p));
   }
   return pieces;
 }
 
-inline Run run(const Method& method, const Together& whole, double t_end, const Knobs& knobs,
+inline Run run(const Method& method, const Together& whole, double t_end, const Options& options,
                const Observer& observer = {}, std::stop_token stop = {}) {
-  return run(method, *whole.system, whole.start, t_end, knobs, observer, std::move(stop));
+  return run(method, *whole.system, whole.start, t_end, options, observer, std::move(stop));
 }
-inline Run run(const Method& method, const Piece& alone, double t_end, const Knobs& knobs,
+inline Run run(const Method& method, const Piece& alone, double t_end, const Options& options,
                const Observer& observer = {}) {
   const auto system = alone.make();
-  return run(method, *system, alone.start, t_end, knobs, observer);
+  return run(method, *system, alone.start, t_end, options, observer);
 }
 
 }  // namespace qddot

@@ -15,19 +15,26 @@ namespace qddot {
 struct Run {
   Summary summary;
   State state;
+  std::string thrown{};  // what its system or observer threw; then there is no summary
 };
 
 // A run by a new integrator.
 inline Run run(const Method& method, const System& system, State state, double t_end,
-               const Knobs& knobs, const Observer& observer = {}, std::stop_token stop = {}) {
-  const auto integrator = make_integrator(method, system, knobs);
-  Summary summary = integrator->advance(state, t_end, observer, std::move(stop));
-  return {std::move(summary), std::move(state)};
+               const Options& options, const Observer& observer = {}, std::stop_token stop = {}) {
+  const auto integrator = make_integrator(method, system, options);
+  try {
+    Summary summary = integrator->advance(state, t_end, observer, std::move(stop));
+    return {std::move(summary), std::move(state)};
+  } catch (const std::runtime_error& error) {
+    Summary summary;
+    summary.t_reached = state.t;
+    return {std::move(summary), std::move(state), error.what()};
+  }
 }
 
 // What `method` takes of the two.
-inline Knobs knobs_of(const Method& method, double step_size, double rtol) {
-  return method.knob == Knob::step_size ? Knobs{.step_size = step_size} : Knobs{.rtol = rtol};
+inline Options options_of(const Method& method, double step_size, double rtol) {
+  return method.knob == Knob::step_size ? Options{.step_size = step_size} : Options{.rtol = rtol};
 }
 
 // Of methods that a test names; an unknown name throws.
@@ -41,14 +48,15 @@ inline const Method& method_named(std::string_view name) {
 inline std::vector<Method> general_methods() {
   std::vector<Method> list;
   for (const Method& method : methods()) {
-    if (!method.needs_constant_stiffness && !method.needs_split) list.push_back(method);
+    if (!method.asks(Need::constant_stiffness) && !method.asks(Need::split_forces))
+      list.push_back(method);
   }
   return list;
 }
+
 // Whether the method evaluates K where there is one: because it needs it, or to bound its steps.
 inline bool evaluates_stiffness(const Method& method) {
-  return method.needs_stiffness || method.name.starts_with("dprkn") ||
-         method.name.starts_with("arkode_erk");
+  return method.asks(Need::stiffness) || method.is(Trait::bounds_steps);
 }
 inline std::vector<Method> methods_of(Family family) {
   std::vector<Method> list = general_methods();
@@ -69,8 +77,7 @@ inline std::vector<Method> methods_of(Family family, Knob knob) {
 
 // Whether torques cancel in each of its steps, where every spring has a rest length.
 inline bool keeps_angular_momentum(const Method& method) {
-  return method.symplectic || method.name == "discrete_gradient" ||
-         method.name.starts_with("linear_midpoint");
+  return method.is(Trait::symplectic) || method.is(Trait::cancels_torques);
 }
 
 // The larger of the errors in q and in v.

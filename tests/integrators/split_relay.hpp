@@ -81,7 +81,7 @@ inline void count_into(Asked& asked, SplitRelay& relay) {
 inline std::vector<Method> split_methods_of(Knob knob) {
   std::vector<Method> list;
   for (const Method& method : methods()) {
-    if (method.needs_split && method.knob == knob) list.push_back(method);
+    if (method.asks(Need::split_forces) && method.knob == knob) list.push_back(method);
   }
   return list;
 }

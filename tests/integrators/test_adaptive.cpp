@@ -23,7 +23,7 @@ const std::vector<Named> pairs = {{"dprkn6", registered::dprkn6_pair()},
 
 std::vector<Method> interpolating() {
   std::vector<Method> list = methods();
-  std::erase_if(list, [](const Method& method) { return !method.interpolates; });
+  std::erase_if(list, [](const Method& method) { return !method.is(Trait::interpolates); });
   return list;
 }
 
@@ -239,9 +239,9 @@ BOOST_AUTO_TEST_CASE(an_observer_changes_neither_the_end_nor_the_counts) {
       for (const double rtol : {1e-2, 1e-5, 1e-9}) {
         Film watched = film(313, 2);
         watched.times.push_back(2);
-        const Knobs knobs{.rtol = rtol};
-        const Run a = run(method, *c.system, c.initial, 2, knobs, watched.observer());
-        const Run b = run(method, *c.system, c.initial, 2, knobs);
+        const Options options{.rtol = rtol};
+        const Run a = run(method, *c.system, c.initial, 2, options, watched.observer());
+        const Run b = run(method, *c.system, c.initial, 2, options);
         BOOST_TEST(b.summary.message == "");
         BOOST_TEST(same(a.state, b.state));
         BOOST_TEST(same(watched.seen.back(), b.state));
@@ -258,13 +258,13 @@ BOOST_AUTO_TEST_CASE(between_steps_errors_are_of_the_size_of_those_at_their_ends
   for (const Case& c : {linear(), nonlinear()}) {
     for (const auto& [name, pair] : pairs) {
       for (const double rtol : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
-        const Knobs knobs{.rtol = rtol};
+        const Options options{.rtol = rtol};
         const Method& method = method_named(name);
         Film watched = film(317, 2);
-        run(method, *c.system, c.initial, 2, knobs, watched.observer());
+        run(method, *c.system, c.initial, 2, options, watched.observer());
         std::vector<State> ends;
         for (int i = 1; i <= 20; ++i) {
-          ends.push_back(run(method, *c.system, c.initial, 0.1 * i, knobs).state);
+          ends.push_back(run(method, *c.system, c.initial, 0.1 * i, options).state);
         }
         const double between = largest_error(watched.seen, c), at_ends = largest_error(ends, c);
         BOOST_TEST_CONTEXT(name << " at " << rtol << ": " << between << ", " << at_ends) {
@@ -362,8 +362,8 @@ BOOST_AUTO_TEST_CASE(tolerances_are_weighed_by_the_lengths_and_speeds_they_are_f
   small.network.gravity /= 1024;
   const auto system = make_mass_spring(p.network), small_system = make_mass_spring(small.network);
   for (const Method& method : interpolating()) {
-    const auto counts = [&](const System& which, const State& start, const Knobs& knobs) {
-      return run(method, which, start, 1, knobs).summary.counts;
+    const auto counts = [&](const System& which, const State& start, const Options& options) {
+      return run(method, which, start, 1, options).summary.counts;
     };
     const Counts metres = counts(*system, p.initial, {.rtol = 1e-7, .length = 2, .speed = 2});
     BOOST_TEST(counts(*small_system, small.initial,

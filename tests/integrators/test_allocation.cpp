@@ -96,13 +96,16 @@ struct Cost {
 // not fixed, seen after each fourth.
 Cost cost_of(const Method& method, const Course& c, int length, bool compensated) {
   const double w = frequency_bound(*c.system, c.start.q);
-  const double hw = method.knob == Knob::rtol ? 3 : method.implicit ? c.hw : 0.1, h = hw / w;
-  Knobs knobs = knobs_of(method, h, c.rtol);
-  knobs.compensated = compensated;
+  const double hw = method.knob == Knob::rtol    ? 3
+                    : method.is(Trait::implicit) ? c.hw
+                                                 : 0.1,
+               h = hw / w;
+  Options options = options_of(method, h, c.rtol);
+  options.compensated = compensated;
   const double t_end = length * c.steps * h;
   Observer observer{.times = {}, .see = [](const State&) {}};
   for (int i = 4; i < length * c.steps; i += 4) observer.times.push_back(i * h);
-  const auto integrator = make_integrator(method, *c.system, knobs);
+  const auto integrator = make_integrator(method, *c.system, options);
   State state = c.start;
   const std::int64_t before = allocations;
   Summary summary = integrator->advance(state, t_end, observer);
@@ -142,7 +145,7 @@ BOOST_AUTO_TEST_CASE(no_step_of_any_method_and_no_look_at_it_allocates) {
       for (const Method& method : methods()) {
         if (!applies_to(method, *c.system)) continue;
         for (const bool compensated : {false, true}) {
-          if (compensated && !method.takes_compensation) continue;
+          if (compensated && !method.listens_to(Option::compensated)) continue;
           BOOST_TEST_CONTEXT(method.name) {
             const auto more = more_of_longer_run(method, c, compensated);
             BOOST_TEST(more.value_or(0) == 0);

@@ -16,8 +16,8 @@ struct Case {
   State initial;
 };
 Case case_for(const Method& method) {
-  Problem p = method.needs_constant_stiffness ? linear_hammock(2) : hammock(2);
-  if (method.needs_split) p.network = with_split(p.network);
+  Problem p = method.asks(Need::constant_stiffness) ? linear_hammock(2) : hammock(2);
+  if (method.asks(Need::split_forces)) p.network = with_split(p.network);
   return {make_mass_spring(p.network), p.initial};
 }
 
@@ -138,11 +138,9 @@ BOOST_AUTO_TEST_CASE(a_state_between_steps_is_kept_where_the_next_step_fails) {
       const auto begin_to_fail = [&](const State& s) { fails = s.t > 0.5; };
       const Run r =
           run(method, relay, p.initial, 1, {.step_size = 0.1}, {{0.25, 0.55}, begin_to_fail});
-      if (method.needs_laplacian && r.summary.outcome == Outcome::reached_end) continue;
-      BOOST_TEST(r.summary.message == "no more");
+      if (method.asks(Need::laplacian) && r.summary.outcome == Outcome::reached_end) continue;
+      BOOST_TEST(r.thrown == "no more");
       BOOST_TEST(r.state.t == 0.55);
-      BOOST_TEST(r.summary.t_reached == 0.55);
-      BOOST_TEST(r.summary.failed_step == 6);
     }
   }
 }
@@ -152,7 +150,7 @@ BOOST_AUTO_TEST_CASE(times_too_short_to_square_are_told_as_such) {
     BOOST_TEST_CONTEXT(method.name) {
       const Case c = case_for(method);
       for (const double t_end : {1e-300, 1e-160}) {
-        const Run r = run(method, *c.system, c.initial, t_end, knobs_of(method, 0.01, 1e-6));
+        const Run r = run(method, *c.system, c.initial, t_end, options_of(method, 0.01, 1e-6));
         BOOST_TEST(name(r.summary.outcome) == "step_too_small");
         BOOST_TEST(r.summary.message.find("s to run are too short") != std::string::npos,
                    r.summary.message);

@@ -11,7 +11,7 @@ namespace {
 
 std::vector<Method> compensated_methods() {
   std::vector<Method> list = methods();
-  std::erase_if(list, [](const Method& method) { return !method.takes_compensation; });
+  std::erase_if(list, [](const Method& method) { return !method.listens_to(Option::compensated); });
   return list;
 }
 
@@ -108,8 +108,8 @@ BOOST_AUTO_TEST_CASE(the_energy_of_an_orbit_keeps_ten_times_better) {
 BOOST_AUTO_TEST_CASE(a_run_begins_without_the_rest_of_the_one_before) {
   const auto system = make_mass_spring(unit_oscillator);
   for (const Method& method : compensated_methods()) {
-    const Knobs knobs{.step_size = 0.1, .compensated = true};
-    const auto integrator = make_integrator(method, *system, knobs);
+    const Options options{.step_size = 0.1, .compensated = true};
+    const auto integrator = make_integrator(method, *system, options);
     const State start{0, Vec::Ones(1), Vec::Constant(1, 0.3)};
     State once = start, again = start;
     integrator->advance(once, 10);

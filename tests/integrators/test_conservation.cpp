@@ -164,7 +164,8 @@ BOOST_AUTO_TEST_CASE(symplectic_methods_and_the_linear_midpoint_keep_it_for_free
           // 200 steps round x p of up to 100 kg m^2/s, or leave 1e-10 of it to Newton's iteration;
           // other methods err by their order, 1, 2 or 4.
           if (keeps_angular_momentum(method)) {
-            BOOST_TEST(lost < (method.symplectic && method.implicit ? 1e-6 : 1e-10));
+            BOOST_TEST(lost <
+                       (method.is(Trait::symplectic) && method.is(Trait::implicit) ? 1e-6 : 1e-10));
           } else {
             BOOST_TEST(lost > (method.order == 1 ? 1e-3 : 1e-6));
           }

@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(every_method_counts_each_call_that_reaches_the_system) {
   for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       Watch watch(*system);
-      const auto integrator = make_integrator(method, watch.relay, knobs_of(method, 0.01, 1e-5));
+      const auto integrator = make_integrator(method, watch.relay, options_of(method, 0.01, 1e-5));
       watch.forces = watch.stiffnesses = 0;  // what was asked for before the run is not of it
       State state = p.initial;
       const Summary summary = integrator->advance(state, 0.3);

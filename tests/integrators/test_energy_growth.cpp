@@ -23,21 +23,21 @@ Problem pushed(double omega, double v0 = 1) {
   return Oscillator{.mass = 1, .stiffness = omega * omega, .x0 = 0, .v0 = v0}.problem();
 }
 
-double growth(const Method& method, const Problem& p, double t_end, const Knobs& knobs) {
-  return run(method, *make_mass_spring(p.network), p.initial, t_end, knobs).summary.energy_growth;
+double growth(const Method& method, const Problem& p, double t_end, const Options& options) {
+  return run(method, *make_mass_spring(p.network), p.initial, t_end, options).summary.energy_growth;
 }
 
 // What a run says, and what its states at many times do.
 struct Growth {
   double said, seen;
 };
-Growth growth_seen(const Method& method, const Problem& p, double t_end, const Knobs& knobs,
+Growth growth_seen(const Method& method, const Problem& p, double t_end, const Options& options,
                    int looks) {
   const auto system = make_mass_spring(p.network);
   double most = 0;
   Observer observer{{}, [&](const State& s) { most = std::max(most, total_energy(*system, s)); }};
   for (int i = 1; i <= looks; ++i) observer.times.push_back(i * t_end / looks);
-  const Run r = run(method, *system, p.initial, t_end, knobs, observer);
+  const Run r = run(method, *system, p.initial, t_end, options, observer);
   return {r.summary.energy_growth, most / total_energy(*system, p.initial)};
 }
 
@@ -49,7 +49,7 @@ BOOST_AUTO_TEST_CASE(motions_as_they_should_be_have_no_more_energy_than_they_beg
       if (method.name == "explicit_euler") continue;  // which gains some at every h
       BOOST_TEST_CONTEXT(method.name) {
         // h w_max < 0.3 of the chain, 0.1 of the others.
-        const double g = growth(method, p, 1, knobs_of(method, 0.004, 1e-6));
+        const double g = growth(method, p, 1, options_of(method, 0.004, 1e-6));
         BOOST_TEST(g >= 1);
         BOOST_TEST(g < 1.1);
       }
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(what_rests_in_balance_does_not_grow) {
   p.network.anchors = {{0, {1000, 0, 0}, {981, 1}}};
   p.initial = {0, Vec::Constant(1, 1001.01), Vec::Zero(1)};
   for (const Method& method : general_methods()) {
-    BOOST_TEST(growth(method, p, 1, knobs_of(method, 0.01, 1e-6)) < 10, method.name);
+    BOOST_TEST(growth(method, p, 1, options_of(method, 0.01, 1e-6)) < 10, method.name);
   }
 }
 

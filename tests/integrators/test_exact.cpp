@@ -68,8 +68,9 @@ BOOST_AUTO_TEST_CASE(the_registry_knows_it_as_a_method_without_error_for_constan
   BOOST_TEST(std::ranges::count(methods(), "exact", &Method::name) == 1);
   BOOST_TEST(method.order == 0);
   BOOST_TEST((method.knob == Knob::step_size));
-  BOOST_TEST(method.needs_constant_stiffness);
-  BOOST_TEST(std::ranges::count(methods(), true, &Method::needs_constant_stiffness) == 1);
+  BOOST_TEST(method.asks(Need::constant_stiffness));
+  BOOST_TEST(std::ranges::count_if(
+                 methods(), [](const Method& m) { return m.asks(Need::constant_stiffness); }) == 1);
   BOOST_TEST(std::ranges::count(general_methods(), "exact", &Method::name) == 0);
   BOOST_TEST(applies_to(method, *make_mass_spring(linear_hammock(2).network)));
   BOOST_TEST(!applies_to(method, *make_mass_spring(hammock(2).network)));

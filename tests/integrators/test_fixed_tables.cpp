@@ -132,17 +132,17 @@ BOOST_AUTO_TEST_CASE(implicit_euler_by_arkode_is_the_hand_written_one) {
     for (const double h : {0.003, 0.01, 0.05}) {
       BOOST_TEST_CONTEXT("h = " << h) {
         // With a shorter last step.
-        const Knobs knobs{.step_size = h, .solve_tolerance = 1e-13};
+        const Options options{.step_size = h, .solve_tolerance = 1e-13};
         const double t_end = 100.4 * h;
-        const Run ours = run(method_named("implicit_euler"), *system, p.initial, t_end, knobs);
+        const Run ours = run(method_named("implicit_euler"), *system, p.initial, t_end, options);
         const Run theirs =
-            run(method_named("arkode_implicit_euler"), *system, p.initial, t_end, knobs);
+            run(method_named("arkode_implicit_euler"), *system, p.initial, t_end, options);
         BOOST_TEST(ours.summary.message == "");
         BOOST_TEST(theirs.summary.message == "");
         BOOST_TEST(theirs.summary.counts.steps == 101);
         BOOST_TEST(distance(ours.state, theirs.state) < newton_of_100_steps);
         const Run other =
-            run(method_named("semi_implicit_euler"), *system, p.initial, t_end, knobs);
+            run(method_named("semi_implicit_euler"), *system, p.initial, t_end, options);
         if (!system->stiffness_is_constant()) {
           BOOST_TEST(distance(ours.state, other.state) > 1e-4);  // noticed
         }

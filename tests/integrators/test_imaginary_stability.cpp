@@ -85,8 +85,8 @@ using Ending = SmoothChain::Ending;
 template <ARKODE_ERKTableID id>
 class Unbounded final : public Arkode {
  public:
-  Unbounded(const Method& method, const System& system, const Knobs& knobs)
-      : Arkode(method, system, knobs, {.explicit_table = erk_table(id).get()}, right_hand_side,
+  Unbounded(const Method& method, const System& system, const Options& options)
+      : Arkode(method, system, options, {.explicit_table = erk_table(id).get()}, right_hand_side,
                nullptr, nullptr, system) {}
 };
 template <ARKODE_ERKTableID id>

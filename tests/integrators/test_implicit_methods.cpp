@@ -129,14 +129,14 @@ BOOST_AUTO_TEST_CASE(midpoint_and_trbdf2_by_arkode_are_the_hand_written_ones) {
       const auto system = make_mass_spring(p.network);
       for (const double h : {0.01, 0.05}) {
         BOOST_TEST_CONTEXT(ours << " at h = " << h) {
-          const Knobs knobs{.step_size = h, .solve_tolerance = tight};
+          const Options options{.step_size = h, .solve_tolerance = tight};
           const double t_end = 100.4 * h;
-          const Run a = run(method_named(ours), *system, p.initial, t_end, knobs);
-          const Run b = run(method_named(theirs), *system, p.initial, t_end, knobs);
+          const Run a = run(method_named(ours), *system, p.initial, t_end, options);
+          const Run b = run(method_named(theirs), *system, p.initial, t_end, options);
           BOOST_TEST(a.summary.message == "");
           // ARKODE's iteration leaves a tenth of 1e-10 a stage, of 101 steps.
           BOOST_TEST(distance(a.state, b.state) < 1e-8);
-          const Run c = run(method_named("trapezoidal"), *system, p.initial, t_end, knobs);
+          const Run c = run(method_named("trapezoidal"), *system, p.initial, t_end, options);
           if (!system->stiffness_is_constant()) BOOST_TEST(distance(c.state, b.state) > 1e-5);
         }
       }

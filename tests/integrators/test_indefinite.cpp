@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(matrices_are_positive_where_springs_are_in_tension) {
   const Column column(in_tension);
   for (const Method& method : methods_of(Family::sundials)) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Run r = run(method, *column.system, column.at(0), t_end, knobs_of(method, 0.1, 1e-2));
+      const Run r = run(method, *column.system, column.at(0), t_end, options_of(method, 0.1, 1e-2));
       BOOST_TEST(r.summary.message == "");
       BOOST_TEST(r.summary.counts.indefinite_factorizations == 0);
     }

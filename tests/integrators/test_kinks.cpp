@@ -56,10 +56,10 @@ BOOST_AUTO_TEST_CASE(errors_follow_the_tolerance_through_jumps_of_the_force) {
           std::vector<State> seen;
           const Observer observer{{0.97 * exact.pass(), 1.001 * exact.pass(), 3.5 * exact.pass()},
                                   [&](const State& s) { seen.push_back(s); }};
-          const Knobs knobs{
+          const Options options{
               .rtol = rtol, .length = exact.x0, .speed = exact.x0 * std::sqrt(exact.k / exact.m)};
           const Run r =
-              run(method_named(method), *system, exact.problem().initial, until, knobs, observer);
+              run(method_named(method), *system, exact.problem().initial, until, options, observer);
           BOOST_TEST(r.summary.message == "");
           seen.push_back(r.state);
           for (const State& s : seen) {
@@ -131,10 +131,10 @@ BOOST_AUTO_TEST_CASE(where_springs_turn_that_should_not_a_run_goes_on_as_drawn) 
   bool has_turned = false;
   for (const Method& method : methods_of(Knob::step_size)) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Knobs knobs{.step_size = 0.01, .solve_tolerance = 1e-12};
+      const Options options{.step_size = 0.01, .solve_tolerance = 1e-12};
       for (const double until : {0.05, 0.2, 0.3}) {
-        const Run a = run(method, *drawn, p.initial, until, knobs);
-        const Run b = run(method, *directed, p.initial, until, knobs);
+        const Run a = run(method, *drawn, p.initial, until, options);
+        const Run b = run(method, *directed, p.initial, until, options);
         BOOST_TEST(a.summary.message == "");
         BOOST_TEST(b.summary.message == "");
         has_turned = has_turned || !is_linear_at(*directed, b.state.q);
@@ -158,9 +158,9 @@ BOOST_AUTO_TEST_CASE(a_spring_that_turns_over_and_back_keeps_its_law) {
   for (const Method& method : methods_of(Knob::step_size)) {
     for (const double h : {0.01, 0.013, 0.017, 0.023, 0.03}) {
       BOOST_TEST_CONTEXT(method.name << " at " << h) {
-        const Knobs knobs{.step_size = h, .solve_tolerance = 1e-12};
-        const Run a = run(method, *drawn, p.initial, 3, knobs);
-        const Run b = run(method, *directed, p.initial, 3, knobs);
+        const Options options{.step_size = h, .solve_tolerance = 1e-12};
+        const Run a = run(method, *drawn, p.initial, 3, options);
+        const Run b = run(method, *directed, p.initial, 3, options);
         BOOST_TEST((a.summary.outcome == b.summary.outcome));
         // As above; one mass that crosses twice a swing does not magnify it.
         BOOST_TEST(distance(a.state, b.state) < 1e-7);

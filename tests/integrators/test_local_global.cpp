@@ -11,7 +11,7 @@ namespace {
 
 std::vector<Method> all() {
   std::vector<Method> list = methods_of(Knob::step_size);
-  std::erase_if(list, [](const Method& method) { return !method.takes_iterations; });
+  std::erase_if(list, [](const Method& method) { return !method.listens_to(Option::iterations); });
   return list;
 }
 
@@ -202,13 +202,13 @@ BOOST_AUTO_TEST_CASE(they_take_the_iterations_they_are_told_and_one_factorisatio
       for (const int iterations : {0, 1, 4, 10}) {
         BOOST_TEST_CONTEXT(method.name << ", " << iterations) {
           const std::int64_t each = iterations == 0 ? 10 : iterations;
-          const Knobs knobs{.step_size = 0.01, .iterations = iterations};
-          const Run r = run(method, *system, p.initial, steps * 0.01, knobs);
+          const Options options{.step_size = 0.01, .iterations = iterations};
+          const Run r = run(method, *system, p.initial, steps * 0.01, options);
           BOOST_TEST(r.summary.counts == (Counts{.steps = steps,
                                                  .force_evaluations = each * steps,
                                                  .factorizations = 1,
                                                  .solves = each * steps}));
-          const Run rest = run(method, *system, p.initial, (steps + 0.4) * 0.01, knobs);
+          const Run rest = run(method, *system, p.initial, (steps + 0.4) * 0.01, options);
           BOOST_TEST(rest.summary.counts.factorizations == 2);
           BOOST_TEST(rest.summary.counts.solves == each * (steps + 1));
         }
@@ -271,9 +271,9 @@ BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_ends_the_run_where_it_was) {
 BOOST_AUTO_TEST_CASE(seconds_say_what_the_factorisation_and_the_solves_took) {
   const Fallen cloth;
   for (const Method& method : all()) {
-    const Knobs knobs{.step_size = 0.01, .timed = true};
+    const Options options{.step_size = 0.01, .timed = true};
     const Summary summary =
-        run(method, cloth.scene.system(), cloth.state, cloth.state.t + 0.05, knobs).summary;
+        run(method, cloth.scene.system(), cloth.state, cloth.state.t + 0.05, options).summary;
     BOOST_TEST(summary.seconds.factorization > 0);
     BOOST_TEST(summary.seconds.solve > 0);
     BOOST_TEST(summary.seconds.force > 0);

@@ -68,9 +68,9 @@ struct Verdict {
 Verdict judge(const Method& method, int dimension, double rtol = 1e-6) {
   const Problem two = two_springs(dimension), one = one_spring(dimension);
   const auto series = make_mass_spring(two.network), single = make_mass_spring(one.network);
-  const Knobs knobs = knobs_of(method, 0.01, rtol);
-  const Run a = run(method, *series, two.initial, 1, knobs);
-  const Run b = run(method, *single, one.initial, 1, knobs);
+  const Options options = options_of(method, 0.01, rtol);
+  const Run a = run(method, *series, two.initial, 1, options);
+  const Run b = run(method, *single, one.initial, 1, options);
   BOOST_REQUIRE(b.summary.message == "");
   if (a.summary.outcome != Outcome::reached_end || !is_finite(a.state)) return {};
   return {force_at(*series, a.state.q).head(dimension).norm(),
@@ -115,7 +115,7 @@ class Sleeper final : public FixedStep {
 
 std::vector<Method> accepting(Knob knob) {
   std::vector<Method> list = methods_of(knob);
-  std::erase_if(list, [](const Method& method) { return !method.accepts_massless; });
+  std::erase_if(list, [](const Method& method) { return !method.is(Trait::accepts_massless); });
   return list;
 }
 
@@ -146,7 +146,7 @@ Vec second_force_rate(const System& system, const State& s) {
 template <class T>
 Method boasting() {
   Method method = method_named("symplectic_euler");
-  method.accepts_massless = true;
+  method.traits = method.traits.with(Trait::accepts_massless);
   method.make = create<T>;
   return method;
 }
@@ -364,9 +364,9 @@ BOOST_AUTO_TEST_CASE(methods_that_divide_by_the_mass_refuse_at_once) {
   const Problem p = two_springs(1);
   const auto system = make_mass_spring(p.network);
   for (const Method& method : general_methods()) {
-    if (method.accepts_massless) continue;
+    if (method.is(Trait::accepts_massless)) continue;
     BOOST_TEST_CONTEXT(method.name) {
-      const Run r = run(method, *system, p.initial, 1, knobs_of(method, 0.01, 1e-6));
+      const Run r = run(method, *system, p.initial, 1, options_of(method, 0.01, 1e-6));
       BOOST_TEST(name(r.summary.outcome) == "singular_mass");
       BOOST_TEST(r.summary.message == advice(Outcome::singular_mass));
       BOOST_TEST(same(r.state, p.initial));

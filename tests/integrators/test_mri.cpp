@@ -134,15 +134,15 @@ BOOST_AUTO_TEST_CASE(soft_forces_are_evaluated_a_few_times_a_step_and_stiff_ones
 BOOST_AUTO_TEST_CASE(steps_far_beyond_what_the_stiff_springs_let_an_explicit_method_take) {
   const Problem p = railed_hammock(2, 1e4);
   const auto system = make_mass_spring(p.network);
-  const Knobs knobs{.step_size = 0.01}, fine{.step_size = 0.0025};
-  BOOST_TEST(knobs.step_size * frequency_bound(*system, p.initial.q) > 10);
+  const Options options{.step_size = 0.01}, fine{.step_size = 0.0025};
+  BOOST_TEST(options.step_size * frequency_bound(*system, p.initial.q) > 10);
   for (const Method& method : split_methods_of(Knob::step_size)) {
-    const Run coarse = run(method, *system, p.initial, 1, knobs);
+    const Run coarse = run(method, *system, p.initial, 1, options);
     BOOST_TEST(coarse.summary.message == "");
     // In 1 s the nodes move by metres; the soft forces' time is some 0.1 s, ten of the steps.
     BOOST_TEST(distance(coarse.state.q, run(method, *system, p.initial, 1, fine).state.q) < 0.02);
   }
-  const Run one = run(method_named("verlet"), *system, p.initial, 1, knobs);
+  const Run one = run(method_named("verlet"), *system, p.initial, 1, options);
   BOOST_TEST(name(one.summary.outcome) == "diverged");
 }
 

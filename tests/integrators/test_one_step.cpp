@@ -211,7 +211,7 @@ BOOST_AUTO_TEST_CASE(every_method_flies_freely_and_exactly_also_over_a_shortened
   for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       const double t = 1.03;
-      const Run r = run(method, *system, p.initial, t, knobs_of(method, 0.1, 1e-6));
+      const Run r = run(method, *system, p.initial, t, options_of(method, 0.1, 1e-6));
       BOOST_TEST(r.summary.message == "");
       // Rounding of at most some hundred steps or stages.
       BOOST_TEST(distance(r.state.v, p.initial.v) < 1e-13);

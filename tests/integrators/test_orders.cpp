@@ -11,14 +11,14 @@ namespace {
 
 std::vector<Method> of_variable_order() {
   std::vector<Method> list = methods_of(Knob::rtol);
-  std::erase_if(list, [](const Method& method) { return !method.varies_order; });
+  std::erase_if(list, [](const Method& method) { return !method.varies_order(); });
   return list;
 }
 
-Counts counts_of(const Method& method, const Knobs& knobs) {
+Counts counts_of(const Method& method, const Options& options) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(p.network);
-  const Run r = run(method, *system, p.initial, 2, knobs);
+  const Run r = run(method, *system, p.initial, 2, options);
   BOOST_REQUIRE(r.summary.message == "");
   return r.summary.counts;
 }
@@ -43,9 +43,9 @@ BOOST_AUTO_TEST_CASE(orders_are_added_up_and_reductions_counted) {
 BOOST_AUTO_TEST_CASE(exactly_the_methods_of_variable_order_tell_of_their_orders) {
   for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Counts c = counts_of(method, knobs_of(method, 0.01, 1e-6));
-      BOOST_TEST((c.order_sum > 0) == method.varies_order);
-      if (!method.varies_order) BOOST_TEST(c.order_reductions == 0);
+      const Counts c = counts_of(method, options_of(method, 0.01, 1e-6));
+      BOOST_TEST((c.order_sum > 0) == method.varies_order());
+      if (!method.varies_order()) BOOST_TEST(c.order_reductions == 0);
     }
   }
   BOOST_TEST(of_variable_order().size() == 5);

@@ -33,7 +33,7 @@ BOOST_AUTO_TEST_CASE(a_scene_without_unknowns_reaches_its_end) {
   for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       try {
-        const Run r = run(method, *system, {0, Vec(0), Vec(0)}, 1, knobs_of(method, 0.01, 1e-4));
+        const Run r = run(method, *system, {0, Vec(0), Vec(0)}, 1, options_of(method, 0.01, 1e-4));
         BOOST_TEST(name(r.summary.outcome) == "reached_end");
         BOOST_TEST(r.state.t == 1);
       } catch (const std::exception& error) {
@@ -48,17 +48,17 @@ BOOST_AUTO_TEST_CASE(a_start_or_an_end_that_is_no_number_is_refused) {
   for (const Method& method : general_methods()) {
     for (const double bad : {nan, infinity, -infinity}) {
       BOOST_TEST_CONTEXT(method.name << " " << bad) {
-        const Knobs knobs = knobs_of(method, 0.01, 1e-4);
+        const Options options = options_of(method, 0.01, 1e-4);
         State bad_q = h.problem.initial, bad_v = bad_q;
         bad_q.q[3] = bad;
         bad_v.v[0] = bad;
         for (const State& start : {bad_q, bad_v}) {
-          const Run r = run(method, *h.system, start, 1, knobs);
+          const Run r = run(method, *h.system, start, 1, options);
           BOOST_TEST(name(r.summary.outcome) == "not_finite");
           BOOST_TEST(r.summary.message == "the start is not finite");
           BOOST_TEST(r.state.t == 0);
         }
-        const Run endless = run(method, *h.system, h.problem.initial, bad, knobs);
+        const Run endless = run(method, *h.system, h.problem.initial, bad, options);
         BOOST_TEST(name(endless.summary.outcome) == "not_finite");
         BOOST_TEST(same(endless.state, h.problem.initial));
       }
@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(a_start_at_a_time_that_is_no_number_is_refused) {
   h.problem.initial.t = nan;
   for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Run r = run(method, *h.system, h.problem.initial, 1, knobs_of(method, 0.01, 1e-4));
+      const Run r = run(method, *h.system, h.problem.initial, 1, options_of(method, 0.01, 1e-4));
       BOOST_TEST(name(r.summary.outcome) == "not_finite");
     }
   }
@@ -81,10 +81,7 @@ BOOST_AUTO_TEST_CASE(a_step_that_rounding_swallows_is_refused) {
   const Hammock h;
   struct {
     double t_start, t_end, step_size;
-  } const cases[] = {
-      {0, 1, 1e-20}, {1e9, 1e9 + 1, 1e-8}, {-1e9, -1e9 + 1, 1e-8},
-      {0, 1, 0},     {0, 1, -0.1},         {0, 1, nan},
-  };
+  } const cases[] = {{0, 1, 1e-20}, {1e9, 1e9 + 1, 1e-8}, {-1e9, -1e9 + 1, 1e-8}};
   for (const Method& method : methods_of(Knob::step_size)) {
     for (const auto& [t_start, t_end, step_size] : cases) {
       BOOST_TEST_CONTEXT(method.name << " with h = " << step_size << " from " << t_start) {
@@ -118,7 +115,7 @@ BOOST_AUTO_TEST_CASE(a_run_stopped_before_it_starts_leaves_its_state) {
   budget.request_stop();
   for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Run r = run(method, *h.system, h.problem.initial, 1, knobs_of(method, 0.01, 1e-4), {},
+      const Run r = run(method, *h.system, h.problem.initial, 1, options_of(method, 0.01, 1e-4), {},
                         budget.get_token());
       BOOST_TEST(name(r.summary.outcome) == "over_budget");
       BOOST_TEST(r.summary.message == advice(Outcome::over_budget));
@@ -134,15 +131,16 @@ BOOST_AUTO_TEST_CASE(a_run_stopped_on_its_way_ends_there) {
     BOOST_TEST_CONTEXT(method.name) {
       std::stop_source budget;
       const Observer observer{{0.5}, [&](const State&) { budget.request_stop(); }};
-      const Knobs knobs = knobs_of(method, 0.01, 1e-4);
+      const Options options = options_of(method, 0.01, 1e-4);
       const Run r =
-          run(method, *h.system, h.problem.initial, 1, knobs, observer, budget.get_token());
+          run(method, *h.system, h.problem.initial, 1, options, observer, budget.get_token());
       BOOST_TEST(name(r.summary.outcome) == "over_budget");
       BOOST_TEST(is_sound(r, 1));
       BOOST_TEST(r.state.t == 0.5);
-      const State there = run(method, *h.system, h.problem.initial, 0.5, knobs).state;
+      const State there = run(method, *h.system, h.problem.initial, 0.5, options).state;
       // A method that steps on 0.5 only where that is its end does so within some tolerances.
-      BOOST_TEST(distance(r.state, there) <= (method.interpolates ? 10 * knobs.rtol : 0));
+      BOOST_TEST(distance(r.state, there) <=
+                 (method.is(Trait::interpolates) ? 10 * options.rtol : 0));
     }
   }
 }
@@ -153,7 +151,7 @@ BOOST_AUTO_TEST_CASE(explicit_methods_far_above_their_limit_diverge_with_a_finit
   const auto system = make_mass_spring(p.network);
   const double h = 100 / o.omega();
   for (const Method& method : methods_of(Knob::step_size)) {
-    if (method.implicit) continue;
+    if (method.is(Trait::implicit)) continue;
     BOOST_TEST_CONTEXT(method.name) {
       const Run r = run(method, *system, p.initial, 1000 * h, {.step_size = h});
       BOOST_TEST(name(r.summary.outcome) == "diverged");
@@ -178,7 +176,7 @@ BOOST_AUTO_TEST_CASE(any_knob_however_coarse_ends_in_a_sound_state) {
           relay.after_force = [&, calls = 0](const Vec&, Vec&) mutable {
             if (++calls == 100000) budget.request_stop();
           };
-          const Run r = run(method, relay, p.initial, t_end, knobs_of(method, coarse, coarse), {},
+          const Run r = run(method, relay, p.initial, t_end, options_of(method, coarse, coarse), {},
                             budget.get_token());
           BOOST_TEST(is_sound(r, t_end), r.summary.message);
         }

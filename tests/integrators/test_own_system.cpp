@@ -25,7 +25,9 @@ const State& reference() {
 }
 
 // Steps and tolerances at which the method errs by far less than the chain moves.
-Knobs fine(const Method& method) { return knobs_of(method, method.order == 1 ? 1e-4 : 1e-3, 1e-8); }
+Options fine(const Method& method) {
+  return options_of(method, method.order == 1 ? 1e-4 : 1e-3, 1e-8);
+}
 // Vibrations of 17 rad/s and 0.05 m: of order 1, errors of (h w) w t / 2, of order 2 of (h w)^2 w
 // t / 12 of them.
 double allowed(const Method& method) { return method.order == 1 ? 2e-2 : 2e-3; }
@@ -153,7 +155,7 @@ BOOST_AUTO_TEST_CASE(massless_nodes_without_k_are_refused_by_all) {
     BOOST_TEST_CONTEXT(method.name) {
       const Run r = run(method, chain, start(), until, fine(method));
       const Outcome expected =
-          method.accepts_massless ? Outcome::no_stiffness : Outcome::singular_mass;
+          method.is(Trait::accepts_massless) ? Outcome::no_stiffness : Outcome::singular_mass;
       BOOST_TEST(name(r.summary.outcome) == name(expected));
     }
   }

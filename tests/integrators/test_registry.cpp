@@ -135,13 +135,14 @@ BOOST_AUTO_TEST_CASE(facts_about_a_method_fit_together) {
   for (const Method& method : methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       // Without step error there is no order.
-      BOOST_TEST(method.order >= (method.needs_constant_stiffness ? 0 : 1));
+      BOOST_TEST(method.order >= (method.asks(Need::constant_stiffness) ? 0 : 1));
       BOOST_TEST(method.order <= 12);
       // Without implicitness a massless node has no equation; without steps of its own choice a
       // method has no order to choose.
-      if (method.accepts_massless) BOOST_TEST(method.implicit);
-      if (method.varies_order || method.interpolates) BOOST_TEST((method.knob == Knob::rtol));
-      if (method.name.ends_with("_klu"))
+      if (method.is(Trait::accepts_massless)) BOOST_TEST(method.is(Trait::implicit));
+      if (method.varies_order() || method.is(Trait::interpolates))
+        BOOST_TEST((method.knob == Knob::rtol));
+      if (method.is(Trait::stock_solver))
         BOOST_TEST(find_method(method.name.substr(0, method.name.size() - 4)));
     }
   }
@@ -154,7 +155,7 @@ BOOST_AUTO_TEST_CASE(every_method_can_be_made_and_has_not_run_by_then) {
   const auto system = make_mass_spring(hammock(3).network);
   for (const Method& method : methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      BOOST_TEST(make_integrator(method, *system, knobs_of(method, 1e-3, 1e-3)) != nullptr);
+      BOOST_TEST(make_integrator(method, *system, options_of(method, 1e-3, 1e-3)) != nullptr);
     }
   }
   const Summary summary;
@@ -167,10 +168,10 @@ BOOST_AUTO_TEST_CASE(exactly_the_implicit_methods_factorise_and_those_that_need_
   const auto system = make_mass_spring(p.network);
   for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Run r = run(method, *system, p.initial, 0.1, knobs_of(method, 0.01, 1e-4));
+      const Run r = run(method, *system, p.initial, 0.1, options_of(method, 0.01, 1e-4));
       BOOST_TEST(r.summary.message == "");
       BOOST_TEST((r.summary.counts.stiffness_evaluations > 0) == evaluates_stiffness(method));
-      BOOST_TEST((r.summary.counts.factorizations > 0) == method.implicit);
+      BOOST_TEST((r.summary.counts.factorizations > 0) == method.is(Trait::implicit));
     }
   }
 }
@@ -182,7 +183,7 @@ BOOST_AUTO_TEST_CASE(one_step_keeps_the_symplectic_form_exactly_where_the_regist
       // Differences of step s = 1e-4 err by s^2 |third derivative|, about 1e-8; a method that is
       // not symplectic misses by some (h w)^(order + 1) with h w = 1 here, of higher order by a
       // thousandth of that.
-      if (method.symplectic) {
+      if (method.is(Trait::symplectic)) {
         BOOST_TEST(defect < 1e-6);
       } else {
         BOOST_TEST(defect > (method.order == 1 ? 1e-2 : method.order == 2 ? 1e-3 : 1e-5));

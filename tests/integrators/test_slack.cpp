@@ -53,7 +53,7 @@ double time_of_slack() {
 
 std::vector<Method> accepting_massless() {
   std::vector<Method> list = general_methods();
-  std::erase_if(list, [](const Method& method) { return !method.accepts_massless; });
+  std::erase_if(list, [](const Method& method) { return !method.is(Trait::accepts_massless); });
   return list;
 }
 
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(who_keeps_a_massless_node_notices_that_its_place_is_no_long
       BOOST_TEST_CONTEXT(method.name << " in dimension " << dimension) {
         const Problem p = thrown(dimension);
         const auto system = make_mass_spring(p.network);
-        const Run r = run(method, *system, p.initial, 0.2, knobs_of(method, 1e-3, 1e-7));
+        const Run r = run(method, *system, p.initial, 0.2, options_of(method, 1e-3, 1e-7));
         BOOST_TEST(name(r.summary.outcome) == "went_slack");
         BOOST_TEST(r.summary.message.find("at a massless node") != std::string::npos);
         // It is slack after the last state and where it is told. Implicit Euler's error at h = 1 ms
@@ -110,14 +110,14 @@ BOOST_AUTO_TEST_CASE(who_keeps_a_massless_node_notices_that_its_place_is_no_long
         BOOST_TEST(r.state.t < time_of_slack() + 3e-3);
         BOOST_TEST(told > time_of_slack() - 3e-3);
         BOOST_TEST(told - r.state.t < 1e-2);  // a step
-        const Run before = run(method, *system, p.initial, 0.07, knobs_of(method, 1e-3, 1e-7));
+        const Run before = run(method, *system, p.initial, 0.07, options_of(method, 1e-3, 1e-7));
         BOOST_TEST(before.summary.message == "");
       }
     }
     // In one dimension nothing can fold.
     const Problem p = thrown(1);
     const auto system = make_mass_spring(p.network);
-    const Run r = run(method, *system, p.initial, 0.2, knobs_of(method, 1e-3, 1e-6));
+    const Run r = run(method, *system, p.initial, 0.2, options_of(method, 1e-3, 1e-6));
     BOOST_TEST(r.summary.message == "");
   }
 }
@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(what_would_fold_across_the_line_that_a_plane_scene_is_left_
   for (const Method& method : accepting_massless()) {
     BOOST_TEST_CONTEXT(method.name) {
       const Run r =
-          run(method, reduced.system(), reduced.initial(), 0.2, knobs_of(method, 1e-3, 1e-7));
+          run(method, reduced.system(), reduced.initial(), 0.2, options_of(method, 1e-3, 1e-7));
       BOOST_TEST(name(r.summary.outcome) == "went_slack");
       // The state is that before the step in which it happens.
       const double told = number_behind(r.summary.message, "at t = ");

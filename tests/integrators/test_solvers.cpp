@@ -10,7 +10,7 @@ namespace {
 
 std::vector<Method> methods_with_solver() {
   std::vector<Method> list = general_methods();
-  std::erase_if(list, [](const Method& method) { return !method.takes_solver; });
+  std::erase_if(list, [](const Method& method) { return !method.listens_to(Option::solver); });
   return list;
 }
 
@@ -23,15 +23,15 @@ BOOST_AUTO_TEST_CASE(every_method_ends_in_the_same_state_with_every_solver) {
   const auto system = make_mass_spring(p.network);
   BOOST_TEST(methods_with_solver().size() >= 20u);
   for (const Method& method : methods_with_solver()) {
-    Knobs knobs = knobs_of(method, 0.01, 1e-6);
-    knobs.solve_tolerance = 1e-10;
-    knobs.solver = Solver::multifrontal;
-    const Run reference = run(method, *system, p.initial, 1, knobs);
+    Options options = options_of(method, 0.01, 1e-6);
+    options.solve_tolerance = 1e-10;
+    options.solver = Solver::multifrontal;
+    const Run reference = run(method, *system, p.initial, 1, options);
     BOOST_TEST(reference.summary.message == "", method.name);
     for (const auto& [solver, name] : solver_names) {
       BOOST_TEST_CONTEXT(method.name << " with " << name) {
-        knobs.solver = solver;
-        const Run r = run(method, *system, p.initial, 1, knobs);
+        options.solver = solver;
+        const Run r = run(method, *system, p.initial, 1, options);
         BOOST_TEST(r.summary.message == "");
         const bool is_fixed = method.knob == Knob::step_size;
         BOOST_TEST(distance(r.state, reference.state) < (is_fixed ? 1e-7 : 1e-3));
@@ -54,11 +54,11 @@ BOOST_AUTO_TEST_CASE(compression_is_softened_or_reported_with_conjugate_gradient
   for (int i = 0; i < masses; ++i)
     p.initial.q.segment<2>(2 * i) << i + 1, (i % 2 == 0 ? 0.01 : -0.02) * (1 + 0.3 * i);
   const auto system = make_mass_spring(p.network);
-  const Knobs knobs{.step_size = 0.05, .solver = Solver::conjugate_gradients};
-  const Run minimised = run(method_named("implicit_euler"), *system, p.initial, 1, knobs);
+  const Options options{.step_size = 0.05, .solver = Solver::conjugate_gradients};
+  const Run minimised = run(method_named("implicit_euler"), *system, p.initial, 1, options);
   BOOST_TEST(minimised.summary.message == "");
   BOOST_TEST(total_energy(*system, minimised.state) < 0.5 * total_energy(*system, p.initial));
-  const Run formula = run(method_named("semi_implicit_euler"), *system, p.initial, 1, knobs);
+  const Run formula = run(method_named("semi_implicit_euler"), *system, p.initial, 1, options);
   BOOST_TEST((formula.summary.outcome == Outcome::indefinite_matrix));
   BOOST_TEST(formula.summary.message.find("--solver multifrontal") != std::string::npos);
   const Run direct = run(method_named("semi_implicit_euler"), *system, p.initial, 0.05,

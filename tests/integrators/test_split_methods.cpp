@@ -29,10 +29,10 @@ class SumOfForces final : public FixedStep {
 const Method method = {.name = "sum_of_forces",
                        .summary = "a sum",
                        .source = "none",
-                       .needs_split = true,
+                       .needs = {Need::split_forces},
                        .make = create<SumOfForces>};
 
-constexpr Knobs knobs = {.step_size = 1e-3};
+constexpr Options options = {.step_size = 1e-3};
 
 }  // namespace
 
@@ -43,9 +43,9 @@ BOOST_AUTO_TEST_CASE(on_a_split_system_they_run) {
     const Problem p = hammock(dimension);
     const auto system = make_mass_spring(with_split(p.network));
     BOOST_TEST(applies_to(method, *system));
-    const Run r = run(method, *system, p.initial, 0.1, knobs);
+    const Run r = run(method, *system, p.initial, 0.1, options);
     BOOST_TEST(r.summary.message == "");
-    const Run whole = run(method_named("symplectic_euler"), *system, p.initial, 0.1, knobs);
+    const Run whole = run(method_named("symplectic_euler"), *system, p.initial, 0.1, options);
     // 100 steps of positions of 5 m, velocities of 10 m/s and forces of 100 N, each rounded.
     BOOST_TEST(distance(r.state, whole.state) < 100 * 10 * 2.2e-16 * 10);
     BOOST_TEST(distance(r.state.q, p.initial.q) > 1e-3);
@@ -57,7 +57,7 @@ BOOST_AUTO_TEST_CASE(without_a_stiff_set_they_are_refused_before_the_first_step)
   const auto system = make_mass_spring(p.network);
   BOOST_TEST(!applies_to(method, *system));
   BOOST_TEST((misfit(method, *system) == Outcome::no_stiff_set));
-  const Run r = run(method, *system, p.initial, 1, knobs);
+  const Run r = run(method, *system, p.initial, 1, options);
   BOOST_TEST(name(r.summary.outcome) == "no_stiff_set");
   BOOST_TEST(r.summary.message == advice(Outcome::no_stiff_set));
   BOOST_TEST(same(r.state, p.initial));
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(other_methods_do_not_ask) {
 
 BOOST_AUTO_TEST_CASE(one_that_needs_a_constant_stiffness_as_well_is_told_of_that_first) {
   Method both = method;
-  both.needs_constant_stiffness = true;
+  both.needs = both.needs.with(Need::constant_stiffness);
   const auto is = [&](const Network& network) { return misfit(both, *make_mass_spring(network)); };
   BOOST_TEST((is(hammock(2).network) == Outcome::stiffness_varies));
   BOOST_TEST((is(linear_hammock(2).network) == Outcome::no_stiff_set));
@@ -87,19 +87,19 @@ BOOST_AUTO_TEST_CASE(every_part_has_to_be_split_but_one_without_unknowns) {
   const Together together(pieces);
   BOOST_TEST(applies_to(method, *together.system));
   const double t_end = start_time + 0.1;
-  const Run whole = run(method, together, t_end, knobs);
+  const Run whole = run(method, together, t_end, options);
   BOOST_TEST(whole.summary.message == "");
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Run alone = run(method, pieces[i], t_end, knobs);
+    const Run alone = run(method, pieces[i], t_end, options);
     BOOST_TEST(same(together.part(whole.state, i), alone.state));
   }
 
   std::vector<Piece> more = pieces;
   more.push_back({[] { return make_mass_spring({.dimension = 2}); }, {start_time, {}, {}}});
-  BOOST_TEST(run(method, Together(more), t_end, knobs).summary.message == "");
+  BOOST_TEST(run(method, Together(more), t_end, options).summary.message == "");
   more.insert(more.begin() + 1, piece(hammock(2)));
   const Together unlike(more);
-  const Run refused = run(method, unlike, t_end, knobs);
+  const Run refused = run(method, unlike, t_end, options);
   BOOST_TEST(name(refused.summary.outcome) == "no_stiff_set");
   BOOST_TEST(same(refused.state, unlike.start));
 }

@@ -239,7 +239,7 @@ BOOST_AUTO_TEST_CASE(symplectic_methods_and_the_linear_midpoint_keep_angular_mom
     BOOST_TEST_CONTEXT(method.name) {
       // Rounding as above, of x p of 100 kg m^2/s after a flight of 30 m, but for what the
       // nonlinear solves of implicit symplectic methods leave.
-      const bool iterates = method.symplectic && method.implicit;
+      const bool iterates = method.is(Trait::symplectic) && method.is(Trait::implicit);
       BOOST_TEST(change_of_momenta(method).tail<3>().norm() < (iterates ? 1e-6 : 1e-10));
     }
   }

@@ -28,49 +28,40 @@ void break_stiffnesses(Relay& relay) {
 }
 
 constexpr double until = 30;  // s, in which the explicit methods too look at K some ten times
-Knobs knobs_for(const Method& method) { return knobs_of(method, 0.01, 1e-6); }
+Options options_for(const Method& method) { return options_of(method, 0.01, 1e-6); }
 
 // A method's run on a hammock that breaks.
 struct BrokenRun {
   BrokenRun(const Method& method, void (*break_it)(Relay&))
-      : integrator(make_integrator(method, relay, knobs_for(method))) {
+      : integrator(make_integrator(method, relay, options_for(method))) {
     break_it(relay);
-    summary = integrator->advance(state, until);
+    try {
+      integrator->advance(state, until);
+    } catch (const std::runtime_error& error) {
+      thrown = error.what();
+    }
   }
   Problem problem = hammock(2);
   std::unique_ptr<System> system = make_mass_spring(problem.network);
   Relay relay{*system};
   std::unique_ptr<Integrator> integrator;
   State state = problem.initial;
-  Summary summary;
+  std::string thrown;
 };
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(an_exception_in_the_system_becomes_a_failure_with_its_words) {
+BOOST_AUTO_TEST_CASE(an_exception_in_the_system_comes_out_as_itself) {
   for (const Method& method : methods_of(Family::sundials)) {
     for (const auto break_it : {break_forces, break_stiffnesses}) {
       if (break_it == break_stiffnesses && !evaluates_stiffness(method)) continue;
       BOOST_TEST_CONTEXT(method.name) {
         const BrokenRun r(method, break_it);
-        BOOST_TEST(name(r.summary.outcome) == "solver_failed");
-        BOOST_TEST(r.summary.message == "the spring broke");
-        BOOST_TEST(r.summary.t_reached == r.state.t);
+        BOOST_TEST(r.thrown == "the spring broke");
         BOOST_TEST(r.state.t > 0);
         BOOST_TEST(r.state.t < until);
         BOOST_TEST(is_finite(r.state));
       }
-    }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(an_exception_leaves_the_counts_of_what_was_done) {
-  for (const Method& method : methods_of(Family::sundials)) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const BrokenRun r(method, break_forces);
-      BOOST_TEST(r.summary.counts.force_evaluations == 40);
-      BOOST_TEST(r.summary.counts.steps > 0);
-      BOOST_TEST((r.summary.counts.newton_iterations > 0) == method.implicit);
     }
   }
 }
@@ -83,7 +74,7 @@ BOOST_AUTO_TEST_CASE(after_an_exception_the_same_integrator_runs_again) {
       State state = r.problem.initial;
       BOOST_TEST(r.integrator->advance(state, 1).message == "");
       BOOST_TEST(
-          same(state, run(method, *r.system, r.problem.initial, 1, knobs_for(method)).state));
+          same(state, run(method, *r.system, r.problem.initial, 1, options_for(method)).state));
     }
   }
 }
@@ -102,7 +93,7 @@ BOOST_AUTO_TEST_CASE(a_force_that_becomes_no_number_ends_the_run_at_the_last_acc
         if (q[0] < 0.2) f[0] = NAN;
         if (++calls == 100000) budget.request_stop();
       };
-      const Run r = run(method, relay, p.initial, 1, knobs_for(method), {}, budget.get_token());
+      const Run r = run(method, relay, p.initial, 1, options_for(method), {}, budget.get_token());
       const auto outcome = r.summary.outcome;
       BOOST_TEST((outcome == Outcome::not_finite || outcome == Outcome::step_too_small),
                  r.summary.message);
@@ -114,7 +105,7 @@ BOOST_AUTO_TEST_CASE(a_force_that_becomes_no_number_ends_the_run_at_the_last_acc
       BOOST_TEST(r.state.q[0] > 0.2 - 1e-14);
       // Accepted states are where the method goes by itself, to 1000 times the tolerance (see the
       // suite `sundials`), which with a constant step is that of Newton's iteration.
-      const State whole = run(method, *system, p.initial, r.state.t, knobs_for(method)).state;
+      const State whole = run(method, *system, p.initial, r.state.t, options_for(method)).state;
       BOOST_TEST(distance(r.state, whole) < (method.knob == Knob::rtol ? 1e-3 : 1e-7));
     }
   }
@@ -127,7 +118,7 @@ BOOST_AUTO_TEST_CASE(a_message_of_sundials_reaches_the_summary_in_one_line) {
   relay.after_force = [](const Vec&, Vec& f) { f[0] = NAN; };
   for (const Method& method : methods_of(Family::sundials)) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Run r = run(method, relay, p.initial, 1, knobs_for(method));
+      const Run r = run(method, relay, p.initial, 1, options_for(method));
       BOOST_TEST(name(r.summary.outcome) == "not_finite");
       BOOST_TEST(contains(r.summary.message, " at t = 0 s: "));
       for (const char* library : {"ARKODE", "CVODE", "IDA"}) {

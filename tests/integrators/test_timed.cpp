@@ -13,10 +13,10 @@ namespace {
 
 double sum(const Seconds& s) { return s.force + s.stiffness + s.factorization + s.solve; }
 
-Knobs knobs_for(const Method& method, bool is_timed) {
-  Knobs knobs = knobs_of(method, 0.01, 1e-5);
-  knobs.timed = is_timed;
-  return knobs;
+Options options_for(const Method& method, bool is_timed) {
+  Options options = options_of(method, 0.01, 1e-5);
+  options.timed = is_timed;
+  return options;
 }
 
 std::unique_ptr<System> two_parts() {
@@ -39,7 +39,7 @@ BOOST_AUTO_TEST_CASE(no_time_is_taken_unless_it_is_asked_for) {
   for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
       const Seconds s =
-          run(method, *system, p.initial, 0.5, knobs_for(method, false)).summary.seconds;
+          run(method, *system, p.initial, 0.5, options_for(method, false)).summary.seconds;
       for (const double time : {s.force, s.stiffness, s.factorization, s.solve}) {
         BOOST_TEST(time == 0);
       }
@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(times_are_those_of_what_is_counted_and_add_up_to_less_than_
     for (const bool is_divided : {false, true}) {
       BOOST_TEST_CONTEXT(method.name << (is_divided ? " on two parts" : "")) {
         const System& system = is_divided ? *divided : *whole;
-        const auto integrator = make_integrator(method, system, knobs_for(method, true));
+        const auto integrator = make_integrator(method, system, options_for(method, true));
         for (int repeat = 0; repeat < 2; ++repeat) {  // of the second, too, only its own
           State state = is_divided ? twice(p.initial) : p.initial;
           const auto start = std::chrono::steady_clock::now();
@@ -79,8 +79,8 @@ BOOST_AUTO_TEST_CASE(timing_changes_nothing_else) {
   const auto system = make_mass_spring(p.network);
   for (const Method& method : general_methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Run a = run(method, *system, p.initial, 0.5, knobs_for(method, false));
-      const Run b = run(method, *system, p.initial, 0.5, knobs_for(method, true));
+      const Run a = run(method, *system, p.initial, 0.5, options_for(method, false));
+      const Run b = run(method, *system, p.initial, 0.5, options_for(method, true));
       BOOST_TEST(same(a.state, b.state));
       BOOST_TEST(a.summary.counts == b.summary.counts);
     }

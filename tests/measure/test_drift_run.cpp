@@ -50,7 +50,7 @@ struct Study {
 
   DriftRun of(const Method& method, double value, double h, double until) const {
     const MotionScales scales = motion_scales(scene, momenta, until);
-    return run_drift(method, knobs_for(method, value, scene), scene, momenta, scales,
+    return run_drift(method, options_for(method, value, scene), scene, momenta, scales,
                      {.step_size = h, .until = until, .seconds = 60});
   }
   DriftRun of(const std::string& method, double h, double steps) const {
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(a_run_out_of_time_has_its_verdict_over_what_it_reached) {
   const MotionScales scales = motion_scales(orbit.scene, orbit.momenta, 1e6);
   const Method& method = *find_method("verlet");
   const DriftRun run =
-      run_drift(method, knobs_for(method, 0.02, orbit.scene), orbit.scene, orbit.momenta, scales,
+      run_drift(method, options_for(method, 0.02, orbit.scene), orbit.scene, orbit.momenta, scales,
                 {.step_size = 0.02, .until = 1e9, .seconds = 0.3});
   BOOST_TEST((run.summary.outcome == Outcome::over_budget));
   BOOST_TEST(verdict_name(run.energy.verdict) == "bounded");

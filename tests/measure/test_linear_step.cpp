@@ -151,7 +151,8 @@ BOOST_AUTO_TEST_CASE(
     exactly_explicit_methods_of_fixed_steps_declare_a_limit_and_there_is_no_default) {
   for (const Method& method : methods()) {
     // Whatever has no step error is stable at every h.
-    const bool needs_one = has_linear_step(method) && !method.implicit && method.order > 0;
+    const bool needs_one =
+        has_linear_step(method) && !method.is(Trait::implicit) && method.order > 0;
     BOOST_TEST_CONTEXT(method.name) { BOOST_TEST(method.stability_limit.has_value() == needs_one); }
   }
   BOOST_TEST(!Method{}.stability_limit.has_value());

@@ -83,11 +83,11 @@ BOOST_AUTO_TEST_SUITE(measurement)
 
 BOOST_AUTO_TEST_CASE(the_knob_is_the_one_that_the_method_takes) {
   for (const Method& method : methods()) {
-    const Knobs knobs = knobs_for(method, 0.25, orbit());
+    const Options options = options_for(method, 0.25, orbit());
     const bool fixed = method.knob == Knob::step_size;
-    BOOST_TEST(knobs.step_size == (fixed ? 0.25 : 0), method.name);
-    BOOST_TEST(knobs.rtol == (fixed ? 0 : 0.25), method.name);
-    BOOST_TEST(knobs.atol == 0, method.name);
+    BOOST_TEST(options.step_size == (fixed ? 0.25 : 0), method.name);
+    BOOST_TEST(options.rtol == (fixed ? 0 : 0.25), method.name);
+    BOOST_TEST(options.atol == 0, method.name);
   }
 }
 
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(a_point_is_one_run_of_the_method) {
        {std::pair("verlet", 1e-2), std::pair("implicit_euler", 1e-3), std::pair("ida", 1e-5)}) {
     const Point point = measured(name, value, {.seconds = 60, .repeats = 2});
     const auto integrator = make_integrator(*find_method(name), orbit().system(),
-                                            knobs_for(*find_method(name), value, orbit()));
+                                            options_for(*find_method(name), value, orbit()));
     State state = orbit().initial();
     const Summary summary = integrator->advance(state, until);
     const Errors errors =

@@ -13,7 +13,7 @@ namespace {
 // Sums and square roots of a few numbers, and a cloth's forces that cancel to 1e-13 of its weight.
 const auto within_rounding = boost::test_tools::tolerance(1e-12);
 
-Knobs scales_of(const Scene& scene, const Reductions& reductions = {}) {
+Options scales_of(const Scene& scene, const Reductions& reductions = {}) {
   return with_tolerance_scales({}, ReducedScene(scene, reductions));
 }
 
@@ -52,9 +52,9 @@ BOOST_AUTO_TEST_SUITE(tolerance_scales)
 
 BOOST_AUTO_TEST_CASE(an_oscillators_speed_is_its_amplitude_times_its_frequency) {
   for (const double x : {0.01, -3.0, 200.0}) {
-    const Knobs knobs = scales_of(drawn("oscillator", {{"position", x}}));
-    BOOST_TEST(knobs.length == std::abs(x));
-    BOOST_TEST(knobs.speed == 10 * std::abs(x), within_rounding);  // w = sqrt(100 N/m / 1 kg)
+    const Options options = scales_of(drawn("oscillator", {{"position", x}}));
+    BOOST_TEST(options.length == std::abs(x));
+    BOOST_TEST(options.speed == 10 * std::abs(x), within_rounding);  // w = sqrt(100 N/m / 1 kg)
   }
   // Where it starts faster than that, this is its speed.
   BOOST_TEST(scales_of(drawn("oscillator", {{"velocity", -25}})).speed == 25);
@@ -64,9 +64,9 @@ BOOST_AUTO_TEST_CASE(a_cloth_at_its_rest_lengths_falls_across_itself) {
   for (const double side : {0.3, 1.0, 7.0}) {
     const Scene cloth = drawn("cloth", {{"nodes", 6}, {"side", side}});
     for (const Reductions& reductions : {Reductions(), Reductions::only({Reduction::pins})}) {
-      const Knobs knobs = scales_of(cloth, reductions);
-      BOOST_TEST(knobs.length == side, within_rounding);
-      BOOST_TEST(knobs.speed == std::sqrt(9.81 * side), within_rounding);
+      const Options options = scales_of(cloth, reductions);
+      BOOST_TEST(options.length == side, within_rounding);
+      BOOST_TEST(options.speed == std::sqrt(9.81 * side), within_rounding);
     }
   }
 }
@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(a_free_body_is_as_fast_as_its_fastest_node) {
 }
 
 BOOST_AUTO_TEST_CASE(where_a_scene_is_drawn_does_not_matter) {
-  const Knobs here = scales_of(falling_triangle());
+  const Options here = scales_of(falling_triangle());
   Scene moved = falling_triangle();
   for (Node& node : moved.nodes) node.position += Eigen::Vector3d(300, -700, 0);
   // Positions of 700 m are rounded to 1e-13 m, of lengths of 1 m.
@@ -106,9 +106,9 @@ BOOST_AUTO_TEST_CASE(where_a_scene_is_drawn_does_not_matter) {
 }
 
 BOOST_AUTO_TEST_CASE(other_units_give_the_same_lengths_and_speeds) {
-  const Knobs here = scales_of(falling_triangle());
+  const Options here = scales_of(falling_triangle());
   for (const auto& [length, time] : {std::pair(1000.0, 1.0), {1.0, 1000.0}, {0.01, 60.0}}) {
-    const Knobs there = scales_of(in_units(falling_triangle(), length, time));
+    const Options there = scales_of(in_units(falling_triangle(), length, time));
     BOOST_TEST(there.length == length * here.length, within_rounding);
     BOOST_TEST(there.speed == length / time * here.speed, within_rounding);
   }
@@ -121,10 +121,10 @@ BOOST_AUTO_TEST_CASE(nodes_without_mass_have_no_acceleration_to_count) {
   scene.nodes.push_back({.position = {1, 1, 0}});
   scene.springs.push_back({{0, 3}, {.stiffness = 1e-9, .rest_length = 1}});
   for (const Reductions& reductions : {Reductions(), Reductions::only({})}) {
-    const Knobs knobs = scales_of(scene, reductions), with_mass = scales_of(heavy, reductions);
-    BOOST_TEST(knobs.length == with_mass.length);
+    const Options options = scales_of(scene, reductions), with_mass = scales_of(heavy, reductions);
+    BOOST_TEST(options.length == with_mass.length);
     // The spring pulls a mass of 1 kg with 1e-9 N.
-    BOOST_TEST(knobs.speed == with_mass.speed, boost::test_tools::tolerance(1e-9));
+    BOOST_TEST(options.speed == with_mass.speed, boost::test_tools::tolerance(1e-9));
   }
 }
 
@@ -145,9 +145,9 @@ BOOST_AUTO_TEST_CASE(without_any_extent_a_length_is_a_metre) {
   BOOST_TEST(scales_of(scene).speed == 1);
 }
 
-BOOST_AUTO_TEST_CASE(nothing_else_of_the_knobs_changes) {
-  const Knobs before{.rtol = 1e-5, .atol = 1e-9, .max_order = 3, .stability_detection = true};
-  const Knobs after = with_tolerance_scales(before, ReducedScene(falling_triangle()));
+BOOST_AUTO_TEST_CASE(nothing_else_of_the_options_changes) {
+  const Options before{.rtol = 1e-5, .atol = 1e-9, .max_order = 3, .stability_detection = true};
+  const Options after = with_tolerance_scales(before, ReducedScene(falling_triangle()));
   BOOST_TEST(after.rtol == before.rtol);
   BOOST_TEST(after.atol == before.atol);
   BOOST_TEST(after.step_size == before.step_size);
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_CASE(nothing_else_of_the_knobs_changes) {
 }
 
 BOOST_AUTO_TEST_CASE(negative_control_another_scene_has_other_scales) {
-  const Knobs here = scales_of(falling_triangle());
+  const Options here = scales_of(falling_triangle());
   Scene other = falling_triangle();
   other.springs[0].law.stiffness *= 2;  // the spring pulls with twice as much
   BOOST_TEST(scales_of(other).speed > 1.1 * here.speed);

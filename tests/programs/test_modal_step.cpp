@@ -51,7 +51,8 @@ BOOST_AUTO_TEST_CASE(each_mode_is_stepped_as_an_oscillator_of_its_frequency) {
   const double h = 1 / largest_omega(modes);
   for (const Method& method : methods_of(Family::hand_written, Knob::step_size)) {
     // Matrices of the springs' material alone mix modes, and few iterations leave some of a mode.
-    if (method.name.starts_with("linear_midpoint") || method.takes_iterations) continue;
+    if (method.name.starts_with("linear_midpoint") || method.listens_to(Option::iterations))
+      continue;
     for (const Mode& mode : modes) {
       BOOST_TEST_CONTEXT(method.name << " in mode " << mode.rank) {
         const LinearStep predicted = linear_step(method, h * mode.omega);

@@ -30,8 +30,9 @@ BOOST_AUTO_TEST_SUITE(race)
 BOOST_AUTO_TEST_CASE(kinds_are_read_from_the_registry) {
   for (const Method& method : methods()) {
     const Kind kind = kind_of(method);
-    BOOST_TEST((kind == Kind::split) == method.needs_split);
-    if (!method.needs_split) BOOST_TEST((kind == Kind::implicit_steps) == method.implicit);
+    BOOST_TEST((kind == Kind::split) == method.asks(Need::split_forces));
+    if (!method.asks(Need::split_forces))
+      BOOST_TEST((kind == Kind::implicit_steps) == method.is(Trait::implicit));
   }
   BOOST_TEST((kind_of(*find_method("verlet")) == Kind::explicit_steps));
   BOOST_TEST((kind_of(*find_method("ida")) == Kind::implicit_steps));

@@ -34,12 +34,12 @@ struct Expected {
   ReducedScene scene;
   std::vector<State> states;
 
-  Expected(const std::string& path, const char* method, const Knobs& knobs, double until,
+  Expected(const std::string& path, const char* method, const Options& options, double until,
            const std::vector<double>& times)
       : scene(load_scene(path)) {
     State state = scene.initial();
     states.push_back(state);
-    make_integrator(*find_method(method), scene.system(), knobs)
+    make_integrator(*find_method(method), scene.system(), options)
         ->advance(state, until, {times, [&](const State& seen) { states.push_back(seen); }});
     states.push_back(state);
   }

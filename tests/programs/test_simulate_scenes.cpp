@@ -107,12 +107,12 @@ BOOST_AUTO_TEST_CASE(a_massless_node_is_for_methods_that_accept_it) {
     const Folder folder;
     const std::string scene = folder.write("s.toml", quartic_massless);
     const Exit result = simulate(scene, method, folder);
-    if (method.accepts_massless) {
+    if (method.is(Trait::accepts_massless)) {
       BOOST_TEST(result.status == 0, method.name << ": " << result.err);
       BOOST_TEST(result.err == "");
     } else {
       BOOST_TEST(complains(result, 2, "simulate", {scene, "nodes[1].mass: 0", "implicit_euler"}) ==
-                     (!method.needs_constant_stiffness && !method.needs_split),
+                     (!method.asks(Need::constant_stiffness) && !method.asks(Need::split_forces)),
                  method.name << ": " << result.err);
       BOOST_TEST(result.status == 2);
       BOOST_TEST(folder.listing() == "s.toml ");

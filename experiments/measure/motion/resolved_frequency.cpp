@@ -7,7 +7,8 @@
 namespace qddot::measure {
 
 double resolved_frequency(const Method& method, const System& system, const Vec& q) {
-  if (!method.needs_split || method.implicit) return frequency_bound(system, q);
+  if (!method.asks(Need::split_forces) || method.is(Trait::implicit))
+    return frequency_bound(system, q);
   if (const Split* split = split_of(system)) return frequency_bound(*split->soft, q);
   double largest = 0;
   Index first = 0;

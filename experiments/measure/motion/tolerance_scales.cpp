@@ -33,14 +33,14 @@ double largest_acceleration(const System& system, const Vec& q) {
 
 }  // namespace
 
-Knobs with_tolerance_scales(Knobs knobs, const ReducedScene& scene) {
+Options with_tolerance_scales(Options options, const ReducedScene& scene) {
   const auto nodes = scene.expand_beside_falls(scene.initial());
   const double length = extent(nodes);
-  knobs.length = length > 0 ? length : 1;
+  options.length = length > 0 ? length : 1;
   const double a = largest_acceleration(scene.system(), scene.initial().q);
-  const double speed = std::max(fastest(nodes), std::sqrt(a * knobs.length));
-  knobs.speed = speed > 0 && std::isfinite(speed) ? speed : knobs.length;
-  return knobs;
+  const double speed = std::max(fastest(nodes), std::sqrt(a * options.length));
+  options.speed = speed > 0 && std::isfinite(speed) ? speed : options.length;
+  return options;
 }
 
 }  // namespace qddot::measure

@@ -45,6 +45,7 @@ std::optional<Solution> resolved(const ReducedScene& scene, const char* name, do
 }
 
 std::optional<Solution> ida(const ReducedScene& scene, double until, double rtol, double seconds) {
+  if (rtol < least_rtol) return {};
   auto solution = seen_run(scene, *find_method("ida"), with_tolerance_scales({.rtol = rtol}, scene),
                            scene.initial(), until, 1, seconds);
   if (solution) solution->made_by = fmt::format("ida at rtol = {:.0e}", rtol);

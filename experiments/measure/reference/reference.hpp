@@ -43,7 +43,7 @@ struct Reference {
   // was not measured.
   Vec modal_shares{};
   double modal_shares_floor = 0;
-  std::string made_by;  // the two ways, with their knobs
+  std::string made_by;  // the two ways, with their options
   double seconds = 0;   // what it took
 
   // Whether the motion at the end exists in exact symmetry alone: computed there it is known, but

@@ -65,9 +65,9 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
 }  // namespace
 
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
-                                 const Knobs& knobs, const State& initial, double until,
+                                 const Options& options, const State& initial, double until,
                                  std::int64_t samples, double seconds) {
-  const auto integrator = make_integrator(method, scene.system(), knobs);
+  const auto integrator = make_integrator(method, scene.system(), options);
   Solution solution{.end = initial};
   const Deadline deadline(seconds);
   const std::int64_t gap = (samples + most_looks - 1) / most_looks;

@@ -20,11 +20,12 @@ struct Solution {
   Errors change{};            // how much refining it may still move the end; zero if not refined
 };
 
-// The motion from `initial` by a method with these knobs. Its scales are those seen at the ends of
-// `samples` equal parts of the time, or of some of them where they are more than a million; about a
-// hundred of these are its path. Nothing where it does not reach the end in so many seconds.
+// The motion from `initial` by a method with these options. Its scales are those seen at the ends
+// of `samples` equal parts of the time, or of some of them where they are more than a million;
+// about a hundred of these are its path. Nothing where it does not reach the end in so many
+// seconds.
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
-                                 const Knobs& knobs, const State& initial, double until,
+                                 const Options& options, const State& initial, double until,
                                  std::int64_t samples, double seconds);
 
 // By Kahan and Li's composition of order 8 with steps of h [s], its scales seen at each.

@@ -20,7 +20,7 @@ class Rungs {
   Rungs(const Method& method, const ReducedScene& scene, double until)
       : method_(method), until_(until) {
     const double w = resolved_frequency(method, scene.system(), scene.initial().q);
-    steps_ = method.implicit ? 2 : std::max(1.0, std::ceil(until * w / 4));
+    steps_ = method.is(Trait::implicit) ? 2 : std::max(1.0, std::ceil(until * w / 4));
   }
 
   // Nothing where the ladder has no such rung.
@@ -66,7 +66,7 @@ class Stagnation {
 // A run of fixed steps takes time in proportion to their number, so a hopeless one need not be
 // begun. Implicit steps become cheaper as they become shorter: Newton then needs fewer iterations.
 bool is_hopeless(const Method& method, const Point& last, double value, const Effort& effort) {
-  const double saved_at_most = method.implicit ? 10 : 1;
+  const double saved_at_most = method.is(Trait::implicit) ? 10 : 1;
   return method.knob == Knob::step_size && last.outcome == Outcome::reached_end &&
          last.time * last.value / value > 1.5 * saved_at_most * effort.seconds;
 }
@@ -114,7 +114,7 @@ std::vector<Point> climb(const Method& method, const ReducedScene& scene, double
     const bool has_worked =
         std::ranges::any_of(points, [&](const Point& p) { return is_good(p, reference); });
     if (last.outcome == Outcome::singular_mass ||
-        unfinished > (has_worked || !method.implicit ? 0 : 2))
+        unfinished > (has_worked || !method.is(Trait::implicit) ? 0 : 2))
       break;
     take(*value);
   }

@@ -24,9 +24,9 @@ constexpr double longest_look = 60;
 Point taken(const Method& method, double value, const ReducedScene& scene, double until,
             const Reference& reference, const Effort& effort) {
   Point point{.method = &method, .value = value};
-  const Knobs knobs = knobs_for(method, value, scene, effort.options);
+  const Options options = options_for(method, value, scene, effort.options);
   std::unique_ptr<Integrator> integrator;
-  point.setup = seconds_of([&] { integrator = make_integrator(method, scene.system(), knobs); });
+  point.setup = seconds_of([&] { integrator = make_integrator(method, scene.system(), options); });
 
   State state = scene.initial();
   const Deadline deadline(effort.seconds);
@@ -64,7 +64,7 @@ Point taken(const Method& method, double value, const ReducedScene& scene, doubl
   point.time_min = std::ranges::min(times);
   point.timed_runs = static_cast<int>(times.size());
   if (effort.watch) {
-    point.on_the_way = effort.watch->see(method, knobs, point.counts.steps,
+    point.on_the_way = effort.watch->see(method, options, point.counts.steps,
                                          std::max(longest_look, 2 * effort.seconds));
     // The end of the run that was timed counts as well.
     point.on_the_way.energy = std::max(point.on_the_way.energy, point.errors.energy);
@@ -74,17 +74,10 @@ Point taken(const Method& method, double value, const ReducedScene& scene, doubl
 
 }  // namespace
 
-Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
-                const MethodOptions& options) {
-  Knobs knobs;
-  (method.knob == Knob::step_size ? knobs.step_size : knobs.rtol) = value;
-  knobs.max_order = options.max_order;
-  knobs.stability_detection = options.stability_detection;
-  knobs.iterations = options.iterations;
-  knobs.solve_tolerance = options.solve_tolerance;
-  knobs.spectral_radius = options.spectral_radius;
-  knobs.solver = find_solver(options.solver).value();
-  return with_tolerance_scales(knobs, scene);
+Options options_for(const Method& method, double value, const ReducedScene& scene,
+                    Options options) {
+  (method.knob == Knob::step_size ? options.step_size : options.rtol) = value;
+  return with_tolerance_scales(options, scene);
 }
 
 Point measure_point(const Method& method, double value, const ReducedScene& scene, double until,

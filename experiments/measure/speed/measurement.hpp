@@ -23,31 +23,21 @@ struct Point {
   double energy_growth = 1;  // as in Summary
 };
 
-// What some methods may be told besides their knob; the others do not care. As in Knobs.
-struct MethodOptions {
-  int max_order = 0;
-  bool stability_detection = false;
-  int iterations = 0;
-  double solve_tolerance = 0;
-  double spectral_radius = Knobs{}.spectral_radius;
-  std::string solver = "automatic";  // by its name
-};
-
 // How long a point may take, how often it is timed, and how it is run.
 struct Effort {
   using Take = std::function<Point()>;
 
   double seconds = 10;  // for one run; slower ones become over_budget
   int repeats = 5;      // timed runs; fewer, but one, where they would take half of that together
-  MethodOptions options{};
+  Options options{};    // beside the knob
   const Watch* watch = nullptr;  // if any, sees one more run, untimed
   // If any, gives a point that may be known already, or takes it.
   std::function<Point(const Method&, double value, const Take& take)> recall{};
 };
 
-// What the user turns, as the method's kind takes it, with the scene's tolerance scales.
-Knobs knobs_for(const Method& method, double value, const ReducedScene& scene,
-                const MethodOptions& options = {});
+// The options with the method's knob at `value` and the scene's tolerance scales.
+Options options_for(const Method& method, double value, const ReducedScene& scene,
+                    Options options = {});
 
 // The point of that value as the effort recalls it, or else takes it: runs the method once untimed,
 // which a run of 0.1 s need not be, and then up to `repeats` times; a

@@ -9,15 +9,16 @@
 namespace qddot::measure {
 namespace {
 
-std::vector<double> looks(const Method& method, const Knobs& knobs, double until,
+std::vector<double> looks(const Method& method, const Options& options, double until,
                           std::int64_t steps) {
   const bool fixed = method.knob == Knob::step_size && method.order > 0;
   // Each part of a system has steps of its own, which were all counted.
-  const double whole = fixed ? std::round(until / knobs.step_size) : static_cast<double>(steps / 4);
+  const double whole =
+      fixed ? std::round(until / options.step_size) : static_cast<double>(steps / 4);
   const double count = std::clamp(whole, 1.0, Watch::most_looks);
   std::vector<double> times;
   for (double i = 1; i < count; ++i) {
-    times.push_back(fixed ? std::round(i / count * whole) * knobs.step_size : i / count * until);
+    times.push_back(fixed ? std::round(i / count * whole) * options.step_size : i / count * until);
   }
   times.push_back(until);
   return times;
@@ -31,14 +32,14 @@ Watch::Watch(const Scene& start, const ReducedScene& scene, double until,
   if (reference.modal_shares.size() > 0) modes_ = ModalShares::at_equilibrium(scene);
 }
 
-OnTheWay Watch::see(const Method& method, const Knobs& knobs, std::int64_t steps,
+OnTheWay Watch::see(const Method& method, const Options& options, std::int64_t steps,
                     double seconds) const {
   State state = scene_.initial();
   const auto nodes = scene_.expand(state);
   double energy = 0, momentum = 0;
   std::vector<State> path;
   const Observer observer{
-      looks(method, knobs, until_, steps), [&](const State& now) {
+      looks(method, options, until_, steps), [&](const State& now) {
         energy = std::max(
             energy, errors_between(scene_, now, now, reference_.energy, reference_.scales).energy);
         if (momenta_.any_kept()) {
@@ -47,7 +48,7 @@ OnTheWay Watch::see(const Method& method, const Knobs& knobs, std::int64_t steps
         }
         if (modes_) path.push_back(now);
       }};
-  const auto integrator = make_integrator(method, scene_.system(), knobs);
+  const auto integrator = make_integrator(method, scene_.system(), options);
   const Deadline deadline(seconds);
   const Summary summary = integrator->advance(state, until_, observer, deadline.token());
   OnTheWay seen;

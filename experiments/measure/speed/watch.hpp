@@ -31,7 +31,8 @@ class Watch {
   // One more run of a method that has taken so many `steps`. Steps of a fixed size stay what they
   // are: it is looked at after whole ones. Adaptive ones have to end on the times, which are
   // therefore no more than a quarter of the steps. Stops after so many `seconds`.
-  OnTheWay see(const Method& method, const Knobs& knobs, std::int64_t steps, double seconds) const;
+  OnTheWay see(const Method& method, const Options& options, std::int64_t steps,
+               double seconds) const;
 
  private:
   const ReducedScene& scene_;

@@ -36,17 +36,17 @@ constexpr Index most_factorized = 100000;
 bool has_own_step(const Method& method) { return has_linear_step(method) && method.order > 0; }
 
 // Runs the method and calls see() for each of some times up to `until`, for `seconds` at most.
-Summary run(const Method& method, const Knobs& knobs, const ReducedScene& scene, double until,
+Summary run(const Method& method, const Options& options, const ReducedScene& scene, double until,
             double seconds, const std::function<void(const State&)>& see) {
-  const double steps = std::max(1.0, std::floor(until / knobs.step_size));
+  const double steps = std::max(1.0, std::floor(until / options.step_size));
   const double stride = std::max(1.0, std::floor(steps / looks));
   Observer some{{}, see};
-  for (double n = stride; n * knobs.step_size < until; n += stride) {
-    some.times.push_back(n * knobs.step_size);
+  for (double n = stride; n * options.step_size < until; n += stride) {
+    some.times.push_back(n * options.step_size);
   }
   const Deadline deadline(seconds);
   State state = scene.initial();
-  return make_integrator(method, scene.system(), with_tolerance_scales(knobs, scene))
+  return make_integrator(method, scene.system(), with_tolerance_scales(options, scene))
       ->advance(state, until, some, deadline.token());
 }
 
@@ -81,11 +81,12 @@ class EnergyWatch {
 struct Before {
   double t = 0, omega = 0, t_of_omega = 0, buckling = 0;
 };
-Before before_failure(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+Before before_failure(const Method& method, const Options& options, const ReducedScene& scene,
                       double t_end, double seconds) {
   const auto pushed = [&](const Vec& q) {
-    return method.implicit && is_quickly_searched(scene.system()) ? buckling_rate(scene.system(), q)
-                                                                  : 0;
+    return method.is(Trait::implicit) && is_quickly_searched(scene.system())
+               ? buckling_rate(scene.system(), q)
+               : 0;
   };
   Before before{.omega = quick_frequency(scene.system(), scene.initial().q),
                 .buckling = pushed(scene.initial().q)};
@@ -102,7 +103,7 @@ Before before_failure(const Method& method, const Knobs& knobs, const ReducedSce
       before.t_of_omega = state.t;
     }
   };
-  run(method, knobs, scene, t_end, seconds, see);
+  run(method, options, scene, t_end, seconds, see);
   return before;
 }
 
@@ -125,7 +126,7 @@ std::string crossed(const Method& method, double h, const Before& before, bool i
         is_known ? "" : "at least ", h * before.omega, when(before.t_of_omega), before.omega,
         method.name, limit, limit / before.omega);
   }
-  if (method.implicit && before.buckling * h > 0.1) {
+  if (method.is(Trait::implicit) && before.buckling * h > 0.1) {
     return fmt::format(
         "compressed springs push to the side at a rate of up to {:.3g}/s, {:.3g} of "
         "1/h; M - h^2 K is indefinite where that is above 1",
@@ -139,7 +140,7 @@ std::string crossed(const Method& method, double h, const Before& before, bool i
 }
 
 // Whether a run reaches the end with its energy not grown; nothing where time is up.
-std::optional<bool> holds(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+std::optional<bool> holds(const Method& method, const Options& options, const ReducedScene& scene,
                           double until, double seconds) {
   if (seconds <= 0) return {};
   const double energy = scene.energy(scene.initial());
@@ -148,7 +149,7 @@ std::optional<bool> holds(const Method& method, const Knobs& knobs, const Reduce
     return scene.energy(state) - scene.system().kinetic(state.v);
   };
   double lowest = potential(scene.initial()), largest = energy;
-  const Summary summary = run(method, knobs, scene, until, seconds, [&](const State& state) {
+  const Summary summary = run(method, options, scene, until, seconds, [&](const State& state) {
     lowest = std::min(lowest, potential(state));
     largest = std::max(largest, scene.energy(state));
   });
@@ -174,11 +175,11 @@ std::string extreme_start(const ReducedScene& scene) {
 
 }  // namespace
 
-std::string step_warning(const Method& method, const Knobs& knobs, const ReducedScene& scene) {
+std::string step_warning(const Method& method, const Options& options, const ReducedScene& scene) {
   if (!has_own_step(method)) return "";
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
-  const double limit = linear_limit(method), h = knobs.step_size;
+  const double limit = linear_limit(method), h = options.step_size;
   if (h * frequency_bound(system, q) <= limit) return "";
   const double w = quick_frequency(system, q);
   if (h * w <= limit) return "";
@@ -204,7 +205,7 @@ std::string growth_warning(const Method& method, const Summary& summary) {
       method.knob == Knob::step_size ? "--step-size" : "--rtol");
 }
 
-std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+std::string diagnosis(const Method& method, const Options& options, const ReducedScene& scene,
                       double until, const Summary& summary, double seconds) {
   constexpr std::array diagnosed = {Outcome::diverged, Outcome::not_finite,
                                     Outcome::indefinite_matrix, Outcome::newton_failed};
@@ -215,8 +216,8 @@ std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedSce
   if (!has_own_step(method) || !is_diagnosed) return "";
   const auto begin = std::chrono::steady_clock::now();
   const auto left = [&] { return seconds - seconds_since(begin); };
-  const double h = knobs.step_size;
-  const Before before = before_failure(method, knobs, scene, summary.t_reached, seconds / 4);
+  const double h = options.step_size;
+  const Before before = before_failure(method, options, scene, summary.t_reached, seconds / 4);
   std::string words = fmt::format("it failed in step {}", summary.failed_step);
   if (summary.outcome == Outcome::diverged && before.t < summary.t_reached) {
     words += fmt::format(", its energy no longer right after t = {:.3g} s", before.t);
@@ -227,7 +228,7 @@ std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedSce
 
   std::vector<std::string> remedies;
   if (linear_limit(method) > 0) {
-    Knobs finer = knobs;
+    Options finer = options;
     for (int i = 1; i <= most_halvings; ++i) {
       finer.step_size = h / std::pow(2, i);
       const auto held = holds(method, finer, scene, until, std::min(left(), seconds / 2));
@@ -241,10 +242,10 @@ std::string diagnosis(const Method& method, const Knobs& knobs, const ReducedSce
   for (const Method& other : methods()) {
     if (!has_own_step(other) || other.family != Family::hand_written || &other == &method ||
         !applies_to(other, scene.system()) || others.size() == most_named ||
-        (other.implicit && scene.system().size() > most_factorized)) {
+        (other.is(Trait::implicit) && scene.system().size() > most_factorized)) {
       continue;
     }
-    if (holds(other, knobs, scene, until, std::min(left(), seconds / 8)).value_or(false)) {
+    if (holds(other, options, scene, until, std::min(left(), seconds / 8)).value_or(false)) {
       others.push_back(other.name);
     }
   }

@@ -85,14 +85,14 @@ std::unique_ptr<System> oscillator() {
   return make_mass_spring(network);
 }
 
-Responses respond(const Method& method, const Knobs& knobs) {
+Responses respond(const Method& method, const Options& options) {
   const auto system = oscillator();
-  const auto integrator = make_integrator(method, *system, knobs);
+  const auto integrator = make_integrator(method, *system, options);
   Responses y(steps_observed + 1, Eigen::Matrix2d::Identity());
   for (const int start : {0, 1}) {
     State state{0, Vec::Constant(1, 1 - start), Vec::Constant(1, start)};
     Observer each;
-    for (int n = 1; n <= steps_observed; ++n) each.times.push_back(n * knobs.step_size);
+    for (int n = 1; n <= steps_observed; ++n) each.times.push_back(n * options.step_size);
     std::size_t n = 0;
     each.see = [&](const State& seen) { y[++n].col(start) << seen.q[0], seen.v[0]; };
     const Summary summary = integrator->advance(state, each.times.back(), each);
@@ -100,7 +100,7 @@ Responses respond(const Method& method, const Knobs& knobs) {
       y.resize(std::min(y.size(), n + 1));
     } else if (summary.outcome != Outcome::reached_end) {
       throw std::runtime_error(fmt::format("{} on an oscillator at h w = {:g}: {}", method.name,
-                                           knobs.step_size, summary.message));
+                                           options.step_size, summary.message));
     }
   }
   return y;
@@ -125,12 +125,12 @@ std::vector<Complex> roots_of(const Responses& y, double noise) {
   return roots;
 }
 
-LinearStep linear_step(const Method& method, double h_omega, Knobs knobs) {
+LinearStep linear_step(const Method& method, double h_omega, Options options) {
   if (!has_linear_step(method)) {
     throw std::invalid_argument(method.name + " has no step of its own: it chooses its steps");
   }
-  knobs.step_size = h_omega;  // w = 1
-  return {h_omega, roots_of(respond(method, knobs), rounding)};
+  options.step_size = h_omega;  // w = 1
+  return {h_omega, roots_of(respond(method, options), rounding)};
 }
 
 }  // namespace qddot::measure

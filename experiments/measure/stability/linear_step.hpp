@@ -28,7 +28,7 @@ struct LinearStep {
 // Whether the method steps an oscillator by a matrix of its own: its steps are fixed, and not for a
 // part of the forces only.
 inline bool has_linear_step(const Method& method) {
-  return method.knob == Knob::step_size && !method.needs_split;
+  return method.knob == Knob::step_size && !method.asks(Need::split_forces);
 }
 
 // The responses Y_0 = 1, Y_1, Y_2, ... after each step of the two starts (1, 0) and (0, 1), as the
@@ -44,9 +44,9 @@ constexpr int steps_observed = 5;
 // infinite.
 std::vector<std::complex<double>> roots_of(const Responses& y, double noise);
 
-// The method's own step at that h w, found by running it. Knobs but for the step size as given.
+// The method's own step at that h w, found by running it. Options but for the step size as given.
 // Throws std::runtime_error, with the reason, where it does not make the steps, and
 // std::invalid_argument for a method without fixed steps.
-LinearStep linear_step(const Method& method, double h_omega, Knobs knobs = {});
+LinearStep linear_step(const Method& method, double h_omega, Options options = {});
 
 }  // namespace qddot::measure

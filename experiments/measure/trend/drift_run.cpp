@@ -111,12 +111,12 @@ std::vector<DriftPoint> path_of(const std::vector<Sample>& samples, const Motion
 
 }  // namespace
 
-DriftRun run_drift(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+DriftRun run_drift(const Method& method, const Options& options, const ReducedScene& scene,
                    const Momenta& momenta, const MotionScales& scales, const DriftPlan& plan) {
   DriftRun run{.method = &method,
-               .value = method.knob == Knob::step_size ? knobs.step_size : knobs.rtol};
+               .value = method.knob == Knob::step_size ? options.step_size : options.rtol};
   const auto count = static_cast<std::int64_t>(plan.until / plan.step_size * (1 + 1e-12));
-  const bool lands = method.knob == Knob::rtol && !method.interpolates;
+  const bool lands = method.knob == Knob::rtol && !method.is(Trait::interpolates);
   const auto steps = sample_steps(count, lands ? few_cells : many_cells);
   Recorder recorder(scene, momenta, scales, steps, plan.step_size);
   Observer observer = recorder.observer();
@@ -126,7 +126,7 @@ DriftRun run_drift(const Method& method, const Knobs& knobs, const ReducedScene&
   State state = scene.initial();
   run.seconds = seconds_of([&] {
     const Deadline deadline(plan.seconds);
-    run.summary = make_integrator(method, scene.system(), knobs)
+    run.summary = make_integrator(method, scene.system(), options)
                       ->advance(state, plan.until, observer, deadline.token());
   });
   recorder.see_end(state);

@@ -35,7 +35,7 @@ struct DriftRun {
 
 // Runs the method on the scene. Energy errors are (E(t) - E(0)) / scales.kinetic, those of momenta
 // relative to scales.linear and angular.
-DriftRun run_drift(const Method& method, const Knobs& knobs, const ReducedScene& scene,
+DriftRun run_drift(const Method& method, const Options& options, const ReducedScene& scene,
                    const Momenta& momenta, const MotionScales& scales, const DriftPlan& plan);
 
 // The verdict on its energy: unknown where the run ended before half of `until`, unless it blew up

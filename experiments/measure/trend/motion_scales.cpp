@@ -88,7 +88,7 @@ MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, do
   const Method& method = *find_method(is_massless ? "ida" : "blanes_moan4");
   State state = scene.initial();
   const Deadline deadline(longest_run);
-  make_integrator(method, scene.system(), knobs_for(method, is_massless ? fine_rtol : h, scene))
+  make_integrator(method, scene.system(), options_for(method, is_massless ? fine_rtol : h, scene))
       ->advance(state, steps * h, observer, deadline.token());
   look.finish();
 

@@ -1,4 +1,4 @@
-#include "experiments/command/allowed_knobs.hpp"
+#include "experiments/command/allowed_options.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,6 @@
 namespace qddot::command {
 namespace {
 
-constexpr double least_rtol = 1e-15;
 constexpr double coarse_rtol = 0.1, fine_rtol = 1e-14;
 // M - h^2 K needs the square of h, and all its digits.
 constexpr double least_step = 1e-150, largest_step = 1e150;
@@ -45,36 +44,36 @@ void require_step_size(double h, const std::string& option, double until) {
                   option, h, least_step, largest_step));
 }
 
-void require_atol(const Knobs& knobs) {
-  if (knobs.atol == 0) return;
-  require_positive(knobs.atol, "--atol", "an absolute tolerance");
-  const double least = least_part_of_scale * std::min(knobs.length, knobs.speed);
-  const double most = std::max(knobs.length, knobs.speed);
-  if (knobs.atol >= least && knobs.atol < most) return;
+void require_atol(const Options& options) {
+  if (options.atol == 0) return;
+  require_positive(options.atol, "--atol", "an absolute tolerance");
+  const double least = least_part_of_scale * std::min(options.length, options.speed);
+  const double most = std::max(options.length, options.speed);
+  if (options.atol >= least && options.atol < most) return;
   throw InvalidInput(fmt::format(
       "--atol {:g} is not allowed; it is an absolute tolerance in m and m/s, from {:.2g} to below "
       "{:.3g}, as the scene measures {:.3g} m and its speeds are {:.3g} m/s",
-      knobs.atol, least, most, knobs.length, knobs.speed));
+      options.atol, least, most, options.length, options.speed));
 }
 
-std::string tolerance_warning(const Knobs& knobs) {
-  if (knobs.rtol > coarse_rtol) {
+std::string tolerance_warning(const Options& options) {
+  if (options.rtol > coarse_rtol) {
     return fmt::format(
         "--rtol {:g} lets a step be off by {:g} of what moves: the result hardly "
         "means anything",
-        knobs.rtol, knobs.rtol);
+        options.rtol, options.rtol);
   }
-  if (knobs.rtol > 0 && knobs.rtol < fine_rtol) {
+  if (options.rtol > 0 && options.rtol < fine_rtol) {
     return fmt::format(
         "--rtol {:g} is near the rounding of numbers, 2e-16: errors may stay above it, and steps "
         "may become very short",
-        knobs.rtol);
+        options.rtol);
   }
-  if (knobs.atol >= std::min(knobs.length, knobs.speed)) {
-    const bool is_length = knobs.atol >= knobs.length;
+  if (options.atol >= std::min(options.length, options.speed)) {
+    const bool is_length = options.atol >= options.length;
     return fmt::format("--atol {:g} is above the size of {}, {:.3g} {}: their errors do not count",
-                       knobs.atol, is_length ? "positions" : "velocities",
-                       is_length ? knobs.length : knobs.speed, is_length ? "m" : "m/s");
+                       options.atol, is_length ? "positions" : "velocities",
+                       is_length ? options.length : options.speed, is_length ? "m" : "m/s");
   }
   return "";
 }

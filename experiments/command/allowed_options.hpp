@@ -15,14 +15,14 @@ void require_rtol(double rtol, const std::string& option);
 // and, where a horizon `until` [s] is given, at least 1e-15 of that.
 void require_step_size(double h, const std::string& option, double until = 0);
 
-// Throws InvalidInput unless the absolute tolerance [m and m/s] is below one of Knobs::length and
-// Knobs::speed, without which no error counts, and above 1e-30 of both, the rounding of a rounding.
-// One of zero is none.
-void require_atol(const Knobs& knobs);
+// Throws InvalidInput unless the absolute tolerance [m and m/s] is below one of Options::length and
+// Options::speed, without which no error counts, and above 1e-30 of both, the rounding of a
+// rounding. One of zero is none.
+void require_atol(const Options& options);
 
 // What hardly can mean anything of tolerances that are allowed, in a sentence; empty where nothing
 // is to be said: an rtol above 0.1 or below 1e-14, an atol above the size of positions or of
 // velocities.
-std::string tolerance_warning(const Knobs& knobs);
+std::string tolerance_warning(const Options& options);
 
 }  // namespace qddot::command
