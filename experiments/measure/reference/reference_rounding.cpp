@@ -5,7 +5,6 @@
 #include <random>
 
 #include "qddot/measure/motion/modal_shares.hpp"
-#include "qddot/scene/reduce/part.hpp"
 
 namespace qddot::measure {
 namespace {
@@ -19,9 +18,9 @@ template <class Of>
 Vec by_unknown(const ReducedScene& scene, const Scales& scales, const Of& of) {
   Vec all = Vec::Zero(scene.system().size());
   Index at = 0;
-  for (std::size_t i = 0; i < scene.parts().size(); ++i) {
-    const Index n = scene.parts()[i].initial().q.size();
-    all.segment(at, n).setConstant(of(scales.parts[i]));
+  std::size_t part = 0;
+  for (const Index n : scene.unknowns_by_part()) {
+    all.segment(at, n).setConstant(of(scales.parts[part++]));
     at += n;
   }
   return all;

@@ -244,6 +244,12 @@ std::vector<std::vector<std::size_t>> Reduced::nodes_by_part() const {
   return nodes;
 }
 
+std::vector<Index> Reduced::unknowns_by_part() const {
+  std::vector<Index> unknowns;
+  for (const Part& part : parts_) unknowns.push_back(part.initial().q.size());
+  return unknowns;
+}
+
 std::vector<std::size_t> Reduced::massless_nodes() const {
   std::vector<std::size_t> massless;
   for (const Part& part : parts_) {

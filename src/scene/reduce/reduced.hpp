@@ -10,28 +10,29 @@
 #include "qddot/scene/reduce/part.hpp"
 #include "qddot/scene/reduce/reductions.hpp"
 #include "qddot/scene/reduce/series.hpp"
+#include "qddot/scene/reduce/way_back.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot::reduce {
 
 // What a ReducedScene consists of, and the steps by which it is made, in order; functions as there.
-class Reduced {
+class Reduced final : public WayBack {
  public:
   Reduced(const Scene& scene, const Reductions& reductions);
 
-  const System& system() const { return *system_; }
-  const State& initial() const { return initial_; }
-  int dimension() const { return dimension_; }
-  const std::vector<Finding>& findings() const { return findings_; }
-  const std::vector<Part>& parts() const { return parts_; }
+  const System& system() const override { return *system_; }
+  const State& initial() const override { return initial_; }
+  int dimension() const override { return dimension_; }
+  const std::vector<Finding>& findings() const override { return findings_; }
+  const std::vector<Part>& parts() const override { return parts_; }
 
-  // As ReducedScene::expand or, unless it `falls`, expand_beside_falls.
-  std::vector<Node> expand(const State& state, bool falls) const;
-  double kinetic(const State& state) const;
-  double potential(const State& state) const;
-  double energy(const State& state) const;
-  std::vector<std::size_t> massless_nodes() const;
-  std::vector<std::vector<std::size_t>> nodes_by_part() const;
+  std::vector<Node> expand(const State& state, bool falls) const override;
+  double kinetic(const State& state) const override;
+  double potential(const State& state) const override;
+  double energy(const State& state) const override;
+  std::vector<std::size_t> massless_nodes() const override;
+  std::vector<std::vector<std::size_t>> nodes_by_part() const override;
+  std::vector<Index> unknowns_by_part() const override;
 
  private:
   // A node that moves in closed form, x = x0 + v0 t + 1/2 g t^2: by itself, or in a part that rests

@@ -11,7 +11,7 @@ namespace qddot {
 
 namespace reduce {
 class Part;
-class Reduced;
+class WayBack;
 }  // namespace reduce
 
 // The smallest System that moves exactly as a scene does, what was left out of it and why, and the
@@ -38,6 +38,9 @@ class ReducedScene {
   // Throws std::logic_error, in a sentence, where the start is not that of the scene whatever is
   // left out: a defect of this class.
   explicit ReducedScene(const Scene& scene, const Reductions& reductions = {});
+  // A system of the caller's own, of which nothing is left out: node after node has `dimension`
+  // unknowns. Throws std::invalid_argument, in a sentence, where the sizes cannot be.
+  ReducedScene(std::shared_ptr<const System> system, State initial, int dimension);
   ~ReducedScene();
   ReducedScene(ReducedScene&&) noexcept;
   ReducedScene& operator=(ReducedScene&&) noexcept;
@@ -71,9 +74,11 @@ class ReducedScene {
   // The scene's numbers of the nodes that each part moves, in the order of the parts: its own, and
   // the condensed ones between them.
   std::vector<std::vector<std::size_t>> nodes_by_part() const;
+  // How many unknowns each part has, in the same order, in which the state has them.
+  std::vector<Index> unknowns_by_part() const;
 
  private:
-  std::unique_ptr<const reduce::Reduced> reduced_;
+  std::unique_ptr<const reduce::WayBack> way_back_;
 };
 
 }  // namespace qddot

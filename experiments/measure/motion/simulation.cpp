@@ -1,0 +1,61 @@
+#include "qddot/measure/motion/simulation.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "qddot/measure/motion/tolerance_scales.hpp"
+#include "qddot/scene/settle.hpp"
+
+namespace qddot {
+namespace {
+
+// What the method says to a system that it cannot run.
+void require_fit(const Method& method, const System& system) {
+  if (const auto why = misfit(method, system))
+    throw std::invalid_argument(fmt::format("{}: {}", method.name, advice(*why)));
+}
+
+}  // namespace
+
+const Method& method(std::string_view name) {
+  if (const Method* found = find_method(name)) return *found;
+  std::string all;
+  for (const Method& other : methods()) all += (all.empty() ? "" : ", ") + other.name;
+  throw std::invalid_argument(fmt::format("{} is no method; there are {}", name, all));
+}
+
+ReducedScene reduced_for(const Method& method, const Scene& scene, const Reductions& reductions) {
+  const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
+  // Springs in series are one in tension only: who takes the node between them need not care.
+  return ReducedScene(start, method.is(Trait::accepts_massless)
+                                 ? reductions.without(Reduction::massless)
+                                 : reductions);
+}
+
+Simulation::Simulation(const Scene& scene, const Method& method, const Options& options,
+                       const Reductions& reductions)
+    : Simulation(std::make_shared<const ReducedScene>(reduced_for(method, scene, reductions)),
+                 method, options) {}
+
+Simulation::Simulation(std::shared_ptr<const System> system, State start, int dimension,
+                       const Method& method, const Options& options)
+    : Simulation(
+          std::make_shared<const ReducedScene>(std::move(system), std::move(start), dimension),
+          method, options) {}
+
+Simulation::Simulation(std::shared_ptr<const ReducedScene> model, const Method& method,
+                       const Options& options)
+    : model_(std::move(model)),
+      options_(measure::with_tolerance_scales(options, *model_)),
+      state_(model_->initial()) {
+  require_fit(method, model_->system());
+  integrator_ = make_integrator(method, model_->system(), options_);
+}
+
+Summary Simulation::advance(double t_end, const Observer& observer, std::stop_token stop) {
+  return integrator_->advance(state_, t_end, observer, std::move(stop));
+}
+
+}  // namespace qddot

@@ -1,0 +1,41 @@
+#pragma once
+
+// What a program outside needs of qddot: scenes and own systems, methods, and the measurements of
+// both. Everything is in namespace qddot; what measures is in qddot::measure as well.
+
+#include "qddot/analysis/equilibrium.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/analysis/natural_modes.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/samples.hpp"
+#include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/motion/tolerance_scales.hpp"
+#include "qddot/measure/reference/reference.hpp"
+#include "qddot/measure/speed/work_precision.hpp"
+#include "qddot/measure/stability/diagnosis.hpp"
+#include "qddot/measure/stability/linear_limit.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
+#include "qddot/measure/trend/scene_trend.hpp"
+#include "qddot/model/differenced_stiffness.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/scene_arrays.hpp"
+#include "qddot/scene/scene_file.hpp"
+
+namespace qddot {
+
+using measure::agreed_reference;
+using measure::diagnosis;
+using measure::energy_trend;
+using measure::linear_step;
+using measure::make_reference;
+using measure::measured_limit;
+using measure::NoReference;
+using measure::Point;
+using measure::Reference;
+using measure::samples;
+using measure::trend_of;
+using measure::work_precision;
+using measure::WorkPrecision;
+
+}  // namespace qddot

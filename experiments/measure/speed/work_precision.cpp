@@ -1,0 +1,43 @@
+#include "qddot/measure/speed/work_precision.hpp"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/speed/ladder.hpp"
+
+namespace qddot::measure {
+
+WorkPrecision work_precision(const ReducedScene& model, double until,
+                             std::vector<const Method*> methods, const Effort& effort,
+                             double reference_seconds,
+                             const std::function<void(const Point&)>& report) {
+  const System& system = model.system();
+  if (system.size() == 0 || system.has_massless()) {
+    throw std::invalid_argument(
+        "work_precision: the model has no unknowns, or some without mass; all need a mass above 0");
+  }
+  for (const Method* method : methods) {
+    if (const auto why = misfit(*method, system)) {
+      throw std::invalid_argument(
+          fmt::format("work_precision: {} cannot run this: {}", method->name, advice(*why)));
+    }
+  }
+  if (methods.empty()) {
+    for (const Method& method : qddot::methods()) {
+      if (applies_to(method, system)) methods.push_back(&method);
+    }
+  }
+  WorkPrecision all{.reference = make_reference(model, until, reference_seconds), .points = {}};
+  for (const Method* method : methods) {
+    const auto see = [&](const Point& point) {
+      if (report) report(point);
+    };
+    const auto points = climb(*method, model, until, all.reference, effort, see);
+    all.points.insert(all.points.end(), points.begin(), points.end());
+  }
+  return all;
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "qddot/measure/speed/front.hpp"
+
+namespace qddot::measure {
+
+// Speed against accuracy: what every method takes and misses by, from coarse to fine.
+struct WorkPrecision {
+  Reference reference;        // what errors are measured against
+  std::vector<Point> points;  // of each method along the ladder of its knob (see climb)
+
+  // The fastest point at each accuracy 1e-1 ... 1e-9; rows point into `points`.
+  std::vector<FrontRow> front() const { return fastest_at_each_accuracy(points, reference); }
+};
+
+// Measures the methods on the model up to the time `until` [s], against a reference that takes
+// some `reference_seconds`; all methods that can run it where none are given. `report` sees each
+// point as it comes. Throws NoReference where none can be made, std::invalid_argument for a model
+// with massless unknowns or without unknowns, and for a method that cannot run it.
+WorkPrecision work_precision(const ReducedScene& model, double until,
+                             std::vector<const Method*> methods = {}, const Effort& effort = {},
+                             double reference_seconds = 10,
+                             const std::function<void(const Point&)>& report = {});
+
+}  // namespace qddot::measure

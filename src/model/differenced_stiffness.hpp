@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "qddot/model/system.hpp"
+
+namespace qddot {
+
+// A system that has no K of its own, with one by central differences of its force:
+//   K e_j = (f(q + d e_j) - f(q - d e_j)) / 2d,   d = cbrt(2^-52) max(`length`, |q|_inf).
+// Columns that no row of the pattern shares are displaced together (Curtis, Powell, Reid, IMA
+// Journal of Applied Mathematics 13 (1974) 117-119), so that K costs twice as many forces as there
+// are colours. K is good to some 1e-10 of its largest entries, for smooth forces, and is made
+// symmetric.
+class DifferencedStiffness final : public System {
+ public:
+  // `pairs`: the unknowns (i, j) that depend on each other, in any order; those on the diagonal
+  // need not be named. `length` [m]: a small length of the motion, 1 by default. Throws
+  // std::invalid_argument for a pair beyond the unknowns or a length that is not above 0.
+  DifferencedStiffness(std::shared_ptr<const System> system,
+                       const std::vector<std::pair<Index, Index>>& pairs, double length = 1);
+
+  double potential(const Vec& q) const override { return system_->potential(q); }
+  void force(const Vec& q, Vec& f) const override { system_->force(q, f); }
+  void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
+
+  // How many forces one K costs.
+  Index forces_per_stiffness() const { return 2 * static_cast<Index>(columns_of_.size()); }
+
+ private:
+  std::shared_ptr<const System> system_;
+  SymmetricMatrix pattern_;
+  std::vector<std::vector<Index>> columns_of_;  // each colour
+  std::vector<std::vector<Index>> rows_of_;     // each column's, above and below the diagonal
+  double length_;
+};
+
+}  // namespace qddot

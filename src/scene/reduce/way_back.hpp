@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "qddot/model/system.hpp"
+#include "qddot/scene/reduce/reductions.hpp"
+#include "qddot/scene/scene.hpp"
+
+namespace qddot::reduce {
+
+class Part;
+
+// A system, where it starts, and the way back from its unknowns to all nodes: what stands behind a
+// ReducedScene, whose functions these are.
+class WayBack {
+ public:
+  virtual ~WayBack() = default;
+
+  virtual const System& system() const = 0;
+  virtual const State& initial() const = 0;
+  virtual int dimension() const = 0;
+  // As ReducedScene::expand or, unless it `falls`, expand_beside_falls.
+  virtual std::vector<Node> expand(const State& state, bool falls) const = 0;
+  virtual double kinetic(const State& state) const = 0;
+  virtual double potential(const State& state) const = 0;
+  virtual double energy(const State& state) const = 0;
+  virtual std::vector<std::size_t> massless_nodes() const = 0;
+  virtual std::vector<std::vector<std::size_t>> nodes_by_part() const = 0;
+  virtual std::vector<Index> unknowns_by_part() const = 0;
+  virtual const std::vector<Finding>& findings() const = 0;
+  virtual const std::vector<Part>& parts() const = 0;
+};
+
+}  // namespace qddot::reduce

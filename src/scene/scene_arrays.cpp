@@ -1,0 +1,102 @@
+#include "qddot/scene/scene_arrays.hpp"
+
+#include <fmt/format.h>
+
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot {
+namespace {
+
+using Eigen::Index;
+
+void require_size(bool fits, const char* array, Index has, const std::string& allowed) {
+  if (!fits) throw InvalidInput(fmt::format("{}: {} entries; allowed are {}", array, has, allowed));
+}
+
+// Entry i of an array that has one for all or one for each of `count`.
+class Values {
+ public:
+  Values(const char* name, const Eigen::VectorXd& values, std::size_t count)
+      : values_(values), is_one_(values.size() == 1) {
+    require_size(is_one_ || values.size() == static_cast<Index>(count), name, values.size(),
+                 fmt::format("1 or {}", count));
+  }
+  double operator[](std::size_t i) const { return values_[is_one_ ? 0 : static_cast<Index>(i)]; }
+
+ private:
+  const Eigen::VectorXd& values_;
+  bool is_one_;
+};
+
+void require_node(std::size_t node, std::size_t count, const std::string& where) {
+  if (node < count) return;
+  throw InvalidInput(
+      fmt::format("{}: node {} is none of the {} nodes, which count from 0", where, node, count));
+}
+
+std::vector<Node> nodes_of(const SceneArrays& a) {
+  const auto count = static_cast<std::size_t>(a.positions.rows());
+  const Index dimension = a.positions.cols();
+  const bool is_moving = a.velocities.size() > 0;
+  require_size(
+      !is_moving || (a.velocities.rows() == a.positions.rows() && a.velocities.cols() == dimension),
+      "velocities", a.velocities.size(), fmt::format("{}", a.positions.size()));
+  const Values mass("mass", a.mass, count);
+  std::vector<Node> nodes(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = static_cast<Index>(i);
+    nodes[i].position.head(dimension) = a.positions.row(row).transpose();
+    if (is_moving) nodes[i].velocity.head(dimension) = a.velocities.row(row).transpose();
+    nodes[i].mass = mass[i];
+  }
+  for (std::size_t k = 0; k < a.pinned.size(); ++k) {
+    require_node(a.pinned[k], count, fmt::format("pinned[{}]", k));
+    nodes[a.pinned[k]].pinned = true;
+  }
+  return nodes;
+}
+
+std::vector<Spring> springs_of(const SceneArrays& a, const std::vector<Node>& nodes) {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
+  const bool is_drawn = a.rest_length.size() == 0;
+  const std::size_t count = a.springs.size();
+  const Values stiffness("stiffness", a.stiffness, count);
+  const Values rest_length("rest_length", is_drawn ? none : a.rest_length, count);
+  const Values quartic("quartic", a.quartic.size() == 0 ? none : a.quartic, count);
+  std::vector<Spring> springs;
+  springs.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [from, to] = a.springs[i];
+    for (const std::size_t node : {from, to}) {
+      require_node(node, nodes.size(), fmt::format("springs[{}]", i));
+    }
+    const double length = (nodes[to].position - nodes[from].position).norm();
+    springs.push_back({{from, to},
+                       {.stiffness = stiffness[i],
+                        .rest_length = is_drawn ? length : rest_length[i],
+                        .quartic = quartic[i]}});
+  }
+  return springs;
+}
+
+}  // namespace
+
+Scene scene_of(const SceneArrays& arrays) {
+  const Index dimension = arrays.positions.cols();
+  if (dimension < 1 || dimension > 3) {
+    throw InvalidInput(
+        fmt::format("positions: {} columns; allowed are 1, 2 or 3, a coordinate each", dimension));
+  }
+  Scene scene{.name = "arrays", .dimension = static_cast<int>(dimension)};
+  if (arrays.gravity.size() > 0) {
+    require_size(arrays.gravity.size() == dimension, "gravity", arrays.gravity.size(),
+                 fmt::format("{}", dimension));
+    scene.gravity.head(dimension) = arrays.gravity;
+  }
+  scene.nodes = nodes_of(arrays);
+  scene.springs = springs_of(arrays, scene.nodes);
+  validate(scene, scene.name);
+  return scene;
+}
+
+}  // namespace qddot

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "qddot/scene/scene.hpp"
+
+namespace qddot {
+
+// A mass-spring network as arrays. Values that are alike everywhere may be given once.
+struct SceneArrays {
+  Eigen::MatrixXd positions{};                        // nodes x dimension (1, 2 or 3) [m]
+  std::vector<std::array<std::size_t, 2>> springs{};  // the two nodes of each
+  Eigen::VectorXd mass{};                             // [kg], of each node or of all
+  Eigen::VectorXd stiffness{};                        // [N/m], of each spring or of all
+  std::vector<std::size_t> pinned{};                  // nodes that stay where they are
+  Eigen::VectorXd gravity{};                          // dimension [m/s^2]; empty: none
+  Eigen::MatrixXd velocities{};                       // as positions [m/s]; empty: at rest
+  Eigen::VectorXd rest_length{};  // [m], of each spring or of all; empty: its length as given
+  Eigen::VectorXd quartic{};      // [N/m^3], likewise; empty: none
+};
+
+// The scene of these arrays. Throws InvalidInput, in a sentence that names array and entry, where
+// sizes do not fit or a value is not allowed (see validate).
+Scene scene_of(const SceneArrays& arrays);
+
+}  // namespace qddot
