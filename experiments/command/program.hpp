@@ -18,7 +18,7 @@ enum ExitStatus { done = 0, failed = 1, bad_input = 2, end_not_reached = 3 };
 std::string in_one_line(const std::string& text);
 
 // Parses the command line into what `app` binds, and --force, --time-limit and --version, and runs
-// `body`, which SIGINT, SIGTERM and the time limit interrupt (see interruption.hpp). --help prints
+// `body`, which SIGINT, SIGTERM and the time limit interrupt (see interruptible.hpp). --help prints
 // and returns 0. Prints one sentence, "program: ...", and returns bad_input for a wrong option or
 // an InvalidInput, end_not_reached for what cannot be written (CannotWrite) or has no reference,
 // 130 for a signal, and failed for any other exception.
