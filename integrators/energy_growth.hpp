@@ -20,7 +20,7 @@ class EnergyGrowth {
   void note(const State& state) {
     if (--until_look_ == 0) look(state);
   }
-  // Of the run so far, which is at `state`; at least 1, at most 1e300.
+  // The growth in the run so far, which is at `state`; at least 1, at most 1e300.
   double factor(const State& state);
 
  private:

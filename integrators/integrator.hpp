@@ -48,7 +48,7 @@ struct Counts {
   std::int64_t steps = 0, rejected = 0, force_evaluations = 0, stiffness_evaluations = 0,
                factorizations = 0, solves = 0, newton_iterations = 0;
   std::int64_t indefinite_factorizations = 0;  // of the factorisations, in SUNDIALS' methods
-  // Of methods of variable order: the orders of all steps added up, and how often it was lowered.
+  // The orders of all steps added up, and how often it was lowered; of methods of variable order.
   std::int64_t order_sum = 0, order_reductions = 0;
   std::int64_t stability_limited_steps = 0;  // of adaptive explicit methods: held to 1/w_max
 
@@ -207,7 +207,7 @@ class Integrator {
   friend class Parts;  // which runs several as one
 
   Outcome run(State& state, double t_end, const Observer& observer);
-  // Of the run up to `state`.
+  // The growth in the run up to `state`.
   virtual double energy_growth(const State& state) { return growth_.factor(state); }
 
   const Method& method_;

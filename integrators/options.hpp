@@ -17,15 +17,15 @@ struct Options {
   bool stability_detection = false;  // CVODE's, which lowers the order where BDF is not stable
   int iterations = 0;  // a step, of methods that take as many as they are told; 0: their own
   bool timed = false;  // whether to fill Summary::seconds
-  // Of hand-written implicit methods: what part of the error of a stage's prediction, which is of
-  // the size of the step's own error, a nonlinear solve may leave; 0: the method's own choice.
+  // The part of the error of a stage's prediction that a nonlinear solve may leave, in hand-written
+  // implicit methods; 0: the method's own choice. That error is of the size of the step's own.
   double solve_tolerance = 0;
-  // Of generalised-alpha methods: what a step multiplies a vibration of infinite frequency by, from
-  // 0 (gone at once) to 1 (undamped).
+  // The factor by which a step of a generalised-alpha method multiplies a vibration of infinite
+  // frequency, from 0 (gone at once) to 1 (undamped).
   double spectral_radius = 0.8;
   Solver solver = Solver::automatic;  // of methods that solve with M - s K
-  // Of splittings: whether to keep what rounding takes from q and v at each addition, and add it
-  // with the next (see compensated_sum.hpp).
+  // Whether a splitting keeps what rounding takes from q and v at each addition, and adds it with
+  // the next (see compensated_sum.hpp).
   bool compensated = false;
 };
 

@@ -78,8 +78,8 @@ const std::vector<Method>& methods() {
 
 namespace {
 
-// Of a system without unknowns, which no library need be asked about: advance() lets time pass. Of
-// a system that the method does not fit: advance() refuses before it would run.
+// Stands for a method where there is nothing to step. Without unknowns advance() lets time pass; on
+// a system that the method does not fit it refuses before it would run.
 class Rest final : public Integrator {
  public:
   using Integrator::Integrator;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int pinned = -1;
 
-// Of the system's capabilities it has the two that its implicit methods use.
+// It has the two capabilities of the system that its implicit methods use.
 class WithPlainForce final : public System, public SplitStiffness, public DiscreteGradient {
  public:
   WithPlainForce(const System& system, const PlainForce& plain)

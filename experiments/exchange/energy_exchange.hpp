@@ -22,7 +22,7 @@ struct ExchangeComparison {
   // then, small where the one course is the other, played faster or slower. Compared are t up to
   // the end T, or T/a if that is less.
   double tempo = 1, misfit = 0;
-  // Of sum I_j, in parts of sum R_j(0): at the start, at the end, and the mean over time.
+  // sum I_j in parts of sum R_j(0): at the start, at the end, and the mean over time.
   double first = 1, last = 1, level = 1;
   // The largest change of an I_j since its start, in parts of `level`.
   double exchanged = 0;

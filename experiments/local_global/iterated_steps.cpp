@@ -44,7 +44,7 @@ Solved solve(const Method& method, const SwingingCloth& cloth, double h, int mos
         seconds_of([&] { integrator = make_integrator(method, cloth.system(), options); });
     std::vector<double> times, factorizations;
     Step step{.iterations = iterations};
-    // Of several the first is not timed.
+    // The first of several is not timed.
     for (int i = repeats > 1 ? -1 : 0; i < repeats; ++i) {
       stop_if_interrupted();
       step.end = cloth.start;

@@ -31,7 +31,7 @@ struct Solved {
 // A solver whose step fails is left at the iterations before.
 struct Comparison {
   Comparison(const SwingingCloth& on, double h, int most, int repeats);
-  // Of the energy above its minimum, what is left of that of the prediction.
+  // The energy above its minimum, in parts of the prediction's.
   double relative_error(const Step& step) const;
 
   const SwingingCloth& cloth;

@@ -7,8 +7,8 @@ namespace qddot::scaling {
 using namespace measure;
 namespace {
 
-// Of a spring k and l0 are read at each of its ends (see SpringsByNode); of an unknown its q and
-// weight are read, its f is written, and its position goes to memory and back.
+// A spring's k and l0 are read at each of its ends (see SpringsByNode). An unknown's q and weight
+// are read, its f is written, and its position goes to memory and back.
 constexpr double bytes_of_spring = 2 * 2 * sizeof(double);
 constexpr double bytes_of_unknown = 5 * sizeof(double);
 // At each end d = x_j - x_i: 3; l^2 = d.d: 5; l: 1; s = l - l0: 1; tau = k s: 1; tau/l: 1;

@@ -53,7 +53,7 @@ constexpr double gigabyte = 1e9;
 constexpr double least_nodes_allowed = 10, most_nodes_allowed = 1e7;
 // How long the peak is looked at [s].
 constexpr double look = 0.05;
-// Of the memory that is free, without being told.
+// The part of free memory that is taken without being told.
 constexpr double taken_of_free = 0.8;
 
 struct Arguments {

@@ -33,7 +33,7 @@ Run run(Integrator& integrator, double step_size, double steps, const ReducedSce
   return result;
 }
 
-// Of a run, without the forces beyond `forces` a step.
+// The cost of a step of the run, without the forces beyond `forces` a step.
 StepCost cost_of(const Run& run, double forces) {
   const double steps = static_cast<double>(run.summary.counts.steps);
   const double all = static_cast<double>(run.summary.counts.force_evaluations);

@@ -138,7 +138,7 @@ struct Limit {
   const Method* method;
   double predicted, measured;  // of h w; infinite where there is none
 
-  // Of the measured from the predicted one, where there is one.
+  // How far the measured limit is from the predicted one, where there is one.
   double difference() const { return (measured - predicted) / predicted; }
 };
 
@@ -198,7 +198,7 @@ void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>&
   }
 }
 
-// Of the methods, those that are followed through whole runs: SUNDIALS' fixed steps have twins
+// The methods that are followed through whole runs: all but SUNDIALS' fixed steps, which have twins
 // here.
 std::vector<const Method*> followed(const Arguments& a, const std::vector<const Method*>& methods) {
   std::vector<const Method*> chosen;

@@ -92,7 +92,7 @@ struct Coverage {
   }
 };
 
-// Of one kind.
+// The verdicts on errors of one kind.
 struct Tally {
   std::map<Verdict, int> verdicts;
   std::map<std::string, Coverage> coverage;

@@ -201,7 +201,7 @@ AdaptiveStep::Jump AdaptiveStep::jump(const Instant& now, const Instant& next, d
   if (!change) return Jump::none;
   if (h_before_jump_ == 0) over_jump_ = 0;
   h_before_jump_ = std::max(h_before_jump_, h_);
-  // Of the time, and of positions in the time that they take to change.
+  // The rounding of the time, and that of positions as the time in which they change by it.
   const double rounded = now.state.q.lpNorm<Eigen::Infinity>() / change->speed;
   const double least = roundings_over_jump * std::max(std::abs(now.state.t), h_before_jump_) +
                        std::min(roundings_over_jump * rounded, slowest_over_jump * h_before_jump_);

@@ -13,7 +13,7 @@ class CompensatedSum {
  public:
   CompensatedSum(bool is_on, Index n) : rest_(is_on ? n : 0) { restart(); }
 
-  // Of a new sum.
+  // Begins a new sum.
   void restart() { rest_.setZero(); }
 
   // x' = x + increment; `next` is sized n, and may be `now`.

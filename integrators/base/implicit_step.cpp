@@ -11,11 +11,11 @@ constexpr int most_halvings = 30;
 // Corrections that shrink more slowly than this are worth new factors, which cost as much as some
 // ten solves.
 constexpr double slowest_rate = 0.3;
-// Of what a stage may leave of the prediction's error, the part that an iterative solve for a
-// correction may leave of the residual: where all is linear one correction is all there is.
+// The part of a stage's tolerance that an iterative solve for one correction may leave of the
+// residual: where all is linear, one correction is all there is.
 constexpr double linear_share = 0.1;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-// Of the positions: where corrections no longer shrink below this, rounding makes them.
+// Corrections that no longer shrink and are below this part of the positions are rounding.
 constexpr double rounding = 1e-12;
 
 }  // namespace

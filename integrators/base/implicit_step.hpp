@@ -21,8 +21,8 @@ namespace qddot {
 // until it does.
 class ImplicitStep : public FixedStep {
  public:
-  // What a solve leaves is of no use to be less than the step's own error; but a method that keeps
-  // an invariant keeps it no better than its stages are solved.
+  // Solving far below the step's own error gains nothing. But a method that keeps an invariant
+  // keeps it no better than its stages are solved.
   static constexpr double enough = 1e-4, enough_for_invariants = 1e-9;
 
   // `solve_tolerance`: where the options do not say.
@@ -59,7 +59,7 @@ class ImplicitStep : public FixedStep {
   // With twice the compression that the last factors have, where that works, or with as much.
   Outcome factorize(const Vec& q, double s);
   Outcome factorize_softened(const Vec& q, double s);
-  // With conjugate gradients indefinite_matrix as well: only now they may see that it is.
+  // May also return indefinite_matrix: conjugate gradients detect it only while solving.
   Outcome correction();
   double search(const Vec& q, double s);
   double objective(const Vec& q, double s);

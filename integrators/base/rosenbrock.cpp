@@ -10,11 +10,11 @@ namespace {
 
 // Between two ends of steps: errs by h^6 where the step does by h^5.
 constexpr std::size_t instants = 2;
-// Of what a step may err by, the part that an iterative solve for a stage may: nothing corrects it,
-// the later stages take up to some 30 times of it, and its errors add up over the steps, where
-// those of the formula are far below the estimate.
+// The part of a step's allowed error that an iterative solve for a stage may make. Nothing corrects
+// it, the later stages take up to some 30 times of it, and it adds up over the steps, where the
+// formula's own errors are far below the estimate.
 constexpr double linear_share = 1e-4;
-// Of the right-hand side, what is within rounding.
+// The part of the right-hand side that is within rounding.
 constexpr double tightest = 1e-15;
 
 }  // namespace

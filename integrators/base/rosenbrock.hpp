@@ -16,7 +16,7 @@ struct RosenbrockTable {
   std::vector<std::vector<double>> a, c;  // rows i = 0, 1, ..., with i entries
 };
 
-// Of order 4 with an estimate of order 3.
+// The table of order 4 with an estimate of order 3.
 namespace registered {
 const RosenbrockTable& rodas4_table();
 }  // namespace registered

@@ -7,7 +7,7 @@ namespace qddot::sundials {
 // What a method of variable order did with it.
 class Orders {
  public:
-  // Of each accepted step, the order that it was taken with.
+  // Takes the order of each accepted step.
   void note(int order) {
     sum_ += order;
     reductions_ += order < last_;

@@ -14,8 +14,8 @@ namespace {
 constexpr int steps_in_a_row = 1000;
 constexpr double smallest_mean_step = 1e-12;
 
-// Of constant steps there is no error to test; the tolerance is that of Newton's iteration alone,
-// which is to leave nothing of its own.
+// Constant steps have no error test. The tolerance is that of Newton's iteration alone, which is to
+// leave no error of its own.
 constexpr double newton_rtol = 1e-10;
 
 }  // namespace

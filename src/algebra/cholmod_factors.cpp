@@ -144,7 +144,7 @@ class CholmodFactors : public Factors {
     return factor->minor >= factor->n;
   }
 
-  // Of LDL', the inertia is that of D (Sylvester); an LL' that ran through is positive.
+  // The inertia of LDL' is that of D (Sylvester); an LL' that ran through is positive.
   static Index negative_pivots(const cholmod_factor* factor) {
     if (factor->is_ll) return 0;
     const auto* first = static_cast<const int*>(factor->p);

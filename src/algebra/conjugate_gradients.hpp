@@ -9,7 +9,7 @@ namespace qddot {
 // Factors that do their work in solve().
 class IterativeFactors : public Factors {
  public:
-  // Of all solves so far; each multiplies with the matrix once.
+  // The iterations of all solves so far; each multiplies with the matrix once.
   virtual Index iterations() const = 0;
 };
 

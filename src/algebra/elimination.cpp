@@ -92,7 +92,7 @@ class Analysis {
 
   int supernodes() const { return static_cast<int>(factor_->nsuper); }
   const int* order() const { return static_cast<const int*>(factor_->Perm); }
-  // Of supernode s: its vertices are first()[s] to first()[s + 1], its rows, these included,
+  // Supernode s has the vertices first()[s] to first()[s + 1] and the rows, these included,
   // rows()[start()[s]] to rows()[start()[s + 1]].
   const int* first() const { return static_cast<const int*>(factor_->super); }
   const int* start() const { return static_cast<const int*>(factor_->pi); }

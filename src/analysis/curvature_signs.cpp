@@ -17,8 +17,8 @@ namespace qddot {
 namespace {
 
 constexpr double machine_epsilon = std::numeric_limits<double>::epsilon();
-// Of the entries of a spring's block some 9 eps k, of the sums some eps/4 a spring (a row of K has
-// one or two such blocks), the rest for the pivots.
+// Rounding moves the entries of a spring's block by some 9 eps k and the sums by some eps/4 a
+// spring (a row of K has one or two such blocks); the rest is for the pivots.
 constexpr double roundings = 32;
 // Positions are moved by so many of their roundings, so that those of K do not show.
 constexpr double magnified = 1 << 20;

@@ -12,8 +12,8 @@
 namespace qddot {
 namespace {
 
-// Of w^2, as a residual: there is an eigenvalue as near, mostly far nearer (3e-6 off for a chain of
-// 1e5 masses, whose eigenvalues crowd at the end).
+// The residual allowed, relative to w^2: an eigenvalue is as near, mostly far nearer (3e-6 off for
+// a chain of 1e5 masses, whose eigenvalues crowd at the end).
 constexpr double relative_error = 1e-4;
 // Lanczos' basis would be the whole space.
 constexpr Index most_dense = 40;

@@ -300,7 +300,7 @@ class MassSpring final : public System,
                        block(link.law, between(q, link)));
   }
 
-  // Of images and of links whose nodes have fewer unknowns.
+  // Adds the blocks of images and of links whose nodes have fewer unknowns.
   template <class BlockOf>
   void add_image_blocks(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
     for (std::size_t e = 0; e < images_.size(); ++e) {
@@ -351,7 +351,7 @@ class MassSpring final : public System,
     return anchor.point - layout_.at(q, anchor.i);
   }
 
-  // Of a node whose first unknown is `first` and whose D coordinates are all unknowns.
+  // For a node whose first unknown is `first` and whose D coordinates are all unknowns.
   static void subtract_from_diagonal(SymmetricMatrix& k, int first, const Block& b) {
     for (int d = 0; d < D; ++d) {
       double* column = k.valuePtr() + k.outerIndexPtr()[first + d];
@@ -364,7 +364,7 @@ class MassSpring final : public System,
       for (int row = 0; row < D; ++row) column[row] += b(row, d);
     }
   }
-  // Of a node with fewer.
+  // For a node with fewer.
   void edge_subtract_from_diagonal(SymmetricMatrix& k, int node, const Block& b) const {
     const int count = layout_.count(node);
     for (int c = 0; c < count; ++c) {

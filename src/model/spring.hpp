@@ -107,7 +107,7 @@ Eigen::Matrix<Real, D, D> spring_stiffness(const SpringLaw& law, const Eigen::Ma
   return Block::Identity() * across + (along - across) * (n * n.transpose());
 }
 
-// Of this block the part that the material's stiffness makes and not the tension: tau' nn' [N/m],
+// The part of this block that the material's stiffness makes, without the tension: tau' nn' [N/m],
 // or all of B where l0 = 0, so that a spring is never without tension. Positive semidefinite.
 template <class Real, int D>
 Eigen::Matrix<Real, D, D> spring_material_stiffness(const SpringLaw& law,

@@ -26,7 +26,7 @@ struct Scales {
   double displacement = 0;  // largest |x - x(0)| of a node [m]
   double speed = 0;         // largest |v| of a node [m/s]
   double kinetic = 0;       // largest kinetic energy of what is integrated [J]
-  // Of each part of the scene; empty where all nodes are measured by the scales above.
+  // The scales of each part of the scene; empty where the ones above hold for all nodes.
   std::vector<PartScale> parts{};
 
   // What errors of a part's positions [m] and velocities [m/s] are divided by: its own scale or,

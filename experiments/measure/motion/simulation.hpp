@@ -27,10 +27,10 @@ class Simulation {
   // the method cannot take.
   Simulation(const Scene& scene, const Method& method, const Options& options,
              const Reductions& reductions = {});
-  // Of a model that others may use as well.
+  // Runs a model that others may use as well.
   Simulation(std::shared_ptr<const ReducedScene> model, const Method& method,
              const Options& options);
-  // Of an own system, node after node with `dimension` unknowns.
+  // Runs an own system, node after node with `dimension` unknowns.
   Simulation(std::shared_ptr<const System> system, State start, int dimension, const Method& method,
              const Options& options);
 

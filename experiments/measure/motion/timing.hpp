@@ -37,7 +37,7 @@ double least_seconds(double seconds, const Work& work) {
   return least;
 }
 
-// Of one value or more; the mean of the middle two of an even number.
+// The median of one value or more; the mean of the middle two of an even number.
 inline double median(std::vector<double> values) {
   std::ranges::sort(values);
   const std::size_t half = values.size() / 2;

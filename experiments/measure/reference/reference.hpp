@@ -35,7 +35,8 @@ struct Reference {
   // From which time on [s] that motion and the reference are `apart`, found or, after the end,
   // extrapolated; and how fast they part [1/s]. Infinite and zero for regular motions.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
-  // Of a motion that symmetry reduced; missing where nothing did or where it took too long.
+  // What a push does to a motion that symmetry reduced; missing where none did, or where finding
+  // out took too long.
   bool is_reduced_by_symmetry = false;
   std::optional<OutOfSymmetry> out_of_symmetry{};
   // Beyond the horizon, what part of the kinetic energy is in each mode (see ModalShares), and by

@@ -28,8 +28,8 @@ struct Effort {
   using Take = std::function<Point()>;
 
   double seconds = 10;  // for one run; slower ones become over_budget
-  int repeats = 5;      // timed runs; fewer, but one, where they would take half of that together
-  Options options{};    // beside the knob
+  int repeats = 5;    // timed runs; at least one; fewer where they would take half of that together
+  Options options{};  // beside the knob
   const Watch* watch = nullptr;  // if any, sees one more run, untimed
   // If any, gives a point that may be known already, or takes it.
   std::function<Point(const Method&, double value, const Take& take)> recall{};

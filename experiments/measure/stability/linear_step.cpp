@@ -20,7 +20,7 @@ using Eigen::Matrix4d;
 // What rounding may leave of the responses of an oscillator.
 constexpr double rounding = 1e-11;
 
-// Of a 2 x 2 matrix. Beside a double root t +- sqrt(t^2 - d) keeps what an iteration would lose.
+// The roots of a 2 x 2 matrix. Near a double root t +- sqrt(t^2 - d) keeps what an iteration loses.
 std::vector<Complex> pair_of_roots(const Eigen::Matrix2d& a) {
   const double t = (a(0, 0) + a(1, 1)) / 2, d = a.determinant();
   const double discriminant = t * t - d;

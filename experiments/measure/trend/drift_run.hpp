@@ -28,7 +28,7 @@ struct DriftRun {
   double seconds = 0;
   TrendScales scales{};
   Trend energy{};
-  // Of the component that changed most, where there is one that should stay.
+  // The trend of the component that changed most, where there is one that should stay.
   std::optional<Trend> linear{}, angular{};
   std::vector<DriftPoint> path{};  // from t = 0 on, some in each octave and some at equal distances
 };

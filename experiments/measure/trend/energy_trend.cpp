@@ -12,8 +12,9 @@ namespace {
 
 // Fewer means cannot say whether they wander, or how far they may.
 constexpr Index told_blocks = 16;
-// Of a run that first does something else, the last part says so much more surely what it comes
-// to; of one line through noise it says nearly three times less, of a walk nearly the same.
+// The last part of a run that first does something else says what it comes to, so much more surely.
+// In a run that is one line through noise the last part says nearly three times less, in a walk
+// nearly the same.
 constexpr double much_surer = 0.25;
 // What is called a drift, or its end, is no part of a sine of up to so many runs' length.
 constexpr double slow_runs = 2;
@@ -98,7 +99,7 @@ class Excess {
 
   double of(const Sample& sample) const { return 1 + sample.error / scales_.excess; }
 
-  // Of what is lost, or won without end in sight.
+  // Fits what is lost, or won without end in sight.
   void fit_slow(Trend& trend) const {
     const auto end = std::ranges::find_if(
         samples_, [&](const Sample& sample) { return of(sample) < nearly_gone; });

@@ -46,7 +46,7 @@ bool may_be_sine(const Trend& trend) {
   return trend.slow_period > 0 && std::isfinite(trend.slow_period);
 }
 
-// Of what may be a drift, or a wave that has not been seen long enough.
+// Describes what may be a drift, or a wave that has not been seen long enough.
 std::string undecided_words(const Trend& trend) {
   std::string what;
   if (may_be_sine(trend)) {

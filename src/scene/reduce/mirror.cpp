@@ -260,7 +260,7 @@ class Search {
     });
   }
 
-  // Of all springs between a and b and all between c and d.
+  // Compares all springs between a and b with all between c and d.
   bool are_springs_alike(int a, int b, int c, int d) const {
     const auto own = ends_.between(a, b), other = ends_.between(c, d);
     return std::ranges::equal(own, other, [&](std::size_t e, std::size_t f) {

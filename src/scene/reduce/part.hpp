@@ -79,7 +79,7 @@ class Part {
   struct Motion {
     Eigen::Vector3d x, v;
   };
-  // Of its node number i, from the body's origin.
+  // The motion of its node number i, from the body's origin.
   Motion motion(std::size_t i, const Eigen::Ref<const Vec>& q,
                 const Eigen::Ref<const Vec>& v) const;
   std::optional<std::string> places_differ(const Body& body, double tolerance,
