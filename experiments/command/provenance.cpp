@@ -13,6 +13,7 @@
 #include <sundials/sundials_version.h>
 
 #include "experiments/command/build_info.hpp"
+#include "qddot/model/kernels/level.hpp"
 #include "qddot/scene/explain.hpp"
 #include "qddot/scene/reduce/part.hpp"
 
@@ -42,6 +43,7 @@ nlohmann::json provenance(const std::vector<std::string>& command_line) {
           {"source_hash", build_info::source_hash},
           {"compiler", build_info::compiler},
           {"flags", build_info::flags},
+          {"kernels", kernels::levels()[static_cast<std::size_t>(kernels::level())]},
           {"cpu", processor()},
           {"libraries",
            {{"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,

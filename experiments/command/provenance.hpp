@@ -10,8 +10,8 @@
 
 namespace qddot::command {
 
-// Where a result comes from: command line, version of the code, compiler and flags, processor,
-// libraries, date (UTC).
+// Where a result comes from: command line, version of the code, compiler and flags, the kernels'
+// level, processor, libraries, date (UTC).
 nlohmann::json provenance(const std::vector<std::string>& command_line);
 
 // The same with the scene and its content hash.

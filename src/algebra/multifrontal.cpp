@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "qddot/algebra/large_array.hpp"
+#include "qddot/algebra/multifrontal/front_kernels.hpp"
 #include "qddot/algebra/multifrontal/fronts.hpp"
-#include "qddot/algebra/multifrontal/strips.hpp"
 #include "qddot/algebra/multifrontal/team.hpp"
 #include "qddot/algebra/multifrontal/triangular_solves.hpp"
 
@@ -17,23 +17,21 @@ namespace qddot {
 namespace {
 
 using namespace multifrontal;
-using namespace multifrontal::strips;
 
-// Pivots whose columns are taken off the rest of a front at once: as many as leave a tile's rows of
-// L in the first cache.
-constexpr int panel = 96;
+constexpr int height = strip_height;
 
 // Where fronts are worked on one after the other, by one thread or a team.
 struct Workspace {
-  Workspace(const Fronts::Sizes& sizes, bool for_team)
-      : updates(sizes.updates + height),  // see strips::add
+  // For a tile's rows of L D or, where a team shares them, all.
+  Workspace(const Fronts::Sizes& sizes, int tile_strips, bool for_team)
+      : updates(sizes.updates + height),  // kernels read a column's last vector whole
         columns(sizes.pivot_columns + height),
         scaled(Index{panel} *
                (for_team ? sizes.height + height * tile_strips : height * tile_strips)) {}
 
   LargeArray updates;
   LargeArray columns;  // of the pivots of the front at hand, until they are columns of L
-  LargeArray scaled;   // L D of a panel, strips as those of L: of a tile's rows or, for a team, all
+  LargeArray scaled;   // L D of a panel, strips as those of L
   std::array<Block, panel / height> blocks;  // the panel's, on the diagonal
   Index negative = 0;                        // pivots
 };
@@ -47,18 +45,18 @@ class Multifrontal : public Factors {
         fronts_(pattern, std::move(elimination)),
         l_(fronts_.factor_size),
         pivot_(pattern.rows()),
-        top_(fronts_.top_sizes, true),
+        top_(fronts_.top_sizes, kernels_.tile_strips, true),
         solves_(fronts_, l_.get(), pivot_.get()) {
-    workspaces_.emplace_back(fronts_.branch_sizes, false);
+    add_workspaces(1);
   }
 
   Definiteness factorize(double a, double s, const SymmetricMatrix& k) override {
-    if (!numeric({a, s, k.valuePtr(), false})) return Definiteness::singular;
+    if (!numeric({{a, s, diagonal_.data(), k.valuePtr()}, false})) return Definiteness::singular;
     return negative_pivots() > 0 ? Definiteness::indefinite : Definiteness::positive;
   }
 
   bool factorize_positive(double a, double s, const SymmetricMatrix& k) override {
-    return numeric({a, s, k.valuePtr(), true});
+    return numeric({{a, s, diagonal_.data(), k.valuePtr()}, true});
   }
 
   Index negative_pivots() const override {
@@ -81,10 +79,8 @@ class Multifrontal : public Factors {
   }
 
  private:
-  // a D - s K, and whether to give up at the first pivot that is not positive.
-  struct Task {
-    double a, s;
-    const double* k;
+  // A matrix, and whether to give up at the first pivot that is not positive.
+  struct Task : Combination {
     bool only_positive;
   };
 
@@ -92,7 +88,7 @@ class Multifrontal : public Factors {
   bool numeric(const Task& task) {
     const bool divided = fronts_.branches().size() > 1 && !omp_in_parallel();
     const int most = divided ? omp_get_max_threads() : 1;
-    while (std::ssize(workspaces_) < most) workspaces_.emplace_back(fronts_.branch_sizes, false);
+    add_workspaces(most);
     for (Workspace& w : workspaces_) w.negative = 0;
     top_.negative = 0;
     failed_ = false;
@@ -110,6 +106,12 @@ class Multifrontal : public Factors {
     return !failed_;
   }
 
+  void add_workspaces(int threads) {
+    while (std::ssize(workspaces_) < threads) {
+      workspaces_.emplace_back(fronts_.branch_sizes, kernels_.tile_strips, false);
+    }
+  }
+
   // One thread's part: some of the branches by itself, then every front above them with the others.
   void work(const Task& task, Team team, Workspace& own) {
     Team alone;
@@ -117,13 +119,13 @@ class Multifrontal : public Factors {
       const Branch& branch = fronts_.branches()[b];
       for (int i = branch.start; i < branch.end && !failed_; ++i) {
         const Front& f = fronts_.all()[i];
-        factorize(task, {f, own, update(f, own)}, alone);
+        factorize(task, open(f, own), alone);
       }
     });
     if (failed_) return;
     for (const int i : fronts_.top()) {
       const Front& f = fronts_.all()[i];
-      if (!factorize(task, {f, top_, update(f, top_)}, team)) return;
+      if (!factorize(task, open(f, top_), team)) return;
     }
   }
 
@@ -131,18 +133,23 @@ class Multifrontal : public Factors {
     return (f.kept ? top_ : own).updates.get() + f.update;
   }
 
-  // A front's dense matrix.
+  // A front while it is worked on.
   struct Open {
     const Front& f;
     Workspace& w;
-    double* update;
-
-    // Column j, as if its rows began with the pivots'.
-    double* column(int j) const {
-      if (j < f.pivot_height()) return w.columns.get() + Index{j} * f.height();
-      return update + Index{j - f.pivot_height()} * f.below_height() - f.pivot_height();
-    }
+    OpenFront matrix;
   };
+
+  Open open(const Front& f, Workspace& own) {
+    return {f,
+            own,
+            {.columns = own.columns.get(),
+             .update = update(f, own),
+             .factor = l_.get() + f.factor,
+             .pivots = f.pivots,
+             .pivot_height = f.pivot_height(),
+             .height = f.height()}};
+  }
 
   // Whether to go on. All threads of a team must answer alike: they ask failed_ only where the team
   // has met since it may have been set, and will meet again before it may be.
@@ -165,139 +172,83 @@ class Multifrontal : public Factors {
   // the children's updates.
   void assemble_pivots(const Task& task, const Open& open, Team& team) {
     const Front& f = open.f;
-    double* columns = open.w.columns.get();
     team.share_parts(f.pivot_strips(), 1, [&](int from, int end) {
       from *= height;
       end *= height;
-      for (int j = from; j < end; ++j) {
-        double* column = columns + Index{j} * f.height();
-        std::fill(column + j / height * height, column + f.height(), 0.0);
-      }
-      const auto in_columns = [&](std::span<const Fronts::Entry> entries) {
-        const auto first =
-            std::ranges::lower_bound(entries, from * f.height(), {}, &Fronts::Entry::target);
-        return std::ranges::subrange(
-            first, std::ranges::lower_bound(first, entries.end(), end * f.height(), {},
-                                            &Fronts::Entry::target));
+      const auto in_columns = [&](std::span<const Entry> entries) {
+        const auto begin = std::ranges::lower_bound(entries, from * f.height(), {}, &Entry::target);
+        const auto last =
+            std::ranges::lower_bound(begin, entries.end(), end * f.height(), {}, &Entry::target);
+        return Entries{std::to_address(begin), std::to_address(last)};
       };
-      for (const auto [source, target] : in_columns(fronts_.entries(f)))
-        columns[target] = -task.s * task.k[source];
-      for (const auto [source, target] : in_columns(fronts_.diagonal(f)))
-        columns[target] += task.a * diagonal_[source];
-      // The columns that fill up the last strip are those of the identity.
-      for (int j = std::max(f.pivots, from); j < end; ++j) columns[Index{j} * (f.height() + 1)] = 1;
+      kernels_.assemble(open.matrix, task, in_columns(fronts_.entries(f)),
+                        in_columns(fronts_.diagonal(f)), from, end);
       for (const int child : fronts_.children(f)) add_update(child, open, from, end);
     });
   }
 
-  // A child's update in the front's columns [first, end), all of pivots or none. All columns of one
-  // run of rows, then the next run: so no sum waits for a neighbour to be stored.
+  // A child's update in the front's columns [first, end), all of pivots or none.
   void add_update(int index, const Open& open, int first, int end) {
     const Front& child = fronts_.all()[index];
-    const Index x_ld = child.below_height();
-    const Index y_ld = first < open.f.pivot_height() ? open.f.height() : open.f.below_height();
     const auto runs = fronts_.runs(child);
     const auto start = std::ranges::lower_bound(
         runs, first, {}, [](const Run& run) { return run.to + run.length - 1; });
-    for (auto rows = start; rows != runs.end(); ++rows) {
-      for (auto run = start; run <= rows && run->to < end; ++run) {
-        const int last = std::min(run->length, end - run->to);
-        int j = std::max(0, first - run->to);
-        const auto add_columns = [&](int count, int above) {
-          add(update(child, open.w) + (run->from + j) * x_ld + rows->from + above, x_ld,
-              rows->length - above, count, open.column(run->to + j) + rows->to + above, y_ld);
-          j += count;
-        };
-        if (run < rows) add_columns(last - j, 0);
-        while (j < last) add_columns(std::min(height, last - j), j);
-      }
-    }
+    kernels_.add_update({.update = update(child, open.w),
+                         .height = child.below_height(),
+                         .begin = std::to_address(start),
+                         .end = std::to_address(runs.end())},
+                        open.matrix, first, end);
   }
 
   // The pivots [from, end), and what they take off everything after them. Whether to go on.
   bool eliminate(const Open& open, int from, int end, bool only_positive, Team& team) {
     const Front& f = open.f;
-    const int first = from / height, after = strips::count(end);
+    const int first = from / height, after = (end + height - 1) / height;
+    const int tile_strips = kernels_.tile_strips;
     const auto tile = [&](int i) { return std::min(tile_strips, f.strips() - i); };
+    const auto divide = [&](int until, int i, int strips, double* scaled) {
+      kernels_.divide(open.matrix, from, until, i, strips, open.w.blocks.data(), scaled);
+    };
     team.share(1, [&](int) {
       for (int i = first; i < after && !failed_; ++i) {
-        divide(open, from, i, i, 1, scaled(open, 0));
+        divide(i, i, 1, scaled(open, 0));
         factorize_block(open, from, i, only_positive);
       }
     });
     if (failed_) return false;
     const int tiles = (f.strips() - after + tile_strips - 1) / tile_strips;
     for (int i = after; team.alone() && i < f.strips(); i += tile_strips) {
-      divide(open, from, after, i, tile(i), scaled(open, 0));
-      subtract_from_rest(open, from, end, i, tile(i), scaled(open, 0));
+      divide(after, i, tile(i), scaled(open, 0));
+      kernels_.subtract_from_rest(open.matrix, from, end, i, tile(i), scaled(open, 0));
     }
     if (team.alone()) return true;
     const auto row = [&](int t) { return after + t * tile_strips; };
-    team.share(tiles,
-               [&](int t) { divide(open, from, after, row(t), tile(row(t)), scaled(open, t)); });
+    team.share(tiles, [&](int t) { divide(after, row(t), tile(row(t)), scaled(open, t)); });
     team.share(tiles, [&](int t) {
       t = tiles - 1 - t;  // the longest first
-      subtract_from_rest(open, from, end, row(t), tile(row(t)), scaled(open, t));
+      kernels_.subtract_from_rest(open.matrix, from, end, row(t), tile(row(t)), scaled(open, t));
     });
     return true;
   }
 
   // L D of a panel in the rows of tile t.
-  static double* scaled(const Open& open, int t) {
-    return open.w.scaled.get() + Index{t} * tile_strips * panel * height;
-  }
-
-  // L of the front: strip i from column k on.
-  double* factor(const Front& f, int i, int k) const {
-    return l_.get() + f.factor + (Index{i} * f.pivots + k) * height;
-  }
-
-  // Strips i, ... of L and L D in the panel's columns, up to those of strip `end`.
-  void divide(const Open& open, int from, int end, int i, int strips, double* ld) {
-    const Front& f = open.f;
-    for (int j = from / height; j < end; ++j) {
-      const int k = j * height - from, columns = std::min(height, f.pivots - j * height);
-      double* a = open.column(j * height) + i * height;
-      subtract<false>(a, f.height(), ld, panel * height, factor(f, j, from), k, strips);
-      for (int t = 0; t < strips; ++t) {
-        divide_strip(a + t * height, f.height(), open.w.blocks[j - from / height], columns,
-                     factor(f, i + t, j * height), ld + (t * panel + k) * height);
-      }
-    }
+  double* scaled(const Open& open, int t) const {
+    return open.w.scaled.get() + Index{t} * kernels_.tile_strips * panel * height;
   }
 
   // The block of strip i on the diagonal.
   void factorize_block(const Open& open, int from, int i, bool only_positive) {
     const Front& f = open.f;
     const int k = std::min(height, f.pivots - i * height), first = f.first + i * height;
-    double* a = open.column(i * height) + i * height;
-    subtract<false>(a, f.height(), scaled(open, 0), panel * height, factor(f, i, from),
-                    i * height - from, 1);
     Block& block = open.w.blocks[i - from / height];
-    block = Block(a, f.height());
+    kernels_.factorize_block(open.matrix, from, i, scaled(open, 0), block);
     if (!block.regular || (only_positive && block.negative > 0)) failed_ = true;
     open.w.negative += block.negative;
     std::copy_n(block.pivot, k, pivot_.get() + first);
-    std::copy_n(block.l, k * height, factor(f, i, i * height));
+    std::copy_n(block.l, k * height, open.matrix.factor + Index{i} * height * (f.pivots + height));
   }
 
-  // What the pivots [from, end) take off strips i, ... after them. The first ones begin the update.
-  void subtract_from_rest(const Open& open, int from, int end, int i, int strips,
-                          const double* ld) {
-    const Front& f = open.f;
-    const int k = end - from;
-    for (int j = strips::count(end); j < i + strips; ++j) {
-      const int above = std::max(j - i, 0);  // strips of the tile above the diagonal
-      double* c = open.column(j * height) + (i + above) * height;
-      const double* rows = ld + above * panel * height;
-      const double* w = factor(f, j, from);
-      const bool is_update = j >= f.pivot_strips();
-      const auto subtract_tile = is_update && from == 0 ? subtract<true> : subtract<false>;
-      subtract_tile(c, is_update ? f.below_height() : f.height(), rows, panel * height, w, k,
-                    strips - above);
-    }
-  }
-
+  const FrontKernels& kernels_ = front_kernels();
   Vec diagonal_;
   Fronts fronts_;
   LargeArray l_, pivot_;

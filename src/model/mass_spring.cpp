@@ -7,7 +7,6 @@
 #include "qddot/model/block_pattern.hpp"
 #include "qddot/model/directions.hpp"
 #include "qddot/model/in_tension.hpp"
-#include "qddot/model/kernels/force_kernel.hpp"
 #include "qddot/model/kernels/springs_by_node.hpp"
 #include "qddot/model/kernels/stiffness_kernel.hpp"
 #include "qddot/model/kinks.hpp"
@@ -70,7 +69,7 @@ class MassSpring final : public System,
   }
 
   void force(const Vec& q, Vec& f) const override {
-    if (by_node_) return kernels::sum_forces(*by_node_, q, weight_, f);
+    if (by_node_) return by_node_->sum_forces(q, weight_, f);
     sum_forces(
         [&](const auto& spring) { return spring_force(spring.law, between(q, spring)); },
         [&](const auto& spring) { return spring_force(spring.law, edge_between(q, spring)); }, f);

@@ -21,6 +21,7 @@ STABILITY = MOTION | {"experiments/measure/stability"}
 SPEED = REFERENCE | STABILITY | {"experiments/measure/speed"}
 TREND = SPEED | {"experiments/measure/trend"}
 COMMAND = TREND | {"experiments/command"}
+VECTORS = "src/model/kernels/vectors"
 
 MAY_SEE = {
     **{room: MODEL for room in MODEL},
@@ -37,6 +38,10 @@ MAY_SEE = {
     "experiments/measure/speed": SPEED,
     "experiments/measure/trend": TREND,
     "experiments/command": COMMAND,
+    # Compiled for more than one processor: seen by each other only, and see what is plain data.
+    VECTORS: {"src/model/kernels"},
+    "src/algebra/multifrontal/vectors": {VECTORS, "src/algebra/multifrontal"},
+    "experiments/measure/speed/vectors": {VECTORS, "experiments/measure/speed"},
     # A peer is SUNDIALS by itself, whose handles are there.
     "experiments/bench": COMMAND | {"integrators/sundials"},
 }

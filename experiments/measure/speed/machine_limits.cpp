@@ -5,47 +5,24 @@
 #include <Eigen/Dense>
 
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/model/kernels/lanes.hpp"
+#include "qddot/measure/speed/limit_kernels.hpp"
 #include "qddot/model/system.hpp"
 
 namespace qddot::measure {
-namespace {
-
-using namespace kernels;
-
-// More chains of dependent operations than two units of latency 4 need.
-constexpr int chains = 12, rounds = 10000;
-
-}  // namespace
 
 double triad_bandwidth(double bytes, double seconds) {
   const Index n = std::max<Index>(1, static_cast<Index>(bytes / (3 * sizeof(double))));
   Vec a = Vec::Zero(n), b = Vec::Ones(n), c = Vec::Ones(n);
-  double s = 0.5;
-  const double least = least_seconds(seconds, [&] {
-    a = b + s * c;
-    asm volatile("" : "+m"(s) : "r"(a.data()) : "memory");  // a pass is not left out
-  });
+  const double least =
+      least_seconds(seconds, [&] { limit_kernels().triad(b.data(), c.data(), 0.5, a.data(), n); });
   return 3 * sizeof(double) * static_cast<double>(n) / least;
 }
 
 double peak_flops(double seconds) {
-  struct Chains {
-    Lanes each[chains];
-  } x{};
-  Lanes factor = 0.5 + Lanes{}, term = 1 + Lanes{};
-  const double least = least_seconds(seconds, [&] {
-    asm volatile("" : "+m"(factor), "+m"(term));
-    const Lanes m = factor, t = term;
-    Chains y = x;
-    for (int i = 0; i < rounds; ++i) {
-#pragma GCC unroll 16
-      for (Lanes& chain : y.each) chain = chain * m + t;
-    }
-    x = y;
-    asm volatile("" : "+m"(x));
-  });
-  return 2.0 * lanes * chains * rounds / least;
+  double operations = 0;
+  const double least =
+      least_seconds(seconds, [&] { operations = limit_kernels().multiply_and_add(10000); });
+  return operations / least;
 }
 
 double product_flops(double seconds) {
@@ -65,14 +42,11 @@ double reading_rate(double bytes, double seconds) {
   const Vec numbers = Vec::Zero(size);
   // A pass of at least a megabyte, so that the clock's own time does not count.
   const Index passes = std::max<Index>(1, (1 << 17) / size);
-  Eigen::Array<double, 64, 1> sums = Eigen::Array<double, 64, 1>::Zero();
   volatile double sink = 0;
   const double least = least_seconds(seconds, [&] {
-    for (Index pass = 0; pass < passes; ++pass) {
-      for (Index i = 0; i < size; i += 64)
-        sums += Eigen::Map<const Eigen::Array<double, 64, 1>>(numbers.data() + i);
-    }
-    sink = sums.sum();
+    double total = 0;
+    for (Index pass = 0; pass < passes; ++pass) total += limit_kernels().sum(numbers.data(), size);
+    sink = total;
   });
   return static_cast<double>(passes * size) * sizeof(double) / least;
 }

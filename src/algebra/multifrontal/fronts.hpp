@@ -4,14 +4,10 @@
 #include <vector>
 
 #include "qddot/algebra/elimination.hpp"
+#include "qddot/algebra/multifrontal/front_kernels.hpp"
 #include "qddot/model/system.hpp"
 
 namespace qddot::multifrontal {
-
-// Rows of an update that stay neighbours in the front they are added to.
-struct Run {
-  int from, to, length;
-};
 
 // The dense matrix of one supernode: `pivots` columns that become columns of L, and the `below` x
 // `below` update of what comes after. Rows and columns are numbered with the pivots first, then, at
@@ -44,11 +40,6 @@ struct Branch {
 // All fronts of a matrix a D - s K and every index that its factorisation needs.
 class Fronts {
  public:
-  // An entry of K or D and where it goes in the columns of its front's pivots.
-  struct Entry {
-    int source, target;
-  };
-
   Fronts(const SymmetricMatrix& pattern, Elimination elimination);
 
   // In the order of elimination: children before their parent.

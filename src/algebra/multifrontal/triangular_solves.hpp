@@ -10,7 +10,7 @@ namespace qddot::multifrontal {
 // so that a solve takes as long as reading does.
 class TriangularSolves {
  public:
-  // l: factor_size doubles, each front's strip after strip of its pivots' columns (see strips.hpp);
+  // l: factor_size doubles, each front's strip after strip of its pivots' columns;
   // pivots: E, in the order of elimination. Both and the fronts must outlive this.
   TriangularSolves(const Fronts& fronts, const double* l, const double* pivots);
 
@@ -20,19 +20,9 @@ class TriangularSolves {
   void solve(const FourColumns& b, FourColumns& x);
 
  private:
-  // Of L z = b: the front's pivots of z, and what they take off the rows below.
-  void forward(const Front& f);
-  // Of L' x = y: the front's pivots of x.
-  void backward(const Front& f);
-  // Both for four right-hand sides; backwards() divides by the pivots, too.
-  void forwards(const Front& f);
-  void backwards(const Front& f);
+  FrontFactor factor(const Front& f) const;
 
-  // L of the front: strip i from column k on.
-  const double* factor(const Front& f, int i, int k) const {
-    return l_ + f.factor + (Index{i} * f.pivots + k) * 8;
-  }
-
+  const FrontKernels& kernels_ = front_kernels();
   const Fronts& fronts_;
   const double *l_, *pivot_;
   LargeArray y_, gathered_;

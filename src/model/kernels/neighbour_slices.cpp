@@ -1,28 +1,23 @@
 #include "qddot/model/kernels/neighbour_slices.hpp"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
-
-#include "qddot/model/kernels/lanes.hpp"
 
 namespace qddot::kernels {
 namespace {
 
-// A slot of one shift is worth it where it serves at least so many rows.
-constexpr int enough_rows = lanes > 4 ? lanes / 2 : 2;
 // Measured: what a slot that gathers costs, in slots of one shift.
 constexpr double cost_of_gather = 1.6;
 // Rows are sorted within so many: beyond, positions are no longer near each other in memory.
 constexpr int window = 256;
 
-using Rows = std::array<std::vector<Neighbour>, lanes>;  // by places
+using Rows = std::vector<std::vector<Neighbour>>;  // by places
 
 class Slicer {
  public:
-  Slicer(const std::vector<std::vector<Neighbour>>& neighbours, int extras,
+  Slicer(const std::vector<std::vector<Neighbour>>& neighbours, int extras, int lanes,
          const std::vector<int>& order)
-      : neighbours_(neighbours), place_(neighbours.size() + extras) {
+      : neighbours_(neighbours), lanes_(lanes), place_(neighbours.size() + extras) {
     const int nodes = static_cast<int>(neighbours.size());
     const int rows = (nodes + lanes - 1) / lanes * lanes;
     result_.node = order;
@@ -40,7 +35,7 @@ class Slicer {
   }
 
   NeighbourSlices slice() {
-    for (int row = 0; row < result_.rows(); row += lanes) {
+    for (int row = 0; row < result_.rows(); row += lanes_) {
       begin_slice();
       Rows rows = rows_from(row);
       take_shifts(row, rows);
@@ -52,14 +47,17 @@ class Slicer {
   }
 
  private:
+  // A slot of one shift is worth it where it serves at least so many rows.
+  int enough_rows() const { return lanes_ > 4 ? lanes_ / 2 : 2; }
+
   void begin_slice() {
     result_.slices.push_back({static_cast<int>(result_.shifts.size()),
                               static_cast<int>(result_.gathers.size()), std::ssize(laws_)});
   }
 
   Rows rows_from(int first) const {
-    Rows rows;
-    for (int t = 0; t < lanes; ++t) {
+    Rows rows(lanes_);
+    for (int t = 0; t < lanes_; ++t) {
       if (result_.node[first + t] < 0) continue;
       rows[t] = neighbours_[result_.node[first + t]];
       for (Neighbour& neighbour : rows[t]) neighbour.point = place_[neighbour.point];
@@ -74,7 +72,7 @@ class Slicer {
     while (found) {
       found = false;
       std::vector<int> shifts;
-      for (int t = 0; t < lanes; ++t) {
+      for (int t = 0; t < lanes_; ++t) {
         for (std::size_t e = 0; e < rows[t].size(); ++e) {
           if (e > 0 && rows[t][e].point == rows[t][e - 1].point) continue;
           shifts.push_back(rows[t][e].point - first - t);
@@ -84,8 +82,8 @@ class Slicer {
       for (auto next = shifts.begin(); next != shifts.end();) {
         const int shift = *next;
         const auto end = std::upper_bound(next, shifts.end(), shift);
-        const bool is_within = first + shift >= 0 && first + shift + lanes <= result_.places;
-        if (end - next >= enough_rows && is_within) {
+        const bool is_within = first + shift >= 0 && first + shift + lanes_ <= result_.places;
+        if (end - next >= enough_rows() && is_within) {
           take_shift(first, shift, rows);
           found = true;
         }
@@ -96,8 +94,8 @@ class Slicer {
 
   void take_shift(int first, int shift, Rows& rows) {
     result_.shifts.push_back(shift);
-    std::array<SpringLaw, lanes> laws{};
-    for (int t = 0; t < lanes; ++t) {
+    std::vector<SpringLaw> laws(lanes_);
+    for (int t = 0; t < lanes_; ++t) {
       const auto found = std::ranges::find(rows[t], first + t + shift, &Neighbour::point);
       if (found == rows[t].end()) continue;
       laws[t] = found->law;
@@ -110,19 +108,19 @@ class Slicer {
     std::size_t most = 0;
     for (const auto& row : rows) most = std::max(most, row.size());
     for (std::size_t e = 0; e < most; ++e) {
-      std::array<SpringLaw, lanes> laws{};
-      for (int t = 0; t < lanes; ++t) {
+      std::vector<SpringLaw> laws(lanes_);
+      for (int t = 0; t < lanes_; ++t) {
         const bool has_one = e < rows[t].size();
         const int place = has_one ? rows[t][e].point : first + t;
         if (has_one) laws[t] = rows[t][e].law;
         result_.gathers.push_back(place);
-        result_.gathered[place / lanes] = true;
+        result_.gathered[place / lanes_] = true;
       }
       append(laws);
     }
   }
 
-  void append(const std::array<SpringLaw, lanes>& laws) {
+  void append(const std::vector<SpringLaw>& laws) {
     for (const SpringLaw& law : laws) laws_.push_back(law.stiffness);
     if (result_.law_vectors > 1) {
       for (const SpringLaw& law : laws) laws_.push_back(law.rest_length);
@@ -133,31 +131,32 @@ class Slicer {
   }
 
   const std::vector<std::vector<Neighbour>>& neighbours_;
+  int lanes_;
   std::vector<int> place_;  // of each point
   std::vector<double> laws_;
   NeighbourSlices result_;
 };
 
-double cost(const NeighbourSlices& slices) {
+double cost(const NeighbourSlices& slices, int lanes) {
   return static_cast<double>(slices.shifts.size()) +
          cost_of_gather * static_cast<double>(slices.gathers.size()) / lanes;
 }
 
 }  // namespace
 
-NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours,
-                                 int extras) {
+NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours, int extras,
+                                 int lanes) {
   std::vector<int> order(neighbours.size());
   std::iota(order.begin(), order.end(), 0);
-  NeighbourSlices as_given = Slicer(neighbours, extras, order).slice();
+  NeighbourSlices as_given = Slicer(neighbours, extras, lanes, order).slice();
   if (as_given.gathers.empty()) return as_given;
   for (std::size_t begin = 0; begin < order.size(); begin += window) {
     const std::size_t end = std::min(begin + window, order.size());
     std::stable_sort(order.begin() + begin, order.begin() + end,
                      [&](int a, int b) { return neighbours[a].size() > neighbours[b].size(); });
   }
-  NeighbourSlices sorted = Slicer(neighbours, extras, order).slice();
-  return cost(sorted) < cost(as_given) ? std::move(sorted) : std::move(as_given);
+  NeighbourSlices sorted = Slicer(neighbours, extras, lanes, order).slice();
+  return cost(sorted, lanes) < cost(as_given, lanes) ? std::move(sorted) : std::move(as_given);
 }
 
 }  // namespace qddot::kernels

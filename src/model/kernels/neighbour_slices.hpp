@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "qddot/model/kernels/spring_kernels.hpp"
 #include "qddot/model/spring.hpp"
 #include "qddot/model/system.hpp"
 
@@ -21,12 +22,6 @@ struct Neighbour {
 // Sci. Comput. 36 (2014) C401-C423) with, besides slots that gather, slots of one shift, as most
 // are inside of a grid.
 struct NeighbourSlices {
-  // Where a slice's slots begin; they end where those of the next begin.
-  struct Slice {
-    int shift, gather;
-    Index law;
-  };
-
   // The node of each row, -1 where a row only fills up the last slice. Rows are the first places;
   // then come the points that are no nodes, in order.
   std::vector<int> node;
@@ -39,7 +34,7 @@ struct NeighbourSlices {
   // one shift, then those that gather.
   Vec laws;
   int law_vectors = 1;
-  std::vector<bool> gathered;  // of `lanes` places each: whether any slot gathers from these
+  std::vector<char> gathered;  // of `lanes` places each: whether any slot gathers from these
 
   int rows() const { return static_cast<int>(node.size()); }
   int count() const { return static_cast<int>(slices.size()) - 1; }
@@ -47,6 +42,7 @@ struct NeighbourSlices {
 
 // neighbours[i]: those of node i < N; points N, ..., N + extras - 1 are no nodes. Rows are in the
 // nodes' order, or sorted by their number of springs within windows where that leaves fewer slots.
-NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours, int extras);
+NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours, int extras,
+                                 int lanes);
 
 }  // namespace qddot::kernels

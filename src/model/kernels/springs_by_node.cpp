@@ -6,15 +6,6 @@
 namespace qddot::kernels {
 
 template <int D>
-SpringsByNode<D>::Positions::Positions(int places) : stride_((places + lanes - 1) / lanes * lanes) {
-  thread_local Vec memory;
-  const Index size = stride_ * (D > 1 ? D + point_stride<D> : D);
-  if (memory.size() < size) memory.resize(size);
-  coordinates_ = memory.data();
-  points_ = D > 1 ? coordinates_ + stride_ * D : coordinates_;
-}
-
-template <int D>
 SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout) {
   const int nodes = static_cast<int>(layout.nodes());
   std::vector<std::vector<Neighbour>> neighbours(nodes);
@@ -49,25 +40,25 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout)
     neighbours[link.i].push_back({image_of(link.j, link.mirror), link.law});
     neighbours[link.j].push_back({image_of(link.i, link.mirror), link.law});
   }
-  slices_ = slice_neighbours(neighbours, static_cast<int>(points_.size() + images_.size()));
+  slices_ = slice_neighbours(neighbours, static_cast<int>(points_.size() + images_.size()),
+                             kernels_.lanes);
 
   std::vector<int> place(nodes);
   for (int row = 0; row < slices_.rows(); ++row) {
-    Unknowns& unknowns = unknowns_.emplace_back();
-    unknowns.fill(-1);
+    unknowns_.insert(unknowns_.end(), D, -1);
     const int node = slices_.node[row];
     if (node < 0) continue;
     place[node] = row;
     for (int a = 0; a < layout.count(node); ++a) {
-      unknowns[layout.axis(node, a)] = layout.first(node) + a;
+      unknowns_[D * row + layout.axis(node, a)] = layout.first(node) + a;
     }
   }
   for (Image& image : images_) image.source = place[image.source];
-  for (int row = 0; row < slices_.rows(); row += lanes) {
+  for (int row = 0; row < slices_.rows(); row += kernels_.lanes) {
     Order order = Order::by_slice;
-    for (int e = 0; e < D * lanes; ++e) {
-      const Unknowns& own = unknowns_[row + e / D];
-      if (own[0] != unknowns_[row][0] + e / D * D) order = std::max(order, Order::by_row);
+    for (int e = 0; e < D * kernels_.lanes; ++e) {
+      const int* own = unknowns(row + e / D);
+      if (own[0] != unknowns(row)[0] + e / D * D) order = std::max(order, Order::by_row);
       if (own[0] < 0 || own[e % D] != own[0] + e % D) order = Order::none;
     }
     order_.push_back(order);
@@ -75,50 +66,52 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout)
 }
 
 template <int D>
-void SpringsByNode<D>::place(const Vec& q, int slice, const Positions& positions) const {
-  const int row = slice * lanes;
-  if (order_[slice] == Order::by_slice) {
-    Lanes x[D];
-    deinterleave<D>(q.data() + unknowns_[row][0], x);
-    for (int a = 0; a < D; ++a) store(positions.coordinate(a, row), x[a]);
-  } else if (order_[slice] == Order::by_row) {
-    for (int t = 0; t < lanes; ++t) {
-      const double* x = q.data() + unknowns_[row + t][0];
-      for (int a = 0; a < D; ++a) *positions.coordinate(a, row + t) = x[a];
-    }
-  } else {
-    for (int t = 0; t < lanes; ++t) {
-      for (int a = 0; a < D; ++a) {
-        const int unknown = unknowns_[row + t][a];
-        *positions.coordinate(a, row + t) = unknown >= 0 ? q[unknown] : 0;
-      }
-    }
-  }
-  if (slices_.gathered[slice]) {
-    for (int t = 0; t < lanes; ++t) copy_point(row + t, positions);
-  }
+SpringTable SpringsByNode<D>::table() const {
+  return {.slices = slices_.slices.data(),
+          .shifts = slices_.shifts.data(),
+          .gathers = slices_.gathers.data(),
+          .laws = slices_.laws.data(),
+          .law_vectors = slices_.law_vectors,
+          .unknowns = unknowns_.data(),
+          .orders = order_.data(),
+          .gathered = slices_.gathered.data()};
+}
+
+template <int D>
+void SpringsByNode<D>::sum_forces(const Vec& q, const Vec& offset, Vec& f) const {
+  const SpringTable springs = table();
+  for_slices(q, [&](const Positions& positions, int from, int end) {
+    kernels_.force(springs, positions, offset.data(), f.data(), from, end);
+  });
+}
+
+template <int D>
+Positions SpringsByNode<D>::memory() const {
+  const Index stride = (slices_.places + kernels_.lanes - 1) / kernels_.lanes * kernels_.lanes;
+  thread_local Vec numbers;
+  const Index size = stride * (D > 1 ? D + point_stride<D> : D);
+  if (numbers.size() < size) numbers.resize(size);
+  return {numbers.data(), stride, D > 1 ? numbers.data() + stride * D : numbers.data()};
 }
 
 template <int D>
 void SpringsByNode<D>::place_extras(const Positions& positions) const {
+  const auto coordinate = [&](int a, int place) -> double& {
+    return positions.coordinates[a * positions.stride + place];
+  };
   int at = slices_.rows();
   for (const auto& point : points_) {
-    for (int a = 0; a < D; ++a) *positions.coordinate(a, at) = point[a];
-    copy_point(at++, positions);
+    for (int a = 0; a < D; ++a) coordinate(a, at) = point[a];
+    ++at;
   }
   for (const auto& [source, signs] : images_) {
-    for (int a = 0; a < D; ++a) {
-      *positions.coordinate(a, at) = signs[a] * *positions.coordinate(a, source);
-    }
-    copy_point(at++, positions);
+    for (int a = 0; a < D; ++a) coordinate(a, at) = signs[a] * coordinate(a, source);
+    ++at;
   }
-}
-
-template <int D>
-void SpringsByNode<D>::copy_point(int place, const Positions& positions) {
-  if constexpr (D > 1) {
-    double* point = positions.points() + point_stride<D> * Index{place};
-    for (int a = 0; a < D; ++a) point[a] = *positions.coordinate(a, place);
+  if (D == 1) return;
+  for (int place = slices_.rows(); place < at; ++place) {
+    double* point = positions.points + point_stride<D> * Index{place};
+    for (int a = 0; a < D; ++a) point[a] = coordinate(a, place);
   }
 }
 

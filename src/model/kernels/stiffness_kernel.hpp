@@ -29,21 +29,15 @@ class StiffnessKernel {
   void material_stiffness(const SpringsByNode<D>& springs, const Vec& q, SymmetricMatrix& k) const;
 
  private:
-  // With tau/l as counted(tau/l, l0).
-  template <class Counted>
-  void write(const SpringsByNode<D>& springs, const Vec& q, const Counted& counted,
-             SymmetricMatrix& k) const;
-  template <int law_vectors, class Counted>
-  void write(const SpringsByNode<D>& springs, const Vec& q, const Counted& counted,
+  void write(const SpringsByNode<D>& springs, const Vec& q, TensionPart part,
              SymmetricMatrix& k) const;
 
   std::vector<int> links_left_out_;
   // Of each slot: where in targets_ it has, for its rows, the value in K that a block begins with,
   // or -1; -1 where it has none.
   std::vector<int> slot_targets_, targets_;
-  std::vector<std::array<int, D>>
-      columns_;             // of each row, where its unknowns' columns begin; or -1
-  std::vector<int> zeros_;  // what nobody here writes
+  std::vector<int> columns_;  // D of each row, where its unknowns' columns begin; or -1
+  std::vector<int> zeros_;    // what nobody here writes
 };
 
 }  // namespace qddot::kernels

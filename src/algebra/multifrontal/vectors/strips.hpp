@@ -1,18 +1,17 @@
 #pragma once
 
-#include <cmath>
+#include "qddot/algebra/multifrontal/front_kernels.hpp"
+#include "qddot/model/kernels/vectors/lanes.hpp"
 
-#include "qddot/model/kernels/lanes.hpp"
-#include "qddot/model/system.hpp"
+namespace qddot::multifrontal::QDDOT_LEVEL {
+namespace {
 
-namespace qddot::multifrontal::strips {
-
-using namespace kernels;
+using namespace kernels::QDDOT_LEVEL;
 
 // Dense kernels for LDL' and its triangular solves, on matrices cut into strips of 8 rows. A strip
 // of k columns is k times 8 numbers, one after the other: products read it as it lies in memory,
 // its rows in the lanes of the processor's vectors.
-constexpr int height = 8;
+constexpr int height = strip_height;
 
 // Strips that hold so many rows.
 constexpr int count(int rows) { return (rows + height - 1) / height; }
@@ -27,8 +26,8 @@ constexpr LaneNumbers first_places = lane_numbers([](int t) { return t; });
 // C = C - A W', or C = -A W' where `fresh`. C: columns `ld` apart; A: strips `stride` apart, of k
 // columns; W: the first `tile_columns` rows of a strip of k columns.
 template <int strips, bool fresh>
-inline void subtract_tile(double* c, Index ld, const double* a, Index stride, const double* w,
-                          int k) {
+inline void subtract_tile(double* c, std::ptrdiff_t ld, const double* a, std::ptrdiff_t stride,
+                          const double* w, int k) {
   constexpr int rows = strips * vectors;
   // C may be in a farther cache than A and W: where there are many products, it is fetched before.
   if (k >= 48) {
@@ -61,8 +60,8 @@ inline void subtract_tile(double* c, Index ld, const double* a, Index stride, co
 
 // The same for all 8 rows of W and 1 to `tile_strips` strips.
 template <bool fresh>
-inline void subtract(double* c, Index ld, const double* a, Index stride, const double* w, int k,
-                     int strips) {
+inline void subtract(double* c, std::ptrdiff_t ld, const double* a, std::ptrdiff_t stride,
+                     const double* w, int k, int strips) {
   for (int j = 0; j < height; j += tile_columns, c += tile_columns * ld, w += tile_columns) {
     if constexpr (tile_strips == 3) {
       if (strips == 3) subtract_tile<3, fresh>(c, ld, a, stride, w, k);
@@ -73,17 +72,23 @@ inline void subtract(double* c, Index ld, const double* a, Index stride, const d
 }
 
 // Entry i of a strip's column, in every lane.
-inline Lanes splat(const Lanes* x, int i) {
-  return __builtin_shuffle(x[i / lanes], LaneNumbers{} + i % lanes);
+template <int i>
+[[gnu::always_inline]] inline Lanes splat(const Lanes* x) {
+  return shuffle(x[i / lanes], x[i / lanes], [](int) { return i % lanes; });
 }
 
 // Which entries of a column stand below (above) entry i, the others 0.
-inline Lanes below(Lanes x, int v, int i) { return first_places + v * lanes > i ? x : Lanes{}; }
-inline Lanes above(Lanes x, int v, int i) { return first_places + v * lanes < i ? x : Lanes{}; }
+[[gnu::always_inline]] inline Lanes below(Lanes x, int v, int i) {
+  return first_places + v * lanes > i ? x : Lanes{};
+}
+[[gnu::always_inline]] inline Lanes above(Lanes x, int v, int i) {
+  return first_places + v * lanes < i ? x : Lanes{};
+}
 
 // Y = Y + X, n rows of columns x_ld and y_ld apart. A column's last vector is read and written
 // whole, beyond it unchanged.
-inline void add(const double* x, Index x_ld, int n, int columns, double* y, Index y_ld) {
+inline void add(const double* x, std::ptrdiff_t x_ld, int n, int columns, double* y,
+                std::ptrdiff_t y_ld) {
   const int whole = n / lanes * lanes;
   const auto rest = first_places < n - whole;
   for (int j = 0; j < columns; ++j, x += x_ld, y += y_ld) {
@@ -92,52 +97,44 @@ inline void add(const double* x, Index x_ld, int n, int columns, double* y, Inde
   }
 }
 
-// A = L D L' of 8 pivots without pivoting.
-struct Block {
-  double l[height * height];   // without the diagonal; L' above it
-  double ld[height * height];  // columns of L D
-  double pivot[height], inverse[height];
-  int negative = 0;
-  bool regular = true;  // every pivot is a number that can be divided by
-
-  Block() = default;
-  // A: the lower triangle of columns `a_ld` apart.
-  Block(const double* a, Index a_ld) {
-    Lanes x[height][vectors], y[height][vectors];
+// A = L D L' of 8 pivots without pivoting. A: the lower triangle of columns `a_ld` apart.
+inline void factorize(const double* a, std::ptrdiff_t a_ld, Block& block) {
+  Lanes x[height][vectors], y[height][vectors];
 #pragma GCC unroll 8
-    for (int j = 0; j < height; ++j) {
+  for (int j = 0; j < height; ++j) {
 #pragma GCC unroll 4
-      for (int v = 0; v < vectors; ++v) x[j][v] = load(a + j * a_ld + v * lanes);
-    }
-#pragma GCC unroll 8
-    for (int p = 0; p < height; ++p) {
-      const Lanes d = splat(x[p], p);
-#pragma GCC unroll 4
-      for (int v = 0; v < vectors; ++v) y[p][v] = x[p][v] / d;
-#pragma GCC unroll 8
-      for (int j = p + 1; j < height; ++j) {
-#pragma GCC unroll 4
-        for (int v = 0; v < vectors; ++v) x[j][v] -= y[p][v] * splat(x[p], j);
-      }
-#pragma GCC unroll 4
-      for (int v = 0; v < vectors; ++v) {
-        store(ld + p * height + v * lanes, x[p][v]);
-        store(l + p * height + v * lanes, below(y[p][v], v, p));
-      }
-    }
-    for (int p = 0; p < height; ++p) {
-      pivot[p] = ld[p * height + p];
-      inverse[p] = 1 / pivot[p];
-      negative += pivot[p] < 0;
-      regular = regular && std::isfinite(pivot[p]) && std::isfinite(inverse[p]);
-      for (int i = p + 1; i < height; ++i) l[i * height + p] = l[p * height + i];
-    }
+    for (int v = 0; v < vectors; ++v) x[j][v] = load(a + j * a_ld + v * lanes);
   }
-};
+  unroll<height>([&]<int p>() __attribute__((always_inline)) {
+    const Lanes d = splat<p>(x[p]);
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) y[p][v] = x[p][v] / d;
+    unroll<height - p - 1>([&]<int after>() __attribute__((always_inline)) {
+      constexpr int j = p + 1 + after;
+#pragma GCC unroll 4
+      for (int v = 0; v < vectors; ++v) x[j][v] -= y[p][v] * splat<j>(x[p]);
+    });
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) {
+      store(block.ld + p * height + v * lanes, x[p][v]);
+      store(block.l + p * height + v * lanes, below(y[p][v], v, p));
+    }
+  });
+  block.negative = 0;
+  block.regular = true;
+  for (int p = 0; p < height; ++p) {
+    const double pivot = block.ld[p * height + p], inverse = 1 / pivot;
+    block.pivot[p] = pivot;
+    block.inverse[p] = inverse;
+    block.negative += pivot < 0;
+    block.regular = block.regular && __builtin_isfinite(pivot) && __builtin_isfinite(inverse);
+    for (int i = p + 1; i < height; ++i) block.l[i * height + p] = block.l[p * height + i];
+  }
+}
 
 // A strip of L below a block: L D = A L'^-1, A's 8 columns `ld` apart. Of L and L D the first k
 // columns are kept.
-inline void divide_strip(const double* a, Index ld, const Block& block, int k, double* l,
+inline void divide_strip(const double* a, std::ptrdiff_t ld, const Block& block, int k, double* l,
                          double* scaled) {
 #pragma GCC unroll 4
   for (int v = 0; v < vectors; ++v) {
@@ -159,8 +156,8 @@ inline void divide_strip(const double* a, Index ld, const Block& block, int k, d
 }
 
 // y = y - A x of strips `stride` apart, of k <= 8 columns.
-inline void subtract_product(const double* a, Index stride, const double* x, int k, int strips,
-                             double* y) {
+inline void subtract_product(const double* a, std::ptrdiff_t stride, const double* x, int k,
+                             int strips, double* y) {
   for (int i = 0; i < strips; ++i, a += stride, y += height) {
 #pragma GCC unroll 4
     for (int v = 0; v < vectors; ++v) {
@@ -179,20 +176,22 @@ inline void subtract_product(const double* a, Index stride, const double* x, int
 template <int size, int width = 1>
 inline void add_lanes(Lanes* x) {
   if constexpr (width < lanes) {
-    const LaneNumbers block = first_places / width, within = first_places % width;
-    const LaneNumbers first = within + (block - block % 2) * width + block % 2 * lanes;
+    constexpr auto lane = [](int t) {
+      const int block = t / width, within = t % width;
+      return within + (block - block % 2) * width + block % 2 * lanes;
+    };
 #pragma GCC unroll 8
     for (int i = 0; i < size / 2; ++i) {
-      x[i] = __builtin_shuffle(x[2 * i], x[2 * i + 1], first) +
-             __builtin_shuffle(x[2 * i], x[2 * i + 1], first + width);
+      x[i] = shuffle(x[2 * i], x[2 * i + 1], lane) +
+             shuffle(x[2 * i], x[2 * i + 1], [=](int t) { return lane(t) + width; });
     }
     add_lanes<size / 2, 2 * width>(x);
   }
 }
 
 // y = y - A' x of strips `stride` apart, of k <= 8 columns.
-inline void subtract_transposed(const double* a, Index stride, const double* x, int k, int strips,
-                                double* y) {
+inline void subtract_transposed(const double* a, std::ptrdiff_t stride, const double* x, int k,
+                                int strips, double* y) {
   Lanes sum[height][vectors] = {};
   for (int i = 0; i < strips; ++i, a += stride, x += height) {
 #pragma GCC unroll 8
@@ -220,13 +219,12 @@ inline void solve_lower(const double* l, int k, double* x) {
   Lanes z[vectors];
 #pragma GCC unroll 4
   for (int v = 0; v < vectors; ++v) z[v] = load(x + v * lanes);
-#pragma GCC unroll 8
-  for (int p = 0; p < height; ++p) {
-    if (p >= k) continue;
-    const Lanes pivot = splat(z, p);
+  unroll<height>([&]<int p>() __attribute__((always_inline)) {
+    if (p >= k) return;
+    const Lanes pivot = splat<p>(z);
 #pragma GCC unroll 4
     for (int v = 0; v < vectors; ++v) z[v] -= below(load(l + p * height + v * lanes), v, p) * pivot;
-  }
+  });
 #pragma GCC unroll 4
   for (int v = 0; v < vectors; ++v) store(x + v * lanes, z[v]);
 }
@@ -235,13 +233,13 @@ inline void solve_upper(const double* l, int k, double* x) {
   Lanes z[vectors];
 #pragma GCC unroll 4
   for (int v = 0; v < vectors; ++v) z[v] = load(x + v * lanes);
-#pragma GCC unroll 8
-  for (int p = height; p-- > 0;) {
-    if (p >= k) continue;
-    const Lanes pivot = splat(z, p);
+  unroll<height>([&]<int solved>() __attribute__((always_inline)) {
+    constexpr int p = height - 1 - solved;
+    if (p >= k) return;
+    const Lanes pivot = splat<p>(z);
 #pragma GCC unroll 4
     for (int v = 0; v < vectors; ++v) z[v] -= above(load(l + p * height + v * lanes), v, p) * pivot;
-  }
+  });
 #pragma GCC unroll 4
   for (int v = 0; v < vectors; ++v) store(x + v * lanes, z[v]);
 }
@@ -251,8 +249,10 @@ inline void solve_upper(const double* l, int k, double* x) {
 constexpr int quad = 4;
 using Quad = double __attribute__((vector_size(quad * sizeof(double)), aligned(8), may_alias));
 
-inline Quad& row(double* x, int i) { return reinterpret_cast<Quad*>(x)[i]; }
-inline const Quad& row(const double* x, int i) { return reinterpret_cast<const Quad*>(x)[i]; }
+[[gnu::always_inline]] inline Quad& row(double* x, int i) { return reinterpret_cast<Quad*>(x)[i]; }
+[[gnu::always_inline]] inline const Quad& row(const double* x, int i) {
+  return reinterpret_cast<const Quad*>(x)[i];
+}
 
 // Y = Y - A X of one strip of k columns.
 inline void subtract_products(const double* a, const double* x, int k, double* y) {
@@ -270,8 +270,8 @@ inline void subtract_products(const double* a, const double* x, int k, double* y
 
 // Y = Y - A' X of strips `stride` apart, of `columns` columns.
 template <int columns>
-inline void subtract_transposed_products(const double* a, Index stride, const double* x, int strips,
-                                         double* y) {
+inline void subtract_transposed_products(const double* a, std::ptrdiff_t stride, const double* x,
+                                         int strips, double* y) {
   Quad sum[columns];
 #pragma GCC unroll 8
   for (int j = 0; j < columns; ++j) sum[j] = row(y, j);
@@ -288,8 +288,8 @@ inline void subtract_transposed_products(const double* a, Index stride, const do
 }
 
 // The same of k <= 8 columns.
-inline void subtract_transposed_products(const double* a, Index stride, const double* x, int k,
-                                         int strips, double* y) {
+inline void subtract_transposed_products(const double* a, std::ptrdiff_t stride, const double* x,
+                                         int k, int strips, double* y) {
   for (; k >= 4; k -= 4, a += 4 * height, y += 4 * quad) {
     subtract_transposed_products<4>(a, stride, x, strips, y);
   }
@@ -313,4 +313,5 @@ inline void solve_uppers(const double* l, int k, double* x) {
   }
 }
 
-}  // namespace qddot::multifrontal::strips
+}  // namespace
+}  // namespace qddot::multifrontal::QDDOT_LEVEL

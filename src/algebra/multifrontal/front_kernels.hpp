@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstddef>
+
+// What the kernels of fronts read and write: plain numbers and pointers alone, as in
+// spring_kernels.hpp.
+namespace qddot::multifrontal {
+
+// Dense matrices are cut into strips of so many rows; see vectors/strips.hpp.
+constexpr int strip_height = 8;
+// Pivots whose columns are taken off the rest of a front at once: as many as leave a tile's rows of
+// L in the first cache.
+constexpr int panel = 96;
+
+// Rows of an update that stay neighbours in the front they are added to.
+struct Run {
+  int from, to, length;
+};
+
+// An entry of K or D and where it goes in the columns of its front's pivots.
+struct Entry {
+  int source, target;
+};
+struct Entries {
+  const Entry *begin, *end;
+};
+
+// The matrix a D - s K by the values of D and K.
+struct Combination {
+  double a, s;
+  const double *diagonal, *k;
+};
+
+// A = L D L' of strip_height pivots.
+struct Block {
+  double l[strip_height * strip_height];   // without the diagonal; L' above it
+  double ld[strip_height * strip_height];  // columns of L D
+  double pivot[strip_height], inverse[strip_height];
+  int negative;  // pivots
+  bool regular;  // every pivot is a number that can be divided by
+};
+
+// A front's dense matrix while it is worked on; sizes as in Front.
+struct OpenFront {
+  double* columns;  // of the pivots, until they are columns of L
+  double* update;
+  double* factor;  // its part of L
+  int pivots, pivot_height, height;
+};
+
+// A child's update and those of its runs that end in the columns it is added to, or after them.
+struct ChildUpdate {
+  const double* update;
+  int height;
+  const Run *begin, *end;
+};
+
+// A front's part of L and where its rows are among the unknowns.
+struct FrontFactor {
+  const double* l;
+  int first, pivots, pivot_strips, strips, below;
+  const int* rows;
+};
+
+// One version's functions.
+struct FrontKernels {
+  // Strips that a tile of products has.
+  int tile_strips;
+
+  // Writes the lower triangle of the pivots' columns [from, end): the matrix' entries there.
+  void (*assemble)(const OpenFront&, const Combination&, Entries of_k, Entries of_diagonal,
+                   int from, int end);
+  // Adds a child's update in the columns [from, end), all of pivots or none.
+  void (*add_update)(const ChildUpdate&, const OpenFront&, int from, int end);
+
+  // The next three work on the panel of pivots that begins with `from`; `scaled` are its columns of
+  // L D in the rows of a tile, strips of `panel` columns. Block i is that of strip i, on the
+  // diagonal.
+  void (*factorize_block)(const OpenFront&, int from, int i, const double* scaled, Block&);
+  // Computes strips i, ... of L and L D in the panel's columns, up to those of strip `end`.
+  void (*divide)(const OpenFront&, int from, int end, int i, int strips, const Block* blocks,
+                 double* scaled);
+  // Takes pivots [from, end) off strips i, ... after them. The first ones begin the update.
+  void (*subtract_from_rest)(const OpenFront&, int from, int end, int i, int strips,
+                             const double* scaled);
+
+  // Of L z = b: the front's pivots of z in y, and what they take off the rows below.
+  void (*forward)(const FrontFactor&, double* y, double* z);
+  // Of L' x = y: the front's pivots of x in y.
+  void (*backward)(const FrontFactor&, double* y, double* x);
+  // Both for four right-hand sides, rows of y; backwards() divides by the pivots, too.
+  void (*forwards)(const FrontFactor&, double* y, double* z);
+  void (*backwards)(const FrontFactor&, const double* pivots, double* y, double* x);
+};
+
+// Returns the version in use.
+const FrontKernels& front_kernels();
+
+}  // namespace qddot::multifrontal

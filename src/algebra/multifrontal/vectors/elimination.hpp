@@ -1,0 +1,93 @@
+#pragma once
+
+#include "qddot/algebra/multifrontal/vectors/strips.hpp"
+
+namespace qddot::multifrontal::QDDOT_LEVEL {
+namespace {
+
+// Column j, as if its rows began with the pivots'.
+double* column(const OpenFront& f, int j) {
+  if (j < f.pivot_height) return f.columns + std::ptrdiff_t{j} * f.height;
+  const int below = f.height - f.pivot_height;
+  return f.update + std::ptrdiff_t{j - f.pivot_height} * below - f.pivot_height;
+}
+
+// L of the front: strip i from column k on.
+double* factor(const OpenFront& f, int i, int k) {
+  return f.factor + (std::ptrdiff_t{i} * f.pivots + k) * height;
+}
+
+void assemble(const OpenFront& f, const Combination& matrix, Entries of_k, Entries of_diagonal,
+              int from, int end) {
+  for (int j = from; j < end; ++j) {
+    double* to = f.columns + std::ptrdiff_t{j} * f.height;
+    for (int i = j / height * height; i < f.height; ++i) to[i] = 0;
+  }
+  for (const Entry* e = of_k.begin; e < of_k.end; ++e) {
+    f.columns[e->target] = -matrix.s * matrix.k[e->source];
+  }
+  for (const Entry* e = of_diagonal.begin; e < of_diagonal.end; ++e) {
+    f.columns[e->target] += matrix.a * matrix.diagonal[e->source];
+  }
+  // The columns that fill up the last strip are those of the identity.
+  for (int j = f.pivots > from ? f.pivots : from; j < end; ++j) {
+    f.columns[std::ptrdiff_t{j} * (f.height + 1)] = 1;
+  }
+}
+
+// All columns of one run of rows, then the next run: so no sum waits for a neighbour to be stored.
+void add_update(const ChildUpdate& child, const OpenFront& f, int first, int end) {
+  const std::ptrdiff_t x_ld = child.height;
+  const std::ptrdiff_t y_ld = first < f.pivot_height ? f.height : f.height - f.pivot_height;
+  for (const Run* rows = child.begin; rows != child.end; ++rows) {
+    for (const Run* run = child.begin; run <= rows && run->to < end; ++run) {
+      const int last = run->length < end - run->to ? run->length : end - run->to;
+      int j = first > run->to ? first - run->to : 0;
+      const auto add_columns = [&](int count, int above) {
+        add(child.update + (run->from + j) * x_ld + rows->from + above, x_ld, rows->length - above,
+            count, column(f, run->to + j) + rows->to + above, y_ld);
+        j += count;
+      };
+      if (run < rows) add_columns(last - j, 0);
+      while (j < last) add_columns(height < last - j ? height : last - j, j);
+    }
+  }
+}
+
+void divide(const OpenFront& f, int from, int end, int i, int strips, const Block* blocks,
+            double* scaled) {
+  for (int j = from / height; j < end; ++j) {
+    const int k = j * height - from, after = f.pivots - j * height;
+    const int columns = height < after ? height : after;
+    double* a = column(f, j * height) + i * height;
+    subtract<false>(a, f.height, scaled, panel * height, factor(f, j, from), k, strips);
+    for (int t = 0; t < strips; ++t) {
+      divide_strip(a + t * height, f.height, blocks[j - from / height], columns,
+                   factor(f, i + t, j * height), scaled + (t * panel + k) * height);
+    }
+  }
+}
+
+void factorize_block(const OpenFront& f, int from, int i, const double* scaled, Block& block) {
+  double* a = column(f, i * height) + i * height;
+  subtract<false>(a, f.height, scaled, panel * height, factor(f, i, from), i * height - from, 1);
+  factorize(a, f.height, block);
+}
+
+void subtract_from_rest(const OpenFront& f, int from, int end, int i, int strips,
+                        const double* scaled) {
+  const int k = end - from;
+  for (int j = count(end); j < i + strips; ++j) {
+    const int above = j > i ? j - i : 0;  // strips of the tile above the diagonal
+    double* c = column(f, j * height) + (i + above) * height;
+    const double* rows = scaled + above * panel * height;
+    const double* w = factor(f, j, from);
+    const bool is_update = j * height >= f.pivot_height;
+    const auto subtract_tile = is_update && from == 0 ? subtract<true> : subtract<false>;
+    subtract_tile(c, is_update ? f.height - f.pivot_height : f.height, rows, panel * height, w, k,
+                  strips - above);
+  }
+}
+
+}  // namespace
+}  // namespace qddot::multifrontal::QDDOT_LEVEL

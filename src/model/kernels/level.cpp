@@ -1,0 +1,54 @@
+#include "qddot/model/kernels/level.hpp"
+
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace qddot::kernels {
+namespace {
+
+#define QDDOT_NAME(level) #level,
+constexpr std::string_view names[] = {QDDOT_LEVELS(QDDOT_NAME)};
+#undef QDDOT_NAME
+
+// What a version's code may consist of, and what this processor runs.
+bool is_run([[maybe_unused]] std::string_view name) {
+#ifdef __x86_64__
+  const bool v2 = __builtin_cpu_supports("ssse3") && __builtin_cpu_supports("sse4.2") &&
+                  __builtin_cpu_supports("popcnt");
+  const bool v3 = v2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                  __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+  const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                  __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                  __builtin_cpu_supports("avx512vl");
+  return name == "v2" ? v2 : name == "v3" ? v3 : v4;
+#else
+  return true;
+#endif
+}
+
+int chosen() {
+  const char* wanted = std::getenv("QDDOT_KERNELS");
+  int widest = -1;
+  std::string known;
+  for (int i = 0; i < static_cast<int>(std::size(names)); ++i) {
+    if (is_run(names[i]) && (!wanted || names[i] == wanted)) widest = i;
+    known += known.empty() ? "" : ", ";
+    known += names[i];
+  }
+  if (widest >= 0) return widest;
+  throw std::runtime_error("this processor does not run kernels compiled for " +
+                           (wanted ? "QDDOT_KERNELS=" + std::string(wanted) : "any") + " of " +
+                           known);
+}
+
+}  // namespace
+
+int level() {
+  static const int number = chosen();
+  return number;
+}
+
+std::span<const std::string_view> levels() { return names; }
+
+}  // namespace qddot::kernels

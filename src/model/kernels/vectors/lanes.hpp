@@ -1,0 +1,59 @@
+#pragma once
+
+#include <utility>
+
+// Sources in folders `vectors` are compiled once for each level, whose name is QDDOT_LEVEL. All
+// that they define has internal linkage, but for a table of functions in a namespace of that name.
+namespace qddot::kernels::QDDOT_LEVEL {
+namespace {
+
+// Vectors as wide as the level's. The compiler makes them from whatever the processor has.
+#ifdef __AVX512F__
+constexpr int lanes = 8;
+#elif defined __AVX__
+constexpr int lanes = 4;
+#else
+constexpr int lanes = 2;
+#endif
+using Lanes = double __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
+using LaneNumbers = long __attribute__((vector_size(lanes * sizeof(long))));
+
+[[gnu::always_inline]] inline Lanes load(const double* x) {
+  return *reinterpret_cast<const Lanes*>(x);
+}
+[[gnu::always_inline]] inline void store(double* x, Lanes value) {
+  *reinterpret_cast<Lanes*>(x) = value;
+}
+
+[[gnu::always_inline]] inline Lanes square_root(Lanes x) {
+  for (int t = 0; t < lanes; ++t) x[t] = __builtin_sqrt(x[t]);
+  return x;
+}
+
+// Calls body<0>(), body<1>(), ..., each with a constant of its own.
+template <int count, class Body>
+[[gnu::always_inline]] inline void unroll(const Body& body) {
+  [&]<int... i>(std::integer_sequence<int, i...>) __attribute__((always_inline)) {
+    (body.template operator()<i>(), ...);
+  }
+  (std::make_integer_sequence<int, count>());
+}
+
+// The vector of number(0), number(1), ...
+template <class Number>
+constexpr LaneNumbers lane_numbers(const Number& number) {
+  return [&]<int... t>(std::integer_sequence<int, t...>) { return LaneNumbers{number(t)...}; }
+  (std::make_integer_sequence<int, lanes>());
+}
+
+// The vector of lanes number(0), number(1), ... of a and, counted on from `lanes`, b.
+template <class Number>
+[[gnu::always_inline]] inline Lanes shuffle(Lanes a, Lanes b, Number number) {
+  return [&]<int... t>(std::integer_sequence<int, t...>) __attribute__((always_inline)) {
+    return __builtin_shufflevector(a, b, number(t)...);
+  }
+  (std::make_integer_sequence<int, lanes>());
+}
+
+}  // namespace
+}  // namespace qddot::kernels::QDDOT_LEVEL
