@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
 namespace {
@@ -10,7 +11,6 @@ namespace {
 // Steps between two looks at the kinetic energy, which take a tenth of a step's time; and looks
 // between two at the whole energy, which takes several forces'.
 constexpr int steps_a_look = 32, looks_an_energy = 32;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double largest = 1e300;
 // [s^2]: vibrations of 1e9 to 1 rad/s.
 constexpr double shortest_way = 1e-18, longest_way = 1;
@@ -63,11 +63,11 @@ void EnergyGrowth::see(const Vec& q, const Vec& v) {
 // What the last bits of the positions at the start make of V.
 double EnergyGrowth::rounding() {
   const double potential = system_.potential(q_);
-  double most = epsilon * std::abs(potential);
+  double most = machine_epsilon * std::abs(potential);
   for (const int period : {1, 2, 3}) {
     q_of_kinetic_ = q_;
     for (Index i = 0; i < q_.size(); ++i) {
-      q_of_kinetic_[i] *= 1 + (i % period == 0 ? 4 : -4) * epsilon;
+      q_of_kinetic_[i] *= 1 + (i % period == 0 ? 4 : -4) * machine_epsilon;
     }
     most = std::max(most, std::abs(system_.potential(q_of_kinetic_) - potential));
   }
@@ -83,7 +83,7 @@ double EnergyGrowth::factor(const State& state) {
   // A run that grew from the first step on has seen nothing of the motion.
   own = std::max(own, start_ - lowest_ahead(system_, q_, q_of_kinetic_, v_of_kinetic_));
   const double unsure = rounding();
-  if (gained <= unsure + 4 * epsilon * std::abs(most_)) return 1;
+  if (gained <= unsure + 4 * machine_epsilon * std::abs(most_)) return 1;
   const double growth = 1 + gained / std::max(own, unsure);
   // An energy beyond all numbers at the start says nothing.
   return std::isnan(growth) ? 1 : std::min(growth, largest);

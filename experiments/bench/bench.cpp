@@ -19,13 +19,13 @@
 #include <exception>
 #include <filesystem>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/ratio_table.hpp"
 #include "experiments/command/catalogue.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
@@ -57,22 +57,22 @@ struct Arguments {
   Pace pace;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  app.add_option("scenes", a.scenes,
-                 "generators' names or scene files, each with @T behind it to run to T s")
-      ->capture_default_str();
-  app.add_option("--methods", a.methods, "a,b,... of ours; the most accurate first saves time")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--peers", a.peers, "a,b,... what their names begin with (default: all)")
-      ->delimiter(',');
-  app.add_option("--repeats", a.pace.repeats, "timed runs of a point that takes under a second")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--point-limit", a.pace.limit, "seconds that one run may take")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--out", a.out, "the folder for bench.csv and ratios.csv");
+void declare(CommandLine& line, Arguments& a) {
+  line.add_option("scenes", a.scenes,
+                  "generators' names or scene files, each with @T behind it to run to T s")
+      .capture_default_str();
+  line.add_option("--methods", a.methods, "a,b,... of ours; the most accurate first saves time")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--peers", a.peers, "a,b,... what their names begin with (default: all)")
+      .delimiter(',');
+  line.add_option("--repeats", a.pace.repeats, "timed runs of a point that takes under a second")
+      .take_last()
+      .capture_default_str();
+  line.add_option("--point-limit", a.pace.limit, "seconds that one run may take")
+      .take_last()
+      .capture_default_str();
+  line.add_option("--out", a.out, "the folder for bench.csv and ratios.csv");
 }
 
 // A scene and its horizon [s].
@@ -215,7 +215,8 @@ void compare(Study& study, const Entry& entry, const std::vector<std::unique_ptr
   }
 }
 
-int bench(const CLI::App& app, const Arguments& a, const std::vector<std::string>& command_line) {
+int bench(const CommandLine& line, const Arguments& a,
+          const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.pace.limit, "--point-limit", "the seconds a run may take");
   require_repeats(a.pace.repeats);
@@ -229,7 +230,7 @@ int bench(const CLI::App& app, const Arguments& a, const std::vector<std::string
   require_folder(a.out);
   nlohmann::json about = nlohmann::json::array();
   for (const Entry& entry : entries) about.push_back({content_hash(entry.drawn), entry.until});
-  Study study(app, a.out, {"bench.csv", "ratios.csv"}, about);
+  Study study(line, a.out, {"bench.csv", "ratios.csv"}, about);
   if (const auto status = study.completed()) return *status;
   CsvFile points(a.out + "/bench.csv", point_columns());
   CsvFile table(a.out + "/ratios.csv", ratio_columns());
@@ -256,12 +257,12 @@ int bench(const CLI::App& app, const Arguments& a, const std::vector<std::string
 }  // namespace qddot::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures how many times as long as ours other solvers take to the same accuracy.",
-               "bench");
+  qddot::command::CommandLine line(
+      "Measures how many times as long as ours other solvers take to the same accuracy.", "bench");
   qddot::bench::Arguments arguments;
-  qddot::bench::declare(app, arguments);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::bench::bench(app, arguments, {argv, argv + argc});
+  qddot::bench::declare(line, arguments);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::bench::bench(line, arguments, {argv, argv + argc});
   });
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <ranges>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "experiments/command/catalogue.hpp"
+#include "experiments/command/command_line.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -26,16 +26,16 @@ std::string solver_list() {
   return fmt::format("one of {}", fmt::join(solver_names | std::views::values, ", "));
 }
 
-void require_values(const CLI::App& app, const Options& o, int highest_order) {
-  if (app.count("--max-order") > 0) {
+void require_values(const CommandLine& line, const Options& o, int highest_order) {
+  if (line.has("--max-order")) {
     require_that(o.max_order >= 1 && o.max_order <= highest_order, "--max-order", o.max_order,
                  fmt::format("a whole number from 1 to {}", highest_order));
   }
-  if (app.count("--iterations") > 0) {
+  if (line.has("--iterations")) {
     require_that(o.iterations >= 1 && o.iterations <= most_iterations, "--iterations", o.iterations,
                  fmt::format("a whole number from 1 to {}", most_iterations));
   }
-  if (app.count("--solve-tolerance") > 0) {
+  if (line.has("--solve-tolerance")) {
     require_that(o.solve_tolerance > 0 && o.solve_tolerance < 1, "--solve-tolerance",
                  o.solve_tolerance, "between 0 and 1");
   }
@@ -45,51 +45,51 @@ void require_values(const CLI::App& app, const Options& o, int highest_order) {
 
 }  // namespace
 
-void add_method_options(CLI::App& app, Options& options) {
-  app.add_option("--max-order", options.max_order,
-                 "the highest order that methods of variable order may take (default: their own)")
-      ->take_last();
-  app.add_flag("--stability-detection", options.stability_detection,
-               "let CVODE's BDF lower its order where it finds itself unstable");
-  app.add_option("--iterations", options.iterations,
-                 "how many a step, of methods that take as many as they are told (default: their "
-                 "own)")
-      ->take_last();
+void add_method_options(CommandLine& line, Options& options) {
+  line.add_option("--max-order", options.max_order,
+                  "the highest order that methods of variable order may take (default: their own)")
+      .take_last();
+  line.add_flag("--stability-detection", options.stability_detection,
+                "let CVODE's BDF lower its order where it finds itself unstable");
+  line.add_option("--iterations", options.iterations,
+                  "how many a step, of methods that take as many as they are told (default: their "
+                  "own)")
+      .take_last();
   const std::string own =
       options.solve_tolerance > 0 ? fmt::format("{}", options.solve_tolerance) : "the method's own";
-  app.add_option("--solve-tolerance", options.solve_tolerance,
-                 "what part of the error of its prediction a nonlinear solve of a hand-written "
-                 "implicit method may leave (default: " +
-                     own + ")")
-      ->take_last();
-  app.add_option("--spectral-radius", options.spectral_radius,
-                 "what a step of generalised-alpha methods leaves of a vibration of infinite "
-                 "frequency, from 0 to 1")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option_function<std::string>(
-         "--solver",
-         [&options](const std::string& name) {
-           const auto solver = find_solver(name);
-           require_that(solver.has_value(), "--solver", name, solver_list());
-           options.solver = *solver;
-         },
-         "what solves with the n x n matrices of implicit steps: " + solver_list())
-      ->take_last()
-      ->default_str(std::string(name(options.solver)));
+  line.add_option("--solve-tolerance", options.solve_tolerance,
+                  "what part of the error of its prediction a nonlinear solve of a hand-written "
+                  "implicit method may leave (default: " +
+                      own + ")")
+      .take_last();
+  line.add_option("--spectral-radius", options.spectral_radius,
+                  "what a step of generalised-alpha methods leaves of a vibration of infinite "
+                  "frequency, from 0 to 1")
+      .take_last()
+      .capture_default_str();
+  line.add_option_function(
+          "--solver",
+          [&options](const std::string& name) {
+            const auto solver = find_solver(name);
+            require_that(solver.has_value(), "--solver", name, solver_list());
+            options.solver = *solver;
+          },
+          "what solves with the n x n matrices of implicit steps: " + solver_list())
+      .take_last()
+      .default_str(std::string(name(options.solver)));
 }
 
-void require_options(const CLI::App& app, const Options& options) {
+void require_options(const CommandLine& line, const Options& options) {
   int highest = 0;
   for (const Method& method : methods()) {
     if (method.varies_order()) highest = std::max(highest, method.order);
   }
-  require_values(app, options, highest);
+  require_values(line, options, highest);
 }
 
-void require_options(const CLI::App& app, const Options& options, const Method& method) {
+void require_options(const CommandLine& line, const Options& options, const Method& method) {
   const auto require = [&](const char* name, Option option) {
-    if (app.count(name) == 0 || method.listens_to(option)) return;
+    if (!line.has(name) || method.listens_to(option)) return;
     throw InvalidInput(
         fmt::format("{} is not for {}; it is for {}", name, method.name,
                     names_where([&](const Method& other) { return other.listens_to(option); })));
@@ -100,7 +100,7 @@ void require_options(const CLI::App& app, const Options& options, const Method& 
   require("--solve-tolerance", Option::solve_tolerance);
   require("--spectral-radius", Option::spectral_radius);
   require("--solver", Option::solver);
-  require_values(app, options, method.order);
+  require_values(line, options, method.order);
 }
 
 }  // namespace qddot::command

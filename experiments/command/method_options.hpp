@@ -1,10 +1,7 @@
 #pragma once
 
+#include "experiments/command/command_line.hpp"
 #include "qddot/measure/speed/measurement.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace qddot::command {
 
@@ -12,10 +9,10 @@ using namespace measure;
 
 // Adds --max-order, --stability-detection, --iterations, --solve-tolerance, --spectral-radius and
 // --solver.
-void add_method_options(CLI::App& app, Options& options);
+void add_method_options(CommandLine& line, Options& options);
 
 // Throws InvalidInput unless each option that is given is allowed for some method, or for this one.
-void require_options(const CLI::App& app, const Options& options);
-void require_options(const CLI::App& app, const Options& options, const Method& method);
+void require_options(const CommandLine& line, const Options& options);
+void require_options(const CommandLine& line, const Options& options, const Method& method);
 
 }  // namespace qddot::command

@@ -6,10 +6,10 @@
 #include <omp.h>
 #include <system_error>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "experiments/command/build_info.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/interruptible.hpp"
 #include "experiments/command/memory.hpp"
 #include "experiments/command/overwriting.hpp"
@@ -22,31 +22,30 @@ namespace qddot::command {
 using namespace measure;
 namespace {
 
-int complain(const CLI::App& app, const std::string& sentence, int status) {
-  fmt::print(stderr, "{}: {}\n", app.get_name(), in_one_line(sentence));
+int complain(const CommandLine& line, const std::string& sentence, int status) {
+  fmt::print(stderr, "{}: {}\n", line.program(), in_one_line(sentence));
   return status;
 }
 
 // The options that every program takes.
 struct EveryProgram {
-  explicit EveryProgram(CLI::App& app) {
-    app.set_version_flag("--version", fmt::format("{} of qddot {}, {}", app.get_name(),
-                                                  build_info::version, build_info::compiler));
-    app.add_flag("--force", force, "replace files that qddot did not write");
-    limit = app.add_option("--time-limit", seconds,
-                           "seconds after which the program ends in order, with what it has")
-                ->take_last();
+  explicit EveryProgram(CommandLine& line) {
+    line.set_version(fmt::format("{} of qddot {}, {}", line.program(), build_info::version,
+                                 build_info::compiler));
+    line.add_flag("--force", force, "replace files that qddot did not write");
+    line.add_option("--time-limit", seconds,
+                    "seconds after which the program ends in order, with what it has")
+        .take_last();
   }
-  void apply(Interruptible& run) const {
+  void apply(const CommandLine& line, Interruptible& run) const {
     if (force) allow_replacing();
-    if (limit->count() == 0) return;
+    if (!line.has("--time-limit")) return;
     require_positive(seconds, "--time-limit", "the seconds that the program may take");
     run.end_after(seconds);
   }
 
   bool force = false;
   double seconds = 0;
-  CLI::Option* limit;
 };
 
 }  // namespace
@@ -69,50 +68,44 @@ std::string in_one_line(const std::string& text) {
   return line;
 }
 
-int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
-  const EveryProgram options(app);
+int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& body) {
+  const EveryProgram options(line);
   try {
-    Interruptible run(app.get_name());
-    app.parse(argc, argv);
-    options.apply(run);
+    Interruptible run(line.program());
+    if (const auto status = line.parse(argc, argv)) return *status;
+    options.apply(line, run);
     return body();
   } catch (const Interrupted& error) {
-    return complain(app, error.what(), error.status);
+    return complain(line, error.what(), error.status);
   } catch (const CannotWrite& error) {
-    return complain(app, error.what(), end_not_reached);
-  } catch (const CLI::Success& help) {
-    return app.exit(help);
-  } catch (const CLI::ConversionError& error) {
-    return complain(app, fmt::format("{}; allowed is a number", error.what()), bad_input);
-  } catch (const CLI::ParseError& error) {
-    return complain(app, error.what(), bad_input);
+    return complain(line, error.what(), end_not_reached);
   } catch (const InvalidInput& error) {
-    return complain(app, error.what(), bad_input);
+    return complain(line, error.what(), bad_input);
   } catch (const NoReference& error) {
-    return complain(app, error.what(), end_not_reached);
+    return complain(line, error.what(), end_not_reached);
   } catch (const std::domain_error& error) {  // what is asked for does not exist for the scene
-    return complain(app, error.what(), end_not_reached);
+    return complain(line, error.what(), end_not_reached);
   } catch (const std::range_error& error) {  // numbers of the scene overflow on the way to it
-    return complain(app, error.what(), end_not_reached);
+    return complain(line, error.what(), end_not_reached);
   } catch (const std::bad_alloc&) {
-    return complain(app, out_of_memory(), end_not_reached);
+    return complain(line, out_of_memory(), end_not_reached);
   } catch (const std::system_error&) {  // no thread can be started
-    return complain(app, out_of_memory(), end_not_reached);
+    return complain(line, out_of_memory(), end_not_reached);
   } catch (const std::exception& error) {
-    return complain(app, error.what(), failed);
+    return complain(line, error.what(), failed);
   }
 }
 
-void add_threads_option(CLI::App& app) {
+void add_threads_option(CommandLine& line) {
   omp_set_num_threads(1);
-  app.add_option_function<int>(
-         "--threads",
-         [](int threads) {
-           require_within(threads, 1, 256, "--threads");
-           omp_set_num_threads(threads);
-         },
-         "how many cores a run of a large scene may use (default: 1)")
-      ->take_last();
+  line.add_option_function(
+          "--threads",
+          [](int threads) {
+            require_within(threads, 1, 256, "--threads");
+            omp_set_num_threads(threads);
+          },
+          "how many cores a run of a large scene may use (default: 1)")
+      .take_last();
 }
 
 void require_positive(double value, const std::string& option, const std::string& meaning) {

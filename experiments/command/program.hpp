@@ -3,11 +3,8 @@
 #include <functional>
 #include <string>
 
+#include "experiments/command/command_line.hpp"
 #include "qddot/scene/scene.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace qddot::command {
 
@@ -17,16 +14,16 @@ enum ExitStatus { done = 0, failed = 1, bad_input = 2, end_not_reached = 3 };
 // The text in one line without control characters, whatever names it holds.
 std::string in_one_line(const std::string& text);
 
-// Parses the command line into what `app` binds, and --force, --time-limit and --version, and runs
+// Parses the command line into what `line` binds, and --force, --time-limit and --version, and runs
 // `body`, which SIGINT, SIGTERM and the time limit interrupt (see interruptible.hpp). --help prints
 // and returns 0. Prints one sentence, "program: ...", and returns bad_input for a wrong option or
 // an InvalidInput, end_not_reached for what cannot be written (CannotWrite) or has no reference,
 // 130 for a signal, and failed for any other exception.
-int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& body);
 
 // Adds --threads: the cores that forces, stiffness and factorisations of one run may use, 1 unless
 // more are asked for, so that times of methods compare. Results do not depend on it.
-void add_threads_option(CLI::App& app);
+void add_threads_option(CommandLine& line);
 
 // Throws InvalidInput unless `value` is finite and greater than zero.
 void require_positive(double value, const std::string& option, const std::string& meaning);

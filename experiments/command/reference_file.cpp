@@ -44,7 +44,7 @@ Vec vector(const nlohmann::json& json) {
 double digits(double certified) { return std::floor(-std::log10(certified) * 10) / 10; }
 
 // The file's contents; null where there is no regular file, whatever a pipe would have to say.
-nlohmann::json read(const std::string& file) {
+nlohmann::json read_json(const std::string& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return nullptr;
   std::ifstream stream(file);
@@ -236,7 +236,7 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
                         {"until", until},
                         {"source_hash", code_hash()}};
   if (needed) key["needed"] = *needed;
-  const nlohmann::json found = read(file);
+  const nlohmann::json found = read_json(file);
   if (found.is_object() && found.value("key", nlohmann::json()) == key) {
     if (auto reference = stored(found, scene, until)) return *reference;
   }

@@ -4,11 +4,11 @@
 #include <cerrno>
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "experiments/command/catalogue.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/memory.hpp"
 #include "experiments/command/overwriting.hpp"
 #include "experiments/command/program.hpp"
@@ -18,12 +18,12 @@
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::command {
-void add_scene_options(CLI::App& app, SceneChoice& choice) {
-  app.add_option("--scene", choice.name, "a generator's name or a scene file");
-  app.add_option("--no-reduce", choice.no_reduce,
-                 fmt::format("a,b,... to leave in the scene what need not be there, of {}",
-                             fmt::join(reduction_names, ", ")))
-      ->delimiter(',');
+void add_scene_options(CommandLine& line, SceneChoice& choice) {
+  line.add_option("--scene", choice.name, "a generator's name or a scene file");
+  line.add_option("--no-reduce", choice.no_reduce,
+                  fmt::format("a,b,... to leave in the scene what need not be there, of {}",
+                              fmt::join(reduction_names, ", ")))
+      .delimiter(',');
 }
 
 Scene load(const SceneChoice& choice) {

@@ -5,13 +5,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "qddot/integrators/method.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "qddot/scene/scene.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace qddot::command {
 
@@ -22,7 +19,7 @@ struct SceneChoice {
 };
 
 // Adds --scene and --no-reduce.
-void add_scene_options(CLI::App& app, SceneChoice& choice);
+void add_scene_options(CommandLine& line, SceneChoice& choice);
 
 // The scene of that name, a generator's or a file's; its warnings are printed to standard error.
 // Throws InvalidInput where there is none or it is wrong.

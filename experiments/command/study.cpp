@@ -6,9 +6,9 @@
 #include <fstream>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/interruptible.hpp"
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
@@ -20,17 +20,15 @@ using namespace measure;
 namespace {
 
 // Long enough for a step of the largest scenes [s].
-constexpr double patience = 30;
+constexpr double patience_with_a_step = 30;
 
 // What the user asked for, but for where results go and how the program is to be run.
-nlohmann::json options_of(const CLI::App& app) {
+nlohmann::json options_of(const CommandLine& line) {
   constexpr std::array other = {"--out",        "--scene", "--resume", "--force",
                                 "--time-limit", "--help",  "--version"};
   nlohmann::json options = nlohmann::json::object();
-  for (const CLI::Option* option : app.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() == 0 || std::ranges::find(other, name) != other.end()) continue;
-    options[name] = option->results();
+  for (const auto& [name, values] : line.given()) {
+    if (std::ranges::find(other, name) == other.end()) options[name] = values;
   }
   return options;
 }
@@ -53,21 +51,20 @@ std::optional<int> status_of(const std::vector<std::string>& tables, const nlohm
 
 }  // namespace
 
-void add_resume_option(CLI::App& app) {
-  app.add_flag("--resume")
-      ->description("measure only what an interrupted run of the same command has not");
+void add_resume_option(CommandLine& line) {
+  line.add_flag("--resume", "measure only what an interrupted run of the same command has not");
 }
 
-Study::Study(const CLI::App& app, const std::string& folder, const std::vector<std::string>& tables,
-             const nlohmann::json& about)
-    : program_(app.get_name()),
+Study::Study(const CommandLine& line, const std::string& folder,
+             const std::vector<std::string>& tables, const nlohmann::json& about)
+    : program_(line.program()),
       path_(folder + "/" + program_ + ".journal"),
       key_({{"program", program_},
             {"about", about},
-            {"options", options_of(app)},
+            {"options", options_of(line)},
             {"code", code_hash()},
             {"processor", processor()}}) {
-  const bool resumes = app.count("--resume") > 0;
+  const bool resumes = line.has("--resume");
   if (resumes && !std::filesystem::exists(path_)) {
     std::vector<std::string> paths;
     for (const std::string& table : tables) paths.push_back(folder + "/" + table);
@@ -78,7 +75,7 @@ Study::Study(const CLI::App& app, const std::string& folder, const std::vector<s
     }
   }
   journal_ = std::make_unique<Journal>(path_, key_, resumes);
-  wait_for_answer(patience);
+  wait_for_answer(patience_with_a_step);
   if (journal_->size() > 0) {
     fmt::print(stderr, "{}: {} pieces are kept from before\n", program_, journal_->size());
   } else if (journal_->dropped() > 0) {

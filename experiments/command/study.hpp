@@ -8,20 +8,17 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/journal.hpp"
 #include "qddot/measure/motion/interruption.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace qddot::command {
 
 using namespace measure;
 
 // Adds --resume.
-void add_resume_option(CLI::App& app);
+void add_resume_option(CommandLine& line);
 
 // A study that is measured piece by piece into tables of one folder, and that may be interrupted
 // at any time: each piece is kept in `folder`/PROGRAM.journal as it comes. The same command with
@@ -32,7 +29,7 @@ class Study {
   // `about`: what decides the results beside the program's options and the code: the scene's hash,
   // say; `tables`: the files X.csv in `folder` that it makes. Says on stderr what is kept, or what
   // is measured anew, of an interrupted run. Throws InvalidInput as Journal does.
-  Study(const CLI::App& app, const std::string& folder, const std::vector<std::string>& tables,
+  Study(const CommandLine& line, const std::string& folder, const std::vector<std::string>& tables,
         const nlohmann::json& about);
   // Leaves no journal where nothing was measured.
   ~Study();

@@ -16,10 +16,10 @@
 #include <cmath>
 #include <limits>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/point_record.hpp"
 #include "experiments/command/program.hpp"
@@ -53,11 +53,11 @@ struct Arguments {
   std::vector<std::string> methods;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  add_scene_options(app, a.scene);
-  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
-  app.add_option("--methods", a.methods, "a,b,... (default: all of fixed step)")->delimiter(',');
-  app.add_option("--out", a.out, "the folder for order.csv and reference.json");
+void declare(CommandLine& line, Arguments& a) {
+  add_scene_options(line, a.scene);
+  line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  line.add_option("--methods", a.methods, "a,b,... (default: all of fixed step)").delimiter(',');
+  line.add_option("--out", a.out, "the folder for order.csv and reference.json");
 }
 
 // The methods among those asked for whose error depends on a step size; others that were named are
@@ -125,18 +125,18 @@ void tabulate(Csv& csv, const Method& method, double until, const Reference& ref
   }
 }
 
-int convergence(const CLI::App& app, const Arguments& a,
+int convergence(const CommandLine& line, const Arguments& a,
                 const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  const double until = horizon(a.until, line.has("--until"), drawn);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   require_reference_exists(scene, a.scene.name);
   const auto selected = select_fixed_step(a.methods, scene, a.scene.name);
   require_folder(a.out);
 
-  Study study(app, a.out, {"order.csv"},
+  Study study(line, a.out, {"order.csv"},
               {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
   if (const auto status = study.completed()) return *status;
   const nlohmann::json origin = provenance(command_line, drawn, start, scene);
@@ -176,12 +176,13 @@ int convergence(const CLI::App& app, const Arguments& a,
 }  // namespace qddot::convergence
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures the order of convergence of every fixed-step integrator.", "convergence");
+  qddot::command::CommandLine line(
+      "Measures the order of convergence of every fixed-step integrator.", "convergence");
   qddot::convergence::Arguments arguments;
-  qddot::convergence::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::convergence::convergence(app, arguments, {argv, argv + argc});
+  qddot::convergence::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::convergence::convergence(line, arguments, {argv, argv + argc});
   });
 }

@@ -33,11 +33,11 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/point_record.hpp"
 #include "experiments/command/point_table.hpp"
@@ -74,31 +74,31 @@ struct Arguments {
   std::string out;
 };
 
-void declare(CLI::App& app, Arguments& a) {
+void declare(CommandLine& line, Arguments& a) {
   std::vector<std::string> families;
   for (const StiffFamily& f : stiff_families()) {
     families.push_back(fmt::format("{} ({})", f.name, f.summary));
   }
-  app.add_option("--family", a.family, fmt::format("{}", fmt::join(families, ", ")))
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--nodes", a.nodes, "along a side of the cloth or in the chain (default: 12, 30)")
-      ->take_last();
-  app.add_option("--until", a.until, "the time to run to in s (default: 0.25)")->take_last();
-  app.add_option("--ratios", a.ratios, "a,b,... how many times stiffer the stiff springs are")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--methods", a.methods, "a,b,... (default: all but SUNDIALS' stock ways)")
-      ->delimiter(',');
-  app.add_option("--repeats", a.effort.repeats, "timed runs of each point")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--point-limit", a.effort.seconds,
-                 "seconds that one run of a point may take; slower ones become over_budget")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--out", a.out, "the folder for crossover.csv, kinds.csv and points.csv")
-      ->take_last();
+  line.add_option("--family", a.family, fmt::format("{}", fmt::join(families, ", ")))
+      .take_last()
+      .capture_default_str();
+  line.add_option("--nodes", a.nodes, "along a side of the cloth or in the chain (default: 12, 30)")
+      .take_last();
+  line.add_option("--until", a.until, "the time to run to in s (default: 0.25)").take_last();
+  line.add_option("--ratios", a.ratios, "a,b,... how many times stiffer the stiff springs are")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--methods", a.methods, "a,b,... (default: all but SUNDIALS' stock ways)")
+      .delimiter(',');
+  line.add_option("--repeats", a.effort.repeats, "timed runs of each point")
+      .take_last()
+      .capture_default_str();
+  line.add_option("--point-limit", a.effort.seconds,
+                  "seconds that one run of a point may take; slower ones become over_budget")
+      .take_last()
+      .capture_default_str();
+  line.add_option("--out", a.out, "the folder for crossover.csv, kinds.csv and points.csv")
+      .take_last();
 }
 
 void require_ratios(std::vector<double>& ratios) {
@@ -303,21 +303,21 @@ bool measure_rung(Study& study, const std::string& out,
   return has_reference;
 }
 
-int crossover(const CLI::App& app, Arguments a, const std::vector<std::string>& command_line) {
+int crossover(const CommandLine& line, Arguments a, const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
   require_repeats(a.effort.repeats);
   require_ratios(a.ratios);
   const StiffFamily& family = stiff_family(a.family);
-  if (app.count("--nodes") > 0) require_within(a.nodes, least_nodes, most_nodes, "--nodes");
-  if (app.count("--until") > 0) require_positive(a.until, "--until", "the horizon in s");
-  const double until = app.count("--until") > 0 ? a.until : family.until;
+  if (line.has("--nodes")) require_within(a.nodes, least_nodes, most_nodes, "--nodes");
+  if (line.has("--until")) require_positive(a.until, "--until", "the horizon in s");
+  const double until = line.has("--until") ? a.until : family.until;
   std::vector<Rung> all = rungs(a, family, until);
   const auto methods = competitors(a, all.back());
   const auto competing = kinds_of(methods);
   Climbers climbers(methods, a.effort);
   require_folder(a.out);
-  Study study(app, a.out, {"crossover.csv", "kinds.csv", "points.csv"},
+  Study study(line, a.out, {"crossover.csv", "kinds.csv", "points.csv"},
               {{"family", a.family}, {"until", until}, {"nodes", all.front().drawn.nodes.size()}});
   if (const auto status = study.completed()) return *status;
   CsvFile winners(a.out + "/crossover.csv", winner_columns);
@@ -352,12 +352,13 @@ int crossover(const CLI::App& app, Arguments a, const std::vector<std::string>& 
 }  // namespace qddot::crossover
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures from which stiffness on an implicit method is the fastest.", "crossover");
+  qddot::command::CommandLine line(
+      "Measures from which stiffness on an implicit method is the fastest.", "crossover");
   qddot::crossover::Arguments arguments;
-  qddot::crossover::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::crossover::crossover(app, arguments, {argv, argv + argc});
+  qddot::crossover::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::crossover::crossover(line, arguments, {argv, argv + argc});
   });
 }

@@ -21,11 +21,11 @@
 #include <map>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/allowed_options.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/program.hpp"
@@ -63,39 +63,40 @@ struct Arguments {
   Options options{.solve_tolerance = standard_solve_tolerance};
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  add_scene_options(app, a.scene);
-  app.add_option("--step-size", a.step_size,
-                 "h in s, of methods of fixed step (default: 1/2 over the largest frequency)");
-  app.add_option("--until", a.until, "the time to run to in s (default: a million steps)");
-  app.add_option("--methods", a.methods,
-                 "a,b,... (default: all but the stock ways of SUNDIALS, _klu)")
-      ->delimiter(',');
-  app.add_option("--rtol", a.rtols, "a,b,... relative tolerances, of adaptive methods")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_flag("--compensated", a.compensated,
-               "let splittings (verlet, symplectic_euler, kahan_li8, ...) keep what rounding takes "
-               "from their sums");
-  app.add_option("--method-limit", a.method_limit,
-                 "seconds that a method may take, all of its tolerances together; what it reached "
-                 "by then gets the verdict")
-      ->take_last()
-      ->capture_default_str();
-  add_method_options(app, a.options);
-  app.add_option("--out", a.out,
-                 "the folder for drift.csv (energies over time; relative_error is (E(t) - E(0)) "
-                 "over the largest kinetic energy), summary.csv (a verdict for each run) and "
-                 "tolerance.csv");
+void declare(CommandLine& line, Arguments& a) {
+  add_scene_options(line, a.scene);
+  line.add_option("--step-size", a.step_size,
+                  "h in s, of methods of fixed step (default: 1/2 over the largest frequency)");
+  line.add_option("--until", a.until, "the time to run to in s (default: a million steps)");
+  line.add_option("--methods", a.methods,
+                  "a,b,... (default: all but the stock ways of SUNDIALS, _klu)")
+      .delimiter(',');
+  line.add_option("--rtol", a.rtols, "a,b,... relative tolerances, of adaptive methods")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_flag(
+      "--compensated", a.compensated,
+      "let splittings (verlet, symplectic_euler, kahan_li8, ...) keep what rounding takes "
+      "from their sums");
+  line.add_option("--method-limit", a.method_limit,
+                  "seconds that a method may take, all of its tolerances together; what it reached "
+                  "by then gets the verdict")
+      .take_last()
+      .capture_default_str();
+  add_method_options(line, a.options);
+  line.add_option("--out", a.out,
+                  "the folder for drift.csv (energies over time; relative_error is (E(t) - E(0)) "
+                  "over the largest kinetic energy), summary.csv (a verdict for each run) and "
+                  "tolerance.csv");
 }
 
 struct Horizon {
   double step_size, until;
 };
 
-Horizon horizon_of(const CLI::App& app, const Arguments& a, const ReducedScene& scene) {
+Horizon horizon_of(const CommandLine& line, const Arguments& a, const ReducedScene& scene) {
   Horizon h{a.step_size, a.until};
-  if (app.count("--step-size") > 0) {
+  if (line.has("--step-size")) {
     require_step_size(a.step_size, "--step-size");
   } else {
     h.step_size = standard_resolution / fastest_frequency(scene);
@@ -106,7 +107,7 @@ Horizon horizon_of(const CLI::App& app, const Arguments& a, const ReducedScene& 
           a.scene.name));
     }
   }
-  if (app.count("--until") > 0) {
+  if (line.has("--until")) {
     require_positive(a.until, "--until", "the horizon in s");
   } else {
     h.until = standard_steps * h.step_size;
@@ -238,20 +239,20 @@ void print_tolerances(const std::vector<DriftRun>& runs, const MotionScales& sca
   }
 }
 
-int energy_drift(const CLI::App& app, const Arguments& a,
+int energy_drift(const CommandLine& line, const Arguments& a,
                  const std::vector<std::string>& command_line) {
   const auto begin = std::chrono::steady_clock::now();
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.method_limit, "--method-limit", "the seconds a method may take");
-  require_options(app, a.options);
+  require_options(line, a.options);
   for (const double rtol : a.rtols) require_rtol(rtol, "--rtol");
   const Scene drawn = load(a.scene);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
-  const Horizon horizon = horizon_of(app, a, scene);
+  const Horizon horizon = horizon_of(line, a, scene);
   const std::vector<Job> jobs = jobs_of(a, horizon.step_size, scene);
   require_folder(a.out);
-  Study study(app, a.out, {"drift.csv", "summary.csv", "tolerance.csv"},
+  Study study(line, a.out, {"drift.csv", "summary.csv", "tolerance.csv"},
               {{"scene", content_hash(drawn)}, {"name", drawn.name}});
   if (const auto status = study.completed()) return *status;
   CsvFile paths(a.out + "/drift.csv", drift_columns);
@@ -298,12 +299,13 @@ int energy_drift(const CLI::App& app, const Arguments& a,
 }  // namespace qddot::energy_drift
 
 int main(int argc, char** argv) {
-  CLI::App app("Finds out where each integrator's energy goes over a long run of one scene.",
-               "energy_drift");
+  qddot::command::CommandLine line(
+      "Finds out where each integrator's energy goes over a long run of one scene.",
+      "energy_drift");
   qddot::energy_drift::Arguments arguments;
-  qddot::energy_drift::declare(app, arguments);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::energy_drift::energy_drift(app, arguments, {argv, argv + argc});
+  qddot::energy_drift::declare(line, arguments);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::energy_drift::energy_drift(line, arguments, {argv, argv + argc});
   });
 }

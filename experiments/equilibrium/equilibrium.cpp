@@ -4,10 +4,10 @@
 //   equilibrium --scene cloth --final rest.csv
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/node_table.hpp"
 #include "experiments/command/program.hpp"
@@ -24,11 +24,11 @@ struct Arguments {
   std::string scene, final_path;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--scene", a.scene, "a generator's name or a scene file");
-  app.add_option("--final", a.final_path,
-                 "CSV of all nodes at rest (or, with status 3, where the search ended), with "
-                 "velocities of zero: node,x,y,z,vx,vy,vz");
+void declare(CommandLine& line, Arguments& a) {
+  line.add_option("--scene", a.scene, "a generator's name or a scene file");
+  line.add_option("--final", a.final_path,
+                  "CSV of all nodes at rest (or, with status 3, where the search ended), with "
+                  "velocities of zero: node,x,y,z,vx,vy,vz");
 }
 
 const char* name(Equilibrium::Outcome outcome) {
@@ -43,10 +43,10 @@ const char* name(Equilibrium::Outcome outcome) {
   return "not_converged";
 }
 
-int equilibrium(const CLI::App& app, const Arguments& a,
+int equilibrium(const CommandLine& line, const Arguments& a,
                 const std::vector<std::string>& command_line) {
   require_given(a.scene, "--scene", "a generator's name or a scene file");
-  if (app.count("--final") > 0) require_given(a.final_path, "--final", "the name of a CSV file");
+  if (line.has("--final")) require_given(a.final_path, "--final", "the name of a CSV file");
   const Scene drawn = load(a.scene);
   const ReducedScene scene(drawn, Reductions::all_directions());
   std::unique_ptr<CsvFile> csv;
@@ -88,12 +88,13 @@ int equilibrium(const CLI::App& app, const Arguments& a,
 }  // namespace qddot::equilibrium
 
 int main(int argc, char** argv) {
-  CLI::App app("Finds the stable equilibrium that a scene reaches downhill from where it is drawn.",
-               "equilibrium");
+  qddot::command::CommandLine line(
+      "Finds the stable equilibrium that a scene reaches downhill from where it is drawn.",
+      "equilibrium");
   qddot::equilibrium::Arguments arguments;
-  qddot::equilibrium::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::equilibrium::equilibrium(app, arguments, {argv, argv + argc});
+  qddot::equilibrium::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::equilibrium::equilibrium(line, arguments, {argv, argv + argc});
   });
 }

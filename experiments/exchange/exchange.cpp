@@ -27,12 +27,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/allowed_options.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
@@ -75,20 +75,20 @@ struct Arguments {
   std::vector<double> h_omega = {0.1, 1, 2.25, 5};
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  add_scene_options(app, a.scene);
-  app.add_option("--methods", a.methods, "a,b,... of fixed step")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--h-omega", a.h_omega,
-                 "a,b,...: the steps times the highest frequency of the stiff springs")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
-  app.add_option("--every", a.every,
-                 "how far apart the times of exchange.csv are in s, about (default: a thousandth "
-                 "of the time)");
-  app.add_option("--out", a.out, "the folder for exchange.csv and summary.csv");
+void declare(CommandLine& line, Arguments& a) {
+  add_scene_options(line, a.scene);
+  line.add_option("--methods", a.methods, "a,b,... of fixed step")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--h-omega", a.h_omega,
+                  "a,b,...: the steps times the highest frequency of the stiff springs")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  line.add_option("--every", a.every,
+                  "how far apart the times of exchange.csv are in s, about (default: a thousandth "
+                  "of the time)");
+  line.add_option("--out", a.out, "the folder for exchange.csv and summary.csv");
 }
 
 // The highest frequency [rad/s] of the stiff springs alone; 0 where there are none.
@@ -233,13 +233,13 @@ std::vector<const Method*> select_fixed_step(const Arguments& a, const ReducedSc
 }
 
 // Checks what was asked for and looks at the start.
-Excitation excitation_of(const CLI::App& app, const Arguments& a) {
+Excitation excitation_of(const CommandLine& line, const Arguments& a) {
   const Scene drawn = load(a.scene);
   const Scene start = started(drawn, a.scene);
   Excitation excitation{
       .drawn = drawn, .start = start, .scene = ReducedScene(start, reductions_of(a.scene))};
   require_reference_exists(excitation.scene, a.scene.name);
-  excitation.until = horizon(a.until, app.count("--until") > 0, drawn);
+  excitation.until = horizon(a.until, line.has("--until"), drawn);
   const State& initial = excitation.scene.initial();
   excitation.omega = stiff_frequency(excitation.scene.system(), initial.q);
   excitation.energy = excitation.scene.energy(initial);
@@ -270,7 +270,7 @@ Excitation excitation_of(const CLI::App& app, const Arguments& a) {
                     "{:.3g} s",
                     excitation.until, std::ranges::max(a.h_omega), 10 * longest));
   }
-  excitation.every = app.count("--every") > 0 ? a.every : excitation.until / 1000;
+  excitation.every = line.has("--every") ? a.every : excitation.until / 1000;
   if (!(excitation.every <= excitation.until / 10)) {
     throw InvalidInput(
         fmt::format("--every {} is not allowed; it is at most a tenth of the time, "
@@ -319,7 +319,7 @@ class Reporter {
   CsvFile &courses_, &table_;
 };
 
-int exchange(const CLI::App& app, const Arguments& a,
+int exchange(const CommandLine& line, const Arguments& a,
              const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   for (const double h_omega : a.h_omega) {
@@ -328,11 +328,11 @@ int exchange(const CLI::App& app, const Arguments& a,
     if (std::ranges::count(a.h_omega, h_omega) > 1)
       throw InvalidInput(fmt::format("--h-omega: {} is named twice; allowed is once", h_omega));
   }
-  if (app.count("--every") > 0) require_positive(a.every, "--every", "a time in s");
-  const Excitation excitation = excitation_of(app, a);
+  if (line.has("--every")) require_positive(a.every, "--every", "a time in s");
+  const Excitation excitation = excitation_of(line, a);
   const auto selected = select_fixed_step(a, excitation.scene);
   require_folder(a.out);
-  Study study(app, a.out, {"exchange.csv", "summary.csv"},
+  Study study(line, a.out, {"exchange.csv", "summary.csv"},
               {{"scene", content_hash(excitation.drawn)}, {"name", excitation.drawn.name}});
   if (const auto status = study.completed()) return *status;
   CsvFile courses(a.out + "/exchange.csv", {"method", "h", "h_omega", "t", "spring", "energy"});
@@ -369,12 +369,12 @@ int exchange(const CLI::App& app, const Arguments& a,
 }  // namespace qddot::exchange
 
 int main(int argc, char** argv) {
-  CLI::App app("Follows the energy that stiff springs exchange, by method and step size.",
-               "exchange");
+  qddot::command::CommandLine line(
+      "Follows the energy that stiff springs exchange, by method and step size.", "exchange");
   qddot::exchange::Arguments arguments;
-  qddot::exchange::declare(app, arguments);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::exchange::exchange(app, arguments, {argv, argv + argc});
+  qddot::exchange::declare(line, arguments);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::exchange::exchange(line, arguments, {argv, argv + argc});
   });
 }

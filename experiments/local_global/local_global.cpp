@@ -26,11 +26,11 @@
 #include <cmath>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/allowed_options.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/pace.hpp"
 #include "experiments/command/program.hpp"
@@ -70,31 +70,31 @@ struct Arguments {
   bool speed = false;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--out", a.out, "the folder for the tables");
-  app.add_option("--nodes", a.nodes, "how many nodes along a side of the cloth, 3 to 400")
-      ->capture_default_str();
-  app.add_option("--stiffness", a.stiffness,
-                 "of springs between neighbours in N/m; diagonals have half of it, second "
-                 "neighbours a tenth")
-      ->capture_default_str();
-  app.add_option("--step-size", a.step_size, "h in s")->capture_default_str();
-  app.add_option("--swing", a.swing, "how long the cloth has swung before the step, in s")
-      ->capture_default_str();
-  app.add_option("--until", a.until, "how long the runs of run.csv are, in s")
-      ->capture_default_str();
-  app.add_option("--iterations", a.iterations, "how far to go, 1 to 100000")->capture_default_str();
-  app.add_option(
-         "--repeats", a.repeats,
-         "timed runs of each, of which the shortest counts; the median of them with --speed")
-      ->capture_default_str();
-  app.add_option("--stiffnesses", a.stiffnesses, "a,b,... in N/m, for stiffness.csv")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--resolutions", a.resolutions, "a,b,... nodes along a side, for resolution.csv")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_flag("--speed", a.speed, "measure one iteration and the set-up instead, to speed.csv");
+void declare(CommandLine& line, Arguments& a) {
+  line.add_option("--out", a.out, "the folder for the tables");
+  line.add_option("--nodes", a.nodes, "how many nodes along a side of the cloth, 3 to 400")
+      .capture_default_str();
+  line.add_option("--stiffness", a.stiffness,
+                  "of springs between neighbours in N/m; diagonals have half of it, second "
+                  "neighbours a tenth")
+      .capture_default_str();
+  line.add_option("--step-size", a.step_size, "h in s").capture_default_str();
+  line.add_option("--swing", a.swing, "how long the cloth has swung before the step, in s")
+      .capture_default_str();
+  line.add_option("--until", a.until, "how long the runs of run.csv are, in s")
+      .capture_default_str();
+  line.add_option("--iterations", a.iterations, "how far to go, 1 to 100000").capture_default_str();
+  line.add_option(
+          "--repeats", a.repeats,
+          "timed runs of each, of which the shortest counts; the median of them with --speed")
+      .capture_default_str();
+  line.add_option("--stiffnesses", a.stiffnesses, "a,b,... in N/m, for stiffness.csv")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--resolutions", a.resolutions, "a,b,... nodes along a side, for resolution.csv")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_flag("--speed", a.speed, "measure one iteration and the set-up instead, to speed.csv");
 }
 
 double median_of(int repeats, const auto& action) {
@@ -308,8 +308,8 @@ void require_affordable(const Arguments& a) {
     fmt::print(stderr, "local_global: this takes about {}\n", duration_in_words(seconds));
 }
 
-int measure_speed(const CLI::App& app, const Arguments& a, const nlohmann::json& origin) {
-  Study study(app, a.out, {"speed.csv"}, origin.at("scene"));
+int measure_speed(const CommandLine& line, const Arguments& a, const nlohmann::json& origin) {
+  Study study(line, a.out, {"speed.csv"}, origin.at("scene"));
   if (const auto status = study.completed()) return *status;
   CsvFile csv(a.out + "/speed.csv",
               {"nodes", "springs", "iteration_s", "setup_s", "factorization_s"});
@@ -326,8 +326,8 @@ int measure_speed(const CLI::App& app, const Arguments& a, const nlohmann::json&
   return study.finish({&csv}, origin, done);
 }
 
-int measure_steps(const CLI::App& app, const Arguments& a, const nlohmann::json& origin) {
-  Study study(app, a.out, StepTables::names(), origin.at("scene"));
+int measure_steps(const CommandLine& line, const Arguments& a, const nlohmann::json& origin) {
+  Study study(line, a.out, StepTables::names(), origin.at("scene"));
   if (const auto status = study.completed()) return *status;
   StepTables tables(a.out);
   study.measure([&] {
@@ -349,7 +349,7 @@ int measure_steps(const CLI::App& app, const Arguments& a, const nlohmann::json&
   return study.conclude(status);
 }
 
-int local_global_program(const CLI::App& app, const Arguments& a,
+int local_global_program(const CommandLine& line, const Arguments& a,
                          const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_within(a.nodes, 3, 400, "--nodes");
@@ -370,20 +370,21 @@ int local_global_program(const CLI::App& app, const Arguments& a,
   require_folder(a.out);
   const SwingingCloth cloth(a.speed ? standard_nodes : a.nodes, a.stiffness, 0);
   const nlohmann::json origin = origin_of(command_line, cloth, a);
-  return a.speed ? measure_speed(app, a, origin) : measure_steps(app, a, origin);
+  return a.speed ? measure_speed(line, a, origin) : measure_steps(line, a, origin);
 }
 
 }  // namespace
 }  // namespace qddot::local_global
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures what the iterations of a step of implicit Euler buy, by several solvers.",
-               "local_global");
+  qddot::command::CommandLine line(
+      "Measures what the iterations of a step of implicit Euler buy, by several solvers.",
+      "local_global");
   qddot::local_global::Arguments arguments;
-  qddot::local_global::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::local_global::local_global_program(app, arguments, {argv, argv + argc});
+  qddot::local_global::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::local_global::local_global_program(line, arguments, {argv, argv + argc});
   });
 }

@@ -10,10 +10,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
@@ -38,14 +38,14 @@ struct Arguments {
   int count = 10;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--scene", a.scene, "a generator's name or a scene file");
-  app.add_option("--out", a.out,
-                 "the folder for modes.csv (a mode that grows instead of vibrating has omega = "
-                 "-growth rate), shapes.csv of the lowest ones, and springs.csv");
-  app.add_option("--count", a.count,
-                 "how many modes at each end of the spectrum, 1 to 1000 (default: 10)");
-  app.add_option("--at", a.at, "drawn or equilibrium (default: where the scene starts)");
+void declare(CommandLine& line, Arguments& a) {
+  line.add_option("--scene", a.scene, "a generator's name or a scene file");
+  line.add_option("--out", a.out,
+                  "the folder for modes.csv (a mode that grows instead of vibrating has omega = "
+                  "-growth rate), shapes.csv of the lowest ones, and springs.csv");
+  line.add_option("--count", a.count,
+                  "how many modes at each end of the spectrum, 1 to 1000 (default: 10)");
+  line.add_option("--at", a.at, "drawn or equilibrium (default: where the scene starts)");
 }
 
 // Angular frequency [rad/s], or minus the rate of growth [1/s].
@@ -180,12 +180,12 @@ int modes(const Arguments& a, const std::vector<std::string>& command_line) {
 }  // namespace qddot::modes
 
 int main(int argc, char** argv) {
-  CLI::App app("Finds the natural modes of a scene: frequencies and shapes of its small motions.",
-               "modes");
+  qddot::command::CommandLine line(
+      "Finds the natural modes of a scene: frequencies and shapes of its small motions.", "modes");
   qddot::modes::Arguments arguments;
-  qddot::modes::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
+  qddot::modes::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
     return qddot::modes::modes(arguments, {argv, argv + argc});
   });
 }

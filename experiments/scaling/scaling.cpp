@@ -26,11 +26,11 @@
 #include <ranges>
 #include <set>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/allowed_options.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/memory.hpp"
 #include "experiments/command/program.hpp"
@@ -52,7 +52,7 @@ namespace {
 constexpr double gigabyte = 1e9;
 constexpr double least_nodes_allowed = 10, most_nodes_allowed = 1e7;
 // How long the peak is looked at [s].
-constexpr double look = 0.05;
+constexpr double look_for_peak = 0.05;
 // The part of free memory that is taken without being told.
 constexpr double taken_of_free = 0.8;
 
@@ -70,40 +70,40 @@ std::string all_solvers() {
   return fmt::format("{}", fmt::join(solver_names | std::views::values, ", "));
 }
 
-void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--scenes", a.scenes, "a,b,... of chain, cloth and lattice")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--methods", a.methods, "a,b,... of fixed step")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--solvers", a.solvers,
-                 fmt::format("a,b,... of {}, for implicit methods", all_solvers()))
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--least-nodes", a.least_nodes, "how many nodes the smallest scene has, about")
-      ->capture_default_str();
-  app.add_option("--most-nodes", a.most_nodes, "and the largest")->capture_default_str();
-  app.add_option("--sizes", a.sizes, "how many sizes a decade")->capture_default_str();
-  app.add_option("--step-size", a.step_size, "h of implicit methods in s")->capture_default_str();
-  app.add_option("--point-limit", a.point_limit,
-                 "seconds that a step and its analysis may take; larger scenes are left out")
-      ->capture_default_str();
-  app.add_option("--memory-limit", a.memory_limit,
-                 "GB that a scene and a method may take (default: 0.8 of what is free)");
-  app.add_option("--no-reduce", a.choice.no_reduce,
-                 "a,b,... to leave in the scenes what need not be there")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--out", a.out, "the folder for the tables");
+void declare(CommandLine& line, Arguments& a) {
+  line.add_option("--scenes", a.scenes, "a,b,... of chain, cloth and lattice")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--methods", a.methods, "a,b,... of fixed step")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--solvers", a.solvers,
+                  fmt::format("a,b,... of {}, for implicit methods", all_solvers()))
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--least-nodes", a.least_nodes, "how many nodes the smallest scene has, about")
+      .capture_default_str();
+  line.add_option("--most-nodes", a.most_nodes, "and the largest").capture_default_str();
+  line.add_option("--sizes", a.sizes, "how many sizes a decade").capture_default_str();
+  line.add_option("--step-size", a.step_size, "h of implicit methods in s").capture_default_str();
+  line.add_option("--point-limit", a.point_limit,
+                  "seconds that a step and its analysis may take; larger scenes are left out")
+      .capture_default_str();
+  line.add_option("--memory-limit", a.memory_limit,
+                  "GB that a scene and a method may take (default: 0.8 of what is free)");
+  line.add_option("--no-reduce", a.choice.no_reduce,
+                  "a,b,... to leave in the scenes what need not be there")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--out", a.out, "the folder for the tables");
 }
 
-void require_options(const CLI::App& app, const Arguments& a) {
+void require_options(const CommandLine& line, const Arguments& a) {
   require_given(a.out, "--out", "the folder for the results");
   require_step_size(a.step_size, "--step-size");
   require_positive(a.point_limit, "--point-limit", "the seconds a step may take");
   require_within(a.sizes, 1, 20, "--sizes");
-  if (app.count("--memory-limit") > 0) {
+  if (line.has("--memory-limit")) {
     require_positive(a.memory_limit, "--memory-limit", "the memory to take in GB");
   }
   for (const auto& [value, option] :
@@ -224,12 +224,13 @@ nlohmann::json origin_of(const std::vector<std::string>& command_line, const Arg
   return origin;
 }
 
-int scaling(const CLI::App& app, const Arguments& a, const std::vector<std::string>& command_line) {
-  require_options(app, a);
+int scaling(const CommandLine& line, const Arguments& a,
+            const std::vector<std::string>& command_line) {
+  require_options(line, a);
   std::vector<std::vector<SolvedMethod>> methods;
   for (const std::string& name : a.scenes) methods.push_back(select(find_sized_scenes(name), a));
   require_folder(a.out);
-  Study study(app, a.out, {"scaling.csv", "exponents.csv", "roofline.csv"}, {});
+  Study study(line, a.out, {"scaling.csv", "exponents.csv", "roofline.csv"}, {});
   if (const auto status = study.completed()) return *status;
   CsvFile costs(a.out + "/scaling.csv",
                 {"scene", "nodes", "springs", "method", "phase", "seconds", "bytes"});
@@ -239,7 +240,7 @@ int scaling(const CLI::App& app, const Arguments& a, const std::vector<std::stri
       a.out + "/roofline.csv",
       {"scene", "nodes", "springs", "seconds", "springs_per_second", "bytes_per_spring",
        "flops_per_spring", "working_set_bytes", "triad_bytes_per_second", "peak_flops_per_second"});
-  const bool is_told = app.count("--memory-limit") > 0;
+  const bool is_told = line.has("--memory-limit");
   ScalingRun run({.seconds = a.point_limit,
                   .bytes = is_told ? gigabyte * a.memory_limit : taken_of_free * free_memory(),
                   .step_size = a.step_size,
@@ -250,7 +251,7 @@ int scaling(const CLI::App& app, const Arguments& a, const std::vector<std::stri
   });
   show_progress("");
 
-  const double peak = peak_flops(look);
+  const double peak = peak_flops(look_for_peak);
   write_costs(costs, run);
   write_exponents(exponents, run);
   write_roofline(roofline, run, peak);
@@ -267,12 +268,13 @@ int scaling(const CLI::App& app, const Arguments& a, const std::vector<std::stri
 }  // namespace qddot::scaling
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures how the cost of a step grows with the number of nodes.", "scaling");
+  qddot::command::CommandLine line(
+      "Measures how the cost of a step grows with the number of nodes.", "scaling");
   qddot::scaling::Arguments arguments;
-  qddot::scaling::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::scaling::scaling(app, arguments, {argv, argv + argc});
+  qddot::scaling::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::scaling::scaling(line, arguments, {argv, argv + argc});
   });
 }

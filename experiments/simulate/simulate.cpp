@@ -13,12 +13,12 @@
 #include <optional>
 #include <set>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/catalogue.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/interruptible.hpp"
 #include "experiments/command/method_options.hpp"
@@ -61,42 +61,40 @@ struct Arguments {
   bool list_methods = false, list_scenes = false, csv = false, explain = false;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  add_scene_options(app, a.scene);
-  app.add_option("--method", a.method, "a method's name (--list-methods)");
-  app.add_option("--step-size", a.step_size, "h in s, for methods of fixed step");
-  app.add_option("--rtol", a.rtol, "relative tolerance, for adaptive methods");
-  app.add_option("--atol", a.atol,
-                 "absolute tolerance in m and m/s (default: --rtol times the scene's extent, and "
-                 "times the speed that it starts towards)");
-  add_method_options(app, a.options);
-  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
-  app.add_option("--final", a.final_path, "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
-  app.add_option("--trajectory", a.trajectory_path, "CSV of all nodes over time: t,node,x,...");
-  app.add_option("--energy", a.energy_path, "CSV of t,kinetic,potential,total");
-  app.add_option(
+void declare(CommandLine& line, Arguments& a) {
+  add_scene_options(line, a.scene);
+  line.add_option("--method", a.method, "a method's name (--list-methods)");
+  line.add_option("--step-size", a.step_size, "h in s, for methods of fixed step");
+  line.add_option("--rtol", a.rtol, "relative tolerance, for adaptive methods");
+  line.add_option("--atol", a.atol,
+                  "absolute tolerance in m and m/s (default: --rtol times the scene's extent, and "
+                  "times the speed that it starts towards)");
+  add_method_options(line, a.options);
+  line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  line.add_option("--final", a.final_path, "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
+  line.add_option("--trajectory", a.trajectory_path, "CSV of all nodes over time: t,node,x,...");
+  line.add_option("--energy", a.energy_path, "CSV of t,kinetic,potential,total");
+  line.add_option(
       "--write-scene", a.written_scene_path,
       "TOML of the scene as nodes and springs, to the last bit; without --method nothing "
       "else is done");
-  app.add_option("--every", a.every,
-                 "the time between samples in s, which change no steps of fixed size. Stands "
-                 "behind the output it "
-                 "is for, or once for both")
-      ->expected(1)
-      ->take_all();
-  app.add_flag("--explain", a.explain,
-               "say what need not be integrated of the scene and why, and run nothing");
-  app.add_flag("--list-methods", a.list_methods, "print the methods there are");
-  app.add_flag("--list-scenes", a.list_scenes, "print the scene generators and their parameters");
-  app.add_flag("--csv", a.csv, "lists as CSV");
+  line.add_option("--every", a.every,
+                  "the time between samples in s, which change no steps of fixed size. Stands "
+                  "behind the output it "
+                  "is for, or once for both")
+      .take_each();
+  line.add_flag("--explain", a.explain,
+                "say what need not be integrated of the scene and why, and run nothing");
+  line.add_flag("--list-methods", a.list_methods, "print the methods there are");
+  line.add_flag("--list-scenes", a.list_scenes, "print the scene generators and their parameters");
+  line.add_flag("--csv", a.csv, "lists as CSV");
 }
 
 // Each --every belongs to the output option before it; the only one belongs to both outputs.
-void assign_every(const CLI::App& app, Arguments& a) {
+void assign_every(const CommandLine& line, Arguments& a) {
   double* owner = nullptr;
   std::size_t next = 0;
-  for (const CLI::Option* option : app.parse_order()) {
-    const std::string name = option->get_name();
+  for (const std::string& name : line.order()) {
     if (name == "--trajectory") owner = &a.trajectory_every;
     if (name == "--energy") owner = &a.energy_every;
     if (name == "--every") {
@@ -127,12 +125,12 @@ void assign_every(const CLI::App& app, Arguments& a) {
   }
 }
 
-void require_distinct_outputs(const CLI::App& app, const Arguments& a) {
+void require_distinct_outputs(const CommandLine& line, const Arguments& a) {
   std::set<std::filesystem::path> taken;
   for (const auto& [option, path] :
        {std::pair("--final", a.final_path), std::pair("--trajectory", a.trajectory_path),
         std::pair("--energy", a.energy_path)}) {
-    if (app.count(option) == 0) continue;
+    if (!line.has(option)) continue;
     require_given(path, option, "the name of a CSV file");
     for (const std::string& file : {path, sidecar_of(path)}) {
       if (taken.insert(std::filesystem::absolute(file).lexically_normal()).second) continue;
@@ -142,7 +140,7 @@ void require_distinct_outputs(const CLI::App& app, const Arguments& a) {
                       option, path, file));
     }
   }
-  if (app.count("--write-scene") == 0) return;
+  if (!line.has("--write-scene")) return;
   require_given(a.written_scene_path, "--write-scene", "the name of a TOML file");
   if (taken.contains(std::filesystem::absolute(a.written_scene_path).lexically_normal())) {
     throw InvalidInput(fmt::format(
@@ -152,8 +150,8 @@ void require_distinct_outputs(const CLI::App& app, const Arguments& a) {
 }
 
 // Whether the command line asks for the scene as a file and has nothing that is for a run.
-bool only_writes_scene(const CLI::App& app) {
-  const auto given = [&](const char* option) { return app.count(option) > 0; };
+bool only_writes_scene(const CommandLine& line) {
+  const auto given = [&](const char* option) { return line.has(option); };
   constexpr std::array of_a_run = {"--method", "--step-size",  "--rtol",   "--atol", "--until",
                                    "--final",  "--trajectory", "--energy", "--every"};
   return given("--write-scene") && std::ranges::none_of(of_a_run, given);
@@ -166,25 +164,25 @@ const Method& require_method(const std::string& name) {
       fmt::format("--method: {} is not a method; allowed are {}", name, method_names()));
 }
 
-Options checked_options(const CLI::App& app, const Arguments& a, const Method& method) {
+Options checked_options(const CommandLine& line, const Arguments& a, const Method& method) {
   const bool fixed = method.knob == Knob::step_size;
   const char* wanted = fixed ? "--step-size" : "--rtol";
   for (const char* other : {"--step-size", "--rtol", "--atol"}) {
     const bool allowed =
         fixed ? other == std::string("--step-size") : other != std::string("--step-size");
-    if (app.count(other) > 0 && !allowed) {
+    if (line.has(other) && !allowed) {
       throw InvalidInput(
           fmt::format("{} is not for {}, which takes {}", other, method.name, wanted));
     }
   }
-  if (app.count(wanted) == 0) {
+  if (!line.has(wanted)) {
     throw InvalidInput(
         fmt::format("{} is missing; {} needs it, greater than 0", wanted, method.name));
   }
   if (fixed) require_step_size(a.step_size, "--step-size");
   if (!fixed) require_rtol(a.rtol, "--rtol");
-  if (app.count("--atol") > 0) require_positive(a.atol, "--atol", "an absolute tolerance");
-  require_options(app, a.options, method);
+  if (line.has("--atol")) require_positive(a.atol, "--atol", "an absolute tolerance");
+  require_options(line, a.options, method);
   Options options = a.options;
   options.step_size = a.step_size;
   options.rtol = a.rtol;
@@ -299,7 +297,7 @@ int explain_only(const Arguments& a) {
   return done;
 }
 
-int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& command_line) {
+int simulate(const CommandLine& line, Arguments& a, const std::vector<std::string>& command_line) {
   if (a.list_methods) {
     print_methods(a.csv);
     return done;
@@ -309,18 +307,18 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
     return done;
   }
   require_given(a.scene.name, "--scene", "a generator's name or a scene file");
-  if (only_writes_scene(app)) {
-    require_distinct_outputs(app, a);
+  if (only_writes_scene(line)) {
+    require_distinct_outputs(line, a);
     WrittenScene(a.written_scene_path).commit(load(a.scene));
     return done;
   }
   if (a.explain) return explain_only(a);
   const Method& method = require_method(a.method);
-  const Options options = checked_options(app, a, method);
-  assign_every(app, a);
-  require_distinct_outputs(app, a);
+  const Options options = checked_options(line, a, method);
+  assign_every(line, a);
+  require_distinct_outputs(line, a);
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  const double until = horizon(a.until, line.has("--until"), drawn);
   if (method.knob == Knob::step_size) require_step_size(a.step_size, "--step-size", until);
   const Scene start = started(drawn, a.scene);
   Reductions reductions = reductions_of(a.scene);
@@ -382,11 +380,11 @@ int simulate(const CLI::App& app, Arguments& a, const std::vector<std::string>& 
 }  // namespace qddot::simulate
 
 int main(int argc, char** argv) {
-  CLI::App app("Runs one integrator on one scene.", "simulate");
+  qddot::command::CommandLine line("Runs one integrator on one scene.", "simulate");
   qddot::simulate::Arguments arguments;
-  qddot::simulate::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::simulate::simulate(app, arguments, {argv, argv + argc});
+  qddot::simulate::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::simulate::simulate(line, arguments, {argv, argv + argc});
   });
 }

@@ -17,12 +17,12 @@
 #include <limits>
 #include <omp.h>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/allowed_options.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
@@ -48,17 +48,17 @@ struct Arguments {
   int repeats = 20;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  add_scene_options(app, a.scene);
-  app.add_option("--solvers", a.solvers, "a,b,... of multifrontal, cholmod, eigen, klu (all)")
-      ->delimiter(',');
-  app.add_option("--step-size", a.step_size, "h of M - h^2 K in s")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--repeats", a.repeats, "timed samples of each solver")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--out", a.out, "the folder for solvers.csv");
+void declare(CommandLine& line, Arguments& a) {
+  add_scene_options(line, a.scene);
+  line.add_option("--solvers", a.solvers, "a,b,... of multifrontal, cholmod, eigen, klu (all)")
+      .delimiter(',');
+  line.add_option("--step-size", a.step_size, "h of M - h^2 K in s")
+      .take_last()
+      .capture_default_str();
+  line.add_option("--repeats", a.repeats, "timed samples of each solver")
+      .take_last()
+      .capture_default_str();
+  line.add_option("--out", a.out, "the folder for solvers.csv");
 }
 
 std::vector<DirectSolverKind> select_solvers(const std::vector<std::string>& names) {
@@ -157,7 +157,8 @@ class Contender {
   std::vector<double> factorization_, solve_;
 };
 
-int solvers(const CLI::App& app, const Arguments& a, const std::vector<std::string>& command_line) {
+int solvers(const CommandLine& line, const Arguments& a,
+            const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_step_size(a.step_size, "--step-size");
   require_repeats(a.repeats);
@@ -174,7 +175,7 @@ int solvers(const CLI::App& app, const Arguments& a, const std::vector<std::stri
   }
   require_folder(a.out);
   Study study(
-      app, a.out, {"solvers.csv"},
+      line, a.out, {"solvers.csv"},
       {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"threads", omp_get_max_threads()}});
   if (const auto status = study.completed()) return *status;
   CsvFile csv(a.out + "/solvers.csv",
@@ -221,13 +222,13 @@ int solvers(const CLI::App& app, const Arguments& a, const std::vector<std::stri
 }  // namespace qddot::solvers
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures direct solvers of M - h^2 K against each other and the machine.",
-               "solvers");
+  qddot::command::CommandLine line(
+      "Measures direct solvers of M - h^2 K against each other and the machine.", "solvers");
   qddot::solvers::Arguments arguments;
-  qddot::solvers::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::solvers::solvers(app, arguments, {argv, argv + argc});
+  qddot::solvers::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::solvers::solvers(line, arguments, {argv, argv + argc});
   });
 }

@@ -25,7 +25,7 @@ double displacement_in(const Mode& mode) { return displacement * std::sqrt(mode.
 constexpr double noise = 1e-6;
 // No more than rounding of this scene's forces.
 constexpr double solved = 1e-12;
-constexpr double growing = 1e-6;
+constexpr double growth_noise = 1e-6;
 const double living = std::log(2) / (4 * M_PI * 10), killing = std::log(10) / (2 * M_PI);
 
 // Steps between one response and the next. In slow modes so many that what a method remembers of
@@ -55,7 +55,8 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
   options = with_tolerance_scales(options, rest);
   options.solve_tolerance = solved;
   const double h_omega = options.step_size * mode.omega;
-  const bool others_grow = linear_step(method, h_omega / mode.part).spectral_radius() > 1 + growing;
+  const bool others_grow =
+      linear_step(method, h_omega / mode.part).spectral_radius() > 1 + growth_noise;
   const int stride = stride_in(h_omega, others_grow);
   const Vec& q = rest.initial().q;
   const Vec weights = rest.system().mass().cwiseProduct(mode.shape);
@@ -92,7 +93,7 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
 }
 
 std::string modal_verdict(const LinearStep& step) {
-  if (step.spectral_radius() > 1 + growing) return "blows up";
+  if (step.spectral_radius() > 1 + growth_noise) return "blows up";
   const double zeta = step.damping_ratio();
   if (zeta < living) return "lives";
   return zeta > killing ? "is killed" : "is damped";

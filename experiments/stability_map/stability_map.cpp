@@ -21,11 +21,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/allowed_options.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
@@ -62,31 +62,31 @@ struct Arguments {
   int columns = 22;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  add_scene_options(app, a.scene);
-  app.add_option("--methods", a.methods,
-                 "a,b,... (default: all; in the map all hand-written ones of fixed steps)")
-      ->delimiter(',');
-  app.add_option("--vary", a.vary,
-                 "a parameter of the scene's generator that the amplitudes are values of "
-                 "(default: the distance from rest, in that of the scene)");
-  app.add_option("--amplitudes", a.amplitudes, "a,b,... the rows of the map")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--low", a.low, "the least h w_max of the map")->capture_default_str();
-  app.add_option("--high", a.high, "the largest")->capture_default_str();
-  app.add_option("--columns", a.columns, "how many from one to the other")->capture_default_str();
-  app.add_option("--until", a.until,
-                 "the time of a run in s, 100 steps at least (default: the scene's own)");
-  app.add_option("--step-size", a.step_size,
-                 "h in s, of the modes (default: 1/w_max, w_max at rest)");
-  app.add_option("--tolerated", a.tolerated,
-                 "the part of the energy that a run may lose or gain and count as bounded")
-      ->capture_default_str();
-  app.add_option("--cell-limit", a.cell_limit,
-                 "seconds that a run of the map may take; slower ones become over_budget")
-      ->capture_default_str();
-  app.add_option("--out", a.out, "the folder for limits.csv, linear.csv, modal.csv, map.csv, ...");
+void declare(CommandLine& line, Arguments& a) {
+  add_scene_options(line, a.scene);
+  line.add_option("--methods", a.methods,
+                  "a,b,... (default: all; in the map all hand-written ones of fixed steps)")
+      .delimiter(',');
+  line.add_option("--vary", a.vary,
+                  "a parameter of the scene's generator that the amplitudes are values of "
+                  "(default: the distance from rest, in that of the scene)");
+  line.add_option("--amplitudes", a.amplitudes, "a,b,... the rows of the map")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--low", a.low, "the least h w_max of the map").capture_default_str();
+  line.add_option("--high", a.high, "the largest").capture_default_str();
+  line.add_option("--columns", a.columns, "how many from one to the other").capture_default_str();
+  line.add_option("--until", a.until,
+                  "the time of a run in s, 100 steps at least (default: the scene's own)");
+  line.add_option("--step-size", a.step_size,
+                  "h in s, of the modes (default: 1/w_max, w_max at rest)");
+  line.add_option("--tolerated", a.tolerated,
+                  "the part of the energy that a run may lose or gain and count as bounded")
+      .capture_default_str();
+  line.add_option("--cell-limit", a.cell_limit,
+                  "seconds that a run of the map may take; slower ones become over_budget")
+      .capture_default_str();
+  line.add_option("--out", a.out, "the folder for limits.csv, linear.csv, modal.csv, map.csv, ...");
 }
 
 void require(const Arguments& a) {
@@ -289,20 +289,20 @@ std::optional<Scene> at_rest(const Scene& start, const std::string& source) {
   }
 }
 
-int stability_map(const CLI::App& app, const Arguments& a,
+int stability_map(const CommandLine& line, const Arguments& a,
                   const std::vector<std::string>& command_line) {
   require_given(a.scene.name, "--scene", "a generator's name or a scene file");
   require(a);
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, app.count("--until") > 0, drawn);
-  if (app.count("--step-size") > 0) require_step_size(a.step_size, "--step-size");
+  const double until = horizon(a.until, line.has("--until"), drawn);
+  if (line.has("--step-size")) require_step_size(a.step_size, "--step-size");
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   const auto methods = select_methods(a.methods, scene, a.scene.name);
   const std::optional<Scene> rest = at_rest(start, a.scene.name);
   const auto rows = rows_of(a, start, rest);
   require_folder(a.out);
-  Study study(app, a.out, {"limits.csv", "linear.csv", "adaptive.csv", "modal.csv", "map.csv"},
+  Study study(line, a.out, {"limits.csv", "linear.csv", "adaptive.csv", "modal.csv", "map.csv"},
               {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
   if (const auto status = study.completed()) return *status;
   CsvFile limits_csv(a.out + "/limits.csv",
@@ -362,13 +362,14 @@ int stability_map(const CLI::App& app, const Arguments& a,
 }  // namespace qddot::stability_map
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures where each method is stable, and compares with theory.", "stability_map");
+  qddot::command::CommandLine line(
+      "Measures where each method is stable, and compares with theory.", "stability_map");
   qddot::stability_map::Arguments arguments;
-  qddot::stability_map::declare(app, arguments);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&]() -> int {
+  qddot::stability_map::declare(line, arguments);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&]() -> int {
     try {
-      return qddot::stability_map::stability_map(app, arguments, {argv, argv + argc});
+      return qddot::stability_map::stability_map(line, arguments, {argv, argv + argc});
     } catch (const std::domain_error& no_modes) {
       fmt::print(stderr, "stability_map: {}\n", no_modes.what());
       return qddot::stability_map::end_not_reached;

@@ -14,11 +14,11 @@
 #include <algorithm>
 #include <chrono>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/allowed_options.hpp"
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
@@ -47,22 +47,22 @@ struct Arguments {
   Effort effort{.seconds = 120, .repeats = 3};
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  add_scene_options(app, a.scene);
-  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
-  app.add_option("--methods", a.methods,
-                 "a,b,... of those that there are in both ways (default: all)")
-      ->delimiter(',');
-  app.add_option("--rtol", a.rtols, "a,b,... relative tolerances")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--repeats", a.effort.repeats, "timed pairs of runs")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--point-limit", a.effort.seconds, "seconds that one run may take")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--out", a.out, "the folder for structure.csv and reference.json");
+void declare(CommandLine& line, Arguments& a) {
+  add_scene_options(line, a.scene);
+  line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  line.add_option("--methods", a.methods,
+                  "a,b,... of those that there are in both ways (default: all)")
+      .delimiter(',');
+  line.add_option("--rtol", a.rtols, "a,b,... relative tolerances")
+      .delimiter(',')
+      .capture_default_str();
+  line.add_option("--repeats", a.effort.repeats, "timed pairs of runs")
+      .take_last()
+      .capture_default_str();
+  line.add_option("--point-limit", a.effort.seconds, "seconds that one run may take")
+      .take_last()
+      .capture_default_str();
+  line.add_option("--out", a.out, "the folder for structure.csv and reference.json");
 }
 
 struct Pair {
@@ -225,20 +225,20 @@ Compared compare(const std::string& scene_name, const Pair& pair, double rtol,
                       errors[0], counts.steps, counts.factorizations, percent(k), percent(s))};
 }
 
-int stock_sundials(const CLI::App& app, const Arguments& a,
+int stock_sundials(const CommandLine& line, const Arguments& a,
                    const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
   for (const double rtol : a.rtols) require_rtol(rtol, "--rtol");
   require_repeats(a.effort.repeats);
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  const double until = horizon(a.until, line.has("--until"), drawn);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   require_reference_exists(scene, a.scene.name);
   const auto pairs = select_pairs(a.methods, scene, a.scene.name);
   require_folder(a.out);
-  Study study(app, a.out, {"structure.csv"},
+  Study study(line, a.out, {"structure.csv"},
               {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
   if (const auto status = study.completed()) return *status;
   CsvFile csv(a.out + "/structure.csv", columns);
@@ -268,14 +268,14 @@ int stock_sundials(const CLI::App& app, const Arguments& a,
 }  // namespace qddot::stock_sundials
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  qddot::command::CommandLine line(
       "Measures what SUNDIALS' implicit methods gain from n x n solves, against stock KLU.",
       "stock_sundials");
   qddot::stock_sundials::Arguments arguments;
-  qddot::stock_sundials::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::stock_sundials::stock_sundials(app, arguments, {argv, argv + argc});
+  qddot::stock_sundials::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::stock_sundials::stock_sundials(line, arguments, {argv, argv + argc});
   });
 }

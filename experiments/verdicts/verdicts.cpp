@@ -12,10 +12,10 @@
 #include <cmath>
 #include <map>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
@@ -41,11 +41,11 @@ struct Arguments {
   std::vector<std::string> kinds;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--seeds", a.seeds, "runs of each kind")->capture_default_str();
-  app.add_option("--cells", a.cells, "samples in an octave of a run")->capture_default_str();
-  app.add_option("--kinds", a.kinds, "kinds of errors, each in quotes (default: all)");
-  app.add_option("--out", a.out, "the folder for confusion.csv and coverage.csv");
+void declare(CommandLine& line, Arguments& a) {
+  line.add_option("--seeds", a.seeds, "runs of each kind").capture_default_str();
+  line.add_option("--cells", a.cells, "samples in an octave of a run").capture_default_str();
+  line.add_option("--kinds", a.kinds, "kinds of errors, each in quotes (default: all)");
+  line.add_option("--out", a.out, "the folder for confusion.csv and coverage.csv");
 }
 
 std::vector<SyntheticKind> chosen_kinds(const std::vector<std::string>& names) {
@@ -174,7 +174,7 @@ void print_coverage(const std::vector<SyntheticKind>& kinds, const std::vector<T
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Coverage, said, held)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tally, verdicts, coverage, walk)
 
-int verdicts(const CLI::App& app, const Arguments& a,
+int verdicts(const CommandLine& line, const Arguments& a,
              const std::vector<std::string>& command_line) {
   const auto begin = std::chrono::steady_clock::now();
   require_given(a.out, "--out", "the folder for the results");
@@ -182,7 +182,7 @@ int verdicts(const CLI::App& app, const Arguments& a,
   require_within(a.cells, 8, 1 << 20, "--cells");
   const std::vector<SyntheticKind> kinds = chosen_kinds(a.kinds);
   require_folder(a.out);
-  Study study(app, a.out, {"confusion.csv", "coverage.csv"}, {});
+  Study study(line, a.out, {"confusion.csv", "coverage.csv"}, {});
   if (const auto status = study.completed()) return *status;
   CsvFile confusion(a.out + "/confusion.csv", {"kind", "verdict", "count", "part", "judgement"});
   CsvFile coverage(a.out + "/coverage.csv",
@@ -217,11 +217,12 @@ int verdicts(const CLI::App& app, const Arguments& a,
 }  // namespace qddot::verdicts
 
 int main(int argc, char** argv) {
-  CLI::App app("Finds out how often the verdicts of energy_drift are right.", "verdicts");
+  qddot::command::CommandLine line("Finds out how often the verdicts of energy_drift are right.",
+                                   "verdicts");
   qddot::verdicts::Arguments arguments;
-  qddot::verdicts::declare(app, arguments);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::verdicts::verdicts(app, arguments, {argv, argv + argc});
+  qddot::verdicts::declare(line, arguments);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::verdicts::verdicts(line, arguments, {argv, argv + argc});
   });
 }

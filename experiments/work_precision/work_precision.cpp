@@ -18,10 +18,10 @@
 #include <functional>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/point_record.hpp"
@@ -52,19 +52,19 @@ struct Arguments {
   Effort effort;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  add_scene_options(app, a.scene);
-  app.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
-  app.add_option("--methods", a.methods, "a,b,... (default: all)")->delimiter(',');
-  app.add_option("--repeats", a.effort.repeats, "timed runs of each point")
-      ->take_last()
-      ->capture_default_str();
-  app.add_option("--point-limit", a.effort.seconds,
-                 "seconds that one run of a point may take; slower ones become over_budget")
-      ->take_last()
-      ->capture_default_str();
-  add_method_options(app, a.effort.options);
-  app.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
+void declare(CommandLine& line, Arguments& a) {
+  add_scene_options(line, a.scene);
+  line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
+  line.add_option("--methods", a.methods, "a,b,... (default: all)").delimiter(',');
+  line.add_option("--repeats", a.effort.repeats, "timed runs of each point")
+      .take_last()
+      .capture_default_str();
+  line.add_option("--point-limit", a.effort.seconds,
+                  "seconds that one run of a point may take; slower ones become over_budget")
+      .take_last()
+      .capture_default_str();
+  add_method_options(line, a.effort.options);
+  line.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
 }
 
 const std::vector<std::string> front_columns = {"scene",  "accuracy",  "method",
@@ -93,20 +93,20 @@ std::vector<Point> from_coarse_to_fine(const std::vector<std::vector<Point>>& ta
   return points;
 }
 
-int work_precision(const CLI::App& app, const Arguments& a,
+int work_precision(const CommandLine& line, const Arguments& a,
                    const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
   require_repeats(a.effort.repeats);
-  require_options(app, a.effort.options);
+  require_options(line, a.effort.options);
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, app.count("--until") > 0, drawn);
+  const double until = horizon(a.until, line.has("--until"), drawn);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   require_reference_exists(scene, a.scene.name);
   const auto selected = select_methods(a.methods, scene, a.scene.name);
   require_folder(a.out);
-  Study study(app, a.out, {"points.csv", "front.csv"},
+  Study study(line, a.out, {"points.csv", "front.csv"},
               {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
   if (const auto status = study.completed()) return *status;
   CsvFile points_csv(a.out + "/points.csv", point_columns());
@@ -149,13 +149,13 @@ int work_precision(const CLI::App& app, const Arguments& a,
 }  // namespace qddot::work_precision
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures speed against accuracy of every integrator on one scene.",
-               "work_precision");
+  qddot::command::CommandLine line(
+      "Measures speed against accuracy of every integrator on one scene.", "work_precision");
   qddot::work_precision::Arguments arguments;
-  qddot::work_precision::declare(app, arguments);
-  qddot::command::add_threads_option(app);
-  qddot::command::add_resume_option(app);
-  return qddot::command::run_program(app, argc, argv, [&] {
-    return qddot::work_precision::work_precision(app, arguments, {argv, argv + argc});
+  qddot::work_precision::declare(line, arguments);
+  qddot::command::add_threads_option(line);
+  qddot::command::add_resume_option(line);
+  return qddot::command::run_program(line, argc, argv, [&] {
+    return qddot::work_precision::work_precision(line, arguments, {argv, argv + argc});
   });
 }

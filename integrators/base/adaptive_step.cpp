@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
 namespace {
@@ -18,15 +19,11 @@ constexpr double proportional = 0.7, integral = 0.4, smallest_error = 1e-4;
 constexpr double factor_of_failure = 0.25;
 // An end that is so near is stepped on.
 constexpr double stretch = 1.01;
-// A run whose steps, so many in a row, are on the mean below this fraction of its length creeps up
-// to a point that it will not pass.
-constexpr int steps_in_a_row = 1000;
-constexpr double smallest_mean_step = 1e-12;
 // What to begin with where the start or its rate of change says nothing, as a fraction of the run.
 constexpr double blind_step = 1e-6;
 // A step ends before a jump by this part of it, and leads over one by so many roundings.
 constexpr double short_of_jump = 1e-6, slowest_over_jump = 1e-6;
-constexpr double roundings_over_jump = 8 * std::numeric_limits<double>::epsilon();
+constexpr double roundings_over_jump = 8 * machine_epsilon;
 
 }  // namespace
 
@@ -68,8 +65,7 @@ void AdaptiveStep::start(const State& state) {
   last_error_ = 1;
   was_rejected_ = false;
   h_before_jump_ = 0;
-  steps_ = 0;
-  t_mark_ = state.t;
+  creep_ = Creep(state.t);
 }
 
 // With y = (q, v): h_0 changes y by a hundredth of itself; h_1 is where a Taylor series with the
@@ -182,7 +178,8 @@ Outcome AdaptiveStep::take_step() {
       last_error_ = std::max(error, smallest_error);
       was_rejected_ = false;
       if (jump_here == Jump::over) h_ = std::exchange(h_before_jump_, 0);
-      return has_crept() ? Outcome::step_too_small : Outcome::reached_end;
+      return creep_.is_found(last().state.t, t_end()) ? Outcome::step_too_small
+                                                      : Outcome::reached_end;
     }
     if (!(t + smallest_factor * h > t)) {
       return std::isfinite(error) ? Outcome::step_too_small : outcome;
@@ -223,15 +220,6 @@ void AdaptiveStep::accept(bool is_limited) {
   ++counts().steps;
   note(last().state);
   if (is_limited) ++counts().stability_limited_steps;
-}
-
-bool AdaptiveStep::has_crept() {
-  if (++steps_ % steps_in_a_row != 0) return false;
-  const double t = last().state.t,
-               creep = steps_in_a_row * smallest_mean_step * (t_end() - t_mark_);
-  const bool result = t - t_mark_ < creep;
-  t_mark_ = t;
-  return result;
 }
 
 }  // namespace qddot

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "qddot/integrators/base/creep.hpp"
 #include "qddot/integrators/base/hermite.hpp"
 #include "qddot/integrators/base/kink_search.hpp"
 #include "qddot/integrators/integrator.hpp"
@@ -66,7 +67,6 @@ class AdaptiveStep : public Integrator {
   // over one, is to be tried with h_ instead, or has nothing to do with any.
   enum class Jump { none, over, ahead };
   Jump jump(const Instant& now, const Instant& next, double h);
-  bool has_crept();
   // The weighted root mean square of a pair of vectors.
   double norm(const State& at, const Vec& q, const Vec& v) const;
 
@@ -82,8 +82,7 @@ class AdaptiveStep : public Integrator {
   double h_ = 0, last_error_ = 1;
   bool was_rejected_ = false;
   Outcome ended_ = Outcome::reached_end;  // why there is no next step
-  std::int64_t steps_ = 0;                // of the run,
-  double t_mark_ = 0;                     // and where it was some of them ago
+  Creep creep_;
 };
 
 }  // namespace qddot

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "qddot/model/machine_epsilon.hpp"
+
 namespace qddot {
 namespace {
 
@@ -14,7 +16,6 @@ constexpr double slowest_rate = 0.3;
 // The part of a stage's tolerance that an iterative solve for one correction may leave of the
 // residual: where all is linear, one correction is all there is.
 constexpr double linear_share = 0.1;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // Corrections that no longer shrink and are below this part of the positions are rounding.
 constexpr double rounding = 1e-12;
 
@@ -92,7 +93,7 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
     const double missed = (u_ - start_ + p_).lpNorm<Eigen::Infinity>();
     const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * missed;
     const bool is_rounding =
-        size <= 4 * epsilon * place || (2 * size > least && size <= rounding * place);
+        size <= 4 * machine_epsilon * place || (2 * size > least && size <= rounding * place);
     if (is_exact || is_solved || is_rounding) {
       u_ += p_;
       last_missed_ = missed;
@@ -208,7 +209,7 @@ double ImplicitStep::search(const Vec& q, double s) {
       u_.swap(before_);
     }
     // Near the minimum rounding decides which g is less.
-    if (g_there <= g + 1e-4 * length * slope + 8 * epsilon * std::abs(g)) return length;
+    if (g_there <= g + 1e-4 * length * slope + 8 * machine_epsilon * std::abs(g)) return length;
   }
   u_ = before_;
   residual(q, s);

@@ -6,7 +6,7 @@ namespace qddot {
 namespace {
 
 constexpr int usual_iterations = 10;
-constexpr int most_halvings = 60;
+constexpr int most_shortenings = 60;
 
 }  // namespace
 
@@ -58,7 +58,7 @@ double LocalGlobal::objective(const Vec& v) {
 
 void LocalGlobal::search(Vec& v, const Vec& p, double slope, double& g) {
   double alpha = 1;
-  for (int halvings = 0; halvings < most_halvings; ++halvings, alpha /= 2) {
+  for (int halvings = 0; halvings < most_shortenings; ++halvings, alpha /= 2) {
     trial_ = v - alpha * p;
     if (const double lower = objective(trial_); lower <= g - 1e-4 * alpha * slope) {
       v.swap(trial_);

@@ -13,7 +13,7 @@ constexpr std::size_t instants = 2;
 // The part of a step's allowed error that an iterative solve for a stage may make. Nothing corrects
 // it, the later stages take up to some 30 times of it, and it adds up over the steps, where the
 // formula's own errors are far below the estimate.
-constexpr double linear_share = 1e-4;
+constexpr double stage_share = 1e-4;
 // The part of the right-hand side that is within rounding.
 constexpr double tightest = 1e-15;
 
@@ -42,7 +42,7 @@ double Rosenbrock::tolerance(const State& now, double g, const Vec& u) const {
   const double weights = (mass * (options().rtol * now.v.array().abs() + atol).square()).sum();
   const double size = (mass * u.array().square()).sum();
   const double asked = std::min(g * std::sqrt(weights / size), options().rtol);
-  return std::max(linear_share * asked, tightest);
+  return std::max(stage_share * asked, tightest);
 }
 
 void Rosenbrock::start(const State& state) {

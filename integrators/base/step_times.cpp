@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
 namespace {
@@ -15,8 +16,7 @@ constexpr double sliver = 1e-6;
 StepTimes::StepTimes(double t_start, double t_end, double h)
     : t_start_(t_start), t_end_(t_end), h_(h) {
   // What rounding makes of a time that is a multiple of h, or of a time between samples.
-  rounding_ =
-      4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_start), std::abs(t_end));
+  rounding_ = 4 * machine_epsilon * std::max(std::abs(t_start), std::abs(t_end));
   count_ = std::max(1.0, std::ceil((t_end - t_start) / h - sliver - rounding_ / h));
   can_be_taken_ = h > 0 && count_ < most_steps && t_end - h != t_end;
   // Where only rounding parts the last step from h it is h, so that factorisations for h serve it

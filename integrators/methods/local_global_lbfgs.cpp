@@ -6,18 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "qddot/integrators/base/local_global.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::registered {
 namespace {
 
 constexpr int most_pairs = 5;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // A decrease of the energy that is a smaller part of it cannot be told from rounding.
-constexpr double hidden = 100 * epsilon;
+constexpr double hidden = 100 * machine_epsilon;
 
 class Lbfgs final : public LocalGlobal {
  public:
@@ -72,7 +71,7 @@ class Lbfgs final : public LocalGlobal {
     pair.s = v - last_v_;
     pair.y = r_ - last_r_;
     pair.sy = pair.s.dot(pair.y);
-    if (pair.sy > epsilon * pair.s.norm() * pair.y.norm()) {
+    if (pair.sy > machine_epsilon * pair.s.norm() * pair.y.norm()) {
       ++pairs_seen_;
       pairs_used_ = std::min(pairs_used_ + 1, most_pairs);
     } else {

@@ -28,6 +28,7 @@
 #include "qddot/integrators/sundials/orders.hpp"
 #include "qddot/integrators/sundials/stepper.hpp"
 #include "qddot/model/constrained_system.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::registered {
 namespace {
@@ -187,16 +188,14 @@ class Ida final : public Stepper {
 
   // Two places at the bottom of a potential that are nearer to each other than this [m] differ in
   // it by its rounding: k s^2 = eps k L^2.
-  double most_rounded() const {
-    return std::sqrt(std::numeric_limits<double>::epsilon()) * options().length;
-  }
+  double most_rounded() const { return std::sqrt(machine_epsilon) * options().length; }
 
   // Positions of massless nodes are known no better than to where forces that are off by rounding
   // balance, (a M - K) x = +-rounding. Where springs hardly hold a node at the start, that may be
   // more than the tolerance, and no step would be short enough: so it is tolerated, and less and
   // less as they come to hold it.
   void tolerate_rounding() {
-    constexpr double roundings = 4 * std::numeric_limits<double>::epsilon();
+    constexpr double roundings = 4 * machine_epsilon;
     const Vec q = Halves(y()).q;
     SymmetricMatrix k = system().stiffness_pattern();
     stiffness(q, k);

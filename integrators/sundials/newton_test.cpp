@@ -10,7 +10,7 @@ namespace {
 constexpr double largest_rest = 3e-3;
 constexpr double negligible = 1e-3;
 // Two or three corrections do with factors that are not too old; so many mean that they are.
-constexpr int most_iterations = 10;
+constexpr int most_corrections = 10;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ NewtonTest::NewtonTest(N_Vector y, SUNContext context)
 
 void NewtonTest::attach() {
   check(SUNNonlinSolSetConvTestFn(solver(), has_converged, this), "SUNNonlinSolSetConvTestFn");
-  check(SUNNonlinSolSetMaxIters(solver(), most_iterations), "SUNNonlinSolSetMaxIters");
+  check(SUNNonlinSolSetMaxIters(solver(), most_corrections), "SUNNonlinSolSetMaxIters");
 }
 
 int NewtonTest::has_converged(SUNNonlinearSolver solver, N_Vector, N_Vector correction, double,

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
+#include "qddot/integrators/base/creep.hpp"
+#include "qddot/model/machine_epsilon.hpp"
+
 namespace qddot::sundials {
 namespace {
-
-// A run whose steps, so many in a row, are on the mean below this fraction of its length creeps up
-// to a point that it will not pass.
-constexpr int steps_in_a_row = 1000;
-constexpr double smallest_mean_step = 1e-12;
 
 // Constant steps have no error test. The tolerance is that of Newton's iteration alone, which is to
 // leave no error of its own.
@@ -127,15 +124,14 @@ Outcome Stepper::run_to(State& state, double t_stop) {
 }
 
 Outcome Stepper::take_chosen_steps(State& state, double t_stop) {
-  const double creep = steps_in_a_row * smallest_mean_step * (t_stop - state.t);
-  double t_mark = state.t;
+  Creep creep(state.t);
   set_stop_time(t_stop);
-  for (std::int64_t steps = 1; state.t < t_stop; ++steps) {
+  while (state.t < t_stop) {
     const Outcome outcome = take_one(state, t_stop);
     if (outcome != Outcome::reached_end) return outcome;
-    if (steps % steps_in_a_row != 0) continue;
-    if (state.t - t_mark < creep) return failure(Cause::error_test, "creeping", state.t);
-    t_mark = state.t;
+    if (creep.is_found(state.t, t_stop)) {
+      return failure(Cause::error_test, "creeping", state.t);
+    }
   }
   return Outcome::reached_end;
 }
@@ -207,9 +203,9 @@ Outcome Stepper::take_one(State& state, double t_stop) {
 }
 
 Cause Stepper::named_cause(int flag, double t) {
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const Cause cause = cause_of(flag);
-  const bool has_time = t_stop_ - t > 4 * epsilon * std::max(std::abs(t), std::abs(t_stop_));
+  const bool has_time =
+      t_stop_ - t > 4 * machine_epsilon * std::max(std::abs(t), std::abs(t_stop_));
   if (cause == Cause::end_too_close && has_time) return Cause::accuracy;
   if (is_finite_) return cause;
   if (cause == Cause::convergence || cause == Cause::fast_steps) return Cause::force;

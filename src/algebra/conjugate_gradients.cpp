@@ -4,9 +4,9 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "qddot/algebra/block_rows.hpp"
+#include "qddot/algebra/dense_pairs.hpp"
 
 namespace qddot {
 
@@ -119,8 +119,7 @@ class ConjugateGradients final : public IterativeFactors {
       if (!block.allFinite()) return Definiteness::singular;
       const Eigen::LLT<Block> root(block);
       if (root.info() != Eigen::Success) {
-        const Eigen::SelfAdjointEigenSolver<Block> eigen(block, Eigen::EigenvaluesOnly);
-        const bool has_negative = eigen.eigenvalues().minCoeff() < 0;
+        const bool has_negative = dense_values(block).minCoeff() < 0;
         return has_negative ? Definiteness::indefinite : Definiteness::singular;
       }
       Eigen::Map<Block>{inverse_.get() + B* B* i} = root.solve(Block::Identity());

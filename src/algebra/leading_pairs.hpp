@@ -2,15 +2,9 @@
 
 #include <functional>
 
-#include <Eigen/Core>
+#include "qddot/algebra/dense_pairs.hpp"
 
 namespace qddot {
-
-// Eigenvalues, and their orthonormal eigenvectors as columns.
-struct EigenPairs {
-  Eigen::VectorXd values;
-  Eigen::MatrixXd vectors;
-};
 
 // y = A x for a symmetric A; y is sized by the caller.
 using SymmetricOperator = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)>;

@@ -6,17 +6,16 @@
 #include <random>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
-
+#include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/require_stiffness.hpp"
 #include "qddot/analysis/stability.hpp"
 #include "qddot/model/capabilities.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
 namespace {
 
-constexpr double machine_epsilon = std::numeric_limits<double>::epsilon();
 // Rounding moves the entries of a spring's block by some 9 eps k and the sums by some eps/4 a
 // spring (a row of K has one or two such blocks); the rest is for the pivots.
 constexpr double roundings = 32;
@@ -85,7 +84,7 @@ struct Below {
 Below by_decomposition(const SymmetricMatrix& k, const Vec& e) {
   const Vec scale = e.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd dense = -Eigen::MatrixXd(scale.asDiagonal() * k * scale.asDiagonal());
-  const Vec values = dense.selfadjointView<Eigen::Lower>().eigenvalues();
+  const Vec values = dense_values(dense);
   if (!values.allFinite()) throw std::range_error("the eigenvalues of K were not found");
   return {static_cast<int>((values.array() < -1).count()),
           static_cast<int>((values.array() < 1).count())};

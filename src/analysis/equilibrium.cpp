@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/require_stiffness.hpp"
 #include "qddot/analysis/stability.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
 namespace {
 
 using Outcome = Equilibrium::Outcome;
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_steps = 2000;
 constexpr int most_polishing = 3;
 constexpr int most_halvings = 40;
@@ -69,7 +68,7 @@ class Descent {
     reach_ = std::max(largest(q_), length_);
   }
 
-  bool is_stationary() const { return largest(f_) <= 8 * epsilon * row_sum_ * reach_; }
+  bool is_stationary() const { return largest(f_) <= 8 * machine_epsilon * row_sum_ * reach_; }
 
   // The root mean square [m] of a displacement by the metric: the same for a rotated scene.
   double size(const Vec& p) const {
@@ -106,7 +105,7 @@ class Descent {
       p_ *= length / full;
       if (const double alpha = search(); alpha > 0) {
         const bool may_grow = alpha == 1 && length < full;
-        radius_ = may_grow ? 2 * radius_ : std::max(2 * alpha * length, epsilon * length_);
+        radius_ = may_grow ? 2 * radius_ : std::max(2 * alpha * length, machine_epsilon * length_);
         before_ = p_;
         if (alpha < 1) before_.setZero();
         return true;
@@ -121,7 +120,7 @@ class Descent {
   // it; 0 where none does.
   double search() {
     const double slope = f_.dot(p_);
-    const double noise = epsilon * (std::abs(v_) + row_sum_ * reach_ * reach_);  // of V
+    const double noise = machine_epsilon * (std::abs(v_) + row_sum_ * reach_ * reach_);  // of V
     double alpha = 1;
     for (int halvings = 0; halvings < most_halvings; ++halvings, alpha /= 2) {
       trial_ = q_ + alpha * p_;

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Eigenvalues>
-
+#include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
 #include "qddot/analysis/frequency_bound.hpp"
 
@@ -37,8 +36,7 @@ double largest_frequency(const System& system, const Vec& q) {
   if (bound == 0 || std::isinf(bound)) return bound;
   const SymmetricMatrix k = scaled(system, q, bound);
   if (k.rows() <= most_dense) {
-    const Eigen::MatrixXd dense(k);
-    const double top = dense.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
+    const double top = dense_values(Eigen::MatrixXd(k)).maxCoeff();
     return bound * std::sqrt(std::max(top, 0.0));
   }
   const auto apply = [&](const Vec& x, Vec& y) { y = k.selfadjointView<Eigen::Lower>() * x; };
@@ -71,10 +69,8 @@ double frequency_at_least(const System& system, const Vec& q) {
     now = next / last;
   }
   if (!diagonal.head(taken).allFinite()) return 0;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(diagonal.head(taken), beside.head(taken - 1),
-                                Eigen::EigenvaluesOnly);
-  return bound * std::sqrt(std::max(solver.eigenvalues().maxCoeff(), 0.0));
+  const Vec values = tridiagonal_values(diagonal.head(taken), beside.head(taken - 1));
+  return bound * std::sqrt(std::max(values.maxCoeff(), 0.0));
 }
 
 bool is_quickly_searched(const System& system) {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
+#include "qddot/algebra/dense_pairs.hpp"
 
 namespace qddot {
 namespace {
@@ -23,10 +23,9 @@ LinearMotion::LinearMotion(const System& system)
   system.stiffness(Vec::Zero(system.size()), k);
   const Vec per_root = root_mass_.cwiseInverse();
   const SymmetricMatrix a = -(per_root.asDiagonal() * k * per_root.asDiagonal());
-  // The solver reads the lower triangle only.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes{Eigen::MatrixXd(a)};
-  u_ = modes.eigenvectors();
-  omega_ = modes.eigenvalues().cwiseMax(0).cwiseSqrt();  // rounding alone makes w^2 negative
+  const EigenPairs modes = dense_pairs(Eigen::MatrixXd(a));
+  u_ = modes.vectors;
+  omega_ = modes.values.cwiseMax(0).cwiseSqrt();  // rounding alone makes w^2 negative
 }
 
 State LinearMotion::after(const State& from, double duration) const {

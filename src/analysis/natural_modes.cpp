@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
+#include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/require_stiffness.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
 namespace {
@@ -72,9 +72,9 @@ void look_again_at_small(const Projected& projected, Vec& values, MatrixXd& vect
     count = (sizes.array() <= small).count();
     if (count == 0 || small == 0) break;
     const MatrixXd own = vectors.middleCols(first, count);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(projected(own));
-    values.segment(first, count) = solver.eigenvalues();
-    vectors.middleCols(first, count) = own * solver.eigenvectors();
+    const EigenPairs again = dense_pairs(projected(own));
+    values.segment(first, count) = again.values;
+    vectors.middleCols(first, count) = own * again.vectors;
   }
   std::vector<Index> order(values.size());
   std::iota(order.begin(), order.end(), 0);
@@ -95,16 +95,15 @@ NaturalModes dense_modes(const Pencil& p) {
     const Eigen::LLT<MatrixXd> held(stiff(b, b));
     // A matrix that is singular may pass by rounding; its reciprocal condition tells.
     if (held.info() != Eigen::Success ||
-        held.rcond() < std::numeric_limits<double>::epsilon() * static_cast<double>(b.size())) {
+        held.rcond() < machine_epsilon * static_cast<double>(b.size())) {
       refuse_loose_massless();
     }
     follow = -held.solve(stiff(b, a));
   }
   const MatrixXd condensed = stiff(a, a) + stiff(a, b) * follow;
   const MatrixXd per_mass = per_root.asDiagonal() * condensed * per_root.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(per_mass);
-  NaturalModes modes{solver.eigenvalues(), MatrixXd(p.system.size(), std::ssize(a))};
-  MatrixXd vectors = solver.eigenvectors();
+  auto [values, vectors] = dense_pairs(per_mass);
+  NaturalModes modes{values, MatrixXd(p.system.size(), std::ssize(a))};
   look_again_at_small([&](const MatrixXd& x) { return MatrixXd(x.transpose() * (per_mass * x)); },
                       modes.squares, vectors);
   const MatrixXd shapes = per_root.asDiagonal() * vectors;
@@ -134,8 +133,8 @@ NaturalModes modes_beside(const Pencil& p, EffectiveMass& matrix, double offset,
     return MatrixXd(-some.transpose() * (p.k.selfadjointView<Eigen::Lower>() * some));
   };
   const MatrixXd masses = shapes.transpose() * p.mass.asDiagonal() * shapes;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(projected(shapes), masses);
-  NaturalModes modes{ritz.eigenvalues(), shapes * ritz.eigenvectors()};
+  const EigenPairs ritz = dense_pairs(projected(shapes), masses);
+  NaturalModes modes{ritz.values, shapes * ritz.vectors};
   look_again_at_small(projected, modes.squares, modes.shapes);
   return modes;
 }

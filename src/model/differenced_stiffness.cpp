@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "qddot/model/machine_epsilon.hpp"
+
 namespace qddot {
 namespace {
 
@@ -87,7 +89,7 @@ DifferencedStiffness::DifferencedStiffness(std::shared_ptr<const System> system,
 
 void DifferencedStiffness::stiffness(const Vec& q, SymmetricMatrix& k) const {
   const double largest = q.size() > 0 ? q.lpNorm<Eigen::Infinity>() : 0;
-  const double d = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(length_, largest);
+  const double d = std::cbrt(machine_epsilon) * std::max(length_, largest);
   Vec moved = q, ahead(size()), behind(size());
   k.coeffs().setZero();
   for (const auto& columns : columns_of_) {

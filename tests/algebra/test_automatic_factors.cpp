@@ -4,12 +4,12 @@
 #include "qddot/algebra/multifrontal.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
+#include "tests/algebra/unprinted.hpp"
 #include "tests/measure.hpp"
 
-using namespace qddot;
+BOOST_AUTO_TEST_SUITE(automatic_factors)
 
-BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::Definiteness)
-BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::SolveOutcome)
+using namespace qddot;
 
 namespace {
 
@@ -50,8 +50,6 @@ Both block(double stretch) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(automatic_factors)
 
 BOOST_AUTO_TEST_CASE(small_scenes_are_factorised) {
   for (const char* name : {"cloth", "chain", "lattice"}) {

@@ -9,13 +9,13 @@
 #include "qddot/algebra/multifrontal.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
+#include "tests/algebra/unprinted.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
-using namespace qddot;
+BOOST_AUTO_TEST_SUITE(conjugate_gradients)
 
-BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::Definiteness)
-BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::SolveOutcome)
+using namespace qddot;
 
 namespace {
 
@@ -80,8 +80,6 @@ SymmetricMatrix chain(int n, double stiffness) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(conjugate_gradients)
 
 // What the residual leaves in the largest norm is the tolerance times at most the root of the ratio
 // of the largest and smallest block, 1e2 for the scenes' masses and stiffnesses, and of n.

@@ -10,13 +10,14 @@
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
+#include "tests/algebra/unprinted.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(effective_mass)
+
 using namespace qddot;
 using Definiteness = EffectiveMass::Definiteness;
-
-BOOST_TEST_DONT_PRINT_LOG_VALUE(Definiteness)
 
 namespace {
 
@@ -107,8 +108,6 @@ double positive_tolerance(const Eigen::MatrixXd& a) {
 constexpr double indefinite_tolerance = 1e-10;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(effective_mass)
 
 BOOST_AUTO_TEST_CASE(solves_positive_matrices_to_round_off) {
   for (const Case& c : cases(1.2)) {

@@ -12,9 +12,9 @@
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(laplacian_mass)
+
+using namespace qddot;
 
 namespace {
 

@@ -4,6 +4,8 @@
 #include "qddot/algebra/leading_pairs.hpp"
 #include "tests/measure.hpp"
 
+BOOST_AUTO_TEST_SUITE(leading_pairs)
+
 using namespace qddot;
 
 namespace {
@@ -28,8 +30,6 @@ SymmetricOperator product_with(const Eigen::MatrixXd& a) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(leading_pairs)
 
 BOOST_AUTO_TEST_CASE(multiple_eigenvalues_are_found_as_often_as_they_are) {
   for (const auto& top : std::vector<std::vector<double>>{{1, 0.5, 0.25, 0.12},

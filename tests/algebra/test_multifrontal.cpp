@@ -13,12 +13,13 @@
 #include "qddot/algebra/multifrontal.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
+#include "tests/algebra/unprinted.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
-using namespace qddot;
+BOOST_AUTO_TEST_SUITE(multifrontal)
 
-BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::Definiteness)
+using namespace qddot;
 
 namespace {
 
@@ -173,8 +174,6 @@ std::vector<Matrix> large_cases() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(multifrontal)
 
 BOOST_AUTO_TEST_CASE(any_number_of_threads_makes_the_same_factors) {
   int indefinite = 0, given_up = 0;

@@ -8,6 +8,8 @@
 #include "qddot/analysis/natural_modes.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(curvature_signs)
+
 using namespace qddot;
 
 namespace {
@@ -79,8 +81,6 @@ Problem pendulum(double ratio, bool upright) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(curvature_signs)
 
 BOOST_AUTO_TEST_CASE(pendulum_on_a_spring_of_any_stiffness_falls_or_hangs) {
   for (double ratio = 10; ratio <= 1e12; ratio *= 10) {

@@ -12,6 +12,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(equilibrium)
+
 using namespace qddot;
 
 namespace {
@@ -31,7 +33,7 @@ void check_minimum(const System& system, const Equilibrium& e, double length) {
   const Vec f = force_at(system, e.q);
   BOOST_TEST(f.lpNorm<Eigen::Infinity>() == e.residual);
   BOOST_TEST(e.residual <= 8 * eps * row_sum * std::max(e.q.lpNorm<Eigen::Infinity>(), length));
-  const CurvatureSigns signs = curvature_signs(system, e.q);
+  const CurvatureSigns signs = qddot::curvature_signs(system, e.q);
   BOOST_TEST(signs.negative == 0);
   BOOST_TEST(e.smallest_eigenvalue >= -1e-11 * row_sum);
   // That of the place before the last steps of Newton's: the same but for rounding.
@@ -85,8 +87,6 @@ Problem turned(const Problem& p, const Eigen::Matrix3d& turn, const std::vector<
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(equilibrium)
 
 BOOST_AUTO_TEST_CASE(one_mass_hangs_where_its_weight_says) {
   const auto system = make_mass_spring({.dimension = 1,

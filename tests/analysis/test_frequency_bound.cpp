@@ -8,6 +8,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(frequency_bound)
+
 using namespace qddot;
 
 namespace {
@@ -44,8 +46,6 @@ void for_random_networks(double stretch, const Check& check) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(frequency_bound)
 
 BOOST_AUTO_TEST_CASE(bound_is_never_below_the_largest_frequency) {
   for (const double stretch : {1.5, 1.0, 0.6}) {

@@ -9,6 +9,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(linear_motion)
+
 using namespace qddot;
 
 namespace {
@@ -62,8 +64,6 @@ double equation_error(const MotionFrom& motion, const System& system, double t) 
 constexpr double difference_error = 1e-5;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(linear_motion)
 
 BOOST_AUTO_TEST_CASE(oscillator_follows_its_closed_form_for_a_thousand_periods) {
   const Oscillator o;

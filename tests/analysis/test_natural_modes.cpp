@@ -13,6 +13,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(natural_modes)
+
 using namespace qddot;
 
 namespace {
@@ -27,7 +29,7 @@ struct Case {
   SymmetricMatrix k() const { return stiffness_at(*system, q); }
   // The largest w^2 by Gershgorin, which bounds the rounding of all.
   double width() const {
-    const double bound = frequency_bound(*system, q);
+    const double bound = qddot::frequency_bound(*system, q);
     return bound * bound;
   }
 };
@@ -103,8 +105,6 @@ std::vector<Case> large_cases() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(natural_modes)
 
 BOOST_AUTO_TEST_CASE(row_of_masses_has_its_closed_form_by_either_method) {
   for (const int n : {1, 2, 50, 2000}) {
@@ -278,7 +278,8 @@ BOOST_AUTO_TEST_CASE(largest_frequency_is_just_below_the_true_one_and_the_bound)
     BOOST_TEST(at_least >= 0.9 * found);
     BOOST_TEST(found <= truth * (1 + 100 * eps));  // rounding of either
     BOOST_TEST(found >= truth * (1 - 1e-4));
-    BOOST_TEST(frequency_bound(*c.system, c.q) >= found * (1 - 100 * eps));  // equal for one mass
+    BOOST_TEST(qddot::frequency_bound(*c.system, c.q) >=
+               found * (1 - 100 * eps));  // equal for one mass
   }
 }
 

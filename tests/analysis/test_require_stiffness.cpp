@@ -8,6 +8,8 @@
 #include "qddot/analysis/natural_modes.hpp"
 #include "qddot/analysis/stability.hpp"
 
+BOOST_AUTO_TEST_SUITE(require_stiffness)
+
 using namespace qddot;
 
 namespace {
@@ -22,19 +24,17 @@ class Plain final : public System {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(require_stiffness)
-
 BOOST_AUTO_TEST_CASE(what_is_computed_from_k_is_refused_where_there_is_none) {
   const Plain system;
   const Vec q = Vec::Ones(2);
-  BOOST_CHECK_THROW(frequency_bound(system, q), std::invalid_argument);
+  BOOST_CHECK_THROW(qddot::frequency_bound(system, q), std::invalid_argument);
   BOOST_CHECK_THROW(largest_frequency(system, q), std::invalid_argument);
   BOOST_CHECK_THROW(frequency_at_least(system, q), std::invalid_argument);
   BOOST_CHECK_THROW(quick_frequency(system, q), std::invalid_argument);
   BOOST_CHECK_THROW(lowest_modes(system, q, 1), std::invalid_argument);
   BOOST_CHECK_THROW(highest_modes(system, q, 1), std::invalid_argument);
   BOOST_CHECK_THROW(smallest_curvature(system, q), std::invalid_argument);
-  BOOST_CHECK_THROW(curvature_signs(system, q), std::invalid_argument);
+  BOOST_CHECK_THROW(qddot::curvature_signs(system, q), std::invalid_argument);
   BOOST_CHECK_THROW(find_equilibrium(system, q, 1), std::invalid_argument);
   BOOST_CHECK_THROW(LinearMotion{system}, std::invalid_argument);
 }

@@ -12,6 +12,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(stability)
+
 using namespace qddot;
 
 namespace {
@@ -35,7 +37,7 @@ struct Truth {
 
 void check(const System& system, const Vec& q) {
   const Truth truth(system, q);
-  BOOST_TEST(curvature_signs(system, q).negative == truth.negative);
+  BOOST_TEST(qddot::curvature_signs(system, q).negative == truth.negative);
   const auto [value, direction] = smallest_curvature(system, q);
   BOOST_TEST(std::abs(value - truth.least) < tolerance * truth.row_sum);
   BOOST_TEST(std::abs(direction.norm() - 1) < tolerance);
@@ -47,8 +49,6 @@ void check(const System& system, const Vec& q) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(stability)
-
 BOOST_AUTO_TEST_CASE(unstable_directions_are_the_negative_eigenvalues_with_and_without_mass) {
   std::mt19937 random(12);
   int most = 0;
@@ -57,7 +57,8 @@ BOOST_AUTO_TEST_CASE(unstable_directions_are_the_negative_eigenvalues_with_and_w
       for (const int nodes : {1, 4, 12}) {
         Problem p = random_network(random, dimension, nodes, stretch);
         check(*make_mass_spring(p.network), p.initial.q);
-        most = std::max(most, curvature_signs(*make_mass_spring(p.network), p.initial.q).negative);
+        most = std::max(most,
+                        qddot::curvature_signs(*make_mass_spring(p.network), p.initial.q).negative);
         for (int i = 0; i < nodes; i += 2) p.network.node_mass[i] = 0;
         check(*make_mass_spring(p.network), p.initial.q);
       }
@@ -81,7 +82,7 @@ BOOST_AUTO_TEST_CASE(free_and_slack_bodies_are_not_unstable) {
     const ReducedScene chain(
         generate(*find_generator("chain"), {{"nodes", 40}, {"pinned_ends", pins}}, "test"),
         Reductions::all_directions());
-    BOOST_TEST(curvature_signs(chain.system(), chain.initial().q).negative == 0);
+    BOOST_TEST(qddot::curvature_signs(chain.system(), chain.initial().q).negative == 0);
   }
 }
 
@@ -92,7 +93,7 @@ BOOST_AUTO_TEST_CASE(strut_between_two_forces_buckles_in_two_directions) {
       make_mass_spring({.dimension = 3,
                         .node_mass = Vec::Ones(1),
                         .anchors = {{0, {-0.9, 0, 0}, {10, 1}}, {0, {0.9, 0, 0}, {10, 1}}}});
-  BOOST_TEST(curvature_signs(*system, Vec::Zero(3)).negative == 2);
+  BOOST_TEST(qddot::curvature_signs(*system, Vec::Zero(3)).negative == 2);
   const auto [value, direction] = smallest_curvature(*system, Vec::Zero(3));
   BOOST_TEST(std::abs(value + 2 * 10 * 0.1 / 0.9) < tolerance * 20);
   BOOST_TEST(std::abs(direction[0]) < tolerance);
@@ -109,16 +110,17 @@ BOOST_AUTO_TEST_CASE(zeros_of_the_metric_become_the_mean_mass) {
 BOOST_AUTO_TEST_CASE(stiffness_that_overflows_is_no_endless_loop) {
   const auto system = make_mass_spring(
       {.dimension = 1, .node_mass = Vec::Ones(1), .anchors = {{0, {0, 0, 0}, {.quartic = 1e300}}}});
-  BOOST_CHECK_THROW(curvature_signs(*system, Vec::Constant(1, 1e10)).negative, std::runtime_error);
+  BOOST_CHECK_THROW(qddot::curvature_signs(*system, Vec::Constant(1, 1e10)).negative,
+                    std::runtime_error);
 }
 
 BOOST_AUTO_TEST_CASE(nothing_is_stable) {
   const auto system = make_mass_spring({.dimension = 3});
-  BOOST_TEST(curvature_signs(*system, Vec()).negative == 0);
+  BOOST_TEST(qddot::curvature_signs(*system, Vec()).negative == 0);
   BOOST_TEST(largest_row_sum(system->stiffness_pattern()) == 0);
   BOOST_CHECK_THROW(smallest_curvature(*system, Vec()), std::invalid_argument);
   const auto loose = make_mass_spring({.dimension = 1, .node_mass = Vec::Ones(2)});
-  BOOST_TEST(curvature_signs(*loose, Vec{{0, 1}}).negative == 0);
+  BOOST_TEST(qddot::curvature_signs(*loose, Vec{{0, 1}}).negative == 0);
   BOOST_TEST(smallest_curvature(*loose, Vec{{0, 1}}).value == 0);
 }
 

@@ -9,10 +9,10 @@
 #include "qddot/scene/invalid_input.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(csv)
+
 using namespace qddot;
 using namespace qddot::command;
-
-BOOST_AUTO_TEST_SUITE(csv)
 
 BOOST_AUTO_TEST_CASE(a_row_is_its_fields_between_commas) {
   Csv csv({"name", "count", "value"});

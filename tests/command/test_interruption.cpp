@@ -8,6 +8,8 @@
 
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(interruption)
+
 using namespace qddot;
 
 namespace {
@@ -29,8 +31,6 @@ Words long_run(const Folder& folder) {
 nlohmann::json json_in(const std::string& file) { return nlohmann::json::parse(read_all(file)); }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(interruption)
 
 BOOST_AUTO_TEST_CASE(signals_end_a_run_with_what_it_reached) {
   for (const auto& [signal, name] : {std::pair(SIGINT, "SIGINT"), std::pair(SIGTERM, "SIGTERM")}) {

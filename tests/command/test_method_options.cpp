@@ -5,6 +5,8 @@
 #include "qddot/integrators/registry.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(method_options)
+
 using namespace qddot;
 
 namespace {
@@ -75,8 +77,6 @@ const std::string held =
     "           {nodes = [1, 2], stiffness = 1e6}]\n";
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(method_options)
 
 BOOST_AUTO_TEST_CASE(orders_that_no_method_has_are_refused) {
   for (const char* value : {"0", "-1", "13", "100"}) {

@@ -8,6 +8,8 @@
 #include "qddot/scene/reduce/reductions.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(reductions)
+
 using namespace qddot;
 
 namespace {
@@ -30,8 +32,6 @@ Ended run_without(const std::string& scene, const std::string& reductions) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(reductions)
 
 BOOST_AUTO_TEST_CASE(each_reduction_can_be_left_out_with_the_same_result) {
   struct Case {

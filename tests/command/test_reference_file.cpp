@@ -11,6 +11,8 @@
 #include "qddot/scene/scene_file.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(reference_file)
+
 using namespace qddot;
 using namespace qddot::measure;
 using namespace qddot::command;
@@ -27,8 +29,6 @@ Reference kept(const std::string& name, double horizon, const Folder& folder) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(reference_file)
 
 BOOST_AUTO_TEST_CASE(json_brings_back_every_bit) {
   const Reference made = make_reference(ReducedScene(load_scene("pair")), 0.3, 1);

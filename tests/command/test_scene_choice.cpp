@@ -8,6 +8,8 @@
 #include "qddot/scene/scene_file.hpp"
 #include "tests/scene/refusal.hpp"
 
+BOOST_AUTO_TEST_SUITE(scene_choice)
+
 using namespace qddot;
 using namespace qddot::command;
 
@@ -34,8 +36,6 @@ const Method split = {
     .name = "divider", .summary = "none", .source = "none", .needs = {Need::split_forces}};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(scene_choice)
 
 BOOST_AUTO_TEST_CASE(a_method_that_needs_stiff_springs_named_says_what_to_do) {
   for (const double above : {1., 12., 1e9}) BOOST_TEST(said(split, pairs(above)) == "", above);

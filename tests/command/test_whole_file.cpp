@@ -5,6 +5,8 @@
 #include "qddot/scene/invalid_input.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(whole_file)
+
 using namespace qddot;
 using namespace qddot::command;
 
@@ -20,8 +22,6 @@ std::string refusal(const std::string& path) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(whole_file)
 
 BOOST_AUTO_TEST_CASE(nothing_stands_at_its_place_before_the_commit) {
   const Folder folder;

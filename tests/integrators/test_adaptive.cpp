@@ -7,9 +7,9 @@
 #include "tests/integrators/runs.hpp"
 #include "tests/integrators/spectral_radius.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(adaptive)
+
+using namespace qddot;
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include "tests/integrators/allocations.hpp"
 #include "tests/integrators/scenes.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(allocation)
+
+using namespace qddot;
 
 namespace {
 

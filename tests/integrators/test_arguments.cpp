@@ -7,9 +7,9 @@
 #include "tests/fragments.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(arguments)
+
+using namespace qddot;
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include "qddot/integrators/sundials/cause.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(causes)
+
+using namespace qddot;
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include "qddot/integrators/base/compensated_sum.hpp"
 #include "tests/integrators/scenes.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(compensation)
+
+using namespace qddot;
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include "qddot/scene/settle.hpp"
 #include "tests/integrators/scenes.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(conservation)
+
+using namespace qddot;
 
 namespace {
 

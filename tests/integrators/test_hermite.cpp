@@ -3,9 +3,9 @@
 #include "qddot/integrators/base/hermite.hpp"
 #include "tests/measure.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(hermite)
+
+using namespace qddot;
 
 namespace {
 

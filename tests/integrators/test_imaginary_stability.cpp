@@ -6,9 +6,9 @@
 #include "qddot/integrators/sundials/imaginary_stability.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(imaginary_stability)
+
+using namespace qddot;
 
 namespace {
 

@@ -5,9 +5,9 @@
 
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(implicit_matrices)
+
+using namespace qddot;
 
 namespace {
 

@@ -2,9 +2,9 @@
 
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(indefinite)
+
+using namespace qddot;
 
 namespace {
 

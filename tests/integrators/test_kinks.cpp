@@ -3,6 +3,8 @@
 #include "qddot/integrators/base/kink_search.hpp"
 #include "tests/integrators/runs.hpp"
 
+BOOST_AUTO_TEST_SUITE(kinks)
+
 using namespace qddot;
 
 namespace {
@@ -40,8 +42,6 @@ ThroughThePin random_one(std::mt19937& random) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(kinks)
 
 BOOST_AUTO_TEST_CASE(errors_follow_the_tolerance_through_jumps_of_the_force) {
   std::mt19937 random(20);

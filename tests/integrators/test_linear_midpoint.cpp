@@ -8,9 +8,9 @@
 #include "tests/integrators/scenes.hpp"
 #include "tests/integrators/split_relay.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(linear_midpoint)
+
+using namespace qddot;
 
 namespace {
 

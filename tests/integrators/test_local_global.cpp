@@ -3,9 +3,9 @@
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/scenes.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(local_global)
+
+using namespace qddot;
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(massless)
+
+using namespace qddot;
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include "qddot/analysis/frequency_bound.hpp"
 #include "tests/integrators/split_relay.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(mri)
+
+using namespace qddot;
 
 namespace {
 

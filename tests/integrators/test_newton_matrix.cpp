@@ -4,9 +4,9 @@
 #include "qddot/integrators/sundials/vector.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(newton_matrix)
+
+using namespace qddot;
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include "tests/integrators/nystrom_trees.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(nystrom)
+
+using namespace qddot;
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include "qddot/analysis/linear_motion.hpp"
 #include "tests/integrators/faulty_verlet.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(order)
+
+using namespace qddot;
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include "qddot/integrators/sundials/orders.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(orders)
+
+using namespace qddot;
 
 namespace {
 

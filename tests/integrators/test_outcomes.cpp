@@ -4,9 +4,9 @@
 
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(outcomes)
+
+using namespace qddot;
 
 namespace {
 

@@ -7,6 +7,8 @@
 #include "tests/integrators/own_system.hpp"
 #include "tests/integrators/runs.hpp"
 
+BOOST_AUTO_TEST_SUITE(own_system)
+
 using namespace qddot;
 
 namespace {
@@ -75,8 +77,6 @@ Outcome with_stiffness(const Method& method) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(own_system)
 
 BOOST_AUTO_TEST_CASE(its_force_and_stiffness_are_the_derivatives_of_its_energy) {
   const ChainWithStiffness chain;

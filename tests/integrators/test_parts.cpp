@@ -2,9 +2,9 @@
 
 #include "tests/integrators/pieces.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(parts)
+
+using namespace qddot;
 
 namespace {
 

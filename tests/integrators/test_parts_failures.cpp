@@ -4,9 +4,9 @@
 
 #include "tests/integrators/pieces.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(parts_failures)
+
+using namespace qddot;
 
 namespace {
 

@@ -7,9 +7,9 @@
 
 #include "tests/integrators/scenes.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(placement)
+
+using namespace qddot;
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include "qddot/integrators/base/rosenbrock.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(rosenbrock)
+
+using namespace qddot;
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(slack)
+
+using namespace qddot;
 
 namespace {
 

@@ -5,9 +5,9 @@
 
 #include "tests/integrators/split_relay.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(split_failures)
+
+using namespace qddot;
 
 namespace {
 

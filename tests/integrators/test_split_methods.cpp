@@ -6,6 +6,8 @@
 #include "tests/integrators/pieces.hpp"
 #include "tests/integrators/scenes.hpp"
 
+BOOST_AUTO_TEST_SUITE(split_methods)
+
 using namespace qddot;
 
 namespace {
@@ -35,8 +37,6 @@ const Method method = {.name = "sum_of_forces",
 constexpr Options options = {.step_size = 1e-3};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(split_methods)
 
 BOOST_AUTO_TEST_CASE(on_a_split_system_they_run) {
   for (const int dimension : {1, 2, 3}) {

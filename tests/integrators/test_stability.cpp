@@ -4,9 +4,9 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/integrators/faulty_verlet.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(stability)
+
+using namespace qddot;
 
 namespace {
 

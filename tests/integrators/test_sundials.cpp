@@ -5,9 +5,9 @@
 #include "qddot/analysis/linear_motion.hpp"
 #include "tests/integrators/scenes.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(sundials)
+
+using namespace qddot;
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include "qddot/model/block_diagonal_system.hpp"
 #include "tests/integrators/runs.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(timed)
+
+using namespace qddot;
 
 namespace {
 

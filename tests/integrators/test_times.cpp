@@ -6,10 +6,10 @@
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/scenes.hpp"
 
+BOOST_AUTO_TEST_SUITE(times)
+
 using namespace qddot;
 using namespace std::string_literals;
-
-BOOST_AUTO_TEST_SUITE(times)
 
 namespace {
 

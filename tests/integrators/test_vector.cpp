@@ -6,9 +6,9 @@
 #include "qddot/integrators/sundials/vector.hpp"
 #include "tests/measure.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(vector)
+
+using namespace qddot;
 
 namespace {
 

@@ -8,6 +8,8 @@
 #include "qddot/measure/trend/block_covariance.hpp"
 #include "qddot/measure/trend/block_fit.hpp"
 
+BOOST_AUTO_TEST_SUITE(block_fit)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -44,8 +46,6 @@ Vec walk_means(Index blocks, double noise, unsigned seed) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(block_fit)
 
 BOOST_AUTO_TEST_CASE(covariances_are_the_double_integrals_over_blocks) {
   // The midpoint rule is off by 1/(24 points^2) of the curvature, and by 1/(12 points) of the kink

@@ -7,6 +7,8 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "qddot/scene/scene_file.hpp"
 
+BOOST_AUTO_TEST_SUITE(deadline)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -22,8 +24,6 @@ void wait_for(const Deadline& deadline) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(deadline)
 
 BOOST_AUTO_TEST_CASE(it_asks_for_a_stop_when_its_time_has_come) {
   const Deadline deadline(0.01);

@@ -4,6 +4,8 @@
 
 #include "qddot/measure/reference/divergence.hpp"
 
+BOOST_AUTO_TEST_SUITE(divergence)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -22,7 +24,7 @@ struct Parting {
       differences.push_back(difference(times.back()));
     }
   }
-  Divergence found() const { return divergence(times, differences); }
+  Divergence found() const { return qddot::measure::divergence(times, differences); }
 };
 
 // rounding e^(rate t) up to the size of the motion.
@@ -33,8 +35,6 @@ auto exponential(double rate) {
 double exact_horizon(double rate) { return std::log(apart / rounding) / rate; }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(divergence)
 
 BOOST_AUTO_TEST_CASE(an_exponential_is_found_to_the_next_sample) {
   for (const double rate : {5.0, 20.0, 27.0}) {

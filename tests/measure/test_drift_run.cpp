@@ -8,6 +8,8 @@
 #include "qddot/measure/trend/drift_run.hpp"
 #include "qddot/scene/scene_file.hpp"
 
+BOOST_AUTO_TEST_SUITE(drift_run)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -65,8 +67,6 @@ struct Study {
 bool holds_zero(const Interval& interval) { return !interval.excludes_zero(); }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(drift_run)
 
 BOOST_AUTO_TEST_CASE(over_a_million_steps_verlet_does_not_drift_and_rk4_does) {
   const Study orbit("orbit");

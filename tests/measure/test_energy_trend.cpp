@@ -7,6 +7,8 @@
 #include "qddot/measure/trend/energy_trend.hpp"
 #include "qddot/measure/trend/sample_steps.hpp"
 
+BOOST_AUTO_TEST_SUITE(energy_trend)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -61,8 +63,6 @@ bool says(const Trend& trend, const std::string& words, const TrendScales& scale
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(energy_trend)
 
 BOOST_AUTO_TEST_CASE(an_oscillation_is_bounded_and_its_slope_is_zero_within_the_interval) {
   int misses = 0;

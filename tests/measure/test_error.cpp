@@ -5,6 +5,8 @@
 #include "qddot/measure/motion/error.hpp"
 #include "qddot/scene/reduce/part.hpp"
 
+BOOST_AUTO_TEST_SUITE(error)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -23,8 +25,6 @@ Scene three_nodes() {
 const auto plain = Reductions::only({Reduction::pins});
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(error)
 
 BOOST_AUTO_TEST_CASE(errors_are_the_worst_node_over_its_scale) {
   const ReducedScene scene(three_nodes(), plain);

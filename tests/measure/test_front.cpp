@@ -8,6 +8,8 @@
 #include "qddot/measure/speed/judgement.hpp"
 #include "qddot/scene/generators.hpp"
 
+BOOST_AUTO_TEST_SUITE(front)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -28,8 +30,6 @@ std::vector<FrontRow> front_of(const std::vector<Point>& points, double certifie
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(front)
 
 BOOST_AUTO_TEST_CASE(there_is_a_row_for_each_of_nine_accuracies) {
   const auto rows = front_of({});

@@ -6,6 +6,8 @@
 #include "qddot/measure/speed/ladder.hpp"
 #include "qddot/scene/scene_file.hpp"
 
+BOOST_AUTO_TEST_SUITE(ladder)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -51,8 +53,6 @@ const Effort short_runs{.seconds = 0.1, .repeats = 1};
 bool reached(const Point& point) { return point.outcome == Outcome::reached_end; }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(ladder)
 
 BOOST_AUTO_TEST_CASE(it_starts_where_an_explicit_method_fails) {
   const auto points = oscillator().climb("verlet", short_runs);

@@ -5,10 +5,10 @@
 #include "qddot/measure/stability/linear_step.hpp"
 #include "tests/integrators/faulty_verlet.hpp"
 
+BOOST_AUTO_TEST_SUITE(linear_step)
+
 using namespace qddot;
 using namespace qddot::measure;
-
-BOOST_AUTO_TEST_SUITE(linear_step)
 
 namespace {
 

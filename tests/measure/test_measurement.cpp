@@ -8,6 +8,8 @@
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/scene_file.hpp"
 
+BOOST_AUTO_TEST_SUITE(measurement)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -78,8 +80,6 @@ Point measured(const char* method, double value, const Effort& effort) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(measurement)
 
 BOOST_AUTO_TEST_CASE(the_knob_is_the_one_that_the_method_takes) {
   for (const Method& method : methods()) {

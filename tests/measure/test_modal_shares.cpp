@@ -7,6 +7,8 @@
 #include "qddot/measure/motion/modal_shares.hpp"
 #include "qddot/scene/scene_file.hpp"
 
+BOOST_AUTO_TEST_SUITE(modal_shares)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -57,8 +59,6 @@ ModalShares shares_of(const ReducedScene& scene) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(modal_shares)
 
 BOOST_AUTO_TEST_CASE(they_add_up_to_the_kinetic_energy) {
   std::mt19937 random(1);

@@ -7,6 +7,8 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "qddot/scene/scene_file.hpp"
 
+BOOST_AUTO_TEST_SUITE(momenta)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -48,8 +50,6 @@ Scene triangle(std::vector<Eigen::Vector3d> pins, Eigen::Vector3d gravity) {
 const Eigen::Vector3d none = {0, 0, 0}, down = {0, 0, -9.81}, at = {0.3, 0.2, 2};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(momenta)
 
 BOOST_AUTO_TEST_CASE(what_symmetry_says_is_kept) {
   // A run of a thousand steps of order 8, which keeps momenta but for rounding.

@@ -11,6 +11,8 @@
 #include "qddot/scene/scene_file.hpp"
 #include "tests/fragments.hpp"
 
+BOOST_AUTO_TEST_SUITE(reference)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -81,8 +83,6 @@ Scene compressed_strut() {
 double length(const Eigen::Vector3d& x) { return x.norm(); }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(reference)
 
 BOOST_AUTO_TEST_CASE(the_oscillator_ends_where_its_closed_form_does) {
   const Generator& oscillator = *find_generator("oscillator");

@@ -5,6 +5,8 @@
 #include "qddot/measure/motion/samples.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
+BOOST_AUTO_TEST_SUITE(samples)
+
 using namespace qddot;
 using namespace qddot::measure;
 using Times = std::vector<double>;
@@ -15,8 +17,6 @@ namespace {
 Times multiples(double every, double until) { return qddot::measure::samples(every, until); }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(samples)
 
 BOOST_AUTO_TEST_CASE(samples_are_the_multiples_up_to_the_end) {
   BOOST_TEST(multiples(0.25, 1) == (Times{0, 0.25, 0.5, 0.75, 1}),

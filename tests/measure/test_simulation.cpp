@@ -10,10 +10,10 @@
 #include "qddot/scene/scene_file.hpp"
 #include "tests/integrators/own_system.hpp"
 
+BOOST_AUTO_TEST_SUITE(simulation)
+
 using namespace qddot;
 using namespace qddot::measure;
-
-BOOST_AUTO_TEST_SUITE(simulation)
 
 namespace {
 

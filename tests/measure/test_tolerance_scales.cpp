@@ -5,6 +5,8 @@
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/scene/generators.hpp"
 
+BOOST_AUTO_TEST_SUITE(tolerance_scales)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -47,8 +49,6 @@ Scene in_units(Scene scene, double length, double time) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(tolerance_scales)
 
 BOOST_AUTO_TEST_CASE(an_oscillators_speed_is_its_amplitude_times_its_frequency) {
   for (const double x : {0.01, -3.0, 200.0}) {

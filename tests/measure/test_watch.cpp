@@ -7,6 +7,8 @@
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/scene_file.hpp"
 
+BOOST_AUTO_TEST_SUITE(watch)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -30,8 +32,6 @@ struct Watched {
 Watched oscillator(double until) { return {load_scene("oscillator"), until}; }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(watch)
 
 BOOST_AUTO_TEST_CASE(explicit_eulers_energy_error_is_largest_at_the_end) {
   // E grows by 1 + h^2 w^2 in each step.

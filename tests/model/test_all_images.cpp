@@ -6,6 +6,8 @@
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
 
+BOOST_AUTO_TEST_SUITE(all_images)
+
 using namespace qddot;
 
 namespace {
@@ -94,8 +96,6 @@ Difference difference(const ImageSample& s, const Whole& whole) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(all_images)
 
 BOOST_AUTO_TEST_CASE(the_network_is_the_one_of_all_images_seen_from_one_side) {
   for_random_images([](const ImageSample& s) {

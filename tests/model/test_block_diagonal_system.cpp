@@ -9,6 +9,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(block_diagonal_system)
+
 using namespace qddot;
 
 namespace {
@@ -79,8 +81,6 @@ Network loose(int dimension, const SpringLaw& law, Holds holds = Holds::always) 
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(block_diagonal_system)
 
 BOOST_AUTO_TEST_CASE(parts_are_together_what_they_are_as_one_network) {
   for (const int dimension : {1, 2, 3}) {

@@ -9,6 +9,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(capabilities)
+
 using namespace qddot;
 
 namespace {
@@ -126,8 +128,6 @@ std::vector<std::function<std::unique_ptr<System>()>> kinds() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(capabilities)
 
 BOOST_AUTO_TEST_CASE(a_system_of_v_and_f_alone_has_none) {
   const Plain plain;

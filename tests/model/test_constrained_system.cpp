@@ -9,6 +9,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(constrained_system)
+
 using namespace qddot;
 
 namespace {
@@ -40,8 +42,6 @@ Eigen::MatrixXd selection(const std::vector<bool>& is_held) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(constrained_system)
 
 BOOST_AUTO_TEST_CASE(force_and_stiffness_are_those_of_the_system_with_zeros_where_it_is_held) {
   for_random_networks([](const Problem& p, const std::vector<bool>& is_held) {

@@ -4,9 +4,9 @@
 #include "qddot/model/differenced_stiffness.hpp"
 #include "tests/problems.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(differenced_stiffness)
+
+using namespace qddot;
 
 namespace {
 

@@ -7,6 +7,8 @@
 #include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 
+BOOST_AUTO_TEST_SUITE(directions)
+
 using namespace qddot;
 
 namespace {
@@ -41,8 +43,6 @@ Line line(int count, double strain, bool has_mirror) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(directions)
 
 BOOST_AUTO_TEST_CASE(energies_of_small_strains_keep_their_digits) {
   // 20 nodes are summed by vectors, 4 spring by spring.

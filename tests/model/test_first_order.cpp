@@ -9,6 +9,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(first_order)
+
 using namespace qddot;
 
 namespace {
@@ -69,8 +71,6 @@ Eigen::MatrixXd jacobian(const System& system, const SymmetricMatrix& k) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(first_order)
 
 BOOST_AUTO_TEST_CASE(filled_matrix_has_the_documented_blocks) {
   for_random_networks([](const Problem& p) {

@@ -10,10 +10,10 @@
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(force_kernel)
+
 using namespace qddot;
 using namespace qddot::kernels;
-
-BOOST_AUTO_TEST_SUITE(force_kernel)
 
 namespace {
 

@@ -10,6 +10,8 @@
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(image_links)
+
 using namespace qddot;
 
 namespace {
@@ -28,8 +30,6 @@ double stiffness_error(const ImageSample& s, const SymmetricMatrix& k) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(image_links)
 
 BOOST_AUTO_TEST_CASE(force_is_minus_the_gradient_of_the_potential) {
   for_random_images([](const ImageSample& s) {

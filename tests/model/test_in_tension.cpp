@@ -7,6 +7,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(in_tension)
+
 using namespace qddot;
 
 namespace {
@@ -23,8 +25,6 @@ State state(double t, double x, double y, double vx, double vy) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(in_tension)
 
 BOOST_AUTO_TEST_CASE(the_first_place_below_a_bound_is_that_of_many_samples) {
   std::mt19937 random(5);

@@ -9,9 +9,9 @@
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(laplacian)
+
+using namespace qddot;
 
 namespace {
 

@@ -10,6 +10,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(mass_spring)
+
 using namespace qddot;
 
 namespace {
@@ -56,8 +58,6 @@ double stiffness_error(const Problem& p, const SymmetricMatrix& k) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(mass_spring)
 
 BOOST_AUTO_TEST_CASE(force_is_minus_the_gradient_of_the_potential) {
   for_random_networks([](const Problem& p) {

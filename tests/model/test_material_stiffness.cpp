@@ -10,9 +10,9 @@
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(material_stiffness)
+
+using namespace qddot;
 
 namespace {
 

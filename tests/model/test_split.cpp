@@ -12,6 +12,8 @@
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(split)
+
 using namespace qddot;
 
 namespace {
@@ -79,8 +81,6 @@ bool adds_up(const System& whole, const System& stiff, const System& soft, const
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(split)
 
 BOOST_AUTO_TEST_CASE(stiff_and_soft_forces_stiffnesses_and_energies_are_those_of_the_whole) {
   for_split_networks([](const Network& network, const Vec& q) {

@@ -9,6 +9,8 @@
 #include "qddot/model/spring.hpp"
 #include "tests/measure.hpp"
 
+BOOST_AUTO_TEST_SUITE(spring)
+
 using namespace qddot;
 
 namespace {
@@ -76,8 +78,6 @@ void for_random_springs(const Check& check) {
 const SpringLaw stiff = {.stiffness = 3, .rest_length = 2, .quartic = 5};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(spring)
 
 BOOST_AUTO_TEST_CASE(energy_force_and_block_are_those_computed_by_hand) {
   const Eigen::Vector2d d(3, 4);  // l = 5, n = (0.6, 0.8), s = 3, tau = 144, tau' = 138

@@ -7,9 +7,9 @@
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(stiffness_kernel)
+
+using namespace qddot;
 
 namespace {
 

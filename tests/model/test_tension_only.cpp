@@ -6,6 +6,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
+BOOST_AUTO_TEST_SUITE(tension_only)
+
 using namespace qddot;
 
 namespace {
@@ -72,8 +74,6 @@ void for_all(const Check& check) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(tension_only)
 
 BOOST_AUTO_TEST_CASE(a_system_holds_until_such_a_spring_is_shorter_than_its_rest_length) {
   for_all([](Kind kind, int dimension) {

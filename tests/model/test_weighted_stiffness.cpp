@@ -8,9 +8,9 @@
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(weighted_stiffness)
+
+using namespace qddot;
 
 namespace {
 

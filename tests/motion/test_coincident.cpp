@@ -10,6 +10,8 @@
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(coincident)
+
 using namespace qddot;
 
 namespace {
@@ -219,8 +221,6 @@ void check_all(const Scene& scene) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(coincident)
 
 BOOST_AUTO_TEST_CASE(pairs_that_part_are_four_images_of_one_node) {
   const Scene scene = two_pairs();

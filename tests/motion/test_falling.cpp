@@ -5,6 +5,8 @@
 #include "qddot/measure/motion/error.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(falling)
+
 using namespace qddot;
 using namespace qddot::measure;
 
@@ -61,8 +63,6 @@ std::string sentence(const ReducedScene& scene, Reduction reduction) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(falling)
 
 BOOST_AUTO_TEST_CASE(what_rests_in_its_fall_has_no_unknowns) {
   const Scene scene = tetrahedron();

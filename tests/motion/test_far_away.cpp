@@ -6,6 +6,8 @@
 #include "qddot/scene/reduce/part.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(far_away)
+
 using namespace qddot;
 
 namespace {
@@ -50,8 +52,6 @@ std::vector<Node> end_of(const Scene& scene, const Reductions& reductions, doubl
 const Eigen::Vector3d shift(1048576, -524288, 2097152);  // 2^20 and neighbours [m]
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(far_away)
 
 BOOST_AUTO_TEST_CASE(a_deviation_far_above_the_local_rounding_breaks_planes_and_mirrors) {
   // The last bit at a million metres, 2^-32 m, is 10^6 times the rounding of a metre.

@@ -5,6 +5,8 @@
 #include "qddot/integrators/registry.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(folded_joints)
+
 using namespace qddot;
 
 namespace {
@@ -46,8 +48,6 @@ double rest_below(const Scene& scene) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(folded_joints)
 
 BOOST_AUTO_TEST_CASE(a_joint_behind_the_pin_stays_there) {
   const Scene scene = folded(-0.4, 1000, 0.5);

@@ -5,6 +5,8 @@
 #include "qddot/scene/reduce/part.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(line_energy)
+
 using namespace qddot;
 
 namespace {
@@ -43,8 +45,6 @@ Scene row(double strain, int pins, int nodes) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(line_energy)
 
 BOOST_AUTO_TEST_CASE(a_strain_of_1e_8_has_all_digits_of_its_energy) {
   for (const double strain : {1e-4, 1e-8, 1e-12}) {

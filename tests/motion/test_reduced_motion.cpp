@@ -5,6 +5,8 @@
 #include "qddot/scene/reduce/part.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(reduced_motion)
+
 using namespace qddot;
 
 namespace {
@@ -37,8 +39,6 @@ Reductions without(Reduction reduction) { return all.without(reduction); }
 constexpr double round_off = 1e-10;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(reduced_motion)
 
 BOOST_AUTO_TEST_CASE(motions_in_a_plane_or_on_a_line_are_those_in_space) {
   for (const Scene& scene :

@@ -10,6 +10,8 @@
 #include "tests/scene/drawn.hpp"
 #include "tests/scene/refusal.hpp"
 
+BOOST_AUTO_TEST_SUITE(stiff_set)
+
 using namespace qddot;
 
 namespace {
@@ -124,8 +126,6 @@ Scene in_series() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stiff_set)
 
 BOOST_AUTO_TEST_CASE(naming_stiff_springs_changes_no_bit_of_anything_else) {
   for (const Scene& scene : scenes()) {

@@ -4,10 +4,10 @@
 
 #include "experiments/simulate/background_observer.hpp"
 
+BOOST_AUTO_TEST_SUITE(aside)
+
 using namespace qddot;
 using namespace qddot::simulate;
-
-BOOST_AUTO_TEST_SUITE(aside)
 
 namespace {
 

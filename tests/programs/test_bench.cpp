@@ -10,6 +10,8 @@
 #include "experiments/bench/ratios.hpp"
 #include "tests/folder.hpp"
 
+BOOST_AUTO_TEST_SUITE(bench)
+
 using namespace qddot;
 using namespace qddot::bench;
 
@@ -34,6 +36,8 @@ Eigen::Vector3d exact_position() {
          scene.nodes[1].velocity * std::sin(w * until) / w;
 }
 
+}  // namespace
+
 struct Given {
   Folder folder;
   Problem problem{ellipse(), ellipse(), until, folder.path(), nlohmann::json::object()};
@@ -45,10 +49,6 @@ struct Given {
     return (run.end.q - exact_position()).norm();
   }
 };
-
-}  // namespace
-
-BOOST_AUTO_TEST_SUITE(bench)
 
 // Global errors of adaptive methods are the tolerance times a factor that grows with the length of
 // the run, here of less than a period; 1000 is far above any, and far below what is wrong.

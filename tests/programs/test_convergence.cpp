@@ -2,9 +2,9 @@
 
 #include "tests/programs/process.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(convergence)
+
+using namespace qddot;
 
 BOOST_AUTO_TEST_CASE(every_order_that_is_told_is_the_method_s) {
   const Folder folder;

@@ -8,6 +8,8 @@
 #include "qddot/integrators/registry.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(crossover)
+
 using namespace qddot;
 using namespace qddot::crossover;
 
@@ -62,8 +64,6 @@ void check_refused(const Words& words, const Words& fragments) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(crossover)
 
 BOOST_AUTO_TEST_CASE(it_writes_a_row_for_each_ratio_and_accuracy_in_order) {
   const Table& table = framed().winners;

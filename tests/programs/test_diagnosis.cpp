@@ -5,6 +5,8 @@
 
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(diagnosis)
+
 using namespace qddot;
 
 namespace {
@@ -21,8 +23,6 @@ double number_behind(const std::string& text, const std::string& words) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(diagnosis)
 
 BOOST_AUTO_TEST_CASE(a_step_above_the_limit_is_named_with_what_holds) {
   const Exit result = simulate(

@@ -6,6 +6,8 @@
 
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(energy_drift)
+
 using namespace qddot;
 
 namespace {
@@ -20,8 +22,6 @@ Table table_in(const Folder& folder, const std::string& name) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(energy_drift)
 
 BOOST_AUTO_TEST_CASE(each_run_has_its_path_and_its_verdict) {
   const Folder folder;

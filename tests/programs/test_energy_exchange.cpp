@@ -4,6 +4,8 @@
 
 #include "experiments/exchange/energy_exchange.hpp"
 
+BOOST_AUTO_TEST_SUITE(energy_exchange)
+
 using namespace qddot;
 using namespace qddot::exchange;
 
@@ -34,8 +36,6 @@ EnergyCourse course_of(double a, double ripple = 0) {
 const double shrunk = std::sin(window / 50) / (window / 50);
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(energy_exchange)
 
 BOOST_AUTO_TEST_CASE(a_course_is_itself) {
   const ExchangeComparison c = compare(course_of(1), course_of(1), window);

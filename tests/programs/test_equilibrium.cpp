@@ -5,6 +5,8 @@
 #include "qddot/scene/settle.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(equilibrium)
+
 using namespace qddot;
 
 namespace {
@@ -12,8 +14,6 @@ namespace {
 const char* const falling = "dimension = 1\ngravity = [-1]\nnodes = [{position = [0], mass = 1}]\n";
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(equilibrium)
 
 BOOST_AUTO_TEST_CASE(nodes_at_rest_are_written_as_simulate_writes_them) {
   const Folder folder;

@@ -6,6 +6,8 @@
 
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(exchange)
+
 using namespace qddot;
 
 namespace {
@@ -41,8 +43,6 @@ void check_refused(const Words& words, const Words& fragments) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(exchange)
 
 BOOST_AUTO_TEST_CASE(energies_are_tabulated_by_method_step_time_and_spring) {
   const Table table = read_csv(short_run().file("exchange.csv"));

@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <boost/test/unit_test.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/stability_map/fate.hpp"
 #include "experiments/stability_map/fate_map.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
@@ -9,11 +9,11 @@
 #include "tests/folder.hpp"
 #include "tests/integrators/runs.hpp"
 
+BOOST_AUTO_TEST_SUITE(fate)
+
 using namespace qddot;
 using namespace qddot::measure;
 using namespace qddot::stability_map;
-
-BOOST_AUTO_TEST_SUITE(fate)
 
 namespace {
 
@@ -155,11 +155,11 @@ BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
     cells.push_back({&method_named("verlet"), &row, h_omega, 0});
   }
   const MapSettings settings{.until = 20, .tolerated = 0.5, .seconds = 10};
-  CLI::App app("", "map");
-  add_resume_option(app);
+  CommandLine line("", "map");
+  add_resume_option(line);
   std::vector<std::optional<Fate>> all;
   {
-    Study study(app, folder.path(), {}, {});
+    Study study(line, folder.path(), {}, {});
     all = fates(study, cells, settings, [](std::size_t) {});
   }
   BOOST_TEST(all[0]->outcome == "bounded");
@@ -175,8 +175,8 @@ BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
   BOOST_TEST(predicted_growth_rate(cells[2]) > 1);
 
   // What the journal holds is believed, and what is missing is run.
-  app.parse("--resume");
-  Study study(app, folder.path(), {}, {});
+  line.parse("--resume");
+  Study study(line, folder.path(), {}, {});
   cells.push_back({&method_named("verlet"), &row, 1.5, 0});
   const auto resumed = fates(
       study, cells, MapSettings{.until = 30, .tolerated = 0.5, .seconds = 10}, [](std::size_t) {});

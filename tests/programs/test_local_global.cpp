@@ -6,6 +6,8 @@
 
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(local_global)
+
 using namespace qddot;
 
 namespace {
@@ -36,8 +38,6 @@ void check_refused(const Words& words, const Words& fragments) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(local_global)
 
 BOOST_AUTO_TEST_CASE(what_would_run_without_end_is_refused) {
   check_refused({"--step-size", "1e-300", "--out", "OUT"}, {"--step-size", "at least"});

@@ -5,10 +5,10 @@
 #include "qddot/scene/settle.hpp"
 #include "tests/integrators/runs.hpp"
 
+BOOST_AUTO_TEST_SUITE(modal_step)
+
 using namespace qddot;
 using namespace qddot::stability_map;
-
-BOOST_AUTO_TEST_SUITE(modal_step)
 
 namespace {
 

@@ -8,6 +8,8 @@
 #include "qddot/scene/settle.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(modes)
+
 using namespace qddot;
 
 namespace {
@@ -39,8 +41,6 @@ Exit run_modes(const Folder& folder, std::vector<std::string> words) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(modes)
 
 BOOST_AUTO_TEST_CASE(both_ends_of_the_spectrum_are_tabulated_by_rank) {
   const Folder folder;

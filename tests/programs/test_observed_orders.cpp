@@ -4,6 +4,8 @@
 
 #include "experiments/convergence/observed_orders.hpp"
 
+BOOST_AUTO_TEST_SUITE(observed_orders)
+
 using namespace qddot;
 using namespace qddot::convergence;
 
@@ -23,8 +25,6 @@ std::vector<double> floors(std::size_t count, double floor) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(observed_orders)
 
 BOOST_AUTO_TEST_CASE(a_power_of_h_has_its_order) {
   for (const double order : {1.0, 2.0, 8.0}) {

@@ -5,6 +5,8 @@
 #include "experiments/crossover/race.hpp"
 #include "qddot/integrators/registry.hpp"
 
+BOOST_AUTO_TEST_SUITE(race)
+
 using namespace qddot;
 using namespace qddot::crossover;
 
@@ -24,8 +26,6 @@ Reference certain_to(double position) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(race)
 
 BOOST_AUTO_TEST_CASE(kinds_are_read_from_the_registry) {
   for (const Method& method : methods()) {

@@ -10,6 +10,8 @@
 #include "qddot/measure/trend/power_law.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(scaling)
+
 using namespace qddot;
 using namespace qddot::measure;
 using namespace qddot::scaling;
@@ -45,8 +47,6 @@ void check_refused(const Words& words, const Words& fragments) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(scaling)
 
 BOOST_AUTO_TEST_CASE(an_exact_power_law_is_recovered_to_rounding) {
   for (const double exponent : {0., 1., 4. / 3, 1.5, 2.}) {

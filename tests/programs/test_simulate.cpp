@@ -7,6 +7,8 @@
 #include "qddot/scene/scene_file.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(simulate)
+
 using namespace qddot;
 
 namespace {
@@ -72,8 +74,6 @@ std::vector<std::string> verlet(const std::string& scene) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(simulate)
 
 BOOST_AUTO_TEST_CASE(the_final_table_holds_every_node_to_the_bit) {
   const std::array<const char*, 4> headers = {"", "node,x,vx", "node,x,y,vx,vy",

@@ -6,6 +6,8 @@
 #include "qddot/integrators/registry.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(simulate_scenes)
+
 using namespace qddot;
 
 namespace {
@@ -57,8 +59,6 @@ bool is_finite(const Table& table) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(simulate_scenes)
 
 BOOST_AUTO_TEST_CASE(without_a_spring_nodes_fly_freely) {
   const Folder folder;

@@ -6,6 +6,8 @@
 #include "qddot/scene/generators.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(simulate_usage)
+
 using namespace qddot;
 
 namespace {
@@ -57,8 +59,6 @@ const std::array<const char*, 5> numeric_options = {"--step-size", "--rtol", "--
                                                     "--every"};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(simulate_usage)
 
 BOOST_AUTO_TEST_CASE(help_names_every_option) {
   for (const char* word : {"--help", "-h"}) {

@@ -4,6 +4,8 @@
 #include "qddot/scene/scene_writer.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(simulate_write_scene)
+
 using namespace qddot;
 
 namespace {
@@ -22,8 +24,6 @@ void check_refused(const Words& words, const Words& fragments) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(simulate_write_scene)
 
 BOOST_AUTO_TEST_CASE(a_scene_is_written_without_a_run) {
   const Folder folder;

@@ -2,6 +2,8 @@
 
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(solvers)
+
 using namespace qddot;
 
 namespace {
@@ -12,8 +14,6 @@ Exit run_solvers(const Folder& folder, std::vector<std::string> words) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(solvers)
 
 BOOST_AUTO_TEST_CASE(every_solver_solves_and_is_held_against_the_machine) {
   const Folder folder;

@@ -5,6 +5,8 @@
 
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(stability_map)
+
 using namespace qddot;
 
 namespace {
@@ -24,8 +26,6 @@ std::vector<std::string> with(std::vector<std::string> words, std::vector<std::s
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stability_map)
 
 BOOST_AUTO_TEST_CASE(limits_are_predicted_and_measured_in_seconds) {
   const Folder folder;

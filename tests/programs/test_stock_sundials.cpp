@@ -6,6 +6,8 @@
 #include "qddot/integrators/registry.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(stock_sundials)
+
 using namespace qddot;
 
 namespace {
@@ -65,8 +67,6 @@ void check_refused(const Words& words, const Words& fragments) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stock_sundials)
 
 BOOST_AUTO_TEST_CASE(it_writes_a_row_for_each_method_and_tolerance_in_order) {
   const Table& table = all_pairs().table;

@@ -4,15 +4,17 @@
 #include <optional>
 #include <sys/stat.h>
 
-#include <CLI/CLI.hpp>
 #include <boost/test/unit_test.hpp>
 
+#include "experiments/command/command_line.hpp"
 #include "experiments/command/point_record.hpp"
 #include "experiments/command/study.hpp"
 #include "experiments/energy_drift/drift_record.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "tests/programs/process.hpp"
+
+BOOST_AUTO_TEST_SUITE(study)
 
 using namespace qddot;
 using namespace qddot::command;
@@ -25,11 +27,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // A study `map` in the folder, with or without --resume, of a table t.csv.
 struct Case {
   Case(const Folder& folder, const std::string& options, const nlohmann::json& about = {})
-      : app("", "map") {
-    add_resume_option(app);
-    app.add_option("--size", size);
-    app.parse(options);
-    study.emplace(app, folder.path(), std::vector<std::string>{"t.csv"}, about);
+      : line("", "map") {
+    add_resume_option(line);
+    line.add_option("--size", size, "");
+    line.parse(options);
+    study.emplace(line, folder.path(), std::vector<std::string>{"t.csv"}, about);
   }
   // The piece, and whether it was made now.
   std::pair<nlohmann::json, bool> piece(const std::string& name, const nlohmann::json& value) {
@@ -41,7 +43,7 @@ struct Case {
     return {found, is_made};
   }
 
-  CLI::App app;
+  CommandLine line;
   double size = 0;
   std::optional<Study> study;
 };
@@ -57,8 +59,6 @@ std::string refusal(const Folder& folder, const std::string& options,
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(study)
 
 BOOST_AUTO_TEST_CASE(what_was_measured_is_found_again_to_the_last_bit) {
   const Folder folder;

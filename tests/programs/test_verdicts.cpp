@@ -5,6 +5,8 @@
 
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(verdicts)
+
 using namespace qddot;
 
 namespace {
@@ -15,8 +17,6 @@ Exit run_verdicts(const Folder& folder, std::vector<std::string> words) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(verdicts)
 
 BOOST_AUTO_TEST_CASE(verdicts_are_seldom_wrong_and_intervals_hold_what_is_true) {
   const Folder folder;

@@ -10,6 +10,8 @@
 #include "qddot/scene/scene_file.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(work_precision)
+
 using namespace qddot;
 
 namespace {
@@ -64,8 +66,6 @@ std::ptrdiff_t fastest_row(const Measured& m, double accuracy) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(work_precision)
 
 BOOST_AUTO_TEST_CASE(it_writes_its_tables_and_their_sidecars) {
   for (const auto& m : all_measured()) {

@@ -4,6 +4,8 @@
 #include "qddot/integrators/registry.hpp"
 #include "tests/programs/process.hpp"
 
+BOOST_AUTO_TEST_SUITE(work_precision_usage)
+
 using namespace qddot;
 
 namespace {
@@ -51,8 +53,6 @@ struct Cache {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(work_precision_usage)
 
 BOOST_AUTO_TEST_CASE(help_names_every_option) {
   const Exit result = run("work_precision", {"--help"});

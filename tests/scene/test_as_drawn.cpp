@@ -4,6 +4,8 @@
 #include "qddot/scene/reduce/part.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(as_drawn)
+
 using namespace qddot;
 using namespace qddot::reduce;
 
@@ -27,8 +29,6 @@ bool says(const std::string& sentence, const std::string& words) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(as_drawn)
 
 BOOST_AUTO_TEST_CASE(a_part_is_the_body_that_it_was_made_of) {
   for (const Generator& generator : generators()) {

@@ -4,6 +4,8 @@
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(condensed)
+
 using namespace qddot;
 
 namespace {
@@ -37,8 +39,6 @@ bool is_straight(const Scene& scene) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(condensed)
 
 BOOST_AUTO_TEST_CASE(series_have_the_sum_of_compliances_and_rest_lengths) {
   const ReducedScene reduced(two_in_series(1.2));

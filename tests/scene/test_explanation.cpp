@@ -3,6 +3,8 @@
 #include "qddot/scene/explain.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(explanation)
+
 using namespace qddot;
 
 namespace {
@@ -28,8 +30,6 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(explanation)
 
 BOOST_AUTO_TEST_CASE(it_counts_unknowns_and_gives_the_stable_step) {
   const Scene scene = draw("oscillator", {{"mass", 4}, {"stiffness", 100}});

@@ -8,6 +8,8 @@
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(fpu)
+
 using namespace qddot;
 
 namespace {
@@ -49,8 +51,6 @@ Vec force_of(const Vec& q, double w) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(fpu)
 
 BOOST_AUTO_TEST_CASE(standard_is_that_of_hairer_lubich_and_wanner) {
   const Scene scene = draw("fpu");

@@ -11,6 +11,8 @@
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
+BOOST_AUTO_TEST_SUITE(generators)
+
 using namespace qddot;
 
 namespace {
@@ -73,8 +75,6 @@ std::map<std::pair<long, double>, int> census(const Scene& scene, double unit) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(generators)
 
 BOOST_AUTO_TEST_CASE(every_generator_draws_a_valid_scene_of_its_name) {
   std::set<std::string> names;

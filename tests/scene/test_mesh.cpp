@@ -12,6 +12,8 @@
 #include "tests/folder.hpp"
 #include "tests/scene/refusal.hpp"
 
+BOOST_AUTO_TEST_SUITE(mesh)
+
 namespace fs = std::filesystem;
 using namespace qddot;
 using namespace qddot::mesh;
@@ -73,8 +75,6 @@ void check_truncations(const std::string& name, const std::string& good) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(mesh)
 
 BOOST_AUTO_TEST_CASE(all_forms_of_a_face_give_the_same_edges) {
   const Pairs expected{{0, 1}, {0, 2}, {1, 2}};

@@ -10,6 +10,8 @@
 #include "tests/folder.hpp"
 #include "tests/scene/refusal.hpp"
 
+BOOST_AUTO_TEST_SUITE(mesh_gmsh)
+
 using namespace qddot;
 using namespace qddot::mesh;
 
@@ -62,8 +64,6 @@ std::string one_element(int type, int corners) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(mesh_gmsh)
 
 BOOST_AUTO_TEST_CASE(both_versions_give_the_same_mesh) {
   for (const std::string& text : {old_format, new_format}) {

@@ -10,6 +10,8 @@
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(reduce)
+
 using namespace qddot;
 
 namespace {
@@ -79,8 +81,6 @@ State moved(const ReducedScene& reduced, std::mt19937& random) {
 constexpr double round_off = 400 * eps;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(reduce)
 
 BOOST_AUTO_TEST_CASE(only_free_nodes_have_unknowns) {
   for_random_scenes([](const Scene& scene, std::mt19937&) {

@@ -5,6 +5,8 @@
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(reduced_energy)
+
 using namespace qddot;
 
 namespace {
@@ -93,8 +95,6 @@ State moved(const ReducedScene& reduced, double change, unsigned seed) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(reduced_energy)
 
 BOOST_AUTO_TEST_CASE(each_reduction_is_found_and_can_be_left_out) {
   for (const auto& [name, scene, reduction, unknowns] : cases()) {

@@ -5,9 +5,9 @@
 #include "qddot/scene/scene_arrays.hpp"
 #include "qddot/scene/scene_file.hpp"
 
-using namespace qddot;
-
 BOOST_AUTO_TEST_SUITE(scene_arrays)
+
+using namespace qddot;
 
 namespace {
 

@@ -11,10 +11,10 @@
 #include "tests/folder.hpp"
 #include "tests/scene/scene_texts.hpp"
 
+BOOST_AUTO_TEST_SUITE(scene_file)
+
 namespace fs = std::filesystem;
 using namespace qddot;
-
-BOOST_AUTO_TEST_SUITE(scene_file)
 
 BOOST_AUTO_TEST_CASE(numbers_are_read_exactly) {
   const Scene scene = parsed(two_links);

@@ -6,6 +6,8 @@
 #include "qddot/scene/generators.hpp"
 #include "tests/scene/scene_texts.hpp"
 
+BOOST_AUTO_TEST_SUITE(scene_limits)
+
 using namespace qddot;
 
 namespace {
@@ -32,8 +34,6 @@ void check_limits(const std::string& text, std::size_t nodes, std::size_t spring
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(scene_limits)
 
 BOOST_AUTO_TEST_CASE(a_scene_that_does_not_fit_into_memory_is_refused_before_it_is_drawn) {
   const std::string million = "[generator]\nkind = \"cloth\"\nnodes = 1000\n";

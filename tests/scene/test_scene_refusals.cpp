@@ -8,6 +8,8 @@
 #include "qddot/scene/generators.hpp"
 #include "tests/scene/scene_texts.hpp"
 
+BOOST_AUTO_TEST_SUITE(scene_refusals)
+
 using namespace qddot;
 
 namespace {
@@ -29,8 +31,6 @@ void check_refusals(const std::string& good, const std::vector<Spoiled>& cases) 
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(scene_refusals)
 
 BOOST_AUTO_TEST_CASE(malformed_values_are_named) {
   check_refusals(

@@ -12,6 +12,8 @@
 #include "tests/scene/same_scene.hpp"
 #include "tests/scene/scene_texts.hpp"
 
+BOOST_AUTO_TEST_SUITE(scene_writer)
+
 using namespace qddot;
 
 namespace {
@@ -92,8 +94,6 @@ Scene random_scene(unsigned seed) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(scene_writer)
 
 BOOST_AUTO_TEST_CASE(every_generator_is_read_back_to_the_bit) {
   for (const Generator& generator : generators()) {

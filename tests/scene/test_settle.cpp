@@ -7,6 +7,8 @@
 #include "qddot/scene/settle.hpp"
 #include "tests/measure.hpp"
 
+BOOST_AUTO_TEST_SUITE(settle)
+
 using namespace qddot;
 
 namespace {
@@ -28,8 +30,6 @@ std::string refusal(const Scene& scene) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(settle)
 
 BOOST_AUTO_TEST_CASE(pendulum_hangs_and_keeps_its_velocity) {
   Scene scene = draw("pendulum", {{"mass", 2}, {"stiffness", 500}, {"rest_length", 0.7}});

@@ -4,6 +4,8 @@
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(stiff_energies)
+
 using namespace qddot;
 
 namespace {
@@ -29,8 +31,6 @@ double energy_of(const Scene& scene) {
 constexpr double stretch_energy = 4.5 + 0.0162;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stiff_energies)
 
 BOOST_AUTO_TEST_CASE(of_two_masses_it_is_their_energy_along_the_spring_but_for_the_common_motion) {
   const Eigen::Vector3d n(5. / 13, 12. / 13, 0), across(-n.y(), n.x(), 0);

@@ -7,6 +7,8 @@
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(strut)
+
 using namespace qddot;
 
 namespace {
@@ -14,8 +16,6 @@ namespace {
 double squared_sine(int j, int n) { return std::pow(std::sin(j * M_PI / (2 * (n + 1))), 2); }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(strut)
 
 BOOST_AUTO_TEST_CASE(springs_are_compressed_as_asked_and_the_column_is_bent) {
   const Scene scene = draw("strut", {{"nodes", 9},

@@ -6,6 +6,8 @@
 
 #include "tests/scene/drawn.hpp"
 
+BOOST_AUTO_TEST_SUITE(symmetry)
+
 using namespace qddot;
 
 namespace {
@@ -24,8 +26,6 @@ Scene with(Scene scene, const Change& change) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(symmetry)
 
 BOOST_AUTO_TEST_CASE(a_deviation_of_1e_9_in_anything_breaks_a_mirror) {
   BOOST_TEST(is_mirrored(cloth()));

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::measure {
 namespace {
@@ -66,7 +67,7 @@ double largest_error(const std::vector<Node>& nodes, const std::vector<Node>& re
 }  // namespace
 
 bool PartScale::is_at_rest() const {
-  return displacement <= fewest_roundings * std::numeric_limits<double>::epsilon() * extent;
+  return displacement <= fewest_roundings * machine_epsilon * extent;
 }
 
 double Scales::displacement_of(const PartScale& part) const {

@@ -12,36 +12,36 @@ namespace qddot::measure {
 namespace {
 
 // Times whose relative difference is below this differ by rounding.
-constexpr double rounding = 1e-12;
+constexpr double time_rounding = 1e-12;
 constexpr double most_samples = 1e8;
 
 }  // namespace
 
 std::vector<double> samples(double every, double until) {
   if (every == 0) return {};
-  const double count = std::floor(until / every * (1 + rounding));
+  const double count = std::floor(until / every * (1 + time_rounding));
   if (!(count <= most_samples)) {
     throw InvalidInput(fmt::format("--every {}: {} samples up to {} s are too many; allowed are {}",
                                    every, count, until, most_samples));
   }
   std::vector<double> times;
   for (double k = 0; k <= count; ++k) times.push_back(k * every);
-  if (std::abs(times.back() - until) <= rounding * until) times.back() = until;
+  if (std::abs(times.back() - until) <= time_rounding * until) times.back() = until;
   return times;
 }
 
 std::vector<double> merged(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> times;
   std::ranges::set_union(a, b, std::back_inserter(times));
-  const auto same = [](double s, double t) { return t - s <= rounding * t; };
+  const auto same = [](double s, double t) { return t - s <= time_rounding * t; };
   times.erase(std::ranges::unique(times, same).begin(), times.end());
   if (!times.empty()) times.erase(times.begin());
   return times;
 }
 
 bool is_sample(const std::vector<double>& times, double t) {
-  const auto found = std::ranges::lower_bound(times, t * (1 - rounding));
-  return found != times.end() && *found <= t * (1 + rounding);
+  const auto found = std::ranges::lower_bound(times, t * (1 - time_rounding));
+  return found != times.end() && *found <= t * (1 + time_rounding);
 }
 
 }  // namespace qddot::measure

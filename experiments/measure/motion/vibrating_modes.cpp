@@ -10,12 +10,12 @@ namespace qddot::measure {
 namespace {
 
 constexpr Index most_whole = 1500;
-constexpr double least_ratio = 1e-6;
+constexpr double least_part = 1e-6;
 
 void append(std::vector<Mode>& modes, const NaturalModes& some, Index first_rank, double largest) {
   for (Index j = 0; j < some.squares.size(); ++j) {
     const double omega = std::sqrt(std::max(0.0, some.squares[j]));
-    if (omega <= least_ratio * largest) continue;
+    if (omega <= least_part * largest) continue;
     modes.push_back(
         {static_cast<int>(first_rank + j + 1), omega, omega / largest, some.shapes.col(j)});
   }

@@ -16,7 +16,7 @@ namespace qddot::measure {
 namespace {
 
 constexpr int most_levels = 12;
-constexpr std::int64_t most_samples = 1000;  // for the scales
+constexpr std::int64_t samples_for_scales = 1000;  // for the scales
 
 // One way of computing the motion, finer with each level.
 struct Way {
@@ -34,7 +34,7 @@ std::optional<Solution> resolved(const ReducedScene& scene, const char* name, do
   const double w = frequency_bound(scene.system(), scene.initial().q);
   const double least = std::max(16.0, std::ceil(until * w / coarsest * std::exp2(level)));
   if (!(least < most_steps)) return {};
-  const auto samples = std::min(static_cast<std::int64_t>(least), most_samples);
+  const auto samples = std::min(static_cast<std::int64_t>(least), samples_for_scales);
   // A whole number of steps from one sample to the next.
   const double h =
       until / static_cast<double>(samples) / std::ceil(least / static_cast<double>(samples));

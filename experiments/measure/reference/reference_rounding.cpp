@@ -5,11 +5,10 @@
 #include <random>
 
 #include "qddot/measure/motion/modal_shares.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::measure {
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 double reach(const PartScale& part) { return std::max(part.extent, part.displacement); }
 
@@ -46,22 +45,23 @@ RoundingRun::RoundingRun(const ReducedScene& scene, const Solution& composed, do
       scales_(composed.scales),
       knob_(composed.knob),
       steps_(until / composed.knob),
-      start_(displaced_start(scene, scales_, epsilon)) {
+      start_(displaced_start(scene, scales_, machine_epsilon)) {
   // Masses and stiffnesses are rounded too. If all frequencies are off by one rounding, each state
   // comes early or late by one of the time.
-  moved_ = composition(scene, start_, until * (1 + epsilon), knob_, seconds);
+  moved_ = composition(scene, start_, until * (1 + machine_epsilon), knob_, seconds);
   if (!moved_) return;
   effect_ = errors_between(scene, moved_->end, composed.end, 0, scales_);
   const State& initial = scene.initial();
   const double kinetic = scene.kinetic(initial), potential = scene.potential(initial);
   effect_.energy =
       errors_between(scene, start_, start_, scene.energy(initial), scales_).energy +
-      (scales_.kinetic > 0 ? epsilon * (kinetic + std::abs(potential)) / scales_.kinetic : 0);
+      (scales_.kinetic > 0 ? machine_epsilon * (kinetic + std::abs(potential)) / scales_.kinetic
+                           : 0);
   const Vec lengths = by_unknown(scene, scales_, reach);
   for (Index i = 0; i < lengths.size(); ++i) {
     if (lengths[i] == 0) continue;
-    growth_ =
-        std::max(growth_, std::abs(moved_->end.q[i] - composed.end.q[i]) / (epsilon * lengths[i]));
+    growth_ = std::max(
+        growth_, std::abs(moved_->end.q[i] - composed.end.q[i]) / (machine_epsilon * lengths[i]));
   }
 }
 
@@ -96,7 +96,7 @@ std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const ReducedSc
   for (PartScale& part : scales.parts) {
     if (part.extent == 0) part.displacement = composed.scales.displacement;
   }
-  const State pushed = displaced_start(drawn, scales, epsilon);
+  const State pushed = displaced_start(drawn, scales, machine_epsilon);
   const auto moved = composition(drawn, pushed, until, composed.knob, seconds);
   if (!moved) return {};
   std::vector<double> times, differences;
@@ -115,8 +115,9 @@ void measure_shares(Reference& reference, const ReducedScene& scene, const Solut
                     double until, double seconds) {
   const auto modes = ModalShares::at_equilibrium(scene);
   if (!modes) return;
-  const auto other = composition(scene, displaced_start(scene, composed.scales, std::sqrt(epsilon)),
-                                 until, composed.knob, seconds);
+  const auto other =
+      composition(scene, displaced_start(scene, composed.scales, std::sqrt(machine_epsilon)), until,
+                  composed.knob, seconds);
   if (!other) return;
   reference.modal_shares = modes->mean(composed.path);
   reference.modal_shares_floor = total_variation(reference.modal_shares, modes->mean(other->path));

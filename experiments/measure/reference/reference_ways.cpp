@@ -1,7 +1,6 @@
 #include "qddot/measure/reference/reference_ways.hpp"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <boost/numeric/odeint.hpp>
@@ -10,6 +9,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::measure {
 namespace {
@@ -135,7 +135,7 @@ Reference joined(const ReducedScene& scene, const Solution& one, const Solution&
   certified.energy = std::max(certified.energy, drift.energy);
   for (double* part : {&certified.position, &certified.velocity, &certified.energy}) {
     // Two roundings of the same number may agree by chance.
-    *part = std::max(safety * *part, std::numeric_limits<double>::epsilon());
+    *part = std::max(safety * *part, machine_epsilon);
   }
   Reference reference{.end = one.end,
                       .energy = energy,

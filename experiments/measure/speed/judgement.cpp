@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "qddot/model/machine_epsilon.hpp"
+
 namespace qddot::measure {
 
 double judged_error(const Point& point, const Reference& reference) {
@@ -14,8 +16,7 @@ double judged_error(const Point& point, const Reference& reference) {
 
 double certified(const Reference& reference) {
   // E(0) is known exactly; what rounding makes of E at later times is the run's own.
-  return reference.is_beyond_horizon() ? std::numeric_limits<double>::epsilon()
-                                       : reference.certified.position;
+  return reference.is_beyond_horizon() ? machine_epsilon : reference.certified.position;
 }
 
 Known known(double error, double certified) {

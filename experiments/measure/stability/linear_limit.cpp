@@ -11,7 +11,7 @@ namespace qddot::measure {
 namespace {
 
 constexpr int points = 400;  // of four decades
-constexpr double rounding = 1e-12;
+constexpr double growth_rounding = 1e-12;
 // Where two roots only touch, rounding parts them by its own root.
 constexpr double parted = 1e-6;
 
@@ -19,7 +19,7 @@ double growth(const Method& method, double h_omega) {
   return linear_step(method, h_omega).spectral_radius() - 1;
 }
 
-bool grows(const Method& method, double h_omega) { return growth(method, h_omega) > rounding; }
+bool grows(const Method& method, double h_omega) { return growth(method, h_omega) > growth_rounding; }
 
 // Half the sum of the two leading roots: below 1 where they are a pair on the unit circle, above
 // where they have parted along the real axis.
@@ -41,7 +41,7 @@ double nearest_to_parting(const Method& method, double a, double c) {
 }
 
 double bisected(const Method& method, double stable, double unstable) {
-  while (unstable - stable > rounding * unstable) {
+  while (unstable - stable > growth_rounding * unstable) {
     const double middle = (stable + unstable) / 2;
     (grows(method, middle) ? unstable : stable) = middle;
   }
@@ -51,7 +51,7 @@ double bisected(const Method& method, double stable, double unstable) {
 // Whether what is found at the limit is no threshold: a little above it the growth is still no more
 // than rounding, as of a power of h w.
 bool fades_out(const Method& method, double limit) {
-  return growth(method, (1 + 1e-5) * limit) < 2 * rounding;
+  return growth(method, (1 + 1e-5) * limit) < 2 * growth_rounding;
 }
 
 }  // namespace

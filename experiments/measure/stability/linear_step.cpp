@@ -18,7 +18,7 @@ using Complex = std::complex<double>;
 using Eigen::Matrix4d;
 
 // What rounding may leave of the responses of an oscillator.
-constexpr double rounding = 1e-11;
+constexpr double root_rounding = 1e-11;
 
 // The roots of a 2 x 2 matrix. Near a double root t +- sqrt(t^2 - d) keeps what an iteration loses.
 std::vector<Complex> pair_of_roots(const Eigen::Matrix2d& a) {
@@ -130,7 +130,7 @@ LinearStep linear_step(const Method& method, double h_omega, Options options) {
     throw std::invalid_argument(method.name + " has no step of its own: it chooses its steps");
   }
   options.step_size = h_omega;  // w = 1
-  return {h_omega, roots_of(respond(method, options), rounding)};
+  return {h_omega, roots_of(respond(method, options), root_rounding)};
 }
 
 }  // namespace qddot::measure

@@ -12,6 +12,7 @@
 #include <Eigen/QR>
 
 #include "qddot/measure/trend/block_covariance.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::measure {
 namespace {
@@ -49,7 +50,7 @@ struct Fit {
 class Series {
  public:
   explicit Series(const Vec& y) : y_(y) {
-    const double rounding = std::numeric_limits<double>::epsilon() * y.lpNorm<Eigen::Infinity>();
+    const double rounding = machine_epsilon * y.lpNorm<Eigen::Infinity>();
     least_ = std::max(static_cast<double>(y.size()) * rounding * rounding,
                       std::numeric_limits<double>::min());
   }

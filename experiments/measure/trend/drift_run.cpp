@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -10,6 +9,7 @@
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/trend/sample_steps.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::measure {
 namespace {
@@ -133,8 +133,7 @@ DriftRun run_drift(const Method& method, const Options& options, const ReducedSc
   const double taken = static_cast<double>(std::max<std::int64_t>(run.summary.counts.steps, 1));
   run.scales = {scales.excess, scales.frequency, scales.rounding, state.t / taken};
   run.energy = trend_of(recorder.energies(), run.summary.outcome, run.scales);
-  const TrendScales of_momenta{.rounding = std::numeric_limits<double>::epsilon(),
-                               .step = run.scales.step};
+  const TrendScales of_momenta{.rounding = machine_epsilon, .step = run.scales.step};
   run.linear = recorder.linear(of_momenta);
   run.angular = recorder.angular(of_momenta);
   run.path = path_of(recorder.energies(), scales);

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/natural_modes.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/speed/measurement.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::measure {
@@ -51,7 +51,7 @@ class Look {
     if (scales_.kinetic == 0) scales_.kinetic = energy > 0 ? energy : 1;
     if (scales_.linear == 0) scales_.linear = 1;
     if (scales_.angular == 0) scales_.angular = 1;
-    scales_.rounding = std::numeric_limits<double>::epsilon() * size_ / scales_.kinetic;
+    scales_.rounding = machine_epsilon * size_ / scales_.kinetic;
   }
 
  private:

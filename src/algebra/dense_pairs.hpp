@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace qddot {
+
+// Eigenvalues and, in columns, their vectors.
+struct EigenPairs {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+
+// Eigenpairs of small matrices, values ascending. Of symmetric matrices the lower triangle is read.
+// Here alone Eigen's solvers are instantiated, which takes seconds.
+
+// A x = w x; vectors of length 1.
+EigenPairs dense_pairs(const Eigen::MatrixXd& a);
+Eigen::VectorXd dense_values(const Eigen::Ref<const Eigen::MatrixXd>& a);
+// A x = w B x with a positive definite B; x'Bx = 1.
+EigenPairs dense_pairs(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+// The values of a symmetric tridiagonal matrix with these numbers on and beside the diagonal.
+Eigen::VectorXd tridiagonal_values(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside);
+
+}  // namespace qddot
