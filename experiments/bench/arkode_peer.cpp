@@ -34,7 +34,7 @@ class Erk4 final : public Peer {
  public:
   Erk4() : Peer("ARKODE ERK4", Knob::rtol) {}
 
-  std::vector<double> ladder(const Problem&) const override { return tolerances(2); }
+  std::vector<double> values(const Problem&) const override { return tolerances(2); }
 
   Run run(const Problem& problem, ForceKind force, double rtol, double limit) override {
     const State& initial = problem.scene.initial();

@@ -5,7 +5,7 @@
 //   bench cloth@0.5 my.toml --point-limit 5 --out results/mine
 //
 //  1. Each peer is set up as its users would, compiled with the same flags, and goes down its
-//     ladder of tolerances or step sizes: once with f as a user writes it, a loop over springs (in
+//     series of tolerances or step sizes: once with f as a user writes it, a loop over springs (in
 //     Python NumPy with a sparse matrix), and once with ours, where it can take one. It is given
 //     the scene as it is: pinned nodes are no unknowns, nothing else is left out.
 //  2. Our explicit methods run on the smallest system of the scene (reduced: all), and on the one
@@ -75,7 +75,7 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--out", a.out, "the folder for bench.csv and ratios.csv");
 }
 
-// A scene and its horizon [s].
+// A scene and its end time [s].
 struct Entry {
   SceneChoice choice;
   Scene drawn;
@@ -86,14 +86,14 @@ Entry entry_of(const std::string& word) {
   const auto at = word.rfind('@');
   SceneChoice choice{.name = word.substr(0, at), .no_reduce = {}};
   const Scene drawn = load(choice);
-  if (at == word.npos) return {choice, drawn, horizon(0, false, drawn)};
+  if (at == word.npos) return {choice, drawn, end_time(0, false, drawn)};
   double until = 0;
   const char *first = word.data() + at + 1, *last = word.data() + word.size();
   if (const auto [end, error] = std::from_chars(first, last, until);
       error != std::errc() || end != last) {
     throw InvalidInput(fmt::format("{}: behind @ stands the time to run to in s, a number", word));
   }
-  return {choice, drawn, horizon(until, true, drawn)};
+  return {choice, drawn, end_time(until, true, drawn)};
 }
 
 // The library through which Python calls our f, where it was built.
@@ -154,7 +154,7 @@ void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
   for (const bool smallest : {true, false}) {
     const Recall recall = recall_by(study, prefix + (smallest ? "reduced " : "as drawn "));
     Pace own = a.pace;
-    own.enough = accuracies.back() / 30;  // a peer's run may be better than it need be
+    own.finest_error = accuracies.back() / 30;  // a peer's run may be better than it need be
     for (const std::string& method : a.methods) {
       const auto solver = our_method(method, smallest);
       sweeps.push_back(sweep(*solver, ForceKind::ours, problem, own, recall, report));
@@ -164,14 +164,14 @@ void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
       for (Measured& point : last.points) {
         if (smallest) point.unknowns = problem.smallest.system().size();
         // What takes several times as long as the most accurate run is nowhere the fastest.
-        if (point.is_good() && point.error <= own.enough) {
+        if (point.is_good() && point.error <= own.finest_error) {
           own.limit = std::min(own.limit, 4 * point.seconds);
         }
       }
     }
   }
   Pace theirs = a.pace;
-  theirs.enough = accuracies.back();
+  theirs.finest_error = accuracies.back();
   const Recall recall = recall_by(study, prefix);
   for (const auto& peer : peers) {
     for (const ForceKind force : peer->forces()) {

@@ -30,7 +30,7 @@ class Bullet final : public Peer {
   Bullet() : Peer("Bullet soft body", Knob::step_size) {}
 
   std::vector<ForceKind> forces() const override { return {ForceKind::its_own}; }
-  std::vector<double> ladder(const Problem& problem) const override {
+  std::vector<double> values(const Problem& problem) const override {
     return step_sizes(problem, 3, 4);
   }
 

@@ -37,7 +37,7 @@ class Dopri5 final : public Peer {
  public:
   Dopri5() : Peer("odeint dopri5", Knob::rtol) {}
 
-  std::vector<double> ladder(const Problem&) const override { return tolerances(2); }
+  std::vector<double> values(const Problem&) const override { return tolerances(2); }
 
   Run run(const Problem& problem, ForceKind force, double rtol, double limit) override {
     const State& initial = problem.scene.initial();
@@ -69,7 +69,7 @@ class McLachlan final : public Peer {
  public:
   McLachlan() : Peer("odeint McLachlan", Knob::step_size) {}
 
-  std::vector<double> ladder(const Problem& problem) const override {
+  std::vector<double> values(const Problem& problem) const override {
     return step_sizes(problem, 10, 4);
   }
 

@@ -37,7 +37,7 @@ class OurMethod final : public Peer {
       : Peer(method.name, method.knob), method_(method), is_smallest_(smallest) {}
 
   std::vector<ForceKind> forces() const override { return {ForceKind::ours}; }
-  std::vector<double> ladder(const Problem& problem) const override {
+  std::vector<double> values(const Problem& problem) const override {
     return method_.knob == Knob::rtol ? tolerances(4) : step_sizes(problem, 10, 4);
   }
 
@@ -56,7 +56,7 @@ class StockImplicit final : public Peer {
   explicit StockImplicit(const Method& method) : Peer(method.name, Knob::rtol), method_(method) {}
 
   bool is_stock_implicit() const override { return true; }
-  std::vector<double> ladder(const Problem&) const override { return tolerances(1); }
+  std::vector<double> values(const Problem&) const override { return tolerances(1); }
 
   Run run(const Problem& problem, ForceKind force, double rtol, double limit) override {
     const PlainForce plain(problem.start);

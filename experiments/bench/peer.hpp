@@ -36,7 +36,7 @@ class Peer {
   // that is slow to start may make and time several. Never throws what the solver throws.
   virtual Run run(const Problem& problem, ForceKind force, double value, double limit) = 0;
   // Values of the knob from coarse to fine.
-  virtual std::vector<double> ladder(const Problem& problem) const = 0;
+  virtual std::vector<double> values(const Problem& problem) const = 0;
   // Whose f it can be given.
   virtual std::vector<ForceKind> forces() const { return {ForceKind::plain, ForceKind::ours}; }
   // Whether it is one of SUNDIALS' implicit methods.
@@ -50,7 +50,7 @@ class Peer {
 // 1e-2 to 1e-13, so many in a factor of ten.
 std::vector<double> tolerances(int in_a_decade);
 // From h w = 16 of the fastest vibration at the start, beyond what methods of a dozen stages are
-// stable to, downwards, so many in a factor of ten; each divides the horizon. [s]
+// stable to, downwards, so many in a factor of ten; each divides the run. [s]
 std::vector<double> step_sizes(const Problem& problem, int in_a_decade, int decades);
 
 }  // namespace qddot::bench

@@ -49,10 +49,10 @@ State state_of(const std::vector<Node>& nodes, int dimension, double t) {
   return state;
 }
 
-Problem::Problem(const Scene& drawn, const Scene& started, double horizon,
-                 const std::string& folder, const nlohmann::json& origin)
+Problem::Problem(const Scene& drawn, const Scene& started, double end, const std::string& folder,
+                 const nlohmann::json& origin)
     : start(started),
-      until(horizon),
+      until(end),
       smallest(start),
       reference(reference_of(drawn, start, smallest, until, folder, origin)),
       scene(start, Reductions::only({Reduction::pins})),

@@ -12,11 +12,11 @@ using namespace measure;
 // A scene as its user hands it to somebody else's solver: M q'' = f(q) over the coordinates of the
 // free nodes, in the order of the scene, and nothing else left out.
 struct Problem {
-  // `started`: the scene as its motion starts, `horizon` [s]; `drawn` is what the reference, which
+  // `started`: the scene as its motion starts, `until` [s]; `drawn` is what the reference, which
   // is kept in `folder`, is written of, with `origin`. Throws InvalidInput where a free node has no
   // mass, and where the positions at the end are beyond the horizon of a chaotic motion, since
   // nobody knows them; and NoReference.
-  Problem(const Scene& drawn, const Scene& started, double horizon, const std::string& folder,
+  Problem(const Scene& drawn, const Scene& started, double until, const std::string& folder,
           const nlohmann::json& origin);
 
   // The position error of an end state (see Errors); infinite where it is no number.

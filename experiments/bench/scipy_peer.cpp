@@ -128,7 +128,7 @@ class SciPy final : public Peer {
         force_library_(std::move(force_library)) {}
 
   // What is implicit takes minutes.
-  std::vector<double> ladder(const Problem&) const override {
+  std::vector<double> values(const Problem&) const override {
     return tolerances(method_ == "DOP853" ? 2 : 1);
   }
   std::vector<ForceKind> forces() const override {

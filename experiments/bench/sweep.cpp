@@ -39,7 +39,7 @@ Run timed(Peer& peer, ForceKind force, const Problem& problem, double value, con
   return run;
 }
 
-// One point of the ladder.
+// One point.
 Measured measured(Peer& peer, ForceKind force, const Problem& problem, double value,
                   const Pace& pace) {
   const Run run = timed(peer, force, problem, value, pace);
@@ -66,7 +66,7 @@ Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pac
   Sweep all{.is_stock_implicit = peer.is_stock_implicit()};
   double best = std::numeric_limits<double>::infinity();
   int idle = 0;
-  for (const double value : peer.ladder(problem)) {
+  for (const double value : peer.values(problem)) {
     const std::string name = fmt::format("{} {} {:.17g}", peer.name(), force_name(force), value);
     const Measured point =
         recall(name, [&] { return measured(peer, force, problem, value, pace); });
@@ -77,7 +77,7 @@ Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pac
     all.points.push_back(point);
     report(point);
     const bool is_idle = idle >= most_idle && best < converging;
-    if (point.outcome == Outcome::over_budget || best <= pace.enough || is_idle) break;
+    if (point.outcome == Outcome::over_budget || best <= pace.finest_error || is_idle) break;
   }
   return all;
 }

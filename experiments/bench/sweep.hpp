@@ -35,14 +35,14 @@ struct Sweep {
 struct Pace {
   double limit = 20;
   int repeats = 5;
-  double enough = 1e-8;
+  double finest_error = 1e-8;
 };
 
 // Gives the point of that name, which may be known already, or takes it.
 using Recall =
     std::function<Measured(const std::string& name, const std::function<Measured()>& take)>;
 
-// A peer down its ladder, until its error is small enough or no longer falls, or a run is over
+// A peer over its values, until its error is small enough or no longer falls, or a run is over
 // budget. `report` sees each point as it comes.
 Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
             const Recall& recall, const std::function<void(const Measured&)>& report);

@@ -12,7 +12,7 @@ namespace qddot::command {
 void require_rtol(double rtol, const std::string& option);
 
 // Throws InvalidInput unless h [s] is finite, greater than 0, its square a number of full precision
-// and, where a horizon `until` [s] is given, at least 1e-15 of that.
+// and, where an end time `until` [s] is given, at least 1e-15 of that.
 void require_step_size(double h, const std::string& option, double until = 0);
 
 // Throws InvalidInput unless the absolute tolerance [m and m/s] is below one of Options::length and

@@ -34,8 +34,8 @@ std::string beginning_of(const std::string& path, std::size_t most) {
 
 // Whether it is one of qddot's JSON files: each says of which sources the program was made.
 bool is_own_json(const std::string& path) {
-  constexpr std::size_t enough = 1 << 20;  // even with a long command line
-  const std::string text = beginning_of(path, enough);
+  constexpr std::size_t longest_beginning = 1 << 20;  // even with a long command line
+  const std::string text = beginning_of(path, longest_beginning);
   return text.starts_with('{') && (text.find("\"source_hash\"") != text.npos ||
                                    text.find("\"certified_position\"") != text.npos);
 }

@@ -9,7 +9,7 @@
 namespace qddot::measure {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, position, velocity, energy)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OnTheWay, energy, momentum, modal_shares)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PathErrors, energy, momentum, modal_shares)
 
 }  // namespace qddot::measure
 
@@ -21,7 +21,7 @@ nlohmann::json record_of(const Point& p) {
           {"outcome", static_cast<int>(p.outcome)},
           {"t_reached", p.t_reached},
           {"errors", p.errors},
-          {"on_the_way", p.on_the_way},
+          {"path", p.path},
           {"time", p.time},
           {"time_min", p.time_min},
           {"setup", p.setup},
@@ -36,7 +36,7 @@ Point point_of(const nlohmann::json& record) {
           .outcome = static_cast<Outcome>(record.at("outcome").get<int>()),
           .t_reached = record.at("t_reached"),
           .errors = record.at("errors"),
-          .on_the_way = record.at("on_the_way"),
+          .path = record.at("path"),
           .time = record.at("time"),
           .time_min = record.at("time_min"),
           .setup = record.at("setup"),

@@ -56,9 +56,8 @@ void point_row(Csv& csv, const std::string& scene, const Point& p, double certif
           c.force_evaluations, c.stiffness_evaluations, c.factorizations, c.solves,
           c.newton_iterations, c.indefinite_factorizations, order_mean(c), c.order_reductions,
           c.stability_limited_steps, p.timed_runs, family_name(p.method->family), p.method->order,
-          measured(p.on_the_way.energy), measured(p.on_the_way.momentum),
-          measured(p.on_the_way.modal_shares), measured(position.at_least),
-          measured(position.at_most), p.energy_growth);
+          measured(p.path.energy), measured(p.path.momentum), measured(p.path.modal_shares),
+          measured(position.at_least), measured(position.at_most), p.energy_growth);
 }
 
 }  // namespace qddot::command

@@ -126,16 +126,16 @@ void require_given(const std::string& text, const std::string& option, const std
   if (text.empty()) throw InvalidInput(fmt::format("{} is missing; it is {}", option, meaning));
 }
 
-double horizon(double asked, bool is_asked, const Scene& scene) {
+double end_time(double asked, bool is_asked, const Scene& scene) {
   if (is_asked) {
-    require_positive(asked, "--until", "the horizon in s");
+    require_positive(asked, "--until", "the time to run to in s");
     return asked;
   }
   if (!scene.until) {
-    throw InvalidInput(
-        fmt::format("--until is missing, and scene {} has no horizon of its own; it is the time to "
-                    "run to in s, greater than 0",
-                    scene.name));
+    throw InvalidInput(fmt::format(
+        "--until is missing, and scene {} has no end time of its own; it is the time to "
+        "run to in s, greater than 0",
+        scene.name));
   }
   return *scene.until;
 }

@@ -37,9 +37,9 @@ void require_repeats(int repeats);
 // Throws InvalidInput, naming what is missing, if `text` is empty.
 void require_given(const std::string& text, const std::string& option, const std::string& meaning);
 
-// The horizon [s]: what the user asked for, else the scene's own. Throws InvalidInput if there is
+// The end time [s]: what the user asked for, else the scene's own. Throws InvalidInput if there is
 // neither or it is not positive.
-double horizon(double asked, bool is_asked, const Scene& scene);
+double end_time(double asked, bool is_asked, const Scene& scene);
 
 // Creates the folder and its parents; throws InvalidInput if that cannot be done.
 void require_folder(const std::string& folder);

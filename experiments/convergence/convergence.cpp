@@ -6,7 +6,7 @@
 //  1. The reference is work_precision's (reference.json, shared with it).
 //     Beyond the horizon of a chaotic motion nobody knows the positions, and nothing is run: each
 //     method has one row of empty fields.
-//  2. h starts where it resolves the fastest frequency at the start (h w = 1; a 16th of the horizon
+//  2. h starts where it resolves the fastest frequency at the start (h w = 1; a 16th of the run
 //     for implicit methods) and is halved until the error nears what the reference certifies, or
 //     a run takes longer than ten seconds.
 //  3. order.csv holds the errors and log2 of the ratio of successive position errors, which tends
@@ -129,7 +129,7 @@ int convergence(const CommandLine& line, const Arguments& a,
                 const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, line.has("--until"), drawn);
+  const double until = end_time(a.until, line.has("--until"), drawn);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   require_reference_exists(scene, a.scene.name);

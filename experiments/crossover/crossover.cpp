@@ -7,7 +7,7 @@
 //  1. For each ratio a scene (stiff_scenes.hpp) and a reference that is good to a tenth of the
 //     finest accuracy, kept in ratio_R/reference.json for the next time (agreed_reference).
 //  2. All methods but SUNDIALS' stock ways, which are slower than the same ones with the structure,
-//     climb their ladders as in work_precision, those first that were fast at the ratio before. One
+//     are swept as in work_precision, those first that were fast at the ratio before. One
 //     that will be 20 times slower than the fastest at each accuracy that it has yet to reach is
 //     not followed further; where an explicit one is that slow throughout it is not tried at larger
 //     ratios.
@@ -47,10 +47,10 @@
 #include "experiments/command/reference_file.hpp"
 #include "experiments/command/scene_choice.hpp"
 #include "experiments/command/study.hpp"
-#include "experiments/crossover/race.hpp"
+#include "experiments/crossover/pruning.hpp"
 #include "experiments/crossover/stiff_scenes.hpp"
 #include "qddot/measure/motion/interruption.hpp"
-#include "qddot/measure/speed/ladder.hpp"
+#include "qddot/measure/speed/sweep.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::crossover {
@@ -62,7 +62,7 @@ namespace {
 constexpr double largest_ratio = 1e9;  // beyond it rounding of stiff forces is felt
 constexpr int least_nodes = 4, most_nodes = 1000;
 // What the reference is asked for: a tenth of the finest accuracy.
-constexpr double needed = Race::accuracies.back() / 10;
+constexpr double needed = Pruning::accuracies.back() / 10;
 
 struct Arguments {
   std::string family = "frame";
@@ -115,7 +115,7 @@ void require_ratios(std::vector<double>& ratios) {
 }
 
 // One ratio: its scene, and what was measured on it.
-struct Rung {
+struct RatioStudy {
   double ratio;
   Scene drawn;
   std::unique_ptr<ReducedScene> scene;
@@ -124,19 +124,19 @@ struct Rung {
   std::vector<Placing> placings{};
 };
 
-std::vector<Rung> rungs(const Arguments& a, const StiffFamily& family, double until) {
+std::vector<RatioStudy> ratio_studies(const Arguments& a, const StiffFamily& family, double until) {
   const int nodes = a.nodes > 0 ? a.nodes : family.nodes;
-  std::vector<Rung> all;
+  std::vector<RatioStudy> all;
   for (const double ratio : a.ratios) {
-    Rung rung{.ratio = ratio, .drawn = family.draw(nodes, until, ratio), .scene = nullptr};
-    rung.scene = std::make_unique<ReducedScene>(rung.drawn);
-    all.push_back(std::move(rung));
+    RatioStudy one{.ratio = ratio, .drawn = family.draw(nodes, until, ratio), .scene = nullptr};
+    one.scene = std::make_unique<ReducedScene>(one.drawn);
+    all.push_back(std::move(one));
   }
   return all;
 }
 
 // At the largest ratio springs are named stiff if they are at any.
-std::vector<const Method*> competitors(const Arguments& a, const Rung& stiffest) {
+std::vector<const Method*> competitors(const Arguments& a, const RatioStudy& stiffest) {
   auto selected = select_methods(a.methods, *stiffest.scene, a.family);
   if (a.methods.empty()) {
     std::erase_if(selected, [](const Method* method) { return method->is(Trait::stock_solver); });
@@ -154,58 +154,58 @@ std::vector<Kind> kinds_of(const std::vector<const Method*>& methods) {
 }
 
 // Measures the methods at one ratio and at the next: what is learnt at one serves at the next.
-class Climbers {
+class Sweeps {
  public:
-  Climbers(std::vector<const Method*> methods, const Effort& effort)
+  Sweeps(std::vector<const Method*> methods, const Effort& effort)
       : methods_(std::move(methods)), effort_(effort) {}
 
-  // Throws Interrupted where the program is to end; the points so far are then in the rung.
-  void measure(Study& study, Rung& rung, double until) {
-    Race race(*rung.reference);
+  // Throws Interrupted where the program is to end; the points so far are then in `one`.
+  void measure(Study& study, RatioStudy& one, double until) {
+    Pruning pruning(*one.reference);
     std::map<const Method*, std::vector<Point>> points;
     try {
-      climb_all(study, rung, until, race, points);
+      sweep_all(study, one, until, pruning, points);
     } catch (const Interrupted&) {
-      gather(points, rung);
+      gather(points, one);
       throw;
     }
-    gather(points, rung);
+    gather(points, one);
     std::map<const Method*, double> handicaps;
     for (const Method* method : methods_) {
       const auto own = points.find(method);
-      handicaps[method] = own == points.end() ? 1 : race.handicap(own->second);
+      handicaps[method] = own == points.end() ? 1 : pruning.handicap(own->second);
     }
     std::erase_if(methods_, [&](const Method* method) {
-      return kind_of(*method) == Kind::explicit_steps && handicaps[method] > Race::hopeless;
+      return kind_of(*method) == Kind::explicit_steps && handicaps[method] > Pruning::too_slow;
     });
     std::ranges::stable_sort(methods_, {}, [&](const Method* method) { return handicaps[method]; });
   }
 
  private:
-  void climb_all(Study& study, const Rung& rung, double until, Race& race,
+  void sweep_all(Study& study, const RatioStudy& one, double until, Pruning& pruning,
                  std::map<const Method*, std::vector<Point>>& points) {
     for (const Method* method : methods_) {
-      if (!applies_to(*method, rung.scene->system())) continue;
+      if (!applies_to(*method, one.scene->system())) continue;
       Effort effort = effort_;
-      effort.seconds = std::min(effort.seconds, race.seconds_of_interest());
-      effort.recall = points_of(study, fmt::format("{:.17g} ", rung.ratio));
+      effort.seconds = std::min(effort.seconds, pruning.seconds_of_interest());
+      effort.recall = points_of(study, fmt::format("{:.17g} ", one.ratio));
       std::vector<Point>& own = points[method];
-      climb(
-          *method, *rung.scene, until, *rung.reference, effort,
+      sweep(
+          *method, *one.scene, until, *one.reference, effort,
           [&](const Point& point) {
-            race.take(point);
+            pruning.take(point);
             own.push_back(point);
-            show_progress(fmt::format("ratio {:g}: {}", rung.ratio, describe(point)));
+            show_progress(fmt::format("ratio {:g}: {}", one.ratio, describe(point)));
           },
-          [&](const Point& point) { return race.is_over(point); });
+          [&](const Point& point) { return pruning.is_over(point); });
       std::ranges::sort(own, std::ranges::greater(), &Point::value);
     }
   }
 
   // Into the order of the registry, as the map has it.
-  static void gather(const std::map<const Method*, std::vector<Point>>& points, Rung& rung) {
+  static void gather(const std::map<const Method*, std::vector<Point>>& points, RatioStudy& one) {
     for (const auto& [method, own] : points) {
-      rung.points.insert(rung.points.end(), own.begin(), own.end());
+      one.points.insert(one.points.end(), own.begin(), own.end());
     }
   }
 
@@ -223,39 +223,39 @@ double time_of(const Point* point) {
   return point ? point->time : std::numeric_limits<double>::quiet_NaN();
 }
 
-void tabulate(Csv& winners, Csv& of_kinds, Csv& points, const Rung& rung,
+void tabulate(Csv& winners, Csv& of_kinds, Csv& points, const RatioStudy& one,
               const std::vector<Kind>& competing) {
-  for (const Placing& p : rung.placings) {
-    winners.row(rung.ratio, p.accuracy, name_of(p.fastest), time_of(p.fastest),
-                name_of(p.runner_up), time_of(p.runner_up) / time_of(p.fastest));
+  for (const Placing& p : one.placings) {
+    winners.row(one.ratio, p.accuracy, name_of(p.fastest), time_of(p.fastest), name_of(p.runner_up),
+                time_of(p.runner_up) / time_of(p.fastest));
     for (const Kind kind : competing) {
       const Point* fastest = p.of_kind[static_cast<std::size_t>(kind)];
-      of_kinds.row(rung.ratio, p.accuracy, kind_name(kind), name_of(fastest), time_of(fastest));
+      of_kinds.row(one.ratio, p.accuracy, kind_name(kind), name_of(fastest), time_of(fastest));
     }
   }
-  for (const Point& point : rung.points) {
-    points.field(rung.ratio);
-    point_row(points, rung.drawn.name, point, rung.reference->certified.position);
+  for (const Point& point : one.points) {
+    points.field(one.ratio);
+    point_row(points, one.drawn.name, point, one.reference->certified.position);
   }
 }
 
 nlohmann::json origin_of(const std::vector<std::string>& command_line, const std::string& family,
-                         double until, const std::vector<Rung>& all) {
+                         double until, const std::vector<RatioStudy>& all) {
   nlohmann::json origin = provenance(command_line, all.front().drawn);
   origin.erase("scene");
   origin["family"] = family;
   origin["until"] = until;
   origin["scenes"] = nlohmann::json::array();
-  for (const Rung& rung : all) {
-    const auto whole = provenance(command_line, rung.drawn, rung.drawn, *rung.scene);
-    nlohmann::json entry = {{"stiffness_ratio", rung.ratio},
+  for (const RatioStudy& one : all) {
+    const auto whole = provenance(command_line, one.drawn, one.drawn, *one.scene);
+    nlohmann::json entry = {{"stiffness_ratio", one.ratio},
                             {"scene", whole.at("scene")},
                             {"reduced", whole.at("reduced")},
                             {"certified_position", nullptr},
                             {"reference_made_by", nullptr}};
-    if (rung.reference) {
-      entry["certified_position"] = rung.reference->certified.position;
-      entry["reference_made_by"] = rung.reference->made_by;
+    if (one.reference) {
+      entry["certified_position"] = one.reference->certified.position;
+      entry["reference_made_by"] = one.reference->made_by;
     }
     origin["scenes"].push_back(entry);
   }
@@ -263,8 +263,8 @@ nlohmann::json origin_of(const std::vector<std::string>& command_line, const std
 }
 
 // For each accuracy the fastest methods, with the ratios from and to which each is.
-void print_winners(const std::vector<Rung>& all) {
-  for (std::size_t row = 0; row < Race::accuracies.size(); ++row) {
+void print_winners(const std::vector<RatioStudy>& all) {
+  for (std::size_t row = 0; row < Pruning::accuracies.size(); ++row) {
     std::vector<std::string> words;
     for (std::size_t i = 0; i < all.size();) {
       const std::string name = name_of(all[i].placings[row].fastest);
@@ -276,30 +276,29 @@ void print_winners(const std::vector<Rung>& all) {
                           : fmt::format("{} {:g} to {:g}", what, all[i].ratio, all[last].ratio));
       i = last + 1;
     }
-    fmt::print("{:.0e}  {}\n", Race::accuracies[row], fmt::join(words, ", "));
+    fmt::print("{:.0e}  {}\n", Pruning::accuracies[row], fmt::join(words, ", "));
   }
 }
 
 // The reference and the methods at one ratio. False, after a sentence, where there is no reference.
-bool measure_rung(Study& study, const std::string& out,
-                  const std::vector<std::string>& command_line, double until, Climbers& climbers,
-                  Rung& rung) {
-  const std::string folder = fmt::format("{}/ratio_{:.9g}", out, rung.ratio);
+bool measure_ratio(Study& study, const std::string& out,
+                   const std::vector<std::string>& command_line, double until, Sweeps& sweeps,
+                   RatioStudy& one) {
+  const std::string folder = fmt::format("{}/ratio_{:.9g}", out, one.ratio);
   require_folder(folder);
-  show_progress(fmt::format("ratio {:g}: making the reference ...", rung.ratio));
-  const auto origin = provenance(command_line, rung.drawn, rung.drawn, *rung.scene);
+  show_progress(fmt::format("ratio {:g}: making the reference ...", one.ratio));
+  const auto origin = provenance(command_line, one.drawn, one.drawn, *one.scene);
   bool has_reference = true;
   try {
-    rung.reference =
-        reference_for(rung.drawn, rung.drawn, *rung.scene, until, folder, origin, needed);
-    climbers.measure(study, rung, until);
+    one.reference = reference_for(one.drawn, one.drawn, *one.scene, until, folder, origin, needed);
+    sweeps.measure(study, one, until);
   } catch (const NoReference& error) {
     show_progress("");
-    fmt::print(stderr, "crossover: ratio {:g}: {}; its cells are left empty\n", rung.ratio,
+    fmt::print(stderr, "crossover: ratio {:g}: {}; its cells are left empty\n", one.ratio,
                error.what());
     has_reference = false;
   }
-  rung.placings = placings(rung.points, rung.reference.value_or(Reference()));
+  one.placings = placings(one.points, one.reference.value_or(Reference()));
   return has_reference;
 }
 
@@ -310,12 +309,12 @@ int crossover(const CommandLine& line, Arguments a, const std::vector<std::strin
   require_ratios(a.ratios);
   const StiffFamily& family = stiff_family(a.family);
   if (line.has("--nodes")) require_within(a.nodes, least_nodes, most_nodes, "--nodes");
-  if (line.has("--until")) require_positive(a.until, "--until", "the horizon in s");
+  if (line.has("--until")) require_positive(a.until, "--until", "the time to run to in s");
   const double until = line.has("--until") ? a.until : family.until;
-  std::vector<Rung> all = rungs(a, family, until);
+  std::vector<RatioStudy> all = ratio_studies(a, family, until);
   const auto methods = competitors(a, all.back());
   const auto competing = kinds_of(methods);
-  Climbers climbers(methods, a.effort);
+  Sweeps sweeps(methods, a.effort);
   require_folder(a.out);
   Study study(line, a.out, {"crossover.csv", "kinds.csv", "points.csv"},
               {{"family", a.family}, {"until", until}, {"nodes", all.front().drawn.nodes.size()}});
@@ -329,21 +328,21 @@ int crossover(const CommandLine& line, Arguments a, const std::vector<std::strin
   bool is_whole = true;
   std::size_t complete = 0;
   study.measure([&] {
-    for (Rung& rung : all) {
-      is_whole = measure_rung(study, a.out, command_line, until, climbers, rung) && is_whole;
+    for (RatioStudy& one : all) {
+      is_whole = measure_ratio(study, a.out, command_line, until, sweeps, one) && is_whole;
       ++complete;
     }
   });
   show_progress("");
   const nlohmann::json origin = origin_of(command_line, a.family, until, all);
-  for (const Rung& rung : all) tabulate(winners, of_kinds, points, rung, competing);
+  for (const RatioStudy& one : all) tabulate(winners, of_kinds, points, one, competing);
   // What no method could win yet is not said to be lost.
   all.resize(complete);
   print_winners(all);
-  for (const Rung& rung : all) {
-    if (!rung.reference || rung.reference->certified.position <= Race::accuracies.back()) continue;
+  for (const RatioStudy& one : all) {
+    if (!one.reference || one.reference->certified.position <= Pruning::accuracies.back()) continue;
     fmt::print("at ratio {:g} the reference is certified to {:.1e}: nothing is said below that\n",
-               rung.ratio, rung.reference->certified.position);
+               one.ratio, one.reference->certified.position);
   }
   return study.finish({&winners, &of_kinds, &points}, origin, is_whole ? done : end_not_reached);
 }

@@ -9,9 +9,9 @@ namespace qddot::measure {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Interval, value, low, high)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DriftPoint, t, energy, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrendScales, excess, frequency, rounding, step)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trend, verdict, drift, settled, before, late_drift, oscillation,
-                                   walk, colour, period, memory, slow_period, widening, needed,
-                                   rate, damping_ratio, blow_up_time, last_error)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trend, verdict, drift, steady_from, before, late_drift,
+                                   oscillation, walk, colour, period, memory, slow_period, widening,
+                                   needed, rate, damping_ratio, blow_up_time, last_error)
 
 }  // namespace qddot::measure
 

@@ -95,13 +95,13 @@ void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated
   csv.field(verdict(run, until));
   csv.field(knob_name(run.method->knob));
   csv.field(run.value);
-  csv.field(verdict_name(fate(run, until)));
+  csv.field(verdict_name(verdict_at(run, until)));
   csv.field(run.summary.t_reached);
   csv.field(run.summary.counts.steps);
   csv.field(run.path.back().error);
   csv.field(is_known ? e.walk : nothing);
   write_interval(csv, e.rate.value != 0 || !is_known ? no_interval : e.late_drift);
-  csv.field(e.settled > 0 ? "yes" : "no");
+  csv.field(e.steady_from > 0 ? "yes" : "no");
   csv.field(e.rate.value != 0 ? e.rate.value : nothing);
   csv.field(e.verdict == Verdict::dissipates ? e.damping_ratio : nothing);
   csv.field(e.verdict == Verdict::blows_up ? e.blow_up_time : nothing);
@@ -110,7 +110,7 @@ void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated
   csv.field(compensated && run.method->listens_to(Option::compensated) ? "yes" : "no");
   csv.field(run.seconds);
   csv.field(verdict_name(e.verdict));
-  csv.field(e.settled);
+  csv.field(e.steady_from);
   write_positive(csv, e.period);
   write_positive(csv, e.colour == Colour::undecided ? e.memory : 0);
   write_positive(csv, e.slow_period);

@@ -90,12 +90,12 @@ void declare(CommandLine& line, Arguments& a) {
                   "tolerance.csv");
 }
 
-struct Horizon {
+struct Course {
   double step_size, until;
 };
 
-Horizon horizon_of(const CommandLine& line, const Arguments& a, const ReducedScene& scene) {
-  Horizon h{a.step_size, a.until};
+Course course_of(const CommandLine& line, const Arguments& a, const ReducedScene& scene) {
+  Course h{a.step_size, a.until};
   if (line.has("--step-size")) {
     require_step_size(a.step_size, "--step-size");
   } else {
@@ -108,7 +108,7 @@ Horizon horizon_of(const CommandLine& line, const Arguments& a, const ReducedSce
     }
   }
   if (line.has("--until")) {
-    require_positive(a.until, "--until", "the horizon in s");
+    require_positive(a.until, "--until", "the time to run to in s");
   } else {
     h.until = standard_steps * h.step_size;
   }
@@ -145,7 +145,7 @@ std::vector<Job> jobs_of(const Arguments& a, double step_size, const ReducedScen
 // The runs that were made before the program is to end, in the order of the jobs.
 std::vector<DriftRun> run_all(Study& study, const std::vector<Job>& jobs, const Arguments& a,
                               const ReducedScene& scene, const Momenta& momenta,
-                              const MotionScales& scales, const Horizon& horizon) {
+                              const MotionScales& scales, const Course& course) {
   std::vector<std::optional<DriftRun>> runs(jobs.size());
   std::size_t finished = 0;
   std::exception_ptr trouble;
@@ -157,7 +157,7 @@ std::vector<DriftRun> run_all(Study& study, const std::vector<Job>& jobs, const 
       const std::string name = fmt::format("{} {:.17g}", jobs[i].method->name, jobs[i].value);
       runs[i] = drift_run_of(study.piece(name, [&] {
         return record_of(run_drift(*jobs[i].method, options, scene, momenta, scales,
-                                   {horizon.step_size, horizon.until, jobs[i].seconds}));
+                                   {course.step_size, course.until, jobs[i].seconds}));
       }));
 #pragma omp critical
       show_progress(fmt::format("{} of {} runs: {} {:.3g}: {}", ++finished, jobs.size(),
@@ -249,8 +249,8 @@ int energy_drift(const CommandLine& line, const Arguments& a,
   const Scene drawn = load(a.scene);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
-  const Horizon horizon = horizon_of(line, a, scene);
-  const std::vector<Job> jobs = jobs_of(a, horizon.step_size, scene);
+  const Course course = course_of(line, a, scene);
+  const std::vector<Job> jobs = jobs_of(a, course.step_size, scene);
   require_folder(a.out);
   Study study(line, a.out, {"drift.csv", "summary.csv", "tolerance.csv"},
               {{"scene", content_hash(drawn)}, {"name", drawn.name}});
@@ -264,27 +264,27 @@ int energy_drift(const CommandLine& line, const Arguments& a,
   std::vector<DriftRun> runs;
   study.measure([&] {
     show_progress("measuring the scales of the motion ...");
-    scales = motion_scales(scene, momenta, horizon.until);
+    scales = motion_scales(scene, momenta, course.until);
     stop_if_interrupted();
-    runs = run_all(study, jobs, a, scene, momenta, scales, horizon);
+    runs = run_all(study, jobs, a, scene, momenta, scales, course);
     if (runs.size() < jobs.size()) stop_if_interrupted();
   });
 
   for (const DriftRun& run : runs) {
     write_path(paths, run);
-    write_summary(summary, run, horizon.until, a.compensated);
+    write_summary(summary, run, course.until, a.compensated);
     if (run.method->knob == Knob::rtol) write_tolerance(tolerance, run, scales);
   }
   fmt::print("{} to t = {:g} s, {:.3g} steps of {:.4g} s; energy errors over {:.4g} J\n\n",
-             drawn.name, horizon.until, horizon.until / horizon.step_size, horizon.step_size,
+             drawn.name, course.until, course.until / course.step_size, course.step_size,
              scales.kinetic);
-  print_verdicts(runs, horizon.until);
+  print_verdicts(runs, course.until);
   fmt::print("\n");
   print_tolerances(runs, scales);
 
   nlohmann::json origin = provenance(command_line, drawn, start, scene);
-  origin["step_size"] = horizon.step_size;
-  origin["until"] = horizon.until;
+  origin["step_size"] = course.step_size;
+  origin["until"] = course.until;
   origin["method_limit"] = a.method_limit;
   origin["energy"] = scales.energy;
   origin["energy_scale"] = scales.kinetic;

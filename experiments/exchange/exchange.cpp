@@ -239,7 +239,7 @@ Excitation excitation_of(const CommandLine& line, const Arguments& a) {
   Excitation excitation{
       .drawn = drawn, .start = start, .scene = ReducedScene(start, reductions_of(a.scene))};
   require_reference_exists(excitation.scene, a.scene.name);
-  excitation.until = horizon(a.until, line.has("--until"), drawn);
+  excitation.until = end_time(a.until, line.has("--until"), drawn);
   const State& initial = excitation.scene.initial();
   excitation.omega = stiff_frequency(excitation.scene.system(), initial.q);
   excitation.energy = excitation.scene.energy(initial);

@@ -135,18 +135,18 @@ nlohmann::json compare_steps(const Arguments& a) {
   print(fmt::format("{:<24} {:>10} {:>9}  {}\n", "solver", "iterations", "ms",
                     "until no more than a tenth is added to that"));
   for (const Solved& solved : comparison.all) {
-    const Step* enough = nullptr;
+    const Step* first_good = nullptr;
     for (const Step& step : solved.steps) {
       const double distance = cloth.distance(step.end, comparison.converged);
       convergence.row(solved.method->name, step.iterations, step.seconds,
                       comparison.relative_error(step));
       positions.row(solved.method->name, step.iterations, step.seconds, distance, own);
-      if (!enough && distance <= own / 10) enough = &step;
+      if (!first_good && distance <= own / 10) first_good = &step;
     }
-    print(enough ? fmt::format("{:<24} {:>10} {:>9.3f}\n", solved.method->name, enough->iterations,
-                               1e3 * enough->seconds)
-                 : fmt::format("{:<24} {:>10}\n", solved.method->name,
-                               fmt::format("> {}", solved.steps.back().iterations)));
+    print(first_good ? fmt::format("{:<24} {:>10} {:>9.3f}\n", solved.method->name,
+                                   first_good->iterations, 1e3 * first_good->seconds)
+                     : fmt::format("{:<24} {:>10}\n", solved.method->name,
+                                   fmt::format("> {}", solved.steps.back().iterations)));
   }
   std::vector<std::string> failures;
   for (const Solved& solved : comparison.all) {

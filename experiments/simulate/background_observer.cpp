@@ -11,10 +11,10 @@ constexpr Index batch_size = 1 << 15;
 
 }  // namespace
 
-Aside::Aside(std::function<void(const State&)> look)
+BackgroundObserver::BackgroundObserver(std::function<void(const State&)> look)
     : look_(std::move(look)), thread_([this] { run(); }) {}
 
-Aside::~Aside() {
+BackgroundObserver::~BackgroundObserver() {
   {
     const std::lock_guard lock(mutex_);
     is_over_ = true;
@@ -23,20 +23,20 @@ Aside::~Aside() {
   thread_.join();
 }
 
-void Aside::see(const State& state) {
+void BackgroundObserver::see(const State& state) {
   if (gathered_.count == gathered_.states.size()) gathered_.states.emplace_back();
   gathered_.states[gathered_.count++] = state;
   size_ += 2 * state.q.size() + 1;
   if (size_ >= batch_size) hand_over();
 }
 
-void Aside::finish() {
+void BackgroundObserver::finish() {
   hand_over();
   std::unique_lock lock(mutex_);
   wait(lock);
 }
 
-void Aside::hand_over() {
+void BackgroundObserver::hand_over() {
   {
     std::unique_lock lock(mutex_);
     wait(lock);
@@ -46,12 +46,12 @@ void Aside::hand_over() {
   size_ = 0;
 }
 
-void Aside::wait(std::unique_lock<std::mutex>& lock) {
+void BackgroundObserver::wait(std::unique_lock<std::mutex>& lock) {
   changed_.wait(lock, [this] { return at_hand_.count == 0; });
   if (error_) std::rethrow_exception(error_);
 }
 
-void Aside::run() {
+void BackgroundObserver::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return is_over_ || at_hand_.count > 0; });

@@ -14,13 +14,13 @@ namespace qddot::simulate {
 // Shows the states of a run to `look` on a thread of its own, in order, while the run goes on: what
 // is made of them, such as the text of a table, then costs the run a copy of each. Where looking
 // takes longer than running, the run waits.
-class Aside {
+class BackgroundObserver {
  public:
-  explicit Aside(std::function<void(const State&)> look);
+  explicit BackgroundObserver(std::function<void(const State&)> look);
   // States that nobody has looked at by then are forgotten.
-  ~Aside();
-  Aside(const Aside&) = delete;
-  Aside& operator=(const Aside&) = delete;
+  ~BackgroundObserver();
+  BackgroundObserver(const BackgroundObserver&) = delete;
+  BackgroundObserver& operator=(const BackgroundObserver&) = delete;
 
   // Takes a copy. Throws what looking at an earlier state threw, after which no more are looked at.
   void see(const State& state);

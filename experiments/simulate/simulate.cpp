@@ -271,7 +271,7 @@ class Output {
   const ReducedScene& scene_;
   std::vector<double> trajectory_times_, energy_times_;
   std::unique_ptr<CsvFile> final_, trajectory_, energy_;
-  std::optional<Aside> aside_;
+  std::optional<BackgroundObserver> aside_;
 };
 
 std::string in_words(const Counts& c) {
@@ -318,7 +318,7 @@ int simulate(const CommandLine& line, Arguments& a, const std::vector<std::strin
   assign_every(line, a);
   require_distinct_outputs(line, a);
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, line.has("--until"), drawn);
+  const double until = end_time(a.until, line.has("--until"), drawn);
   if (method.knob == Knob::step_size) require_step_size(a.step_size, "--step-size", until);
   const Scene start = started(drawn, a.scene);
   Reductions reductions = reductions_of(a.scene);

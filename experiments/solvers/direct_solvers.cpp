@@ -9,7 +9,7 @@
 #include <suitesparse/klu.h>
 
 #include "qddot/algebra/effective_mass.hpp"
-#include "qddot/algebra/elimination.hpp"
+#include "qddot/algebra/symbolic_factorization.hpp"
 #include "qddot/model/first_order.hpp"
 
 namespace qddot::solvers {
@@ -27,9 +27,9 @@ class OwnSolver final : public DirectSolver {
 
  private:
   void count() {
-    const Elimination elimination = eliminate(system_.stiffness_pattern());
-    flops = elimination.operations();
-    bytes = sizeof(double) * elimination.entries();
+    const SymbolicFactorization symbolic = analyse(system_.stiffness_pattern());
+    flops = symbolic.operations();
+    bytes = sizeof(double) * symbolic.entries();
   }
 
   const System& system_;

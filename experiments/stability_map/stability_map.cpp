@@ -11,7 +11,8 @@
 //     adaptive.csv: the steps of methods that choose them (chosen_steps.hpp).
 //  2. modal.csv: the same in natural modes of the scene about its equilibrium at one h
 //     (modal_step.hpp): predicted by 1, and measured by exciting the mode.
-//  3. map.csv: the fate of whole runs over h w_max and amplitude (fate.hpp). Amplitude a starts at
+//  3. map.csv: what becomes of whole runs over h w_max and amplitude (run_outcome.hpp). Amplitude a
+//  starts at
 //     q_rest + a (q - q_rest), a v: 1 is the scene itself, small ones are linear. With --vary it is
 //     a parameter of the generator. For its time a method has --cell-limit.
 #include <algorithm>
@@ -34,8 +35,8 @@
 #include "experiments/command/study.hpp"
 #include "experiments/stability_map/amplitude_rows.hpp"
 #include "experiments/stability_map/chosen_steps.hpp"
-#include "experiments/stability_map/fate_map.hpp"
 #include "experiments/stability_map/modal_table.hpp"
+#include "experiments/stability_map/outcome_map.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/stability/linear_limit.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
@@ -230,20 +231,21 @@ std::vector<Cell> cells_of(const Arguments& a, const std::vector<const Method*>&
   return cells;
 }
 
-using Fates = std::vector<std::optional<Fate>>;
+using Fates = std::vector<std::optional<RunOutcome>>;
 
 void tabulate(Csv& csv, const std::vector<Cell>& cells, const Fates& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!all[i]) continue;
     const Cell& cell = cells[i];
-    const Fate& fate = *all[i];
-    const double h = fate.mean_step, omega = cell.row->omega_max;
+    const RunOutcome& result = *all[i];
+    const double h = result.mean_step, omega = cell.row->omega_max;
     const bool is_fixed = cell.method->knob == Knob::step_size;
     csv.row(cell.method->name, is_fixed ? cell.h_omega / omega : h,
-            is_fixed ? cell.h_omega : h * omega, cell.row->amplitude, fate.outcome,
-            fate.growth_rate, predicted_growth_rate(cell), fate.t_reached, fate.energy_end,
-            fate.energy_max, fate.counts.steps, fate.counts.rejected, knob_name(cell.method->knob),
-            is_fixed ? cell.h_omega / omega : cell.rtol, omega, cell.row->buckling_rate);
+            is_fixed ? cell.h_omega : h * omega, cell.row->amplitude, result.outcome,
+            result.growth_rate, predicted_growth_rate(cell), result.t_reached, result.energy_end,
+            result.energy_max, result.counts.steps, result.counts.rejected,
+            knob_name(cell.method->knob), is_fixed ? cell.h_omega / omega : cell.rtol, omega,
+            cell.row->buckling_rate);
   }
 }
 
@@ -294,7 +296,7 @@ int stability_map(const CommandLine& line, const Arguments& a,
   require_given(a.scene.name, "--scene", "a generator's name or a scene file");
   require(a);
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, line.has("--until"), drawn);
+  const double until = end_time(a.until, line.has("--until"), drawn);
   if (line.has("--step-size")) require_step_size(a.step_size, "--step-size");
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
@@ -338,10 +340,10 @@ int stability_map(const CommandLine& line, const Arguments& a,
       modal_csv.rows(modes.get<std::string>());
     }
     cells = cells_of(a, followed(a, methods), rows);
-    all = fates(study, cells, {until, a.tolerated, a.cell_limit}, [&](std::size_t count) {
+    all = run_outcomes(study, cells, {until, a.tolerated, a.cell_limit}, [&](std::size_t count) {
       show_progress(fmt::format("map: {} of {} runs", count, cells.size()));
     });
-    if (std::ranges::any_of(all, [](const auto& fate) { return !fate; })) stop_if_interrupted();
+    if (std::ranges::any_of(all, [](const auto& result) { return !result; })) stop_if_interrupted();
   });
   tabulate(limits_csv, limits, omega_max);
   tabulate(map_csv, cells, all);

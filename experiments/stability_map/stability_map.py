@@ -1,7 +1,7 @@
 """Draws where methods are stable, by theory and measured, as the program stability_map found it.
 
 Call: stability_map.py DIR, the folder with limits.csv, linear.csv, modal.csv, adaptive.csv and
-map.csv; writes DIR/stability_map.png and .svg, the fate of whole runs, and DIR/stability_modes.png
+map.csv; writes DIR/stability_map.png and .svg, what becomes of whole runs, and DIR/stability_modes.png
 and .svg, the damping of an oscillator and of the scene's natural modes.
 """
 
@@ -11,8 +11,8 @@ import sys
 from pathlib import Path
 
 from damping_panels import DampingSheet
-from fate_panels import FateSheet
-from fates import Run
+from outcome_panels import OutcomeSheet
+from outcomes import Run
 from measurements import BadInput, parse, read_rows
 from style import use_style
 
@@ -91,9 +91,9 @@ def draw(folder):
     limits = read_limits(str(folder / "limits.csv"))
     runs = read_runs(str(folder / "map.csv"))
     if runs:
-        fates = FateSheet(runs, {m: predicted for m, (predicted, _) in limits.items()}, origin)
-        fates.draw()
-        save(fates.sheet, folder, "stability_map")
+        panels = OutcomeSheet(runs, {m: predicted for m, (predicted, _) in limits.items()}, origin)
+        panels.draw()
+        save(panels.sheet, folder, "stability_map")
     linear = read_linear(str(folder / "linear.csv"))
     if linear:
         modes = read_table(str(folder / "modal.csv"), ("method", "verdict"), MODE_NUMBERS, "omega")

@@ -232,7 +232,7 @@ int stock_sundials(const CommandLine& line, const Arguments& a,
   for (const double rtol : a.rtols) require_rtol(rtol, "--rtol");
   require_repeats(a.effort.repeats);
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, line.has("--until"), drawn);
+  const double until = end_time(a.until, line.has("--until"), drawn);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   require_reference_exists(scene, a.scene.name);

@@ -1,4 +1,4 @@
-// Speed against accuracy: every method, down the ladder of its knob, on one scene.
+// Speed against accuracy: every method, over the values of its knob, on one scene.
 //
 //   work_precision --scene cloth --until 0.1 --out results/cloth
 //   work_precision --scene my.toml --methods verlet,ida --repeats 9 --out results/my
@@ -35,7 +35,7 @@
 #include "experiments/work_precision/front_table.hpp"
 #include "qddot/measure/speed/front.hpp"
 #include "qddot/measure/speed/judgement.hpp"
-#include "qddot/measure/speed/ladder.hpp"
+#include "qddot/measure/speed/sweep.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::work_precision {
@@ -100,7 +100,7 @@ int work_precision(const CommandLine& line, const Arguments& a,
   require_repeats(a.effort.repeats);
   require_options(line, a.effort.options);
   const Scene drawn = load(a.scene);
-  const double until = horizon(a.until, line.has("--until"), drawn);
+  const double until = end_time(a.until, line.has("--until"), drawn);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   require_reference_exists(scene, a.scene.name);
@@ -125,7 +125,7 @@ int work_precision(const CommandLine& line, const Arguments& a,
     effort.recall = points_of(study);
     for (const Method* method : selected) {
       taken.emplace_back();
-      climb(*method, scene, until, *reference, effort, [&](const Point& point) {
+      sweep(*method, scene, until, *reference, effort, [&](const Point& point) {
         show_progress(describe(point));
         taken.back().push_back(point);
       });

@@ -23,11 +23,11 @@ class ImplicitStep : public FixedStep {
  public:
   // Solving far below the step's own error gains nothing. But a method that keeps an invariant
   // keeps it no better than its stages are solved.
-  static constexpr double enough = 1e-4, enough_for_invariants = 1e-9;
+  static constexpr double usual_tolerance = 1e-4, tolerance_for_invariants = 1e-9;
 
   // `solve_tolerance`: where the options do not say.
   ImplicitStep(const Method& method, const System& system, const Options& options,
-               double solve_tolerance = enough);
+               double solve_tolerance = usual_tolerance);
 
  protected:
   // Solves the stage at q = q_n for u_, which holds its prediction, with u* in free_; up to the

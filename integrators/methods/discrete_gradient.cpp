@@ -15,7 +15,7 @@ namespace {
 class EnergyMomentum final : public ImplicitStep {
  public:
   EnergyMomentum(const Method& method, const System& system, const Options& options)
-      : ImplicitStep(method, system, options, enough_for_invariants) {}
+      : ImplicitStep(method, system, options, tolerance_for_invariants) {}
 
  private:
   void start(const State& state) override {

@@ -12,7 +12,7 @@ namespace {
 class ImplicitMidpoint final : public ImplicitStep {
  public:
   ImplicitMidpoint(const Method& method, const System& system, const Options& options)
-      : ImplicitStep(method, system, options, enough_for_invariants) {}
+      : ImplicitStep(method, system, options, tolerance_for_invariants) {}
 
  private:
   void start(const State& state) override {

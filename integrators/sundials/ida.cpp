@@ -122,7 +122,7 @@ class Ida final : public Stepper {
     if (is_lost_) return IDA_CONV_FAIL;
     // A last step that is short leaves q' as a difference of positions which are all good to the
     // tolerance.
-    if (t == t_stop) follow();
+    if (t == t_stop) set_massless_velocities();
     return flag;
   }
 
@@ -135,7 +135,7 @@ class Ida final : public Stepper {
     if ((balance.q - at.q).lpNorm<Eigen::Infinity>() > farthest) return IDA_CONV_FAIL;
     at.q = balance.q;
     if (is_loose()) return IDA_CONV_FAIL;
-    follow();
+    set_massless_velocities();
     set_rate_of_masses();
     set_massless(at.v, Vec::Zero(system().size()));
     earlier_ = own_counts();
@@ -169,7 +169,7 @@ class Ida final : public Stepper {
   }
 
   // Gives massless nodes the velocity in which their forces stay balanced, (a M - K) x = a M v.
-  void follow() {
+  void set_massless_velocities() {
     Halves at(y());
     SymmetricMatrix k = system().stiffness_pattern();  // for Newton's matrix keeps the one it is of
     stiffness(at.q, k);

@@ -2,7 +2,7 @@
 //   (I - gamma J)(a, b) = (r, s):                a - gamma b = r,   b - gamma M^-1 K a = s
 // With b = (a - r)/gamma from the first row, M gamma times the second is
 //   (M - gamma^2 K) a = M (r + gamma s).
-// Of the implicit form, c = 1/gamma:              c a - b = r,   c M b - K a = s
+// The implicit form, c = 1/gamma:                 c a - b = r,   c M b - K a = s
 //   (M - gamma^2 K) a = gamma (M r + gamma s),   b = c a - r;
 // but of a node without mass the first row is -b = r.
 // No product with K is needed, so the factors may belong to another gamma or an older K than the

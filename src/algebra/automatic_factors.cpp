@@ -3,8 +3,8 @@
 #include <unistd.h>
 
 #include "qddot/algebra/conjugate_gradients.hpp"
-#include "qddot/algebra/elimination.hpp"
 #include "qddot/algebra/multifrontal.hpp"
+#include "qddot/algebra/symbolic_factorization.hpp"
 
 namespace qddot {
 
@@ -17,18 +17,18 @@ constexpr double per_factor_entry = 30, per_matrix_entry = 22;
 // Where a factorisation is no more than so many iterations' work there is little to be won: all is
 // multifrontal, and exact to rounding.
 constexpr double fewest_iterations = 300;
-// A change of mind pays for itself: from conjugate gradients seen to be dearer at once, back to
-// them, of which the last that was seen may be long ago, where they were half as dear.
+// Hysteresis: conjugate gradients are left as soon as they cost more, and taken again only if they
+// cost half when last seen, which may be long ago.
 constexpr double share_to_return = 0.5;
 
 struct Work {
   double factorization = 0, iteration = 0;  // operations
   double entries = 0;                       // of L
 
-  Work(const Elimination& elimination, const SymmetricMatrix& pattern)
-      : factorization(elimination.operations()),
+  Work(const SymbolicFactorization& symbolic, const SymmetricMatrix& pattern)
+      : factorization(symbolic.operations()),
         iteration(per_matrix_entry * static_cast<double>(pattern.nonZeros())),
-        entries(elimination.entries()) {}
+        entries(symbolic.entries()) {}
 };
 
 double memory() {
@@ -37,11 +37,11 @@ double memory() {
 
 class AutomaticFactors final : public Factors {
  public:
-  AutomaticFactors(const SymmetricMatrix& pattern, Vec diagonal, Elimination elimination,
+  AutomaticFactors(const SymmetricMatrix& pattern, Vec diagonal, SymbolicFactorization symbolic,
                    const Work& work)
       : pattern_(pattern),
         diagonal_(std::move(diagonal)),
-        elimination_(std::move(elimination)),
+        symbolic_(std::move(symbolic)),
         work_(work),
         fits_(sizeof(double) * work.entries < memory() / 2),
         iterative_(make_conjugate_gradients(pattern, diagonal_)) {}
@@ -118,12 +118,12 @@ class AutomaticFactors final : public Factors {
   }
 
   void make_direct() {
-    if (!direct_) direct_ = make_multifrontal(pattern_, diagonal_, std::move(elimination_));
+    if (!direct_) direct_ = make_multifrontal(pattern_, diagonal_, std::move(symbolic_));
   }
 
   const SymmetricMatrix pattern_;
   const Vec diagonal_;
-  Elimination elimination_;  // until direct_ is made of it
+  SymbolicFactorization symbolic_;  // until direct_ is made of it
   const Work work_;
   const bool fits_;  // whether there is memory for L
   std::unique_ptr<IterativeFactors> iterative_;
@@ -141,11 +141,11 @@ class AutomaticFactors final : public Factors {
 }  // namespace
 
 std::unique_ptr<Factors> make_automatic_factors(const SymmetricMatrix& pattern, Vec diagonal) {
-  Elimination elimination = eliminate(pattern);
-  const Work work(elimination, pattern);
+  SymbolicFactorization symbolic = analyse(pattern);
+  const Work work(symbolic, pattern);
   if (work.factorization < fewest_iterations * work.iteration)
-    return make_multifrontal(pattern, std::move(diagonal), std::move(elimination));
-  return std::make_unique<AutomaticFactors>(pattern, std::move(diagonal), std::move(elimination),
+    return make_multifrontal(pattern, std::move(diagonal), std::move(symbolic));
+  return std::make_unique<AutomaticFactors>(pattern, std::move(diagonal), std::move(symbolic),
                                             work);
 }
 

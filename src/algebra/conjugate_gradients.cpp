@@ -80,9 +80,9 @@ class ConjugateGradients final : public IterativeFactors {
       x.setConstant(std::numeric_limits<double>::quiet_NaN());
       return SolveOutcome::found;
     }
-    const double enough = tolerance_ * tolerance_ * rz;
+    const double target = tolerance_ * tolerance_ * rz;
     p = z;
-    for (int i = 0; rz > enough; ++i) {
+    for (int i = 0; rz > target; ++i) {
       if (i == most_iterations) return SolveOutcome::not_converged;
       ++iterations_;
       const double curvature = matrix_.multiply(p_.get(), q_.get());

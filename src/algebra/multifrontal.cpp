@@ -40,9 +40,9 @@ struct Workspace {
 // sum in the same order, whoever computes it.
 class Multifrontal : public Factors {
  public:
-  Multifrontal(const SymmetricMatrix& pattern, Vec diagonal, Elimination elimination)
+  Multifrontal(const SymmetricMatrix& pattern, Vec diagonal, SymbolicFactorization symbolic)
       : diagonal_(std::move(diagonal)),
-        fronts_(pattern, std::move(elimination)),
+        fronts_(pattern, std::move(symbolic)),
         l_(fronts_.factor_size),
         pivot_(pattern.rows()),
         top_(fronts_.top_sizes, kernels_.tile_strips, true),
@@ -95,7 +95,7 @@ class Multifrontal : public Factors {
     if (most == 1) {
       work(task, Team(), workspaces_[0]);
     } else {
-      std::optional<Meeting> meeting;
+      std::optional<Barrier> meeting;
 #pragma omp parallel num_threads(most)
       {
 #pragma omp single
@@ -261,12 +261,12 @@ class Multifrontal : public Factors {
 }  // namespace
 
 std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal) {
-  return make_multifrontal(pattern, std::move(diagonal), eliminate(pattern));
+  return make_multifrontal(pattern, std::move(diagonal), analyse(pattern));
 }
 
 std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal,
-                                           Elimination elimination) {
-  return std::make_unique<Multifrontal>(pattern, std::move(diagonal), std::move(elimination));
+                                           SymbolicFactorization symbolic) {
+  return std::make_unique<Multifrontal>(pattern, std::move(diagonal), std::move(symbolic));
 }
 
 }  // namespace qddot

@@ -2,17 +2,18 @@
 
 #include <memory>
 
-#include "qddot/algebra/elimination.hpp"
 #include "qddot/algebra/factors.hpp"
+#include "qddot/algebra/symbolic_factorization.hpp"
 
 namespace qddot {
 
 // Factors P (a D - s K) P' = L E L' without pivoting, by the multifrontal method (Duff, Reid, ACM
-// TOMS 9:3, 1983; Liu, SIAM Review 34:1, 1992) on the order and supernodes of elimination.hpp.
-// Throws std::bad_alloc or std::runtime_error when out of memory, here only.
+// TOMS 9:3, 1983; Liu, SIAM Review 34:1, 1992) on the order and supernodes of
+// symbolic_factorization.hpp. Throws std::bad_alloc or std::runtime_error when out of memory, here
+// only.
 std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal);
 // The same, of a pattern that is analysed already.
 std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal,
-                                           Elimination elimination);
+                                           SymbolicFactorization symbolic);
 
 }  // namespace qddot

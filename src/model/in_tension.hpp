@@ -47,7 +47,7 @@ class InTension {
     if (springs_.empty()) return {};
     std::optional<double> first;
     for (const Spring& spring : springs_) {
-      const SquaredLength length = on_the_way(layout, mass, spring, from, to);
+      const SquaredLength length = path(layout, mass, spring, from, to);
       std::optional<double> s = first_below(length, bound(spring));
       // A start that was not in order to begin with: its end is what counts.
       if (s == 0 && length.back() >= bound(spring)) s.reset();
@@ -78,8 +78,8 @@ class InTension {
   // more than a vibration can make of them, whose speed takes it as far as itself divided by w,
   // where the cubic goes up to a quarter of it times h. Of a vibration that turns more than once in
   // a step, h w > 8, the two ends tell nothing.
-  static SquaredLength on_the_way(const Layout<D>& layout, const Vec& mass, const Spring& spring,
-                                  const State& from, const State& to) {
+  static SquaredLength path(const Layout<D>& layout, const Vec& mass, const Spring& spring,
+                            const State& from, const State& to) {
     const double h = to.t - from.t;
     const Point a = difference(layout, spring, from.q), d = difference(layout, spring, to.q);
     Point a_rate = rate(layout, spring, from.v), d_rate = rate(layout, spring, to.v);

@@ -34,7 +34,7 @@ struct Scene {
   std::string name{};
   int dimension = 3;                                  // 1, 2 or 3
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // [m/s^2]
-  std::optional<double> until{};                      // [s], the horizon if none is asked for
+  std::optional<double> until{};                      // [s], the end time if none is asked for
   std::vector<Node> nodes{};
   std::vector<Spring> springs{};
   // Whether its motion begins with the nodes not where they are drawn but at the stable equilibrium

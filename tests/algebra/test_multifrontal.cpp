@@ -9,8 +9,8 @@
 
 #include "qddot/algebra/cholmod_factors.hpp"
 #include "qddot/algebra/effective_mass.hpp"
-#include "qddot/algebra/elimination.hpp"
 #include "qddot/algebra/multifrontal.hpp"
+#include "qddot/algebra/symbolic_factorization.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/algebra/unprinted.hpp"
@@ -131,7 +131,7 @@ Matrix displaced(const Generator& generator, const Reductions& reductions,
   return {generator.name, system.mass(), stiffness_at(system, q)};
 }
 
-// Of a matrix factorised by so many threads: how many pivots are negative, or -1 where that was
+// How many pivots are negative in a matrix factorised by so many threads, or -1 where that was
 // given up, and the solutions of some right-hand side.
 struct Solved {
   Index negative = -1;
@@ -206,7 +206,7 @@ BOOST_AUTO_TEST_CASE(any_number_of_threads_makes_the_same_factors) {
 // learns of it first must not leave the others waiting. Which one that is changes from run to run.
 BOOST_AUTO_TEST_CASE(threads_give_up_together) {
   for (Matrix& m : large_cases()) {
-    const std::vector<int> place = eliminate(m.k).place;
+    const std::vector<int> place = analyse(m.k).place;
     m.diagonal[std::ranges::max_element(place) - place.begin()] = -1e9;
     const auto factors = make_multifrontal(m.k, m.diagonal);
     for (int i = 0; i < 100; ++i) {

@@ -151,14 +151,14 @@ BOOST_AUTO_TEST_CASE(up_to_order_1_every_step_is_of_order_1) {
 BOOST_AUTO_TEST_CASE(stability_detection_is_heard_by_bdf_alone) {
   const Table with = points("cvode_bdf,cvode_adams", {"--stability-detection"}, slowest_mode()),
               without = points("cvode_bdf,cvode_adams", {}, slowest_mode());
-  const auto order = [](const Table& table, const std::string& method, std::size_t rung) {
+  const auto order = [](const Table& table, const std::string& method, std::size_t number) {
     std::size_t row = 0;
     while (table.text(row, "method") != method) ++row;
-    return table.value(row + rung, "order_mean");
+    return table.value(row + number, "order_mean");
   };
-  const std::size_t rung = 4;  // rtol = 1e-5
-  BOOST_TEST(order(with, "cvode_bdf", rung) < order(without, "cvode_bdf", rung));
-  BOOST_TEST(order(with, "cvode_adams", rung) == order(without, "cvode_adams", rung));
+  const std::size_t number = 4;  // rtol = 1e-5
+  BOOST_TEST(order(with, "cvode_bdf", number) < order(without, "cvode_bdf", number));
+  BOOST_TEST(order(with, "cvode_adams", number) == order(without, "cvode_adams", number));
 }
 
 BOOST_AUTO_TEST_CASE(options_of_how_steps_are_solved_are_refused_where_they_mean_nothing) {

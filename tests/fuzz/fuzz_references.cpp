@@ -64,7 +64,7 @@ Errors true_errors(const ReducedScene& scene, const Scene& drawn, const Referenc
                                                       reference.scales.speed_of(part));
     }
   }
-  // Of E(0) as the reference gives it, and of E as it is computed from the end.
+  // Errors of E(0) as the reference gives it, and of E as it is computed from the end.
   for (const double computed : {reference.energy, scene.energy(reference.end)}) {
     const double error = magnitude(Quadruple(computed) - energy);
     if (reference.scales.kinetic > 0)

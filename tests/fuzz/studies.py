@@ -51,7 +51,7 @@ LONG_STUDIES = {
     " --until 0.1",
     "scaling": "--scenes chain,cloth --methods verlet --least-nodes 20 --most-nodes 200"
     " --sizes 2 --point-limit 1000",
-    # A race gives up slow methods by the clock, so only one takes part.
+    # crossover gives up slow methods by the clock, so only one takes part.
     "crossover": "--family whole --nodes 9 --until 0.5 --ratios 1,3,10,30,100 --methods verlet"
     " --repeats 2 --point-limit 1000",
     "stock_sundials": "--scene larger.toml --rtol 1e-3,1e-5,1e-7 --repeats 3 --until 0.05"

@@ -41,7 +41,7 @@ std::vector<NamedReductions> sets_of_reductions() {
   return sets;
 }
 
-// Of the nodes where they are and as fast, by the independent model.
+// For the nodes where they are and as fast, by the independent model.
 struct PlainEnergies {
   long double kinetic = 0, potential = 0;  // [J]
   // What rounding of the nodes' coordinates is multiplied by in the potential and in a force.

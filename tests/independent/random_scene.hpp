@@ -14,7 +14,7 @@ struct RandomScene {
   std::string kind;
 };
 
-// Of every kind that reductions look for and of those that they have to tell from them: networks;
+// Scenes of every kind that reductions look for, and those to be told from them: networks;
 // mirror images, with coincident nodes too; lines, planes and chains, along the axes and askew; a
 // hair out of those; grids at rest in two layers; several parts with free nodes, double and slack
 // springs; springs of rest length zero; massless joints; and all of it far from the origin.

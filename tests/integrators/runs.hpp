@@ -37,7 +37,7 @@ inline Options options_of(const Method& method, double step_size, double rtol) {
   return method.knob == Knob::step_size ? Options{.step_size = step_size} : Options{.rtol = rtol};
 }
 
-// Of methods that a test names; an unknown name throws.
+// For methods that a test names; an unknown name throws.
 inline const Method& method_named(std::string_view name) {
   const Method* found = find_method(name);
   if (!found) throw std::invalid_argument("no method is named " + std::string(name));

@@ -268,7 +268,7 @@ BOOST_AUTO_TEST_CASE(between_steps_errors_are_of_the_size_of_those_at_their_ends
         }
         const double between = largest_error(watched.seen, c), at_ends = largest_error(ends, c);
         BOOST_TEST_CONTEXT(name << " at " << rtol << ": " << between << ", " << at_ends) {
-          // Of 20 ends and 316 times between; rounding of q by 1e-15 is enlarged 1/h times in v.
+          // At 20 ends and 316 times between; rounding of q by 1e-15 is enlarged 1/h times in v.
           BOOST_TEST(between < 5 * at_ends + 1e-11);
         }
       }

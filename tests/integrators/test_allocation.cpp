@@ -92,8 +92,8 @@ struct Cost {
   Summary summary;
 };
 
-// Of a run of a made integrator over `length` times its course's steps, of 3/w_max where they are
-// not fixed, seen after each fourth.
+// Allocations of a run of a made integrator over `length` times its course's steps, of 3/w_max
+// where they are not fixed, seen after each fourth.
 Cost cost_of(const Method& method, const Course& c, int length, bool compensated) {
   const double w = frequency_bound(*c.system, c.start.q);
   const double hw = method.knob == Knob::rtol    ? 3

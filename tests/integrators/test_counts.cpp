@@ -19,12 +19,12 @@ Counts count(const Method& method, const Problem& p, double t_end, const Observe
   return r.summary.counts;
 }
 
-// Of 37 whole steps.
+// A run of 37 whole steps.
 Counts count(const char* method, const Problem& p) {
   return count(method_named(method), p, steps * h);
 }
 
-// Of 37 whole steps and a shorter one.
+// A run of 37 whole steps and a shorter one.
 Counts count_with_rest(const char* method, const Problem& p) {
   return count(method_named(method), p, (steps + 0.4) * h);
 }

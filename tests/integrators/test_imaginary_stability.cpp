@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(the_amplification_is_the_series_of_exp_where_stages_are_as_
 }
 
 BOOST_AUTO_TEST_CASE(limits_are_those_of_the_literature_and_what_a_thousandth_of_growth_adds) {
-  // Of order 4, |R|^2 = 1 - y^6/72 + y^8/576 is 1 at y = 2 sqrt 2; of order 3,
+  // At order 4, |R|^2 = 1 - y^6/72 + y^8/576 is 1 at y = 2 sqrt 2; of order 3,
   // 1 - y^4/12 + y^6/36 at y = sqrt 3; of order 2, 1 + y^4/4 only at 0.
   struct {
     ARKODE_ERKTableID id;

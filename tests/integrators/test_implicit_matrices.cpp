@@ -14,7 +14,7 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::MatrixXd;
 
-// Of x'' = -w^2 x with h = 1: state (x, h v) or more, and the matrix that a step multiplies it by.
+// x'' = -w^2 x with h = 1: its state (x, h v) or more, and the matrix that a step multiplies it by.
 using Amplification = std::function<MatrixXd(double hw)>;
 
 // The step of a method that is a rational function of z = h J, J = [[0, 1], [-(h w)^2, 0]].
@@ -44,7 +44,7 @@ struct Formula {
   const char* method;
   Amplification matrix;
 };
-// Of one-step methods; an acceleration is carried along as a third number where there is one.
+// For one-step methods; an acceleration is carried along as a third number where there is one.
 const Formula formulas[] = {
     {"implicit_euler", rational([](const MatrixXd& z) { return (one - z).inverse(); })},
     {"implicit_midpoint",

@@ -133,7 +133,7 @@ Problem massless_hammock(int dimension) {
   return p;
 }
 
-// Of the massless second node: the force and its rate of change, (K v).
+// The force on the massless second node and its rate of change, (K v).
 Vec second_force(const System& system, const State& s) {
   const Index d = system.size() / 4;
   return force_at(system, s.q).segment(d, d);

@@ -39,7 +39,7 @@ class Minimisation {
   Vec gradient(const Vec& v) const {
     return system_->mass().cwiseProduct(v - initial_.v) - h_ * force_at(*system_, q(v));
   }
-  // Of the smallest eigenvalue of M - h^2 K, in units of the mass.
+  // The smallest eigenvalue of M - h^2 K, in units of the mass.
   double least_curvature(const Vec& v) const {
     return Eigen::SelfAdjointEigenSolver<MatrixXd>(hessian(v)).eigenvalues()[0] / mass;
   }

@@ -59,7 +59,7 @@ State semi_implicit_step(const System& system, const State& s) {
   return {h, s.q + h * v, v};
 }
 
-// Of any size, also a negative one.
+// Steps of any size, also a negative one.
 State verlet_step(const System& system, const State& s, double size) {
   const Vec half = s.v + size / 2 * acceleration(system, s.q);
   const Vec q = s.q + size * half;

@@ -80,7 +80,7 @@ Orders observed_orders(const Method& method, const Case& c) {
   return {observed_order(std::span(q).last(5)), observed_order(std::span(v).last(5))};
 }
 
-// Of high orders few halvings fit between where higher terms matter and rounding.
+// At high orders few halvings fit between where higher terms matter and rounding.
 bool is_of_order(int p, const Orders& observed) {
   const double slack = p > 4 ? 0.25 : 0.1;
   return std::abs(observed.q - p) <= slack && std::abs(observed.v - p) <= slack;

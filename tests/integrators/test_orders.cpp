@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(no_step_is_of_a_higher_order_than_allowed) {
         if (most == 1) {
           BOOST_TEST(c.order_sum == c.steps);
         } else {
-          // Of a hundred steps and more all but the first few are of higher order than 1.
+          // All but the first few of a hundred steps and more are of higher order than 1.
           BOOST_TEST(c.order_sum > 3 * c.steps / 2);
         }
         BOOST_TEST(c.steps < last_steps);  // the higher, the fewer

@@ -83,7 +83,8 @@ BOOST_AUTO_TEST_CASE(its_force_and_stiffness_are_the_derivatives_of_its_energy) 
   const Vec q = start().q;
   const auto v = [&](const Vec& x) { return Vec::Constant(1, chain.potential(x)); };
   const auto f = [&](const Vec& x) { return force_at(chain, x); };
-  // Of steps of 1e-3 m: h^4/30 of the fifth derivatives, which are some 12 13 14 15 16 17.
+  // Differences over 1e-3 m err by h^4/30 of the fifth derivatives, which are some 12 13 14 15
+  // 16 17.
   const Vec slope = finite_difference_jacobian(v, q, 1e-3).transpose();
   BOOST_TEST(distance(slope, -f(q)) < 1e-6);
   BOOST_TEST(distance(finite_difference_jacobian(f, q, 1e-3), dense(stiffness_at(chain, q))) <

@@ -54,7 +54,7 @@ std::vector<double> defects(const Splitting& splitting, int highest_order) {
 // Each of up to 18 products and sums of up to 8 levels rounds by 1.1e-16 of what is added up.
 constexpr double rounding = 2e-15;
 
-// Of the matrix of one step on q'' = -q: the larger modulus of its eigenvalues.
+// The larger modulus of the eigenvalues of the matrix of one step on q'' = -q.
 double growth_a_step(const Method& method, double h) {
   static const auto system =
       make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);

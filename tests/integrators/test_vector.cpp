@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(the_weighted_norm_is_that_of_sundials) {
   for (const Index n : halves) {
     const Vectors ours(make_vector, n, 2), theirs(make_stock_vector, n, 2);
     const double norm = N_VWrmsNorm(theirs[0], theirs[1]);
-    // Of 2n squares, each rounded and added; the root halves that.
+    // 2n squares are each rounded and added; the root halves that.
     BOOST_TEST(std::abs(N_VWrmsNorm(ours[0], ours[1]) - norm) <=
                static_cast<double>(n + 2) * eps * norm);
     BOOST_TEST(norm > 0);

@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_CASE(a_walk_has_its_size_and_no_slope) {
     size += fit.walk / seeds;
     told += fit.colour == Colour::oscillates || fit.colour == Colour::turns;
   }
-  // Of 60 intervals of 95 % more than 9 miss once in 500 times; one size is known to 9 %, of which
+  // More than 9 of 60 intervals of 95 % miss once in 500 times; one size is known to 9 %, of which
   // their mean has an eighth.
   BOOST_TEST(holds >= seeds - 9);
   BOOST_TEST(size == 1, boost::test_tools::tolerance(0.05));

@@ -169,13 +169,13 @@ BOOST_AUTO_TEST_CASE(a_run_out_of_time_has_its_verdict_over_what_it_reached) {
   BOOST_TEST((run.summary.outcome == Outcome::over_budget));
   BOOST_TEST(verdict_name(run.energy.verdict) == "bounded");
   // A verdict on so little of the run is none on the run.
-  BOOST_TEST(verdict_name(fate(run, 1e9)) == "unknown");
+  BOOST_TEST(verdict_name(verdict_at(run, 1e9)) == "unknown");
   const std::string words = verdict(run, 1e9);
   BOOST_TEST(words.starts_with("too short to tell from "));
   BOOST_TEST(words.find("% of the run, when its time was up; over that: bounded") != words.npos);
   // The same of a run that should have gone but a little further.
   const double most = 1.25 * run.summary.t_reached;
-  BOOST_TEST(verdict_name(fate(run, most)) == "bounded");
+  BOOST_TEST(verdict_name(verdict_at(run, most)) == "bounded");
   BOOST_TEST(verdict(run, most).starts_with("bounded: "));
   BOOST_TEST(verdict(run, most).find("; over 80 % of the run, when its time was up") != words.npos);
 }
@@ -187,8 +187,8 @@ BOOST_AUTO_TEST_CASE(a_run_cut_short_has_a_verdict_where_nothing_more_can_come) 
     DriftRun run = oscillator.of(method, h, 1e4);
     run.summary.outcome = Outcome::over_budget;
     const bool is_over = run.energy.verdict != Verdict::bounded;  // all energy gone, or blown up
-    BOOST_TEST((fate(run, 100 * until) == Verdict::unknown) == !is_over);
-    BOOST_TEST((fate(run, until) == run.energy.verdict));
+    BOOST_TEST((verdict_at(run, 100 * until) == Verdict::unknown) == !is_over);
+    BOOST_TEST((verdict_at(run, until) == run.energy.verdict));
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double h = 1e-3, duration = 1000;  // a million steps
 constexpr int seeds = 100;
-// Of 100 intervals of 95 % that should hold a number, more than 12 that do not come by chance once
+// More than 12 of 100 intervals of 95 % that do not hold their number come by chance once
 // in 500 times.
 constexpr int most_misses = 12;
 
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(an_error_that_settles_is_bounded_and_one_that_changes_its_s
     return judged(series([&](double t) { return vibrates(t) - 1e-3 * -std::expm1(-t / time); }));
   };
   const Trend soon = settling(duration / 30);
-  BOOST_TEST(soon.settled == duration / 2);
+  BOOST_TEST(soon.steady_from == duration / 2);
   BOOST_TEST(!soon.drift.excludes_zero());
   BOOST_TEST(soon.last_error == -1e-3, boost::test_tools::tolerance(0.01));
   BOOST_TEST(says(soon, "no drift"));
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(an_error_that_settles_is_bounded_and_one_that_changes_its_s
   const Trend bent = judged(series([&](double t) {
     return vibrates(t) + 1e-2 * std::expm1(-40 * t / duration) + 1e-3 * t / duration;
   }));
-  BOOST_TEST(bent.settled == duration / 2);
+  BOOST_TEST(bent.steady_from == duration / 2);
   BOOST_TEST(bent.drift.low > 0);
   BOOST_TEST(holds(bent.drift, 1e-3 / duration));
 }
@@ -239,7 +239,7 @@ BOOST_AUTO_TEST_CASE(a_level_that_changed_once_is_bounded_after_that) {
     const Trend trend =
         judged(series([&](double t) { return vibrates(t) - (t > at * duration ? 1e-2 : 0); }));
     BOOST_TEST(verdict_name(trend.verdict) == "bounded");
-    BOOST_TEST(trend.settled == (at < 0.5 ? 0.5 : 0.75) * duration);
+    BOOST_TEST(trend.steady_from == (at < 0.5 ? 0.5 : 0.75) * duration);
     BOOST_TEST(trend.before == -1e-2, boost::test_tools::tolerance(0.01));
   }
   // One so late has not been looked at for long.

@@ -73,8 +73,8 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_the_energy_on_the_way_counts) {
   reference.certified.position = 0.1;
   reference.end.t = 2;
   std::vector<Point> points = {point("verlet", 0.3, 1), point("rk4", 1e-9, 2)};
-  points[0].on_the_way.energy = 5e-4;
-  points[1].on_the_way.energy = 5e-2;
+  points[0].path.energy = 5e-4;
+  points[1].path.energy = 5e-2;
   const auto fastest = [&](double horizon) {
     reference.horizon = horizon;
     return fastest_at_each_accuracy(points, reference)[2].fastest;
@@ -92,10 +92,10 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_energy_in_other_modes_does_not_count) {
   reference.horizon = 1.3;
   reference.modal_shares_floor = 0.01;
   std::vector<Point> points = {point("implicit_euler", 0.9, 1), point("verlet", 0.3, 2)};
-  points[0].on_the_way = {.energy = 0, .modal_shares = 0.11};
-  points[1].on_the_way = {.energy = 5e-4, .modal_shares = 0.02};
+  points[0].path = {.energy = 0, .modal_shares = 0.11};
+  points[1].path = {.energy = 5e-4, .modal_shares = 0.02};
   BOOST_TEST(fastest_at_each_accuracy(points, reference)[2].fastest == &points[1]);
-  points[0].on_the_way.modal_shares = 0.09;
+  points[0].path.modal_shares = 0.09;
   BOOST_TEST(fastest_at_each_accuracy(points, reference)[2].fastest == &points[0]);
 }
 

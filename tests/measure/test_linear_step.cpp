@@ -63,7 +63,7 @@ bool declares_its_limit(const Method& method) {
   return std::abs(measured / declared - 1) < 1e-10;
 }
 
-// Of bdf2 on y' = i w y, 3 z^2 - 4 z + 1 = 2 i x z^2 with x = h w, and of its conjugate.
+// The roots of bdf2 on y' = i w y, 3 z^2 - 4 z + 1 = 2 i x z^2 with x = h w, and of its conjugate.
 double bdf2_radius(double x) {
   const Complex a(3, -2 * x), root = std::sqrt(16. - 4. * a);
   return std::max(std::abs((4. + root) / (2. * a)), std::abs((4. - root) / (2. * a)));

@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(refinement_goes_on_while_steps_are_too_coarse_for_its_order
 }
 
 BOOST_AUTO_TEST_CASE(a_motion_in_exact_symmetry_is_known_and_known_to_be_alone) {
-  // Of masses m on springs that push with F over the length l, the fastest to the side grow by
+  // Masses m on springs that push with F over the length l grow to the side, the fastest by
   // (2 sin(5 pi/12)) sqrt(F/(l m)) = 66/s: one rounding is a hundredth after half a second.
   const Scene strut = compressed_strut();
   const ReducedScene scene(strut);
@@ -343,7 +343,7 @@ BOOST_AUTO_TEST_CASE(what_two_unlike_methods_agree_on_is_as_good_as_needed) {
       BOOST_TEST(errors_between(scene, agreed.end, best.end, best.energy, best.scales).position <=
                      slack * needed,
                  name);
-      // Of a tenth of a turn more is seen than its ends.
+      // A tenth of a turn shows more than its ends.
       BOOST_TEST(agreed.scales.displacement == best.scales.displacement,
                  boost::test_tools::tolerance(1e-2));
       BOOST_TEST(contains(agreed.made_by, {" at h = ", "; ", " at "}));

@@ -40,9 +40,9 @@ BOOST_AUTO_TEST_CASE(explicit_eulers_energy_error_is_largest_at_the_end) {
     const double h = 2.0 / steps;
     const Point point = run.point("explicit_euler", h);
     const double growth = std::pow(1 + h * h * omega * omega, steps) - 1;
-    BOOST_TEST(point.on_the_way.energy == point.errors.energy);
+    BOOST_TEST(point.path.energy == point.errors.energy);
     // The largest kinetic energy is seen at the reference's steps.
-    BOOST_TEST(point.on_the_way.energy == growth, boost::test_tools::tolerance(1e-3));
+    BOOST_TEST(point.path.energy == growth, boost::test_tools::tolerance(1e-3));
   }
 }
 
@@ -56,8 +56,8 @@ BOOST_AUTO_TEST_CASE(verlets_energy_error_is_its_oscillation_though_the_end_is_g
     const Point point = run.point("verlet", h);
     // A hundred looks at twelve oscillations come nearer to a crest than an eighth of one:
     // cos^2 of a phase off by at most 6 pi/100 * (1 + 1/2).
-    BOOST_TEST(point.on_the_way.energy <= s * (1 + 1e-3));
-    BOOST_TEST(point.on_the_way.energy >= s * 0.9);
+    BOOST_TEST(point.path.energy <= s * (1 + 1e-3));
+    BOOST_TEST(point.path.energy >= s * 0.9);
     BOOST_TEST(point.errors.energy < 0.1 * s);
   }
 }
@@ -76,7 +76,7 @@ BOOST_AUTO_TEST_CASE(steps_of_a_fixed_size_stay_what_they_are) {
           errors_between(run.scene, state, state, run.reference.energy, run.reference.scales);
       largest = std::max(largest, errors.energy);
     }
-    const double seen = run.point("rk4", h).on_the_way.energy;
+    const double seen = run.point("rk4", h).path.energy;
     if (steps <= Watch::most_looks) {  // at every step
       BOOST_TEST(std::abs(seen - largest) < 1e-13);
     } else {
@@ -87,18 +87,18 @@ BOOST_AUTO_TEST_CASE(steps_of_a_fixed_size_stay_what_they_are) {
 
 BOOST_AUTO_TEST_CASE(momenta_are_watched_where_some_are_kept) {
   const Watched orbit{load_scene("orbit"), 0.7};
-  BOOST_TEST(orbit.point("verlet", 0.01).on_the_way.momentum < 1e-13);
+  BOOST_TEST(orbit.point("verlet", 0.01).path.momentum < 1e-13);
   // Neither of these keeps it; the first one turns it up by h^2 of each step.
-  BOOST_TEST(orbit.point("explicit_euler", 0.01).on_the_way.momentum > 1e-3);
-  BOOST_TEST(orbit.point("rk4", 0.1).on_the_way.momentum > 1e-8);
-  BOOST_TEST(std::isnan(oscillator(2).point("verlet", 0.01).on_the_way.momentum));
+  BOOST_TEST(orbit.point("explicit_euler", 0.01).path.momentum > 1e-3);
+  BOOST_TEST(orbit.point("rk4", 0.1).path.momentum > 1e-8);
+  BOOST_TEST(std::isnan(oscillator(2).point("verlet", 0.01).path.momentum));
 }
 
 BOOST_AUTO_TEST_CASE(adaptive_methods_are_watched_as_well) {
   const Watched run{load_scene("orbit"), 0.7};
   for (const char* method : {"ida", "dprkn6", "arkode_erk4"}) {
-    const double coarse = run.point(method, 1e-4).on_the_way.energy;
-    const double fine = run.point(method, 1e-8).on_the_way.energy;
+    const double coarse = run.point(method, 1e-4).path.energy;
+    const double fine = run.point(method, 1e-8).path.energy;
     BOOST_TEST(coarse > 0, method);
     BOOST_TEST(fine < 0.1 * coarse, method);
   }
@@ -113,17 +113,17 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_the_modes_are_compared) {
   BOOST_TEST((floor > 0 && floor < 0.5));
   const Point good = run.point("blanes_moan6", 1e-3), poor = run.point("implicit_euler", 0.05);
   BOOST_TEST(good.errors.position > apart);  // which nobody can help
-  BOOST_TEST(good.on_the_way.energy < 1e-8);
-  BOOST_TEST((good.on_the_way.modal_shares > 0 && good.on_the_way.modal_shares < 0.5));
-  BOOST_TEST((poor.on_the_way.modal_shares > 0 && poor.on_the_way.modal_shares <= 1));
+  BOOST_TEST(good.path.energy < 1e-8);
+  BOOST_TEST((good.path.modal_shares > 0 && good.path.modal_shares < 0.5));
+  BOOST_TEST((poor.path.modal_shares > 0 && poor.path.modal_shares <= 1));
 }
 
 BOOST_AUTO_TEST_CASE(negative_control_unwatched_there_is_no_number) {
   const Watched run = oscillator(2);
   const Point point = measure_point(*find_method("verlet"), 0.01, run.scene, run.until,
                                     run.reference, {.seconds = 60, .repeats = 1});
-  BOOST_TEST(std::isnan(point.on_the_way.energy));
-  BOOST_TEST(std::isnan(run.point("verlet", 0.01).on_the_way.modal_shares));
+  BOOST_TEST(std::isnan(point.path.energy));
+  BOOST_TEST(std::isnan(run.point("verlet", 0.01).path.modal_shares));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -79,7 +79,7 @@ struct Difference {
   double v, mass, f, k, acceleration;  // relative to the largest entry
 };
 
-// Of the network with image links from `whole`, which holds all images.
+// For the network with image links from `whole`, which holds all images.
 Difference difference(const ImageSample& s, const Whole& whole) {
   const auto system = make_mass_spring(s.network), full = make_mass_spring(whole.network);
   const Eigen::MatrixXd& p = whole.p;

@@ -49,7 +49,7 @@ Vec translation(const Problem& p, int d) {
   return Vec::Unit(p.network.dimension, d).replicate(p.network.node_mass.size(), 1);
 }
 
-// Of the full K against the differences of f: only if they are symmetric can it agree with them.
+// The full K against the differences of f: only if they are symmetric can it agree with them.
 double stiffness_error(const Problem& p, const SymmetricMatrix& k) {
   const auto system = make_mass_spring(p.network);
   const auto force = [&](const Vec& q) { return force_at(*system, q); };

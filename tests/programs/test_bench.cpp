@@ -42,7 +42,7 @@ struct Given {
   Folder folder;
   Problem problem{ellipse(), ellipse(), until, folder.path(), nlohmann::json::object()};
 
-  // Of the run's end [m].
+  // The error of the run's end [m].
   double distance(Peer& peer, ForceKind force, double value) const {
     const Run run = peer.run(problem, force, value, 60);
     BOOST_TEST(name(run.outcome) == name(Outcome::reached_end), peer.name());

@@ -4,7 +4,7 @@
 #include <boost/test/unit_test.hpp>
 #include <nlohmann/json.hpp>
 
-#include "experiments/crossover/race.hpp"
+#include "experiments/crossover/pruning.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "tests/programs/process.hpp"
 
@@ -71,11 +71,11 @@ BOOST_AUTO_TEST_CASE(it_writes_a_row_for_each_ratio_and_accuracy_in_order) {
   BOOST_TEST(framed().of_kinds.header == "stiffness_ratio,accuracy,kind,method,time_s");
   BOOST_TEST(framed().points.header.starts_with(
       "stiffness_ratio,scene,method,knob,value,outcome,t_reached,error_position"));
-  const std::size_t count = Race::accuracies.size();
+  const std::size_t count = Pruning::accuracies.size();
   BOOST_TEST_REQUIRE(table.rows.size() == 2 * count);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     BOOST_TEST(table.value(row, "stiffness_ratio") == (row < count ? 1 : 1e4));
-    BOOST_TEST(table.value(row, "accuracy") == Race::accuracies[row % count]);
+    BOOST_TEST(table.value(row, "accuracy") == Pruning::accuracies[row % count]);
   }
   BOOST_TEST(listing(framed().folder / "out") ==
              "crossover.csv crossover.json kinds.csv kinds.json points.csv points.json ratio_1 "
@@ -159,7 +159,7 @@ BOOST_AUTO_TEST_CASE(explicit_steps_are_as_many_as_the_root_of_the_ratio_and_imp
     return least;
   };
   // sqrt(1e4) = 100 times the steps at most; somewhat fewer, as at ratio 1 all springs of a node
-  // count and at 1e4 the frame's alone, and by the ladder's factors of two.
+  // count and at 1e4 the frame's alone, and by the step sizes' factors of two.
   const double grown = least_steps("verlet", 1e4, 0.1) / least_steps("verlet", 1, 0.1);
   BOOST_TEST((grown > 20 && grown < 200), grown);
   BOOST_TEST(least_steps("ida", 1e4, 0.1) / least_steps("ida", 1, 0.1) < 20);
@@ -246,8 +246,8 @@ BOOST_AUTO_TEST_CASE(a_place_taken_by_a_folder_is_known_before_anything_is_measu
 
 BOOST_AUTO_TEST_CASE(negative_control_a_cell_of_the_other_ratio_has_another_time) {
   const Table& table = framed().winners;
-  const std::size_t count = Race::accuracies.size();
-  const auto least = times(framed().points, 1, Race::accuracies[0]);
+  const std::size_t count = Pruning::accuracies.size();
+  const auto least = times(framed().points, 1, Pruning::accuracies[0]);
   BOOST_TEST_REQUIRE(table.text(count, "method") != "");
   const auto found = least.find(table.text(count, "method"));
   BOOST_TEST((found == least.end() || found->second != table.value(count, "time_s")));

@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(each_method_has_its_verdict) {
   BOOST_TEST(value("implicit_midpoint", 2.25, "misfit") < 0.1);
   for (const double h_omega : {0.1, 2.25})
     BOOST_TEST(verdict("implicit_euler", h_omega) == "damps: nothing left");
-  // Of the exact motion the sum changes by 0.06 for moments, H not at all.
+  // In the exact motion the sum changes by 0.06 for moments, H not at all.
   BOOST_TEST(value("reference", 0.1, "sum_deviation") < 0.07);
   BOOST_TEST(value("verlet", 0.1, "sum_deviation") < 0.08);
   BOOST_TEST(value("reference", 0.1, "energy_error") < 1e-9);

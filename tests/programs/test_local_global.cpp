@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(the_error_of_the_step_is_of_second_order) {
     BOOST_TEST_REQUIRE(result.status == 0, result.err);
     return double(nlohmann::json::parse(read_all(folder / "out/positions.json"))["step_error"]);
   };
-  // Of one step from the truth, h^2/2 of what is left of the acceleration.
+  // One step errs by h^2/2 of what is left of the acceleration.
   BOOST_TEST(std::abs(std::log2(own("1e-4") / own("5e-5")) - 2) < 0.1);
 }
 

@@ -185,7 +185,7 @@ BOOST_AUTO_TEST_CASE(points_and_runs_come_back_whole) {
   BOOST_TEST(same.method == point.method);
   BOOST_TEST((same.outcome == point.outcome));
   BOOST_TEST(same.errors.velocity == infinity);
-  BOOST_TEST(std::isnan(same.on_the_way.momentum));
+  BOOST_TEST(std::isnan(same.path.momentum));
   BOOST_TEST((record_of(same).dump() == record_of(point).dump()));
 
   DriftRun run{.method = find_method("ida"), .value = 1e-5};

@@ -55,7 +55,7 @@ BOOST_AUTO_TEST_CASE(verdicts_are_seldom_wrong_and_intervals_hold_what_is_true) 
     held += coverage.value(i, "held");
     BOOST_TEST(coverage.value(i, "part_low") <= coverage.value(i, "part"));
   }
-  // Of 150 that hold by 95 % fewer than 134 once in 300 times; there are more.
+  // Fewer than 134 of 150 that hold by 95 % come once in 300 times; there are more.
   BOOST_TEST(said > 150);
   BOOST_TEST(held > 0.89 * said);
   const auto origin = nlohmann::json::parse(read_all(folder / "out/confusion.json"));

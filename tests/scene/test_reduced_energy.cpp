@@ -71,7 +71,7 @@ std::vector<Case> cases() {
       {"plane", draw("chain", {{"nodes", 6}}), Reduction::dimension, 10},
       {"tilted plane", draw("orbit"), Reduction::dimension, 2},
       {"line", hanging_line(0.5), Reduction::dimension, 2},
-      // Of 25 nodes 2 are pinned; 5 lie on the mirror with two coordinates each, 9 beside it.
+      // 2 of 25 nodes are pinned; 5 lie on the mirror with two coordinates each, 9 beside it.
       {"mirror through nodes", cloth, Reduction::mirror, 9 * 3 + 5 * 2},
       {"mirror between nodes", even, Reduction::mirror, 7 * 3},
       {"tilted mirror", turned(cloth, some_rotation(), shift), Reduction::mirror, 9 * 3 + 5 * 2},

@@ -10,8 +10,8 @@ namespace qddot::measure {
 double judged_error(const Point& point, const Reference& reference) {
   if (!reference.is_beyond_horizon()) return point.errors.position;
   const bool is_another_motion =
-      point.on_the_way.modal_shares > most_of_chance * reference.modal_shares_floor;
-  return is_another_motion ? std::numeric_limits<double>::infinity() : point.on_the_way.energy;
+      point.path.modal_shares > most_of_chance * reference.modal_shares_floor;
+  return is_another_motion ? std::numeric_limits<double>::infinity() : point.path.energy;
 }
 
 double certified(const Reference& reference) {

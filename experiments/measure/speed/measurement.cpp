@@ -64,10 +64,10 @@ Point taken(const Method& method, double value, const ReducedScene& scene, doubl
   point.time_min = std::ranges::min(times);
   point.timed_runs = static_cast<int>(times.size());
   if (effort.watch) {
-    point.on_the_way = effort.watch->see(method, options, point.counts.steps,
-                                         std::max(longest_look, 2 * effort.seconds));
+    point.path = effort.watch->see(method, options, point.counts.steps,
+                                   std::max(longest_look, 2 * effort.seconds));
     // The end of the run that was timed counts as well.
-    point.on_the_way.energy = std::max(point.on_the_way.energy, point.errors.energy);
+    point.path.energy = std::max(point.path.energy, point.errors.energy);
   }
   return point;
 }

@@ -15,7 +15,7 @@ struct Point {
   Outcome outcome{};     // errors and times below mean something only where it is reached_end
   double t_reached = 0;  // [s]
   Errors errors{};
-  OnTheWay on_the_way{};
+  PathErrors path{};
   double time = 0, time_min = 0;  // median and least wall time of a run [s], set-up left out
   double setup = 0;               // wall time of allocation and symbolic analysis [s]
   int timed_runs = 0;

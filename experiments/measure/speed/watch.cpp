@@ -32,8 +32,8 @@ Watch::Watch(const Scene& start, const ReducedScene& scene, double until,
   if (reference.modal_shares.size() > 0) modes_ = ModalShares::at_equilibrium(scene);
 }
 
-OnTheWay Watch::see(const Method& method, const Options& options, std::int64_t steps,
-                    double seconds) const {
+PathErrors Watch::see(const Method& method, const Options& options, std::int64_t steps,
+                      double seconds) const {
   State state = scene_.initial();
   const auto nodes = scene_.expand(state);
   double energy = 0, momentum = 0;
@@ -51,7 +51,7 @@ OnTheWay Watch::see(const Method& method, const Options& options, std::int64_t s
   const auto integrator = make_integrator(method, scene_.system(), options);
   const Deadline deadline(seconds);
   const Summary summary = integrator->advance(state, until_, observer, deadline.token());
-  OnTheWay seen;
+  PathErrors seen;
   if (summary.outcome != Outcome::reached_end) return seen;
   seen.energy = energy;
   if (momenta_.any_kept()) seen.momentum = momentum;

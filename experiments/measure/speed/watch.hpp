@@ -11,7 +11,7 @@
 namespace qddot::measure {
 
 // What is seen of a run on its way; no number where it was not looked at or means nothing.
-struct OnTheWay {
+struct PathErrors {
   // The largest |E - E(0)| at any of the times, over the motion's largest kinetic energy: at one
   // time alone it may be small by luck, as energy errors oscillate.
   double energy = std::numeric_limits<double>::quiet_NaN();
@@ -31,8 +31,8 @@ class Watch {
   // One more run of a method that has taken so many `steps`. Steps of a fixed size stay what they
   // are: it is looked at after whole ones. Adaptive ones have to end on the times, which are
   // therefore no more than a quarter of the steps. Stops after so many `seconds`.
-  OnTheWay see(const Method& method, const Options& options, std::int64_t steps,
-               double seconds) const;
+  PathErrors see(const Method& method, const Options& options, std::int64_t steps,
+                 double seconds) const;
 
  private:
   const ReducedScene& scene_;

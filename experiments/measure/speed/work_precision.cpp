@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
-#include "qddot/measure/speed/ladder.hpp"
+#include "qddot/measure/speed/sweep.hpp"
 
 namespace qddot::measure {
 
@@ -34,7 +34,7 @@ WorkPrecision work_precision(const ReducedScene& model, double until,
     const auto see = [&](const Point& point) {
       if (report) report(point);
     };
-    const auto points = climb(*method, model, until, all.reference, effort, see);
+    const auto points = sweep(*method, model, until, all.reference, effort, see);
     all.points.insert(all.points.end(), points.begin(), points.end());
   }
   return all;

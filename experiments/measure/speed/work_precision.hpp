@@ -10,7 +10,7 @@ namespace qddot::measure {
 // Speed against accuracy: what every method takes and misses by, from coarse to fine.
 struct WorkPrecision {
   Reference reference;        // what errors are measured against
-  std::vector<Point> points;  // of each method along the ladder of its knob (see climb)
+  std::vector<Point> points;  // of each method over the values of its knob (see sweep)
 
   // The fastest point at each accuracy 1e-1 ... 1e-9; rows point into `points`.
   std::vector<FrontRow> front() const { return fastest_at_each_accuracy(points, reference); }

@@ -140,7 +140,7 @@ DriftRun run_drift(const Method& method, const Options& options, const ReducedSc
   return run;
 }
 
-Verdict fate(const DriftRun& run, double until) {
+Verdict verdict_at(const DriftRun& run, double until) {
   const Verdict verdict = run.energy.verdict;
   const bool is_seen =
       run.summary.outcome == Outcome::reached_end || run.summary.t_reached >= least_part * until;
@@ -156,7 +156,7 @@ std::string verdict(const DriftRun& run, double until) {
   const std::string words = in_words(run.energy, run.scales);
   if (outcome == Outcome::reached_end || run.energy.verdict == Verdict::blows_up) return words;
   const std::string part = fmt::format("{:.2g} % of the run", 100 * t / until);
-  if (fate(run, until) == Verdict::unknown) {
+  if (verdict_at(run, until) == Verdict::unknown) {
     return fmt::format("too short to tell from {}, {}; over that: {}", part,
                        outcome == Outcome::over_budget
                            ? "when its time was up"

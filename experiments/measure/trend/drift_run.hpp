@@ -40,7 +40,7 @@ DriftRun run_drift(const Method& method, const Options& options, const ReducedSc
 
 // The verdict on its energy: unknown where the run ended before half of `until`, unless it blew up
 // or nearly all of its energy was gone.
-Verdict fate(const DriftRun& run, double until);
+Verdict verdict_at(const DriftRun& run, double until);
 
 // The same in words, with how far it came and what became of the energy until then.
 std::string verdict(const DriftRun& run, double until);

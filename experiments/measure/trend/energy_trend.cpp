@@ -280,7 +280,7 @@ void take_line(Trend& trend, std::span<const Sample> samples, const TrendScales&
   const double largest_mean = line->largest_mean;
   if (const auto last = settled_line(samples, *line)) {
     line = last;
-    trend.settled = line->begin;
+    trend.steady_from = line->begin;
     trend.before = line->start;
   }
   fit_widening(*line, after(samples, line->begin));

@@ -47,8 +47,8 @@ struct Trend {
   Verdict verdict = Verdict::unknown;
   // [1/s]; of what falls or rises exponentially the slope with which that begins, excess rate.
   Interval drift;
-  double settled = 0;  // [s] from here on, 0 where the trend is that of the whole run
-  double before = 0;   // where that trend begins, if the error has settled
+  double steady_from = 0;  // [s] from here on, 0 where the trend is that of the whole run
+  double before = 0;       // where that trend begins, where steady_from > 0
   // [1/s], over the second half of the run; differs from `drift` where that changes.
   Interval late_drift;
   double oscillation = 0;  // half of what 95 % of the errors span about the trend

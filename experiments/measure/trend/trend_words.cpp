@@ -24,9 +24,9 @@ std::string no_drift_words(const Interval& drift) {
 }
 
 std::string settled_words(const Trend& trend) {
-  return trend.settled > 0 ? fmt::format(" from t = {:.3g} s on, after {:.1e} until then",
-                                         trend.settled, trend.before)
-                           : "";
+  return trend.steady_from > 0 ? fmt::format(" from t = {:.3g} s on, after {:.1e} until then",
+                                             trend.steady_from, trend.before)
+                               : "";
 }
 
 std::string period_words(const Trend& trend) {

@@ -84,9 +84,9 @@ struct FrontKernels {
   void (*subtract_from_rest)(const OpenFront&, int from, int end, int i, int strips,
                              const double* scaled);
 
-  // Of L z = b: the front's pivots of z in y, and what they take off the rows below.
+  // Solves L z = b: puts the front's pivots of z into y, and takes their share off the rows below.
   void (*forward)(const FrontFactor&, double* y, double* z);
-  // Of L' x = y: the front's pivots of x in y.
+  // Solves L' x = y: puts the front's pivots of x into y.
   void (*backward)(const FrontFactor&, double* y, double* x);
   // Both for four right-hand sides, rows of y; backwards() divides by the pivots, too.
   void (*forwards)(const FrontFactor&, double* y, double* z);

@@ -16,15 +16,15 @@ int append(std::vector<T>& all, const std::vector<T>& more) {
 
 }  // namespace
 
-Fronts::Fronts(const SymmetricMatrix& pattern, Elimination elimination) {
-  place_ = std::move(elimination.place);
+Fronts::Fronts(const SymmetricMatrix& pattern, SymbolicFactorization symbolic) {
+  place_ = std::move(symbolic.place);
   const int n = static_cast<int>(pattern.rows());
-  const int count = static_cast<int>(elimination.supernodes.size());
+  const int count = static_cast<int>(symbolic.supernodes.size());
 
   std::vector<int> parents(count);
   std::vector<std::vector<int>> children(count);
   for (int s = 0; s < count; ++s) {
-    const Supernode& node = elimination.supernodes[s];
+    const Supernode& node = symbolic.supernodes[s];
     Front& f = all_.emplace_back();
     f.first = node.first;
     f.pivots = node.pivots;

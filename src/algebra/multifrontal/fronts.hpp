@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "qddot/algebra/elimination.hpp"
 #include "qddot/algebra/multifrontal/front_kernels.hpp"
+#include "qddot/algebra/symbolic_factorization.hpp"
 #include "qddot/model/system.hpp"
 
 namespace qddot::multifrontal {
@@ -40,7 +40,7 @@ struct Branch {
 // All fronts of a matrix a D - s K and every index that its factorisation needs.
 class Fronts {
  public:
-  Fronts(const SymmetricMatrix& pattern, Elimination elimination);
+  Fronts(const SymmetricMatrix& pattern, SymbolicFactorization symbolic);
 
   // In the order of elimination: children before their parent.
   const std::vector<Front>& all() const { return all_; }
@@ -72,7 +72,7 @@ class Fronts {
     Index updates = 0, pivot_columns = 0;
     int height = 0;
   };
-  // Of any branch, without the updates that are kept; of the fronts above, with them.
+  // For any branch, without the updates that are kept; for the fronts above, with them.
   Sizes branch_sizes, top_sizes;
   Index factor_size = 0;  // doubles of L
 

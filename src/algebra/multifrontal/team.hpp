@@ -6,9 +6,9 @@
 namespace qddot::multifrontal {
 
 // What the threads of a team have in common.
-class Meeting {
+class Barrier {
  public:
-  explicit Meeting(int threads) : threads_(threads) {}
+  explicit Barrier(int threads) : threads_(threads) {}
 
   int threads() const { return threads_; }
   // 0, 1, 2, ..., each once.
@@ -40,7 +40,7 @@ class Meeting {
 class Team {
  public:
   Team() = default;
-  explicit Team(Meeting& meeting) : threads_(meeting.threads()), meeting_(&meeting) {}
+  explicit Team(Barrier& meeting) : threads_(meeting.threads()), meeting_(&meeting) {}
 
   bool alone() const { return threads_ == 1; }
 
@@ -71,7 +71,7 @@ class Team {
 
  private:
   int threads_ = 1;
-  Meeting* meeting_ = nullptr;
+  Barrier* meeting_ = nullptr;
   int first_ = 0;  // what is drawn for the next loop's first turn
 };
 

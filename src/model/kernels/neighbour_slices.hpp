@@ -29,7 +29,7 @@ struct NeighbourSlices {
   std::vector<Slice> slices;  // and the end
   std::vector<int> shifts;    // of a slot: its rows' neighbours are at the rows' places plus this
   std::vector<int> gathers;   // of a slot: `lanes` places
-  // Of a slot: the stiffness of its rows' springs; then, where any spring of all has one, their
+  // The stiffness of the springs of a slot's rows; then, where any spring of all has one, their
   // rest lengths; then, where any has one, their quartic stiffness. In a slice first the slots of
   // one shift, then those that gather.
   Vec laws;

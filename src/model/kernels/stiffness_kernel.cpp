@@ -51,7 +51,7 @@ StiffnessKernel<D>::StiffnessKernel(const Network& network, const Layout<D>& lay
       if (unknown >= 0) mark(columns[a], ++own);
     }
   }
-  // Of a row and a place, if both are nodes with one link between them, and the place's is later.
+  // Whether a row and a place are nodes with one link between them, and the place's is later.
   const auto target = [&](int row, int place) {
     if (place >= slices.rows()) return -1;
     const int node = slices.node[row], later = slices.node[place];

@@ -33,7 +33,7 @@ class StiffnessKernel {
              SymmetricMatrix& k) const;
 
   std::vector<int> links_left_out_;
-  // Of each slot: where in targets_ it has, for its rows, the value in K that a block begins with,
+  // Where in targets_ each slot has, for its rows, the value in K that a block begins with,
   // or -1; -1 where it has none.
   std::vector<int> slot_targets_, targets_;
   std::vector<int> columns_;  // D of each row, where its unknowns' columns begin; or -1

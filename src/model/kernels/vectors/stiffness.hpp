@@ -16,8 +16,8 @@ constexpr int entry(int a, int b) {
   return column * D - column * (column - 1) / 2 + row - column;
 }
 
-// Of one slot's springs: tau', and tau/l as it counts in B, given by `counted` from tau/l, l and
-// l0. On a line B is tau' alone, which is K's to the last bit at every q where tau' is constant.
+// tau' of one slot's springs, and tau/l as it counts in B: counted(tau/l, l0). On a line B is tau'
+// alone, which is K's to the last bit at every q where tau' is constant.
 struct Slopes {
   Lanes along, across, inverse_length;
 };

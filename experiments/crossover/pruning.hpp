@@ -33,23 +33,23 @@ struct Placing {
   std::array<const Point*, kinds.size()> of_kind{};
 };
 
-// The race of methods on one scene for the accuracies 1e-1, 1e-2, ... 1e-6, as far as the reference
-// is certain. As each method takes its points from coarse to fine, it is known which need not be
-// taken.
-class Race {
+// Which runs need not be made where methods compete on one scene for the accuracies 1e-1, 1e-2, ...
+// 1e-6, as far as the reference is certain. As each method takes its points from coarse to fine, it
+// is known which need not be taken.
+class Pruning {
  public:
   static constexpr std::array accuracies = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
   // Slower by this factor, a method does not count.
-  static constexpr double hopeless = 20;
+  static constexpr double too_slow = 20;
 
-  explicit Race(const Reference& reference);
+  explicit Pruning(const Reference& reference);
 
   void take(const Point& point);
   // Whether finer points of the method than this one are of no interest: it has reached the finest
-  // accuracy, or would come to each that is left hopelessly late if its time then grows as its
+  // accuracy, or would come to each that is left too late if its time then grows as its
   // order says, time ~ error^(-1/order).
   bool is_over(const Point& point) const;
-  // Seconds after which a run is hopeless at the finest accuracy; infinite where none reached that.
+  // Seconds after which a run is too slow at the finest accuracy; infinite where none reached that.
   double seconds_of_interest() const;
   // How many times slower the method is than the fastest, at the accuracy where that is least.
   // Infinite where it reached none; points: of that method.

@@ -8,7 +8,7 @@ from matplotlib.colors import ListedColormap, to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from fates import OUTCOMES, color_of, panels_of, sections_of
+from outcomes import OUTCOMES, color_of, panels_of, sections_of
 from names import shown
 from sheet import Sheet
 from style import FAINT, INK, number, power_of_ten, short_names
@@ -136,7 +136,7 @@ class Cells:
             self.axes.add_collection(lines)
 
 
-class FateSheet:
+class OutcomeSheet:
     """The picture of all panels."""
 
     def __init__(self, runs, limits, origin):

@@ -2,10 +2,10 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/crossover/race.hpp"
+#include "experiments/crossover/pruning.hpp"
 #include "qddot/integrators/registry.hpp"
 
-BOOST_AUTO_TEST_SUITE(race)
+BOOST_AUTO_TEST_SUITE(pruning)
 
 using namespace qddot;
 using namespace qddot::crossover;
@@ -41,12 +41,12 @@ BOOST_AUTO_TEST_CASE(kinds_are_read_from_the_registry) {
 }
 
 BOOST_AUTO_TEST_CASE(steps_above_a_stability_limit_do_not_end_the_race_of_a_method) {
-  Race race(certain_to(1e-9));
-  race.take(point("ida", 1e-7, 1));
+  Pruning pruning(certain_to(1e-9));
+  pruning.take(point("ida", 1e-7, 1));
   for (const double error : {2.0, 1e30, 1e300}) {
-    BOOST_TEST(!race.is_over(point("linear_midpoint", error, 1e-3)));
+    BOOST_TEST(!pruning.is_over(point("linear_midpoint", error, 1e-3)));
   }
-  BOOST_TEST(race.is_over(point("linear_midpoint", 0.9, 30)));
+  BOOST_TEST(pruning.is_over(point("linear_midpoint", 0.9, 30)));
 }
 
 BOOST_AUTO_TEST_CASE(the_fastest_point_that_is_accurate_enough_wins) {
@@ -77,33 +77,33 @@ BOOST_AUTO_TEST_CASE(nothing_is_said_below_what_is_certified) {
 }
 
 BOOST_AUTO_TEST_CASE(a_method_is_over_where_it_has_arrived_or_comes_too_late) {
-  Race race(certain_to(1e-9));
+  Pruning pruning(certain_to(1e-9));
   // Nobody is known to be faster.
-  BOOST_TEST(!race.is_over(point("verlet", 1e-3, 100)));
-  BOOST_TEST(race.is_over(point("verlet", 1e-6, 100)));
-  race.take(point("ida", 1e-6, 1));
-  BOOST_TEST(race.seconds_of_interest() == 20);
+  BOOST_TEST(!pruning.is_over(point("verlet", 1e-3, 100)));
+  BOOST_TEST(pruning.is_over(point("verlet", 1e-6, 100)));
+  pruning.take(point("ida", 1e-6, 1));
+  BOOST_TEST(pruning.seconds_of_interest() == 20);
   // Order 2 from 1e-4 to 1e-6 takes ten times as long: 20 times the fastest is 2 s here.
-  BOOST_TEST(!race.is_over(point("verlet", 1e-4, 1.9)));
-  BOOST_TEST(!race.is_over(point("verlet", 1e-4, 2.1)));  // but 1e-5 it reaches in time
-  BOOST_TEST(race.is_over(point("verlet", 1e-4, 6.5)));   // sqrt(10) x 6.5 s is late even there
+  BOOST_TEST(!pruning.is_over(point("verlet", 1e-4, 1.9)));
+  BOOST_TEST(!pruning.is_over(point("verlet", 1e-4, 2.1)));  // but 1e-5 it reaches in time
+  BOOST_TEST(pruning.is_over(point("verlet", 1e-4, 6.5)));   // sqrt(10) x 6.5 s is late even there
   // Order 1 is too late earlier, an order of 8 later.
-  BOOST_TEST(race.is_over(point("symplectic_euler", 1e-4, 2.1)));
-  BOOST_TEST(!race.is_over(point("kahan_li8", 1e-4, 6.5)));
+  BOOST_TEST(pruning.is_over(point("symplectic_euler", 1e-4, 2.1)));
+  BOOST_TEST(!pruning.is_over(point("kahan_li8", 1e-4, 6.5)));
 }
 
 BOOST_AUTO_TEST_CASE(the_accuracies_that_are_not_certified_do_not_keep_a_method_going) {
-  Race race(certain_to(1e-5));
-  BOOST_TEST(race.is_over(point("verlet", 1e-5, 1)));
-  BOOST_TEST(!race.is_over(point("verlet", 2e-5, 1)));
+  Pruning pruning(certain_to(1e-5));
+  BOOST_TEST(pruning.is_over(point("verlet", 1e-5, 1)));
+  BOOST_TEST(!pruning.is_over(point("verlet", 2e-5, 1)));
 }
 
 BOOST_AUTO_TEST_CASE(the_handicap_is_that_where_a_method_is_best) {
-  Race race(certain_to(1e-9));
-  race.take(point("ida", 1e-3, 1));
-  race.take(point("ida", 1e-6, 4));
-  BOOST_TEST(race.handicap({point("verlet", 1e-2, 5), point("verlet", 1e-5, 8)}) == 2);
-  BOOST_TEST(std::isinf(race.handicap({point("verlet", 0.5, 1)})));
+  Pruning pruning(certain_to(1e-9));
+  pruning.take(point("ida", 1e-3, 1));
+  pruning.take(point("ida", 1e-6, 4));
+  BOOST_TEST(pruning.handicap({point("verlet", 1e-2, 5), point("verlet", 1e-5, 8)}) == 2);
+  BOOST_TEST(std::isinf(pruning.handicap({point("verlet", 0.5, 1)})));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,15 +1,15 @@
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/command/command_line.hpp"
-#include "experiments/stability_map/fate.hpp"
-#include "experiments/stability_map/fate_map.hpp"
+#include "experiments/stability_map/outcome_map.hpp"
+#include "experiments/stability_map/run_outcome.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/settle.hpp"
 #include "tests/folder.hpp"
 #include "tests/integrators/runs.hpp"
 
-BOOST_AUTO_TEST_SUITE(fate)
+BOOST_AUTO_TEST_SUITE(run_outcome)
 
 using namespace qddot;
 using namespace qddot::measure;
@@ -27,9 +27,9 @@ struct Case {
 
   Case(const char* generator, const GeneratorValues& values)
       : drawn(generate(*find_generator(generator), values, generator)) {}
-  Fate operator()(const char* method, double h, double until, int iterations = 0) const {
-    return fate_of(method_named(method), {.step_size = h, .iterations = iterations}, scene,
-                   {.rest_energy = rest_energy, .until = until, .seconds = 60});
+  RunOutcome operator()(const char* method, double h, double until, int iterations = 0) const {
+    return run_outcome(method_named(method), {.step_size = h, .iterations = iterations}, scene,
+                       {.rest_energy = rest_energy, .until = until, .seconds = 60});
   }
 };
 
@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(symplectic_methods_are_bounded_below_their_limit_and_diverg
   for (const char* method : {"symplectic_euler", "verlet", "position_verlet"}) {
     BOOST_TEST_CONTEXT(method) {
       BOOST_TEST(oscillator()(method, 0.999 * 2 / w, 2000).outcome == "bounded");
-      const Fate above = oscillator()(method, 1.001 * 2 / w, 2000);
+      const RunOutcome above = oscillator()(method, 1.001 * 2 / w, 2000);
       BOOST_TEST(above.outcome == "diverged");
       // ln rho / h with rho = 1 + 2 sqrt(2 * 0.001) + ..., by theory; the fit sees its start too.
       const double rho = linear_step(method_named(method), 2.002).spectral_radius();
@@ -65,10 +65,10 @@ BOOST_AUTO_TEST_CASE(symplectic_methods_are_bounded_below_their_limit_and_diverg
 BOOST_AUTO_TEST_CASE(explicit_euler_dies_slowly_at_its_rate_at_any_step) {
   for (const double hw : {0.05, 0.2, 1.0}) {
     const double h = hw / w;
-    const Fate fate = oscillator()("explicit_euler", h, 400 / hw * h);
-    BOOST_TEST(fate.outcome == "diverged");
+    const RunOutcome result = oscillator()("explicit_euler", h, 400 / hw * h);
+    BOOST_TEST(result.outcome == "diverged");
     // |1 + i h w| a step, without any transient.
-    BOOST_TEST(fate.growth_rate == std::log1p(hw * hw) / (2 * h),
+    BOOST_TEST(result.growth_rate == std::log1p(hw * hw) / (2 * h),
                boost::test_tools::tolerance(1e-6));
   }
   // It is slow: over a hundred short steps nothing is to be seen.
@@ -78,9 +78,9 @@ BOOST_AUTO_TEST_CASE(explicit_euler_dies_slowly_at_its_rate_at_any_step) {
 BOOST_AUTO_TEST_CASE(implicit_euler_leaks_at_its_rate) {
   for (const double hw : {0.1, 1.0}) {
     const double h = hw / w;
-    const Fate fate = oscillator()("implicit_euler", h, 100 * h);
-    BOOST_TEST(fate.outcome == "leaked");
-    BOOST_TEST(fate.growth_rate == -std::log1p(hw * hw) / (2 * h),
+    const RunOutcome result = oscillator()("implicit_euler", h, 100 * h);
+    BOOST_TEST(result.outcome == "leaked");
+    BOOST_TEST(result.growth_rate == -std::log1p(hw * hw) / (2 * h),
                boost::test_tools::tolerance(1e-6));
   }
   BOOST_TEST(oscillator()("trapezoidal", 100 / w, 100).outcome == "bounded");
@@ -94,13 +94,13 @@ BOOST_AUTO_TEST_CASE(
   }
   // h w = 19: the energy grows more than a thousandfold.
   for (const char* method : {"implicit_midpoint", "trapezoidal"}) {
-    const Fate fate = stiff_pendulum()(method, 0.06, 20);
-    BOOST_TEST(fate.energy_max > 1000, method);
-    BOOST_TEST((fate.outcome == "gained" || fate.outcome == "diverged"), method);
+    const RunOutcome result = stiff_pendulum()(method, 0.06, 20);
+    BOOST_TEST(result.energy_max > 1000, method);
+    BOOST_TEST((result.outcome == "gained" || result.outcome == "diverged"), method);
   }
   // The discrete gradient's equations have no solution that Newton finds there, but what it has
   // taken of steps has kept the energy, to what its solves leave.
-  const Fate kept = stiff_pendulum()("discrete_gradient", 0.06, 20);
+  const RunOutcome kept = stiff_pendulum()("discrete_gradient", 0.06, 20);
   BOOST_TEST(kept.outcome == "newton_failed");
   BOOST_TEST(kept.energy_max < 1 + 1e-6);
 }
@@ -124,7 +124,7 @@ BOOST_AUTO_TEST_CASE(linearly_implicit_steps_fail_where_a_strut_makes_their_matr
   BOOST_TEST(at(5).outcome == "bounded");
   BOOST_TEST(std::abs(at(5).energy_end - 1) < 1e-3);
   // Implicit Euler solves the same equation to the end, at a minimum.
-  const Fate solved = strut("implicit_euler", 1 / rate, 1);
+  const RunOutcome solved = strut("implicit_euler", 1 / rate, 1);
   BOOST_TEST(solved.energy_max < 1 + 1e-6);
 }
 
@@ -135,10 +135,10 @@ BOOST_AUTO_TEST_CASE(few_iterations_converge_to_another_motion) {
 }
 
 BOOST_AUTO_TEST_CASE(time_that_is_up_is_an_outcome) {
-  const Fate fate = fate_of(method_named("verlet"), {.step_size = 1e-7}, oscillator().scene,
-                            {.until = 1e4, .seconds = 0.05});
-  BOOST_TEST(fate.outcome == "over_budget");
-  BOOST_TEST(fate.t_reached < 1e4);
+  const RunOutcome result = run_outcome(method_named("verlet"), {.step_size = 1e-7},
+                                        oscillator().scene, {.until = 1e4, .seconds = 0.05});
+  BOOST_TEST(result.outcome == "over_budget");
+  BOOST_TEST(result.t_reached < 1e4);
 }
 
 BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
@@ -157,17 +157,18 @@ BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
   const MapSettings settings{.until = 20, .tolerated = 0.5, .seconds = 10};
   CommandLine line("", "map");
   add_resume_option(line);
-  std::vector<std::optional<Fate>> all;
+  std::vector<std::optional<RunOutcome>> all;
   {
     Study study(line, folder.path(), {}, {});
-    all = fates(study, cells, settings, [](std::size_t) {});
+    all = run_outcomes(study, cells, settings, [](std::size_t) {});
   }
   BOOST_TEST(all[0]->outcome == "bounded");
   BOOST_TEST(all[1]->outcome == "bounded");
   BOOST_TEST(all[2]->outcome == "diverged");
   for (std::size_t i = 0; i < 3; ++i) {
-    const Fate alone = fate_of(*cells[i].method, {.step_size = cells[i].h_omega / w}, *row.scene,
-                               {row.rest_energy, settings.tolerated, settings.until, 10});
+    const RunOutcome alone =
+        run_outcome(*cells[i].method, {.step_size = cells[i].h_omega / w}, *row.scene,
+                    {row.rest_energy, settings.tolerated, settings.until, 10});
     BOOST_TEST(all[i]->growth_rate == alone.growth_rate);
     BOOST_TEST(all[i]->energy_max == alone.energy_max);
   }
@@ -178,7 +179,7 @@ BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
   line.parse("--resume");
   Study study(line, folder.path(), {}, {});
   cells.push_back({&method_named("verlet"), &row, 1.5, 0});
-  const auto resumed = fates(
+  const auto resumed = run_outcomes(
       study, cells, MapSettings{.until = 30, .tolerated = 0.5, .seconds = 10}, [](std::size_t) {});
   for (std::size_t i = 0; i < 3; ++i) {
     BOOST_TEST(resumed[i]->outcome == all[i]->outcome);

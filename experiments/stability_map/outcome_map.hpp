@@ -6,7 +6,7 @@
 
 #include "experiments/command/study.hpp"
 #include "experiments/stability_map/amplitude_rows.hpp"
-#include "experiments/stability_map/fate.hpp"
+#include "experiments/stability_map/run_outcome.hpp"
 
 namespace qddot::stability_map {
 
@@ -33,8 +33,8 @@ double predicted_growth_rate(const Cell& cell);
 // Runs all cells on all cores (OpenMP), the long ones first; each is a piece of the study. Nothing
 // stands for those that were not run before the program is to end. `progress` is called with how
 // many are done, from one thread at a time.
-std::vector<std::optional<Fate>> fates(Study& study, const std::vector<Cell>& cells,
-                                       const MapSettings& settings,
-                                       const std::function<void(std::size_t done)>& progress);
+std::vector<std::optional<RunOutcome>> run_outcomes(
+    Study& study, const std::vector<Cell>& cells, const MapSettings& settings,
+    const std::function<void(std::size_t done)>& progress);
 
 }  // namespace qddot::stability_map

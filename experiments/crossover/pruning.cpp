@@ -1,4 +1,4 @@
-#include "experiments/crossover/race.hpp"
+#include "experiments/crossover/pruning.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,19 +19,19 @@ void keep_faster(const Point*& fastest, const Point& point) {
 
 }  // namespace
 
-Race::Race(const Reference& reference)
+Pruning::Pruning(const Reference& reference)
     : count_(static_cast<std::size_t>(std::ranges::count_if(
           accuracies, [&](double a) { return reference.certified.position <= a; }))) {
   fastest_.fill(never);
 }
 
-void Race::take(const Point& point) {
+void Pruning::take(const Point& point) {
   for (std::size_t i = 0; i < count_; ++i) {
     if (reaches(point, accuracies[i])) fastest_[i] = std::min(fastest_[i], point.time);
   }
 }
 
-bool Race::is_over(const Point& point) const {
+bool Pruning::is_over(const Point& point) const {
   // Errors beyond the motion itself, as of steps above a stability limit, tell nothing of finer
   // ones.
   if (!(point.errors.position < 1)) return false;
@@ -39,16 +39,16 @@ bool Race::is_over(const Point& point) const {
     if (reaches(point, accuracies[i])) continue;
     const double slower =
         std::pow(point.errors.position / accuracies[i], 1.0 / std::max(point.method->order, 1));
-    if (!(point.time * slower > hopeless * fastest_[i])) return false;
+    if (!(point.time * slower > too_slow * fastest_[i])) return false;
   }
   return true;
 }
 
-double Race::seconds_of_interest() const {
-  return count_ == 0 ? never : hopeless * fastest_[count_ - 1];
+double Pruning::seconds_of_interest() const {
+  return count_ == 0 ? never : too_slow * fastest_[count_ - 1];
 }
 
-double Race::handicap(const std::vector<Point>& points) const {
+double Pruning::handicap(const std::vector<Point>& points) const {
   double least = never;
   for (const Point& point : points) {
     for (std::size_t i = 0; i < count_; ++i) {
@@ -60,7 +60,7 @@ double Race::handicap(const std::vector<Point>& points) const {
 
 std::vector<Placing> placings(const std::vector<Point>& points, const Reference& reference) {
   std::vector<Placing> all;
-  for (const double accuracy : Race::accuracies) {
+  for (const double accuracy : Pruning::accuracies) {
     Placing placing{.accuracy = accuracy};
     std::vector<const Point*> counted;
     if (reference.certified.position <= accuracy) {

@@ -1,4 +1,4 @@
-#include "qddot/measure/speed/ladder.hpp"
+#include "qddot/measure/speed/sweep.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,29 +11,29 @@
 namespace qddot::measure {
 namespace {
 
-constexpr int most_rungs = 60;
+constexpr int most_points = 60;
 
-// Values of the knob, finer with the rung. Rung 0 of a step size is h w = 4 for explicit methods,
-// beyond the stability limit of most, and half the horizon for implicit ones.
-class Rungs {
+// Values of the knob, finer with the number. Number 0 of a step size is h w = 4 for explicit
+// methods, beyond the stability limit of most, and half the run for implicit ones.
+class KnobValues {
  public:
-  Rungs(const Method& method, const ReducedScene& scene, double until)
+  KnobValues(const Method& method, const ReducedScene& scene, double until)
       : method_(method), until_(until) {
     const double w = resolved_frequency(method, scene.system(), scene.initial().q);
     steps_ = method.is(Trait::implicit) ? 2 : std::max(1.0, std::ceil(until * w / 4));
   }
 
-  // Nothing where the ladder has no such rung.
-  std::optional<double> value(int rung) const {
-    if (std::abs(rung) > most_rungs) return {};
+  // Nothing where there is no such value.
+  std::optional<double> value(int number) const {
+    if (std::abs(number) > most_points) return {};
     // Without step error one step is as good as many.
-    if (method_.order == 0) return rung == 0 ? std::optional(until_) : std::nullopt;
+    if (method_.order == 0) return number == 0 ? std::optional(until_) : std::nullopt;
     if (method_.knob == Knob::rtol) {
-      const double rtol = std::pow(10.0, -1 - rung);
+      const double rtol = std::pow(10.0, -1 - number);
       return rtol <= 0.1 && rtol >= 1e-15 ? std::optional(rtol) : std::nullopt;
     }
     const double steps =
-        std::round(steps_ * std::pow(4.0, static_cast<double>(rung) / method_.order));
+        std::round(steps_ * std::pow(4.0, static_cast<double>(number) / method_.order));
     return steps >= 1 ? std::optional(until_ / steps) : std::nullopt;
   }
 
@@ -63,9 +63,10 @@ class Stagnation {
   int idle_ = 0;
 };
 
-// A run of fixed steps takes time in proportion to their number, so a hopeless one need not be
-// begun. Implicit steps become cheaper as they become shorter: Newton then needs fewer iterations.
-bool is_hopeless(const Method& method, const Point& last, double value, const Effort& effort) {
+// A run of fixed steps takes time in proportion to their number, so one that is far too long need
+// not be begun. Implicit steps become cheaper as they become shorter: Newton then needs fewer
+// iterations.
+bool takes_too_long(const Method& method, const Point& last, double value, const Effort& effort) {
   const double saved_at_most = method.is(Trait::implicit) ? 10 : 1;
   return method.knob == Knob::step_size && last.outcome == Outcome::reached_end &&
          last.time * last.value / value > 1.5 * saved_at_most * effort.seconds;
@@ -77,21 +78,21 @@ bool is_good(const Point& point, const Reference& reference) {
 
 }  // namespace
 
-std::vector<Point> climb(const Method& method, const ReducedScene& scene, double until,
+std::vector<Point> sweep(const Method& method, const ReducedScene& scene, double until,
                          const Reference& reference, const Effort& effort,
                          const std::function<void(const Point&)>& report,
-                         const std::function<bool(const Point&)>& enough) {
-  const Rungs rungs(method, scene, until);
+                         const std::function<bool(const Point&)>& is_last) {
+  const KnobValues values(method, scene, until);
   std::vector<Point> points;
   const auto take = [&](double value) -> const Point& {
-    points.push_back(!points.empty() && is_hopeless(method, points.back(), value, effort)
+    points.push_back(!points.empty() && takes_too_long(method, points.back(), value, effort)
                          ? Point{.method = &method, .value = value, .outcome = Outcome::over_budget}
                          : measure_point(method, value, scene, until, reference, effort));
     report(points.back());
     return points.back();
   };
 
-  for (int rung = 0; const auto value = rungs.value(rung); --rung) {
+  for (int number = 0; const auto value = values.value(number); --number) {
     if (!points.empty() && points.back().value == *value) continue;
     if (!is_good(take(*value), reference)) break;
   }
@@ -100,12 +101,12 @@ std::vector<Point> climb(const Method& method, const ReducedScene& scene, double
   Stagnation stagnation(reference);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) stagnation.after(points[i]);
   int unfinished = 0;
-  for (int rung = 1; const auto value = rungs.value(rung); ++rung) {
+  for (int number = 1; const auto value = values.value(number); ++number) {
     const Point& last = points.back();
     if (last.value == *value) continue;
     if (last.outcome == Outcome::reached_end &&
         (judged_error(last, reference) <= certified(reference) || stagnation.after(last) ||
-         (enough && enough(last)))) {
+         (is_last && is_last(last)))) {
       break;
     }
     // Where Newton struggles at the coarse end, finer may be faster: two such points are forgiven.

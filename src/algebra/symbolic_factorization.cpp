@@ -1,4 +1,4 @@
-#include "qddot/algebra/elimination.hpp"
+#include "qddot/algebra/symbolic_factorization.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -105,9 +105,9 @@ class Analysis {
 
 // The sum of of_pivot(r) over all pivots, r the rows below each.
 template <class OfPivot>
-double over_pivots(const Elimination& elimination, const OfPivot& of_pivot) {
+double over_pivots(const SymbolicFactorization& symbolic, const OfPivot& of_pivot) {
   double sum = 0;
-  for (const Supernode& node : elimination.supernodes) {
+  for (const Supernode& node : symbolic.supernodes) {
     for (int p = 0; p < node.pivots; ++p) {
       sum += of_pivot(static_cast<double>(node.pivots - p - 1 + std::ssize(node.rows)));
     }
@@ -117,15 +117,15 @@ double over_pivots(const Elimination& elimination, const OfPivot& of_pivot) {
 
 }  // namespace
 
-double Elimination::entries() const {
+double SymbolicFactorization::entries() const {
   return over_pivots(*this, [](double rows) { return rows + 1; });
 }
 
-double Elimination::operations() const {
+double SymbolicFactorization::operations() const {
   return over_pivots(*this, [](double rows) { return rows * (rows + 2); });
 }
 
-Elimination eliminate(const SymmetricMatrix& pattern) {
+SymbolicFactorization eliminate(const SymmetricMatrix& pattern) {
   if (pattern.rows() == 0) return {};  // CHOLMOD does not take it
   Graph graph = block_graph(pattern);
   const int vertices = static_cast<int>(graph.unknowns.size());
@@ -135,7 +135,7 @@ Elimination eliminate(const SymmetricMatrix& pattern) {
   const std::unique_lock lock(one_at_a_time);
   const Analysis analysis(graph);
 
-  Elimination result;
+  SymbolicFactorization result;
   // Where each vertex begins among the unknowns, as they were and in the new order.
   std::vector<int> before(vertices + 1), after(vertices + 1), supernode(pattern.rows());
   for (int v = 0; v < vertices; ++v) {

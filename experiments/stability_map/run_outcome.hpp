@@ -9,7 +9,7 @@ namespace qddot::stability_map {
 
 // How a run is made and judged: by its energy above that at rest, X = E - V(rest), which the exact
 // motion keeps.
-struct FatePlan {
+struct RunPlan {
   double rest_energy = 0;  // V at rest [J]
   double tolerated = 0.5;  // the part of X that may be lost or gained
   double until = 0;        // [s]; at least `least_steps` steps are taken
@@ -28,7 +28,7 @@ constexpr int least_steps = 100;
 //   unconverged  of methods that take as many iterations as they are told: with five times as
 //                many the motion is another one, by a tenth of its size
 // or the name of the outcome with which the integrator itself failed.
-struct Fate {
+struct RunOutcome {
   std::string outcome;
   double growth_rate = 0;  // of the amplitude, half the slope of ln X [1/s]
   double t_reached = 0;    // [s]
@@ -41,7 +41,7 @@ struct Fate {
 // Runs the method from scene.initial() and judges. X is looked at after each of the first 200 steps
 // and 400 times more. Growth is fitted to the later half of where X exceeds three times what it was
 // (all of it where that is short), or, where it does not stay there, of the run.
-Fate fate_of(const Method& method, const Options& options, const ReducedScene& scene,
-             const FatePlan& plan);
+RunOutcome run_outcome(const Method& method, const Options& options, const ReducedScene& scene,
+                       const RunPlan& plan);
 
 }  // namespace qddot::stability_map

@@ -28,7 +28,7 @@ AT_LIMIT = 0.999
 
 @dataclass(frozen=True)
 class Run:
-    """The fate of one run; numbers that the file does not have are NaN."""
+    """What became of one run; numbers that the file does not have are NaN."""
 
     method: str
     knob: str
@@ -59,7 +59,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Panel:
-    """Methods of one limit whose runs all have the same fates; an unknown limit is NaN."""
+    """Methods of one limit whose runs all end alike; an unknown limit is NaN."""
 
     methods: list
     limit: float
@@ -85,13 +85,13 @@ class Panel:
         failing = self.fails_from
         if failing is None:
             unfinished = all(run.outcome == "over_budget" for run in self.runs)
-            fate = "not finished" if unfinished else "never fails"
+            failure = "not finished" if unfinished else "never fails"
         else:
             sign = "≤ " if failing == min(run.column for run in self.runs) else ""
-            fate = f"fails from {sign}{number(10**failing)}"
+            failure = f"fails from {sign}{number(10**failing)}"
         if not self.is_swept or not self.limit < math.inf:
-            return fate
-        return f"limit {number(self.limit) if self.limit else 0}, {fate}"
+            return failure
+        return f"limit {number(self.limit) if self.limit else 0}, {failure}"
 
 
 def panels_of(runs, limits):
@@ -101,8 +101,8 @@ def panels_of(runs, limits):
         by_method.setdefault(run.method, []).append(run)
     groups = {}
     for method, own in by_method.items():
-        fates = frozenset((run.column, run.amplitude, run.outcome) for run in own)
-        key = (own[0].knob, str(limits.get(method)), fates)
+        ends = frozenset((run.column, run.amplitude, run.outcome) for run in own)
+        key = (own[0].knob, str(limits.get(method)), ends)
         groups.setdefault(key, Panel([], limits.get(method, math.nan), own)).methods.append(method)
     return list(groups.values())
 

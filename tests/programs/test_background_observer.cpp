@@ -4,7 +4,7 @@
 
 #include "experiments/simulate/background_observer.hpp"
 
-BOOST_AUTO_TEST_SUITE(aside)
+BOOST_AUTO_TEST_SUITE(background_observer)
 
 using namespace qddot;
 using namespace qddot::simulate;
@@ -19,7 +19,7 @@ State state(int i, Index n) { return {i * 0.1, Vec::Constant(n, i), Vec::Constan
 BOOST_AUTO_TEST_CASE(every_state_is_looked_at_once_and_in_order) {
   for (const Index n : {1, 1000, 100'000}) {  // many at once, a few, each by itself
     std::vector<State> seen;
-    Aside aside([&](const State& at) { seen.push_back(at); });
+    BackgroundObserver aside([&](const State& at) { seen.push_back(at); });
     constexpr int states = 50;
     for (int i = 0; i < states; ++i) aside.see(state(i, n));
     aside.finish();
@@ -33,7 +33,7 @@ BOOST_AUTO_TEST_CASE(every_state_is_looked_at_once_and_in_order) {
 
 BOOST_AUTO_TEST_CASE(a_run_may_go_on_after_finish) {
   int seen = 0;
-  Aside aside([&](const State&) { ++seen; });
+  BackgroundObserver aside([&](const State&) { ++seen; });
   aside.finish();
   aside.see(state(1, 3));
   aside.finish();
@@ -43,7 +43,7 @@ BOOST_AUTO_TEST_CASE(a_run_may_go_on_after_finish) {
 
 BOOST_AUTO_TEST_CASE(what_looking_throws_arrives_and_ends_it) {
   int seen = 0;
-  Aside aside([&](const State& at) {
+  BackgroundObserver aside([&](const State& at) {
     ++seen;
     if (at.q[0] == 2) throw std::runtime_error("the disk is full");
   });
@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(what_looking_throws_arrives_and_ends_it) {
 BOOST_AUTO_TEST_CASE(it_may_end_with_states_that_nobody_looked_at) {
   int seen = 0;
   {
-    Aside aside([&](const State&) { ++seen; });
+    BackgroundObserver aside([&](const State&) { ++seen; });
     aside.see(state(0, 1));
   }
   BOOST_TEST(seen == 0);

@@ -1,4 +1,4 @@
-#include "experiments/stability_map/fate.hpp"
+#include "experiments/stability_map/run_outcome.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 constexpr int watched_steps = 200, samples_more = 400;
 constexpr std::ptrdiff_t few = 8;
 constexpr double nearly_singular = 0.9;
-constexpr double suspicious = 10, growing = 3, enough = 1e6;
+constexpr double suspicious = 10, growing = 3, unbounded = 1e6;
 constexpr int more_iterations = 5;
 constexpr double other_motion = 0.1;
 
@@ -53,7 +53,7 @@ struct Run {
 };
 
 Run run(const Method& method, const Options& options, const ReducedScene& scene, double until,
-        const FatePlan& plan) {
+        const RunPlan& plan) {
   Run result{.summary = {}, .samples = {}, .end = scene.initial()};
   const double start = scene.energy(result.end) - plan.rest_energy;
   const Deadline deadline(plan.seconds);
@@ -67,7 +67,7 @@ Run run(const Method& method, const Options& options, const ReducedScene& scene,
     }
     if (method.is(Trait::linearly_implicit)) before = state.q;
     if (std::isfinite(ratio)) result.samples.push_back({state.t, ratio});
-    if (!(ratio < enough)) {
+    if (!(ratio < unbounded)) {
       result.was_stopped = true;
       stop.request_stop();
     }
@@ -120,7 +120,7 @@ double growth_rate(const Samples& samples) {
   return slope(grown < few ? std::prev(first) : first + grown / 2, samples.end());
 }
 
-std::string judged(const Run& r, const Fate& fate, double tolerated) {
+std::string judged(const Run& r, const RunOutcome& result, double tolerated) {
   if (r.pushed > nearly_singular) return std::string(name(Outcome::indefinite_matrix));
   if (r.was_stopped) return "diverged";
   const Outcome outcome = r.summary.outcome;
@@ -130,8 +130,8 @@ std::string judged(const Run& r, const Fate& fate, double tolerated) {
                after = largest(half, r.samples.end());
   if (after > suspicious && after > growing * before) return "diverged";
   const double early = mean(r.samples.begin(), std::next(from(r.samples, 0.25)));
-  if (fate.energy_end > (1 + tolerated) * std::max(1.0, early)) return "gained";
-  if (fate.energy_end < 1 - tolerated) return "leaked";
+  if (result.energy_end > (1 + tolerated) * std::max(1.0, early)) return "gained";
+  if (result.energy_end < 1 - tolerated) return "leaked";
   return "bounded";
 }
 
@@ -145,29 +145,29 @@ double difference(const ReducedScene& scene, const State& a, const State& b) {
 
 }  // namespace
 
-Fate fate_of(const Method& method, const Options& options, const ReducedScene& scene,
-             const FatePlan& plan) {
+RunOutcome run_outcome(const Method& method, const Options& options, const ReducedScene& scene,
+                       const RunPlan& plan) {
   const double until = std::max(plan.until, least_steps * options.step_size);
   const Run r = run(method, options, scene, until, plan);
-  Fate fate{.outcome = "",
-            .growth_rate = growth_rate(r.samples),
-            .t_reached = r.summary.t_reached,
-            .energy_end = mean(from(r.samples, 0.75), r.samples.end()),
-            .energy_max = largest(r.samples.begin(), r.samples.end()),
-            .mean_step = r.summary.t_reached /
-                         static_cast<double>(std::max<std::int64_t>(1, r.summary.counts.steps)),
-            .counts = r.summary.counts};
-  fate.outcome = judged(r, fate, plan.tolerated);
+  RunOutcome result{.outcome = "",
+                    .growth_rate = growth_rate(r.samples),
+                    .t_reached = r.summary.t_reached,
+                    .energy_end = mean(from(r.samples, 0.75), r.samples.end()),
+                    .energy_max = largest(r.samples.begin(), r.samples.end()),
+                    .mean_step = r.summary.t_reached / static_cast<double>(std::max<std::int64_t>(
+                                                           1, r.summary.counts.steps)),
+                    .counts = r.summary.counts};
+  result.outcome = judged(r, result, plan.tolerated);
   if (method.listens_to(Option::iterations) && r.summary.outcome == Outcome::reached_end) {
     Options to_the_end = options;
     to_the_end.iterations = more_iterations * std::max(10, options.iterations);
     const Run solved = run(method, to_the_end, scene, until, plan);
     if (solved.summary.outcome == Outcome::reached_end &&
         difference(scene, r.end, solved.end) > other_motion) {
-      fate.outcome = "unconverged";
+      result.outcome = "unconverged";
     }
   }
-  return fate;
+  return result;
 }
 
 }  // namespace qddot::stability_map

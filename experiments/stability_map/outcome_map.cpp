@@ -1,4 +1,4 @@
-#include "experiments/stability_map/fate_map.hpp"
+#include "experiments/stability_map/outcome_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +19,8 @@ using namespace measure;
 using namespace command;
 
 // What nlohmann::json looks for by this name.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fate, outcome, growth_rate, t_reached, energy_end, energy_max,
-                                   mean_step, counts)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunOutcome, outcome, growth_rate, t_reached, energy_end,
+                                   energy_max, mean_step, counts)
 
 namespace {
 
@@ -37,13 +37,13 @@ std::string name_of(const Cell& cell) {
                      cell.h_omega, cell.rtol);
 }
 
-Fate fate_in(const Cell& cell, const MapSettings& settings) {
+RunOutcome fate_in(const Cell& cell, const MapSettings& settings) {
   try {
-    return fate_of(*cell.method, options_of(cell), *cell.row->scene,
-                   {.rest_energy = cell.row->rest_energy,
-                    .tolerated = settings.tolerated,
-                    .until = settings.until,
-                    .seconds = settings.seconds});
+    return run_outcome(*cell.method, options_of(cell), *cell.row->scene,
+                       {.rest_energy = cell.row->rest_energy,
+                        .tolerated = settings.tolerated,
+                        .until = settings.until,
+                        .seconds = settings.seconds});
   } catch (const std::exception&) {  // which cannot leave a thread
     return {.outcome = std::string(name(Outcome::solver_failed))};
   }
@@ -67,10 +67,10 @@ double predicted_growth_rate(const Cell& cell) {
   return largest;
 }
 
-std::vector<std::optional<Fate>> fates(Study& study, const std::vector<Cell>& cells,
-                                       const MapSettings& settings,
-                                       const std::function<void(std::size_t done)>& progress) {
-  std::vector<std::optional<Fate>> all(cells.size());
+std::vector<std::optional<RunOutcome>> run_outcomes(
+    Study& study, const std::vector<Cell>& cells, const MapSettings& settings,
+    const std::function<void(std::size_t done)>& progress) {
+  std::vector<std::optional<RunOutcome>> all(cells.size());
   std::vector<std::size_t> order(cells.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cells[i].h_omega; });

@@ -14,7 +14,7 @@ struct Supernode {
 };
 
 // In which order to factorise a symmetric matrix, and where L has entries then.
-struct Elimination {
+struct SymbolicFactorization {
   std::vector<int> place;             // place[i]: where unknown i comes in the order
   std::vector<Supernode> supernodes;  // in postorder: a subtree's lie together, its root last
 
@@ -27,6 +27,6 @@ struct Elimination {
 // Analyses an n x n pattern by CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM TOMS 35:3, 2008), on
 // the graph of its blocks: neighbouring unknowns of the same neighbours, as those of a node are,
 // are one vertex. Throws std::runtime_error when out of memory.
-Elimination eliminate(const SymmetricMatrix& pattern);
+SymbolicFactorization eliminate(const SymmetricMatrix& pattern);
 
 }  // namespace qddot
