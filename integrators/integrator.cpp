@@ -9,6 +9,7 @@
 
 #include "qddot/integrators/massless_balance.hpp"
 #include "qddot/integrators/method.hpp"
+#include "qddot/model/vector_updates.hpp"
 
 namespace qddot {
 namespace {
@@ -211,7 +212,7 @@ Outcome Integrator::check_solve(SolveOutcome solution) {
 }
 
 Outcome Integrator::check_step(const State& from, const State& to) {
-  const double speed_squared = to.v.squaredNorm();
+  const double speed_squared = squared_norm(to.v);
   if (std::isnan(speed_squared)) return Outcome::not_finite;
   if (!(speed_squared < largest_speed_squared)) return Outcome::diverged;
   if (validity_) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "qddot/model/system.hpp"
+#include "qddot/model/vector_updates.hpp"
 
 namespace qddot {
 
@@ -16,13 +16,20 @@ class CompensatedSum {
   // Begins a new sum.
   void restart() { rest_.setZero(); }
 
-  // x' = x + increment; `next` is sized n, and may be `now`.
+  // x' = x + c z; `next` is sized n, and may be `now`.
+  void add_scaled(const Vec& now, double c, const Vec& z, Vec& next) {
+    if (rest_.size() == 0) return qddot::add_scaled(now, c, z, next);
+    add(now, c * z, next);
+  }
+  // x' = x + c f/m
+  void add_quotient(const Vec& now, double c, const Vec& f, const Vec& m, Vec& next) {
+    if (rest_.size() == 0) return qddot::add_quotient(now, c, f, m, next);
+    add(now, c * f.cwiseQuotient(m), next);
+  }
+
+ private:
   template <class Increment>
   void add(const Vec& now, const Eigen::MatrixBase<Increment>& increment, Vec& next) {
-    if (rest_.size() == 0) {
-      next = now + increment;
-      return;
-    }
     for (Index i = 0; i < rest_.size(); ++i) {
       const double before = now[i], more = rest_[i] + increment.coeff(i), after = before + more;
       rest_[i] = more + (before - after);
@@ -30,7 +37,6 @@ class CompensatedSum {
     }
   }
 
- private:
   Vec rest_;  // empty where it is off
 };
 

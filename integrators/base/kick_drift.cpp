@@ -27,10 +27,10 @@ void KickDrift::start(const State& state) {
 }
 
 void KickDrift::kick(double size, State& state) {
-  v_.add(state.v, size * f_.cwiseQuotient(system().mass()), state.v);
+  v_.add_quotient(state.v, size, f_, system().mass(), state.v);
 }
 
-void KickDrift::drift(double size, State& state) { q_.add(state.q, size * state.v, state.q); }
+void KickDrift::drift(double size, State& state) { q_.add_scaled(state.q, size, state.v, state.q); }
 
 Outcome KickDrift::step(const State& now, double h, State& next) {
   const auto& [order, kicks, drifts] = splitting_;

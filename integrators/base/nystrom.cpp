@@ -2,9 +2,18 @@
 
 #include <algorithm>
 
-#include "qddot/integrators/base/table_row.hpp"
+#include "qddot/model/vector_updates.hpp"
 
 namespace qddot {
+namespace {
+
+std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
+  return a;
+}
+
+}  // namespace
+
 bool NystromPair::is_first_same_as_last() const {
   return c.back() == 1 && std::equal(a.back().begin(), a.back().end(), b.begin()) && b.back() == 0;
 }
@@ -13,12 +22,10 @@ Nystrom::Nystrom(const Method& method, const System& system, const Options& opti
                  const NystromPair& pair, std::size_t instants)
     : AdaptiveStep(method, system, options, {pair.lower_order, instants}),
       pair_(pair),
-      b_(as_vec(pair.b)),
-      b_prime_(as_vec(pair.b_prime)),
-      error_b_(b_ - as_vec(pair.lower_b)),
-      error_b_prime_(b_prime_ - as_vec(pair.lower_b_prime)),
+      error_b_(difference(pair.b, pair.lower_b)),
+      error_b_prime_(difference(pair.b_prime, pair.lower_b_prime)),
       is_first_same_as_last_(pair.is_first_same_as_last()),
-      k_(system.size(), b_.size()),
+      k_(system.size(), std::ssize(pair.b)),
       stage_(system.size()),
       w_max_(system) {}
 
@@ -38,17 +45,16 @@ Outcome Nystrom::attempt(const Instant& now, double h, Instant& next, Vec& error
   k_.col(0) = now.a;
   for (Index i = 1; i < k_.cols(); ++i) {
     const auto row = static_cast<std::size_t>(i);
-    stage_ = q + (pair_.c[row] * h) * v;
-    stage_.noalias() += (h * h) * (k_.leftCols(i) * as_vec(pair_.a[row]));
+    add_scaled(q, pair_.c[row] * h, v, stage_);
+    add_combination(stage_, h * h, k_, pair_.a[row], stage_);
     acceleration(stage_, next.a);
     k_.col(i) = next.a;
   }
-  next.state.q = q + h * v;
-  next.state.q.noalias() += (h * h) * (k_ * b_);
-  next.state.v = v;
-  next.state.v.noalias() += h * (k_ * b_prime_);
-  error_q.noalias() = (h * h) * (k_ * error_b_);
-  error_v.noalias() = h * (k_ * error_b_prime_);
+  add_scaled(q, h, v, next.state.q);
+  add_combination(next.state.q, h * h, k_, pair_.b, next.state.q);
+  add_combination(v, h, k_, pair_.b_prime, next.state.v);
+  set_combination(h * h, k_, error_b_, error_q);
+  set_combination(h, k_, error_b_prime_, error_v);
   return Outcome::reached_end;
 }
 

@@ -41,7 +41,7 @@ class Nystrom final : public AdaptiveStep {
   void accepted(Instant& next) override;
 
   const NystromPair& pair_;
-  Vec b_, b_prime_, error_b_, error_b_prime_;
+  std::vector<double> error_b_, error_b_prime_;
   bool is_first_same_as_last_;
   Eigen::MatrixXd k_;  // n x s, the stages' accelerations
   Vec stage_;

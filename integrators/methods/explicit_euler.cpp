@@ -4,6 +4,7 @@
 // Order 1. On q'' = -w^2 q the amplitude grows by sqrt(1 + h^2 w^2) each step, at every h.
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/model/vector_updates.hpp"
 
 namespace qddot::registered {
 namespace {
@@ -15,8 +16,8 @@ class ExplicitEuler final : public FixedStep {
  private:
   Outcome step(const State& now, double h, State& next) override {
     force(now.q, f_);
-    next.q = now.q + h * now.v;
-    next.v = now.v + h * f_.cwiseQuotient(system().mass());
+    add_scaled(now.q, h, now.v, next.q);
+    add_quotient(now.v, h, f_, system().mass(), next.v);
     return Outcome::reached_end;
   }
 

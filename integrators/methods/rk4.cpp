@@ -10,6 +10,7 @@
 
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/model/vector_updates.hpp"
 
 namespace qddot::registered {
 namespace {
@@ -23,14 +24,14 @@ class Rk4 final : public FixedStep {
     next.q = now.q;
     next.v = now.v;
     add_stage(now.q, now.v, h / 6, next);
-    at_.q = now.q + h / 2 * now.v;
-    at_.v = now.v + h / 2 * a_;
+    add_scaled(now.q, h / 2, now.v, at_.q);
+    add_scaled(now.v, h / 2, a_, at_.v);
     add_stage(at_.q, at_.v, h / 3, next);
-    at_.q = now.q + h / 2 * at_.v;
-    at_.v = now.v + h / 2 * a_;
+    add_scaled(now.q, h / 2, at_.v, at_.q);
+    add_scaled(now.v, h / 2, a_, at_.v);
     add_stage(at_.q, at_.v, h / 3, next);
-    at_.q = now.q + h * at_.v;
-    at_.v = now.v + h * a_;
+    add_scaled(now.q, h, at_.v, at_.q);
+    add_scaled(now.v, h, a_, at_.v);
     add_stage(at_.q, at_.v, h / 6, next);
     return Outcome::reached_end;
   }
@@ -39,8 +40,8 @@ class Rk4 final : public FixedStep {
   void add_stage(const Vec& q, const Vec& v, double weight, State& next) {
     force(q, a_);
     a_.array() /= system().mass().array();
-    next.q += weight * v;
-    next.v += weight * a_;
+    add_scaled(next.q, weight, v, next.q);
+    add_scaled(next.v, weight, a_, next.v);
   }
 
   State at_{0, Vec(system().size()), Vec(system().size())};

@@ -22,8 +22,8 @@ class SymplecticEuler final : public FixedStep {
 
   Outcome step(const State& now, double h, State& next) override {
     force(now.q, f_);
-    v_.add(now.v, h * f_.cwiseQuotient(system().mass()), next.v);
-    q_.add(now.q, h * next.v, next.q);
+    v_.add_quotient(now.v, h, f_, system().mass(), next.v);
+    q_.add_scaled(now.q, h, next.v, next.q);
     return Outcome::reached_end;
   }
 

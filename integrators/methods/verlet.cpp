@@ -23,10 +23,10 @@ class Verlet final : public FixedStep {
   }
 
   Outcome step(const State& now, double h, State& next) override {
-    v_.add(now.v, (h / 2) * f_.cwiseQuotient(system().mass()), next.v);
-    q_.add(now.q, h * next.v, next.q);
+    v_.add_quotient(now.v, h / 2, f_, system().mass(), next.v);
+    q_.add_scaled(now.q, h, next.v, next.q);
     force(next.q, f_);
-    v_.add(next.v, (h / 2) * f_.cwiseQuotient(system().mass()), next.v);
+    v_.add_quotient(next.v, h / 2, f_, system().mass(), next.v);
     return Outcome::reached_end;
   }
 

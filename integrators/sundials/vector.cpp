@@ -2,16 +2,23 @@
 
 #include <algorithm>
 
+#include "qddot/model/vector_updates.hpp"
+
 namespace qddot::sundials {
 namespace {
 
 Eigen::Map<Vec> all(N_Vector x) { return {N_VGetArrayPointer(x), N_VGetLength(x)}; }
 
 void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
-  all(z) = a * all(x) + b * all(y);
+  const double* const vectors[] = {N_VGetArrayPointer(x), N_VGetArrayPointer(y)};
+  const double weights[] = {a, b};
+  set_combination(vectors, weights, all(z));
 }
 
-void scale(double a, N_Vector x, N_Vector z) { all(z) = a * all(x); }
+void scale(double a, N_Vector x, N_Vector z) {
+  const double* const vectors[] = {N_VGetArrayPointer(x)};
+  set_combination(vectors, &a, all(z));
+}
 
 void set_constant(double a, N_Vector z) { all(z).setConstant(a); }
 
@@ -20,23 +27,19 @@ double weighted_norm(N_Vector x, N_Vector weight) {
                    static_cast<double>(N_VGetLength(x)));
 }
 
-// z = sum of c_i x_i, piece by piece, so that the sum stays in the nearest cache; z may be an x_i.
+// z = sum of c_i x_i; z may be an x_i.
 int linear_combination(int count, double* c, N_Vector* x, N_Vector z) {
-  constexpr Index piece = 256;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, piece, 1> sum;
-  const Index n = N_VGetLength(z);
-  for (Index first = 0; first < n; first += piece) {
-    const Index size = std::min(piece, n - first);
-    sum = c[0] * all(x[0]).segment(first, size);
-    for (int i = 1; i < count; ++i) sum += c[i] * all(x[i]).segment(first, size);
-    all(z).segment(first, size) = sum;
-  }
+  constexpr int most_vectors = 64;
+  if (count > most_vectors) return 1;
+  const double* vectors[most_vectors];
+  for (int i = 0; i < count; ++i) vectors[i] = N_VGetArrayPointer(x[i]);
+  set_combination({vectors, static_cast<std::size_t>(count)}, c, all(z));
   return 0;
 }
 
 // z_i = a_i x + y_i.
 int scale_add_multi(int count, double* a, N_Vector x, N_Vector* y, N_Vector* z) {
-  for (int i = 0; i < count; ++i) all(z[i]) = a[i] * all(x) + all(y[i]);
+  for (int i = 0; i < count; ++i) add_scaled(all(y[i]), a[i], all(x), all(z[i]));
   return 0;
 }
 

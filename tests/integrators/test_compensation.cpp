@@ -72,14 +72,14 @@ BOOST_AUTO_TEST_CASE(a_sum_keeps_what_rounding_takes_from_it) {
   for (const bool is_on : {true, false}) {
     CompensatedSum sum(is_on, 3);
     Vec x = Vec::Ones(3);
-    for (int i = 0; i < 1000000; ++i) sum.add(x, Vec::Constant(3, 1e-17), x);
+    for (int i = 0; i < 1000000; ++i) sum.add_scaled(x, 1e-17, Vec::Ones(3), x);
     // Each increment alone is too small to change 1; the sum is right to half a unit of its last
     // place.
     BOOST_TEST(std::abs(x[0] - (1 + 1e-11)) <= (is_on ? 1.2e-16 : 1.1e-11));
     BOOST_TEST((x[0] > 1) == is_on);
     sum.restart();
     const Vec before = x;
-    sum.add(x, Vec::Zero(3), x);
+    sum.add_scaled(x, 0, Vec::Zero(3), x);
     BOOST_TEST(x == before);
   }
 }

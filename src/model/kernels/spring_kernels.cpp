@@ -17,4 +17,7 @@ const SpringKernels& spring_kernels(int dimension) {
   return versions[level()][dimension - 1];
 }
 
+#undef QDDOT_DECLARE
+#undef QDDOT_ENTRY
+
 }  // namespace qddot::kernels

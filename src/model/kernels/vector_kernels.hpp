@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+
+// What the kernels of vectors read and write: plain numbers alone, as in spring_kernels.hpp.
+namespace qddot::kernels {
+
+// One version's functions on n numbers; `out` may be one of the others.
+struct VectorKernels {
+  // out = x + c z
+  void (*add_scaled)(const double* x, double c, const double* z, double* out, std::ptrdiff_t n);
+  // out = x + c f/m, number by number.
+  void (*add_quotient)(const double* x, double c, const double* f, const double* m, double* out,
+                       std::ptrdiff_t n);
+  // out = x + c (b_0 z_0 + b_1 z_1 + ...) of `count` vectors; without x where that is nullptr.
+  void (*add_combination)(const double* x, double c, const double* const* z, const double* b,
+                          int count, double* out, std::ptrdiff_t n);
+  // x_0^2 + x_1^2 + ...
+  double (*squared_norm)(const double* x, std::ptrdiff_t n);
+};
+
+// Returns the version in use.
+const VectorKernels& vector_kernels();
+
+}  // namespace qddot::kernels

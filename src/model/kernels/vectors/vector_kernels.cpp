@@ -1,0 +1,74 @@
+#include "qddot/model/kernels/vector_kernels.hpp"
+
+#include "qddot/model/kernels/vectors/lanes.hpp"
+
+namespace qddot::kernels::QDDOT_LEVEL {
+namespace {
+
+void add_scaled(const double* x, double c, const double* z, double* out, std::ptrdiff_t n) {
+  std::ptrdiff_t i = 0;
+  for (; i + lanes <= n; i += lanes) store(out + i, load(x + i) + c * load(z + i));
+  for (; i < n; ++i) out[i] = x[i] + c * z[i];
+}
+
+void add_quotient(const double* x, double c, const double* f, const double* m, double* out,
+                  std::ptrdiff_t n) {
+  std::ptrdiff_t i = 0;
+  for (; i + lanes <= n; i += lanes) store(out + i, load(x + i) + c * (load(f + i) / load(m + i)));
+  for (; i < n; ++i) out[i] = x[i] + c * (f[i] / m[i]);
+}
+
+// The next `width` vectors of add_combination: as many sums side by side hide what one waits for.
+template <int width>
+[[gnu::always_inline]] inline void combine(const double* x, double c, const double* const* z,
+                                           const double* b, int count, double* out,
+                                           std::ptrdiff_t i) {
+  Lanes sum[width] = {};
+  for (int j = 0; j < count; ++j) {
+    const double* from = z[j] + i;
+    unroll<width>([&]<int w>()
+                      __attribute__((always_inline)) { sum[w] += b[j] * load(from + w * lanes); });
+  }
+  for (int w = 0; w < width; ++w) {
+    const std::ptrdiff_t at = i + w * lanes;
+    store(out + at, x ? load(x + at) + c * sum[w] : c * sum[w]);
+  }
+}
+
+void add_combination(const double* x, double c, const double* const* z, const double* b, int count,
+                     double* out, std::ptrdiff_t n) {
+  std::ptrdiff_t i = 0;
+  for (; i + 4 * lanes <= n; i += 4 * lanes) combine<4>(x, c, z, b, count, out, i);
+  for (; i + lanes <= n; i += lanes) combine<1>(x, c, z, b, count, out, i);
+  for (; i < n; ++i) {
+    double sum = 0;
+    for (int j = 0; j < count; ++j) sum += b[j] * z[j][i];
+    out[i] = x ? x[i] + c * sum : c * sum;
+  }
+}
+
+double squared_norm(const double* x, std::ptrdiff_t n) {
+  Lanes sums[4] = {};
+  std::ptrdiff_t i = 0;
+  for (; i + 4 * lanes <= n; i += 4 * lanes) {
+    unroll<4>([&]<int w>() __attribute__((always_inline)) {
+      const Lanes some = load(x + i + w * lanes);
+      sums[w] += some * some;
+    });
+  }
+  const Lanes sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  double total = 0;
+  for (int t = 0; t < lanes; ++t) total += sum[t];
+  for (; i < n; ++i) total += x[i] * x[i];
+  return total;
+}
+
+}  // namespace
+
+extern const VectorKernels vector_kernels;
+const VectorKernels vector_kernels = {.add_scaled = add_scaled,
+                                      .add_quotient = add_quotient,
+                                      .add_combination = add_combination,
+                                      .squared_norm = squared_norm};
+
+}  // namespace qddot::kernels::QDDOT_LEVEL

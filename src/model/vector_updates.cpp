@@ -1,0 +1,55 @@
+#include "qddot/model/vector_updates.hpp"
+
+#include <array>
+#include <cassert>
+
+#include "qddot/model/kernels/vector_kernels.hpp"
+
+namespace qddot {
+namespace {
+
+// The most stages that a table has.
+constexpr std::size_t most_columns = 32;
+
+void combine(const double* x, double c, const Eigen::MatrixXd& k, std::span<const double> b,
+             MutableVec out) {
+  assert(std::ssize(b) <= k.cols() && b.size() <= most_columns);
+  std::array<const double*, most_columns> columns;
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    columns[j] = k.data() + static_cast<Index>(j) * k.outerStride();
+  }
+  kernels::vector_kernels().add_combination(x, c, columns.data(), b.data(),
+                                            static_cast<int>(b.size()), out.data(), out.size());
+}
+
+}  // namespace
+
+void add_scaled(const ConstVec& x, double c, const ConstVec& z, MutableVec out) {
+  kernels::vector_kernels().add_scaled(x.data(), c, z.data(), out.data(), x.size());
+}
+
+void add_quotient(const ConstVec& x, double c, const ConstVec& f, const ConstVec& m,
+                  MutableVec out) {
+  kernels::vector_kernels().add_quotient(x.data(), c, f.data(), m.data(), out.data(), x.size());
+}
+
+void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
+                     std::span<const double> b, MutableVec out) {
+  combine(x.data(), c, k, b, out);
+}
+
+void set_combination(double c, const Eigen::MatrixXd& k, std::span<const double> b,
+                     MutableVec out) {
+  combine(nullptr, c, k, b, out);
+}
+
+void set_combination(std::span<const double* const> z, const double* b, MutableVec out) {
+  kernels::vector_kernels().add_combination(nullptr, 1, z.data(), b, static_cast<int>(z.size()),
+                                            out.data(), out.size());
+}
+
+double squared_norm(const ConstVec& x) {
+  return kernels::vector_kernels().squared_norm(x.data(), x.size());
+}
+
+}  // namespace qddot

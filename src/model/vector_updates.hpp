@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+
+#include "qddot/model/system.hpp"
+
+// Updates of long vectors at the width of the processor's vectors, which Eigen's expressions have
+// only where all is compiled for that processor. Sizes must agree; `out` may be one of the others.
+namespace qddot {
+
+using ConstVec = Eigen::Ref<const Vec>;
+using MutableVec = Eigen::Ref<Vec>;
+
+// out = x + c z
+void add_scaled(const ConstVec& x, double c, const ConstVec& z, MutableVec out);
+// out = x + c f/m, entry by entry.
+void add_quotient(const ConstVec& x, double c, const ConstVec& f, const ConstVec& m,
+                  MutableVec out);
+// out = x + c K b with the first columns of K, as many as b has, at most 32.
+void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
+                     std::span<const double> b, MutableVec out);
+// out = c K b
+void set_combination(double c, const Eigen::MatrixXd& k, std::span<const double> b, MutableVec out);
+// out_i = b_0 z_0i + b_1 z_1i + ...
+void set_combination(std::span<const double* const> z, const double* b, MutableVec out);
+// |x|^2
+double squared_norm(const ConstVec& x);
+
+}  // namespace qddot
