@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "qddot/model/machine_epsilon.hpp"
+#include "qddot/model/vector_updates.hpp"
 
 namespace qddot {
 namespace {
@@ -45,7 +46,7 @@ AdaptiveStep::AdaptiveStep(const Method& method, const System& system, const Opt
 
 void AdaptiveStep::acceleration(const Vec& q, Vec& a) {
   force(q, a);
-  a.array() *= per_mass_.array();
+  multiply(a, per_mass_, a);
 }
 
 double AdaptiveStep::norm(const State& at, const Vec& q, const Vec& v) const {

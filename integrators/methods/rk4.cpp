@@ -39,7 +39,7 @@ class Rk4 final : public FixedStep {
   // a_i at a stage, and so much of the stage's rate into `next`.
   void add_stage(const Vec& q, const Vec& v, double weight, State& next) {
     force(q, a_);
-    a_.array() /= system().mass().array();
+    divide(a_, system().mass(), a_);
     add_scaled(next.q, weight, v, next.q);
     add_scaled(next.v, weight, a_, next.v);
   }

@@ -125,7 +125,7 @@ double SymbolicFactorization::operations() const {
   return over_pivots(*this, [](double rows) { return rows * (rows + 2); });
 }
 
-SymbolicFactorization eliminate(const SymmetricMatrix& pattern) {
+SymbolicFactorization analyse(const SymmetricMatrix& pattern) {
   if (pattern.rows() == 0) return {};  // CHOLMOD does not take it
   Graph graph = block_graph(pattern);
   const int vertices = static_cast<int>(graph.unknowns.size());

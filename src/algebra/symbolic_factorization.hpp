@@ -27,6 +27,6 @@ struct SymbolicFactorization {
 // Analyses an n x n pattern by CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM TOMS 35:3, 2008), on
 // the graph of its blocks: neighbouring unknowns of the same neighbours, as those of a node are,
 // are one vertex. Throws std::runtime_error when out of memory.
-SymbolicFactorization eliminate(const SymmetricMatrix& pattern);
+SymbolicFactorization analyse(const SymmetricMatrix& pattern);
 
 }  // namespace qddot

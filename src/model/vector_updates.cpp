@@ -33,6 +33,14 @@ void add_quotient(const ConstVec& x, double c, const ConstVec& f, const ConstVec
   kernels::vector_kernels().add_quotient(x.data(), c, f.data(), m.data(), out.data(), x.size());
 }
 
+void divide(const ConstVec& f, const ConstVec& m, MutableVec out) {
+  kernels::vector_kernels().divide(f.data(), m.data(), out.data(), f.size());
+}
+
+void multiply(const ConstVec& a, const ConstVec& b, MutableVec out) {
+  kernels::vector_kernels().multiply(a.data(), b.data(), out.data(), a.size());
+}
+
 void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
                      std::span<const double> b, MutableVec out) {
   combine(x.data(), c, k, b, out);

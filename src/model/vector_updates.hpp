@@ -16,6 +16,9 @@ void add_scaled(const ConstVec& x, double c, const ConstVec& z, MutableVec out);
 // out = x + c f/m, entry by entry.
 void add_quotient(const ConstVec& x, double c, const ConstVec& f, const ConstVec& m,
                   MutableVec out);
+// out = f/m and out = a b, entry by entry.
+void divide(const ConstVec& f, const ConstVec& m, MutableVec out);
+void multiply(const ConstVec& a, const ConstVec& b, MutableVec out);
 // out = x + c K b with the first columns of K, as many as b has, at most 32.
 void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
                      std::span<const double> b, MutableVec out);

@@ -26,7 +26,7 @@ struct Course {
         until(horizon),
         reference(make_reference(scene, horizon, reference_seconds)) {}
 
-  std::vector<Point> sweep(const char* method, const Effort& effort) const {
+  std::vector<Point> run(const char* method, const Effort& effort) const {
     std::vector<double> reported;
     auto points =
         qddot::measure::sweep(*find_method(method), scene, until, reference, effort,
@@ -55,7 +55,7 @@ bool reached(const Point& point) { return point.outcome == Outcome::reached_end;
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(it_starts_where_an_explicit_method_fails) {
-  const auto points = oscillator().sweep("verlet", short_runs);
+  const auto points = oscillator().run("verlet", short_runs);
   BOOST_TEST_REQUIRE(points.size() > 3u);
   BOOST_TEST((points[0].outcome == Outcome::diverged));
   BOOST_TEST(points[0].value * 10 > 2);
@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(it_starts_where_an_explicit_method_fails) {
 }
 
 BOOST_AUTO_TEST_CASE(it_starts_where_an_implicit_method_is_a_whole_motion_off) {
-  const auto points = oscillator().sweep("implicit_euler", short_runs);
+  const auto points = oscillator().run("implicit_euler", short_runs);
   BOOST_TEST_REQUIRE(points.size() > 2u);
   BOOST_TEST(reached(points[0]));
   const double coarsest = points[0].value;
@@ -77,7 +77,7 @@ BOOST_AUTO_TEST_CASE(it_starts_where_an_implicit_method_is_a_whole_motion_off) {
 BOOST_AUTO_TEST_CASE(points_divide_the_expected_error_by_four) {
   for (const auto& [method, order] :
        {std::pair("implicit_euler", 1), std::pair("verlet", 2), std::pair("kahan_li8", 8)}) {
-    const auto points = oscillator().sweep(method, short_runs);
+    const auto points = oscillator().run(method, short_runs);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double steps = oscillator().until / points[i].value;
       BOOST_TEST(std::abs(steps - std::round(steps)) < 1e-9 * steps);
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(points_divide_the_expected_error_by_four) {
 BOOST_AUTO_TEST_CASE(tolerances_go_by_powers_of_ten_from_a_tenth) {
   const Course course("pair", 0.2);
   for (const char* method : {"arkode_dirk4", "ida"}) {
-    const auto points = course.sweep(method, short_runs);
+    const auto points = course.run(method, short_runs);
     BOOST_TEST(points.size() > 5u);
     for (std::size_t i = 0; i < points.size(); ++i) {
       BOOST_TEST(points[i].value == std::pow(10, -1 - static_cast<double>(i)),
@@ -105,7 +105,7 @@ BOOST_AUTO_TEST_CASE(tolerances_go_by_powers_of_ten_from_a_tenth) {
 BOOST_AUTO_TEST_CASE(it_ends_at_the_first_point_over_budget) {
   // An error of 1e-15 would take a first-order method 1e15 steps.
   for (const char* method : {"implicit_euler", "symplectic_euler"}) {
-    const auto points = oscillator().sweep(method, short_runs);
+    const auto points = oscillator().run(method, short_runs);
     BOOST_TEST((points.back().outcome == Outcome::over_budget), method);
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
       BOOST_TEST((points[i].outcome != Outcome::over_budget), method << " point " << i);
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(it_goes_down_to_where_the_reference_or_rounding_ends_it) {
        {std::pair("orbit", 0.3), std::pair("pair", 0.1), std::pair("pendulum", 0.6)}) {
     const Course course(name, until);
     // Generous: what ends this sweep is not its budget.
-    const auto points = course.sweep("kahan_li8", {.seconds = 60, .repeats = 1});
+    const auto points = course.run("kahan_li8", {.seconds = 60, .repeats = 1});
     BOOST_TEST(points.back().errors.position < 1e-11,
                name << " to " << until << " ended at " << points.back().errors.position);
   }
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(it_goes_down_to_where_the_reference_or_rounding_ends_it) {
 BOOST_AUTO_TEST_CASE(it_does_not_go_below_what_the_reference_certifies) {
   Course course("orbit", 0.3);
   course.reference.certified.position = 1e-4;
-  const auto points = course.sweep("verlet", {.seconds = 60, .repeats = 1});
+  const auto points = course.run("verlet", {.seconds = 60, .repeats = 1});
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!reached(points[i])) continue;
     BOOST_TEST((points[i].errors.position <= 1e-4) == (i + 1 == points.size()), "point " << i);
@@ -143,13 +143,13 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_it_goes_down_by_the_energy_error) {
   Course course("orbit", 0.3);
   course.reference.certified.position = 0.1;  // as if nobody knew the end
   const Effort effort{.seconds = 60, .repeats = 1};
-  const auto blind = course.sweep("kahan_li8", effort);
+  const auto blind = course.run("kahan_li8", effort);
   BOOST_TEST(blind.back().errors.position > 1e-9);
   course.reference.horizon = 0.2;
   const Watch watch(load_scene("orbit"), course.scene, course.until, course.reference);
   Effort watched = effort;
   watched.watch = &watch;
-  const auto points = course.sweep("kahan_li8", watched);
+  const auto points = course.run("kahan_li8", watched);
   BOOST_TEST(points.back().path.energy < 1e-13);
   BOOST_TEST(points.size() > blind.size() + 3);
 }
@@ -163,8 +163,8 @@ BOOST_AUTO_TEST_CASE(steps_held_to_a_stability_limit_do_not_end_it) {
   scene.springs = {{{0, 1}, {.stiffness = 1}}, {{1, 2}, {.stiffness = 1e6, .rest_length = 1}}};
   const ReducedScene held(scene);
   const Reference reference = make_reference(held, 1, reference_seconds);
-  const auto points = sweep(*find_method("arkode_erk4"), held, 1, reference,
-                            {.seconds = 60, .repeats = 1}, [](const Point&) {});
+  const auto points = measure::sweep(*find_method("arkode_erk4"), held, 1, reference,
+                                     {.seconds = 60, .repeats = 1}, [](const Point&) {});
   const auto is_held = [](const Point& point) {
     return 2 * point.counts.stability_limited_steps > point.counts.steps;
   };
@@ -186,7 +186,7 @@ BOOST_AUTO_TEST_CASE(where_nothing_moves_one_point_is_enough) {
   const Reference reference = make_reference(at_rest, 1, reference_seconds);
   for (const char* name : {"verlet", "implicit_euler", "ida"}) {
     const auto points =
-        sweep(*find_method(name), at_rest, 1, reference, short_runs, [](const Point&) {});
+        measure::sweep(*find_method(name), at_rest, 1, reference, short_runs, [](const Point&) {});
     BOOST_TEST(points.size() <= 2u, name << " took " << points.size());
     BOOST_TEST(points.back().errors.position == 0);
   }
@@ -195,7 +195,7 @@ BOOST_AUTO_TEST_CASE(where_nothing_moves_one_point_is_enough) {
 BOOST_AUTO_TEST_CASE(nothing_finer_is_taken_than_what_is_enough) {
   const Course& course = oscillator();
   const auto is_last = [](const Point& point) { return point.errors.position <= 1e-3; };
-  const auto points = sweep(
+  const auto points = measure::sweep(
       *find_method("verlet"), course.scene, course.until, course.reference, short_runs,
       [](const Point&) {}, is_last);
   BOOST_TEST_REQUIRE(points.size() >= 2u);
@@ -208,7 +208,7 @@ BOOST_AUTO_TEST_CASE(nothing_finer_is_taken_than_what_is_enough) {
 BOOST_AUTO_TEST_CASE(negative_control_a_motion_without_failure_has_no_failing_point) {
   // Below h w = 2 throughout: half a period is too short for anything to overflow.
   const Course course("oscillator", 0.05);
-  for (const Point& point : course.sweep("verlet", {.seconds = 60, .repeats = 1})) {
+  for (const Point& point : course.run("verlet", {.seconds = 60, .repeats = 1})) {
     BOOST_TEST(reached(point));
   }
 }

@@ -21,6 +21,10 @@ BOOST_AUTO_TEST_CASE(they_are_what_their_formulas_say) {
     BOOST_TEST(out.isApprox(scaled, rounding));
     add_quotient(x, c, z, m, out);
     BOOST_TEST(out.isApprox(quotient, rounding));
+    divide(z, m, out);
+    BOOST_TEST(out == Vec(z.cwiseQuotient(m)));
+    multiply(z, m, out);
+    BOOST_TEST(out == Vec(z.cwiseProduct(m)));
     // In place.
     out = x;
     add_quotient(out, c, z, m, out);

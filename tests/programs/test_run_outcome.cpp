@@ -28,8 +28,9 @@ struct Case {
   Case(const char* generator, const GeneratorValues& values)
       : drawn(generate(*find_generator(generator), values, generator)) {}
   RunOutcome operator()(const char* method, double h, double until, int iterations = 0) const {
-    return run_outcome(method_named(method), {.step_size = h, .iterations = iterations}, scene,
-                       {.rest_energy = rest_energy, .until = until, .seconds = 60});
+    return stability_map::run_outcome(method_named(method),
+                                      {.step_size = h, .iterations = iterations}, scene,
+                                      {.rest_energy = rest_energy, .until = until, .seconds = 60});
   }
 };
 
@@ -135,8 +136,9 @@ BOOST_AUTO_TEST_CASE(few_iterations_converge_to_another_motion) {
 }
 
 BOOST_AUTO_TEST_CASE(time_that_is_up_is_an_outcome) {
-  const RunOutcome result = run_outcome(method_named("verlet"), {.step_size = 1e-7},
-                                        oscillator().scene, {.until = 1e4, .seconds = 0.05});
+  const RunOutcome result =
+      stability_map::run_outcome(method_named("verlet"), {.step_size = 1e-7}, oscillator().scene,
+                                 {.until = 1e4, .seconds = 0.05});
   BOOST_TEST(result.outcome == "over_budget");
   BOOST_TEST(result.t_reached < 1e4);
 }
@@ -166,9 +168,9 @@ BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
   BOOST_TEST(all[1]->outcome == "bounded");
   BOOST_TEST(all[2]->outcome == "diverged");
   for (std::size_t i = 0; i < 3; ++i) {
-    const RunOutcome alone =
-        run_outcome(*cells[i].method, {.step_size = cells[i].h_omega / w}, *row.scene,
-                    {row.rest_energy, settings.tolerated, settings.until, 10});
+    const RunOutcome alone = stability_map::run_outcome(
+        *cells[i].method, {.step_size = cells[i].h_omega / w}, *row.scene,
+        {row.rest_energy, settings.tolerated, settings.until, 10});
     BOOST_TEST(all[i]->growth_rate == alone.growth_rate);
     BOOST_TEST(all[i]->energy_max == alone.energy_max);
   }

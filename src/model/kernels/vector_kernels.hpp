@@ -12,6 +12,9 @@ struct VectorKernels {
   // out = x + c f/m, number by number.
   void (*add_quotient)(const double* x, double c, const double* f, const double* m, double* out,
                        std::ptrdiff_t n);
+  // out = f/m and out = a b, number by number.
+  void (*divide)(const double* f, const double* m, double* out, std::ptrdiff_t n);
+  void (*multiply)(const double* a, const double* b, double* out, std::ptrdiff_t n);
   // out = x + c (b_0 z_0 + b_1 z_1 + ...) of `count` vectors; without x where that is nullptr.
   void (*add_combination)(const double* x, double c, const double* const* z, const double* b,
                           int count, double* out, std::ptrdiff_t n);

@@ -18,6 +18,18 @@ void add_quotient(const double* x, double c, const double* f, const double* m, d
   for (; i < n; ++i) out[i] = x[i] + c * (f[i] / m[i]);
 }
 
+void divide(const double* f, const double* m, double* out, std::ptrdiff_t n) {
+  std::ptrdiff_t i = 0;
+  for (; i + lanes <= n; i += lanes) store(out + i, load(f + i) / load(m + i));
+  for (; i < n; ++i) out[i] = f[i] / m[i];
+}
+
+void multiply(const double* a, const double* b, double* out, std::ptrdiff_t n) {
+  std::ptrdiff_t i = 0;
+  for (; i + lanes <= n; i += lanes) store(out + i, load(a + i) * load(b + i));
+  for (; i < n; ++i) out[i] = a[i] * b[i];
+}
+
 // The next `width` vectors of add_combination: as many sums side by side hide what one waits for.
 template <int width>
 [[gnu::always_inline]] inline void combine(const double* x, double c, const double* const* z,
@@ -68,6 +80,8 @@ double squared_norm(const double* x, std::ptrdiff_t n) {
 extern const VectorKernels vector_kernels;
 const VectorKernels vector_kernels = {.add_scaled = add_scaled,
                                       .add_quotient = add_quotient,
+                                      .divide = divide,
+                                      .multiply = multiply,
                                       .add_combination = add_combination,
                                       .squared_norm = squared_norm};
 
