@@ -1,7 +1,6 @@
 #include "experiments/command/method_options.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 #include <fmt/format.h>
 
@@ -20,10 +19,6 @@ void require_that(bool is_allowed, const char* option, const T& value, const std
   if (!is_allowed) {
     throw InvalidInput(fmt::format("{} {} is not allowed; it is {}", option, value, what));
   }
-}
-
-std::string solver_list() {
-  return fmt::format("one of {}", fmt::join(solver_names | std::views::values, ", "));
 }
 
 void require_values(const CommandLine& line, const Options& o, int highest_order) {
@@ -71,10 +66,10 @@ void add_method_options(CommandLine& line, Options& options) {
           "--solver",
           [&options](const std::string& name) {
             const auto solver = find_solver(name);
-            require_that(solver.has_value(), "--solver", name, solver_list());
+            require_that(solver.has_value(), "--solver", name, "one of " + solver_list());
             options.solver = *solver;
           },
-          "what solves with the n x n matrices of implicit steps: " + solver_list())
+          "what solves with the n x n matrices of implicit steps: one of " + solver_list())
       .take_last()
       .default_str(std::string(name(options.solver)));
 }

@@ -14,7 +14,7 @@ auto key(const PhaseCost& cost) { return std::tie(cost.scene, cost.method, cost.
 
 const PhaseCost* last_of(const std::vector<PhaseCost>& all, const std::string& scene,
                          const std::string& method, const std::string& phase) {
-  const auto found = std::ranges::find(all | std::views::reverse, std::tie(scene, method, phase),
+  const auto found = std::ranges::find(all.rbegin(), all.rend(), std::tie(scene, method, phase),
                                        [](const PhaseCost& cost) { return key(cost); });
   return found == all.rend() ? nullptr : &*found;
 }

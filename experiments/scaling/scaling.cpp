@@ -23,7 +23,6 @@
 //                 the peak of multiplications and additions
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <set>
 
 #include <fmt/format.h>
@@ -66,10 +65,6 @@ struct Arguments {
   std::string out;
 };
 
-std::string all_solvers() {
-  return fmt::format("{}", fmt::join(solver_names | std::views::values, ", "));
-}
-
 void declare(CommandLine& line, Arguments& a) {
   line.add_option("--scenes", a.scenes, "a,b,... of chain, cloth and lattice")
       .delimiter(',')
@@ -78,7 +73,7 @@ void declare(CommandLine& line, Arguments& a) {
       .delimiter(',')
       .capture_default_str();
   line.add_option("--solvers", a.solvers,
-                  fmt::format("a,b,... of {}, for implicit methods", all_solvers()))
+                  fmt::format("a,b,... of {}, for implicit methods", solver_list()))
       .delimiter(',')
       .capture_default_str();
   line.add_option("--least-nodes", a.least_nodes, "how many nodes the smallest scene has, about")
@@ -130,7 +125,7 @@ std::vector<Solver> select_solvers(const std::vector<std::string>& names) {
     const auto solver = find_solver(name);
     if (!solver) {
       throw InvalidInput(
-          fmt::format("--solvers: {} is not a solver; allowed are {}", name, all_solvers()));
+          fmt::format("--solvers: {} is not a solver; allowed are {}", name, solver_list()));
     }
     if (std::ranges::count(solvers, *solver) > 0)
       throw InvalidInput(fmt::format("--solvers: {} is named twice; allowed is once", name));

@@ -52,8 +52,8 @@ RunOutcome fate_in(const Cell& cell, const MapSettings& settings) {
 }  // namespace
 
 double predicted_growth_rate(const Cell& cell) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (!has_linear_step(*cell.method)) return none;
+  constexpr double no_rate = std::numeric_limits<double>::quiet_NaN();
+  if (!has_linear_step(*cell.method)) return no_rate;
   const double h = cell.h_omega / cell.row->omega_max;
   double largest = -std::numeric_limits<double>::infinity();
   try {
@@ -62,7 +62,7 @@ double predicted_growth_rate(const Cell& cell) {
       largest = std::max(largest, std::log(step.spectral_radius()) / h);
     }
   } catch (const std::exception&) {  // a step so long that its numbers overflow
-    return none;
+    return no_rate;
   }
   return largest;
 }

@@ -161,9 +161,9 @@ RunOutcome run_outcome(const Method& method, const Options& options, const Reduc
   if (method.listens_to(Option::iterations) && r.summary.outcome == Outcome::reached_end) {
     Options to_the_end = options;
     to_the_end.iterations = more_iterations * std::max(10, options.iterations);
-    const Run solved = run(method, to_the_end, scene, until, plan);
-    if (solved.summary.outcome == Outcome::reached_end &&
-        difference(scene, r.end, solved.end) > other_motion) {
+    const Run further = run(method, to_the_end, scene, until, plan);
+    if (further.summary.outcome == Outcome::reached_end &&
+        difference(scene, r.end, further.end) > other_motion) {
       result.outcome = "unconverged";
     }
   }

@@ -26,7 +26,7 @@ Outcome LocalGlobal::step(const State& now, double h, State& next) {
   now_ = &now;
   h_ = h;
   next.v = now.v;
-  begin();
+  begin_step();
   for (int i = 0; i < iterations_; ++i) {
     if (must_stop()) return Outcome::over_budget;
     iterate(next.v);

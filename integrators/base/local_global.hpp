@@ -18,7 +18,7 @@ class LocalGlobal : public FixedStep {
 
  protected:
   // Called before the first iteration of each step.
-  virtual void begin() {}
+  virtual void begin_step() {}
   // Brings v one iteration further, with one gradient() and one direction().
   virtual void iterate(Vec& v) = 0;
 

@@ -26,7 +26,7 @@ class Anderson final : public LocalGlobal {
   using Small = Eigen::Matrix<double, window, window>;
   using SmallVector = Eigen::Matrix<double, window, 1>;
 
-  void begin() override { iteration_ = 0; }
+  void begin_step() override { iteration_ = 0; }
 
   void iterate(Vec& v) override {
     gradient(v, r_);

@@ -32,7 +32,7 @@ class Chebyshev final : public LocalGlobal {
  private:
   // What is outside of a narrower interval grows no less slowly in a few iterations, while what is
   // inside shrinks faster: the widest one in which k iterations gain a digit.
-  void begin() override {
+  void begin_step() override {
     const double hw = step_size() * frequency_;
     const double widest = hw * hw / (1 + hw * hw);
     const double few = 1 / std::cosh(std::acosh(10.0) / iterations());

@@ -31,7 +31,7 @@ class Lbfgs final : public LocalGlobal {
     double sy = 0, alpha = 0;
   };
 
-  void begin() override {
+  void begin_step() override {
     pairs_used_ = pairs_seen_ = iteration_ = 0;
     is_at_rounding_ = false;
   }

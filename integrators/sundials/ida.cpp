@@ -145,10 +145,14 @@ class Ida final : public Stepper {
 
   // The largest speeds along an axis [m/s].
   double massless_speed() const {
-    return (system().mass().array() > 0).select(0, Halves(y()).v).lpNorm<Eigen::Infinity>();
+    return (system().mass().array() > 0)
+        .select(0, Halves(y()).v)
+        .template lpNorm<Eigen::Infinity>();
   }
   double moving_speed() const {
-    return (system().mass().array() > 0).select(Halves(y()).v, 0).lpNorm<Eigen::Infinity>();
+    return (system().mass().array() > 0)
+        .select(Halves(y()).v, 0)
+        .template lpNorm<Eigen::Infinity>();
   }
 
   // Whether springs do not hold all massless nodes where they are, as they fold up where

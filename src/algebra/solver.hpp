@@ -20,6 +20,14 @@ inline constexpr std::array<std::pair<Solver, std::string_view>, 4> solver_names
      {Solver::cholmod, "cholmod"},
      {Solver::conjugate_gradients, "conjugate_gradients"}}};
 
+// Lists all names: "automatic, ...".
+inline std::string solver_list() {
+  std::string list;
+  for (const auto& [solver, own] : solver_names)
+    list += (list.empty() ? "" : ", ") + std::string(own);
+  return list;
+}
+
 // The solver of that name, if there is one.
 inline std::optional<Solver> find_solver(std::string_view name) {
   for (const auto& [solver, own] : solver_names) {

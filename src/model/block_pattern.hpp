@@ -28,7 +28,8 @@ class BlockPattern {
     for (int node = 0; node < layout_.nodes(); ++node) {
       auto& list = below_[node];
       std::ranges::sort(list, {}, &Neighbour::node);
-      list.erase(std::ranges::unique(list, {}, &Neighbour::node).begin(), list.end());
+      const auto same = [](const Neighbour& a, const Neighbour& b) { return a.node == b.node; };
+      list.erase(std::unique(list.begin(), list.end(), same), list.end());
       int rows = 0;
       for (Neighbour& neighbour : list) {
         neighbour.rows_before = rows;

@@ -27,8 +27,7 @@ std::vector<std::vector<Index>> neighbours(const std::vector<std::pair<Index, In
   }
   for (auto& row : rows) {
     std::ranges::sort(row);
-    const auto rest = std::ranges::unique(row);
-    row.erase(rest.begin(), rest.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
   }
   return rows;
 }

@@ -110,8 +110,7 @@ BOOST_AUTO_TEST_CASE(zeros_of_the_metric_become_the_mean_mass) {
 BOOST_AUTO_TEST_CASE(stiffness_that_overflows_is_no_endless_loop) {
   const auto system = make_mass_spring(
       {.dimension = 1, .node_mass = Vec::Ones(1), .anchors = {{0, {0, 0, 0}, {.quartic = 1e300}}}});
-  BOOST_CHECK_THROW(qddot::curvature_signs(*system, Vec::Constant(1, 1e10)).negative,
-                    std::runtime_error);
+  BOOST_CHECK_THROW(qddot::curvature_signs(*system, Vec::Constant(1, 1e10)), std::runtime_error);
 }
 
 BOOST_AUTO_TEST_CASE(nothing_is_stable) {

@@ -215,10 +215,10 @@ BOOST_AUTO_TEST_CASE(the_columns_are_empty_or_0_where_they_mean_nothing) {
       const double indefinite = table.value(row, "indefinite_factorizations");
       BOOST_TEST(indefinite <= table.value(row, "factorizations"));
       BOOST_TEST((indefinite == 0 || method.is(Trait::implicit)));
-      const double held = table.value(row, "stability_limited_steps");
-      BOOST_TEST(held <= table.value(row, "steps") + table.value(row, "rejected"));
-      BOOST_TEST((held == 0 || method.name == "arkode_erk4"));
-      limited += held;
+      const double held_steps = table.value(row, "stability_limited_steps");
+      BOOST_TEST(held_steps <= table.value(row, "steps") + table.value(row, "rejected"));
+      BOOST_TEST((held_steps == 0 || method.name == "arkode_erk4"));
+      limited += held_steps;
     }
   }
   BOOST_TEST(limited > 0);

@@ -198,7 +198,7 @@ BOOST_AUTO_TEST_CASE(errors_are_of_the_size_of_the_tolerance_where_steps_are_rej
 BOOST_AUTO_TEST_CASE(steps_are_held_to_the_stability_limit_at_coarse_tolerances) {
   const Case c = linear();
   for (const auto& [name, pair] : pairs) {
-    const auto counts = [&](double rtol) {
+    const auto counts = [&, &name = name](double rtol) {
       return run(method_named(name), *c.system, c.initial, 10, {.rtol = rtol}).summary.counts;
     };
     const Counts coarse = counts(10), fine = counts(1e-12);

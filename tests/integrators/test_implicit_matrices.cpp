@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(steps_multiply_the_oscillator_by_the_method_s_own_matrix) {
 
 BOOST_AUTO_TEST_CASE(another_step_or_another_matrix_is_noticed) {
   for (const auto& [method, matrix] : formulas) {
-    const Amplification longer = [&](double hw) { return matrix(1.0001 * hw); };
+    const Amplification longer = [&matrix = matrix](double hw) { return matrix(1.0001 * hw); };
     BOOST_TEST(defect(method, longer, 0.3, 10) > 100 * rounding(0.3));
   }
   BOOST_TEST(defect("hht", formulas[4].matrix, 0.3, 10) > 100 * rounding(0.3));

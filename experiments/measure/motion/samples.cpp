@@ -34,7 +34,7 @@ std::vector<double> merged(const std::vector<double>& a, const std::vector<doubl
   std::vector<double> times;
   std::ranges::set_union(a, b, std::back_inserter(times));
   const auto same = [](double s, double t) { return t - s <= time_rounding * t; };
-  times.erase(std::ranges::unique(times, same).begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end(), same), times.end());
   if (!times.empty()) times.erase(times.begin());
   return times;
 }

@@ -22,7 +22,7 @@ Generator chain() {
                          {"stiffness", 1e6, 0, most, "of each spring in N/m"},
                          {"pinned_ends", 1, 0, 2, "how many ends are pinned", true},
                          {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
-                         {"until", 0.1, least, most, "the horizon in s"}},
+                         {"until", 0.1, least, most, "the end time in s"}},
           .size = size_of_chain,
           .draw = [](const GeneratorValues& p) {
             const auto count = static_cast<std::size_t>(p.at("nodes"));

@@ -12,7 +12,7 @@ std::vector<GeneratorParameter> cloth_parameters() {
           {"shear_stiffness", 500, 0, most, "across the cells' diagonals in N/m"},
           {"bending_stiffness", 100, 0, most, "between second neighbours in N/m"},
           {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
-          {"until", 0.1, least, most, "the horizon in s"}};
+          {"until", 0.1, least, most, "the end time in s"}};
 }
 
 SceneSize cloth_size(const GeneratorValues& p) {

@@ -23,7 +23,7 @@
 namespace qddot {
 namespace {
 
-constexpr double spacing = 10;  // [m]
+constexpr double node_spacing = 10;  // [m]
 
 SceneSize size_of_fpu(const GeneratorValues& p) {
   const auto m = static_cast<std::size_t>(p.at("stiff_springs"));
@@ -32,12 +32,12 @@ SceneSize size_of_fpu(const GeneratorValues& p) {
 
 Scene draw_fpu(const GeneratorValues& p) {
   const double w = p.at("frequency");
-  const SpringLaw stiff{.stiffness = 0.5 * w * w, .rest_length = spacing};
-  const SpringLaw soft{.rest_length = spacing, .quartic = 4};
+  const SpringLaw stiff{.stiffness = 0.5 * w * w, .rest_length = node_spacing};
+  const SpringLaw soft{.rest_length = node_spacing, .quartic = 4};
   Scene scene{.dimension = 1, .until = p.at("until"), .stiff_above = 0.5 * stiff.stiffness};
   const auto [nodes, springs] = size_of_fpu(p);
   for (std::size_t i = 0; i < nodes; ++i) {
-    scene.nodes.push_back({.position = {spacing * static_cast<double>(i), 0, 0},
+    scene.nodes.push_back({.position = {node_spacing * static_cast<double>(i), 0, 0},
                            .mass = 1,
                            .pinned = i == 0 || i + 1 == nodes});
   }
@@ -59,7 +59,7 @@ Generator fpu() {
           .summary = "the Fermi-Pasta-Ulam chain: stiff springs that exchange energy slowly",
           .parameters = {{"stiff_springs", 3, 1, 1e6, "how many stiff springs", true},
                          {"frequency", 50, 1, 1e6, "w of a pair on a stiff spring in rad/s"},
-                         {"until", 200, least, most, "the horizon in s"}},
+                         {"until", 200, least, most, "the end time in s"}},
           .size = size_of_fpu,
           .draw = draw_fpu};
 }

@@ -48,7 +48,7 @@ Generator lattice() {
                          {"mass", 1, least, most, "of all nodes together in kg"},
                          {"stiffness", 5e4, 0, most, "of each spring in N/m"},
                          {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
-                         {"until", 0.2, least, most, "the horizon in s"}},
+                         {"until", 0.2, least, most, "the end time in s"}},
           .size = size_of_lattice,
           .draw = [](const GeneratorValues& p) {
             const int nx = static_cast<int>(p.at("nodes_x")),

@@ -15,7 +15,7 @@ Generator orbit() {
                          {"rest_length", 1, 0, most, "l0 in m"},
                          {"radius", 1.2, least, most, "the distance at t = 0 in m"},
                          {"speed", 3, 0, most, "the speed across the spring at t = 0 in m/s"},
-                         {"until", 2, least, most, "the horizon in s"}},
+                         {"until", 2, least, most, "the end time in s"}},
           .size = one_spring,
           .draw = [](const GeneratorValues& p) {
             Scene scene{.until = p.at("until")};

@@ -13,7 +13,7 @@ Generator oscillator() {
                          {"stiffness", 100, 0, most, "k in N/m"},
                          {"position", 1, -most, most, "x at t = 0 in m"},
                          {"velocity", 0, -most, most, "v at t = 0 in m/s"},
-                         {"until", 2, least, most, "the horizon in s"}},
+                         {"until", 2, least, most, "the end time in s"}},
           .size = one_spring,
           .draw = [](const GeneratorValues& p) {
             Scene scene{.dimension = 1, .until = p.at("until")};

@@ -17,7 +17,7 @@ Generator pair() {
                      {"rest_length", 1, 0, most, "l0 in m"},
                      {"stretch", 1.1, least, most, "length / l0 at t = 0 (length in m if l0 = 0)"},
                      {"spin", 2, -most, most, "angular velocity at t = 0 in rad/s"},
-                     {"until", 2, least, most, "the horizon in s"}},
+                     {"until", 2, least, most, "the end time in s"}},
       .size = one_spring,
       .draw = [](const GeneratorValues& p) {
         const double m1 = p.at("mass_1"), m2 = p.at("mass_2"), l0 = p.at("rest_length");

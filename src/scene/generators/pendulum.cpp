@@ -19,7 +19,7 @@ Generator pendulum() {
                          {"angle", 1, -4, 4, "the angle from the vertical at t = 0 in rad"},
                          {"speed", 0.5, -most, most, "the speed out of the plane at t = 0 in m/s"},
                          {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
-                         {"until", 2, least, most, "the horizon in s"}},
+                         {"until", 2, least, most, "the end time in s"}},
           .size = one_spring,
           .draw = [](const GeneratorValues& p) {
             const double l = p.at("length"), angle = p.at("angle");

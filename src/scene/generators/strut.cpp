@@ -49,7 +49,7 @@ Generator strut() {
                          {"compression", 0.9, 1e-3, 1,
                           "length over rest length of the springs when straight"},
                          {"bend", 1e-3, -most, most, "sideways in the middle at t = 0 in m"},
-                         {"until", 1, least, most, "the horizon in s"}},
+                         {"until", 1, least, most, "the end time in s"}},
           .size = size_of_strut,
           .draw = draw_strut};
 }

@@ -36,7 +36,7 @@ Body make_body(const Component& component, const std::vector<Node>& nodes,
     }
   }
   std::ranges::sort(pins);
-  pins.erase(std::ranges::unique(pins).begin(), pins.end());
+  pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
   body.nodes.insert(body.nodes.end(), pins.begin(), pins.end());
 
   for (auto* vectors : {&body.x, &body.v}) vectors->reserve(body.nodes.size());

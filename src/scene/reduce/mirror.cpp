@@ -76,8 +76,8 @@ class Ends {
   std::span<const std::size_t> between(int a, int b) const {
     const auto same = [&](std::size_t e) { return pair(e); };
     const std::pair<std::size_t, std::size_t> ends = std::minmax(a, b);
-    const auto range = std::ranges::equal_range(order_, ends, {}, same);
-    return {range.begin(), range.end()};
+    return {std::ranges::lower_bound(order_, ends, {}, same),
+            std::ranges::upper_bound(order_, ends, {}, same)};
   }
 
  private:
