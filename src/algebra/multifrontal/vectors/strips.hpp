@@ -247,7 +247,7 @@ inline void solve_upper(const double* l, int k, double* x) {
 // The same for four right-hand sides at once, whose rows are the lanes: no sums over lanes, and
 // one load of a row where it is gathered.
 constexpr int quad = 4;
-using Quad = double __attribute__((vector_size(quad * sizeof(double)), aligned(8), may_alias));
+typedef double Quad __attribute__((vector_size(quad * sizeof(double)), aligned(8), may_alias));
 
 [[gnu::always_inline]] inline Quad& row(double* x, int i) { return reinterpret_cast<Quad*>(x)[i]; }
 [[gnu::always_inline]] inline const Quad& row(const double* x, int i) {

@@ -15,7 +15,9 @@ constexpr int lanes = 4;
 #else
 constexpr int lanes = 2;
 #endif
-using Lanes = double __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
+// Anywhere in memory, which Clang 14 reads off a typedef only.
+typedef double Lanes __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
+static_assert(alignof(Lanes) == 8);
 using LaneNumbers = long __attribute__((vector_size(lanes * sizeof(long))));
 
 [[gnu::always_inline]] inline Lanes load(const double* x) {

@@ -72,7 +72,7 @@ template <int D, int width = lanes>
     }
   } else {
     // Points t and t + 4 side by side, then the transpose of each 4 x 4 block.
-    using Point = double __attribute__((vector_size(4 * sizeof(double)), aligned(8), may_alias));
+    typedef double Point __attribute__((vector_size(4 * sizeof(double)), aligned(8), may_alias));
     const auto point = [&](int t) __attribute__((always_inline)) {
       return *reinterpret_cast<const Point*>(points + point_stride<D> * j[t]);
     };
