@@ -139,8 +139,8 @@ class Spender final : public FixedStep {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(no_step_of_any_method_and_no_look_at_it_allocates) {
-  // What is allocated once, as OpenMP's threads are.
-  cost_of(methods().front(), courses().front(), 1, false);
+  // What is allocated once, as by OpenMP where the first matrix is factorised.
+  cost_of(method_named("semi_implicit_euler"), courses().front(), 1, false);
   for (const Course& c : courses()) {
     BOOST_TEST_CONTEXT(c.name) {
       int runs = 0, failed = 0;
