@@ -29,6 +29,7 @@
 #include "experiments/command/scene_choice.hpp"
 #include "experiments/command/study.hpp"
 #include "experiments/solvers/direct_solvers.hpp"
+#include "experiments/solvers/product_flops.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/machine_limits.hpp"

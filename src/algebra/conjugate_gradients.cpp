@@ -3,8 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
 #include "qddot/algebra/block_rows.hpp"
 #include "qddot/algebra/dense_pairs.hpp"
 
@@ -117,14 +115,39 @@ class ConjugateGradients final : public IterativeFactors {
     for (Index i = 0; i < matrix_.rows(); ++i) {
       const Block block = matrix_.diagonal(i);
       if (!block.allFinite()) return Definiteness::singular;
-      const Eigen::LLT<Block> root(block);
-      if (root.info() != Eigen::Success) {
+      if (!invert_positive(block, inverse_.get() + B * B * i)) {
         const bool has_negative = dense_values(block).minCoeff() < 0;
         return has_negative ? Definiteness::indefinite : Definiteness::singular;
       }
-      Eigen::Map<Block>{inverse_.get() + B* B* i} = root.solve(Block::Identity());
     }
     return Definiteness::positive;
+  }
+
+  // The inverse of a positive definite block by its L L'; false for any other. Eigen's, for any
+  // size, takes seconds to compile for each of these.
+  static bool invert_positive(const Block& block, double* inverse) {
+    Block l = block;
+    for (int j = 0; j < B; ++j) {
+      for (int k = 0; k < j; ++k) l(j, j) -= l(j, k) * l(j, k);
+      if (!(l(j, j) > 0)) return false;
+      l(j, j) = std::sqrt(l(j, j));
+      for (int i = j + 1; i < B; ++i) {
+        for (int k = 0; k < j; ++k) l(i, j) -= l(i, k) * l(j, k);
+        l(i, j) /= l(j, j);
+      }
+    }
+    for (int c = 0; c < B; ++c, inverse += B) {
+      for (int i = 0; i < B; ++i) {  // L x = e_c
+        inverse[i] = i == c;
+        for (int k = 0; k < i; ++k) inverse[i] -= l(i, k) * inverse[k];
+        inverse[i] /= l(i, i);
+      }
+      for (int i = B; i-- > 0;) {  // L' x = that
+        for (int k = i + 1; k < B; ++k) inverse[i] -= l(k, i) * inverse[k];
+        inverse[i] /= l(i, i);
+      }
+    }
+    return true;
   }
 
   Eigen::Map<Vec> all(const LargeArray& array) const { return {array.get(), matrix_.size()}; }

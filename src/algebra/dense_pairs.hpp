@@ -10,7 +10,7 @@ struct EigenPairs {
   Eigen::MatrixXd vectors;
 };
 
-// Eigenpairs of small matrices, values ascending. Of symmetric matrices the lower triangle is read.
+// Eigenpairs of small matrices; values of symmetric ones ascend, and their lower triangles are read.
 // Here alone Eigen's solvers are instantiated, which takes seconds.
 
 // A x = w x; vectors of length 1.
@@ -20,5 +20,7 @@ Eigen::VectorXd dense_values(const Eigen::Ref<const Eigen::MatrixXd>& a);
 EigenPairs dense_pairs(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 // The values of a symmetric tridiagonal matrix with these numbers on and beside the diagonal.
 Eigen::VectorXd tridiagonal_values(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside);
+// The values of any square matrix, as often as they are roots; in no order.
+Eigen::VectorXcd general_values(const Eigen::MatrixXd& a);
 
 }  // namespace qddot

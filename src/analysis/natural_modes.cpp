@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
+#include "qddot/algebra/dense_cholesky.hpp"
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
@@ -92,10 +91,10 @@ NaturalModes dense_modes(const Pencil& p) {
   const MatrixXd stiff = -MatrixXd(MatrixXd(p.k).selfadjointView<Eigen::Lower>());
   MatrixXd follow(b.size(), a.size());  // x_b = follow x_a
   if (!b.empty()) {
-    const Eigen::LLT<MatrixXd> held(stiff(b, b));
+    const DenseCholesky held(stiff(b, b));
     // A matrix that is singular may pass by rounding; its reciprocal condition tells.
-    if (held.info() != Eigen::Success ||
-        held.rcond() < machine_epsilon * static_cast<double>(b.size())) {
+    if (!held.is_positive() ||
+        held.reciprocal_condition() < machine_epsilon * static_cast<double>(b.size())) {
       refuse_loose_massless();
     }
     follow = -held.solve(stiff(b, a));

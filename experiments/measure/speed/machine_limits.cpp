@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <Eigen/Dense>
-
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/limit_kernels.hpp"
 #include "qddot/model/system.hpp"
@@ -23,17 +21,6 @@ double peak_flops(double seconds) {
   const double least =
       least_seconds(seconds, [&] { operations = limit_kernels().multiply_and_add(10000); });
   return operations / least;
-}
-
-double product_flops(double seconds) {
-  constexpr Index n = 480;  // three of them lie in the second cache or close by
-  const Eigen::MatrixXd a = Eigen::MatrixXd::Constant(n, n, 0.5), b = a;
-  Eigen::MatrixXd c(n, n);
-  const int threads = Eigen::nbThreads();
-  Eigen::setNbThreads(1);
-  const double least = least_seconds(seconds, [&] { c.noalias() = a * b; });
-  Eigen::setNbThreads(threads);
-  return 2.0 * n * n * n / least;
 }
 
 double reading_rate(double bytes, double seconds) {

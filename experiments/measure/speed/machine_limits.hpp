@@ -7,11 +7,8 @@ namespace qddot::measure {
 double triad_bandwidth(double bytes, double seconds);
 
 // How fast one core multiplies and adds [operations/s], from register to register with the widest
-// vectors it is compiled for: the fastest of the passes of `seconds`.
+// vectors that the kernels use: the fastest of the passes of `seconds`.
 double peak_flops(double seconds);
-
-// How fast one core multiplies dense matrices that its second cache holds [operations/s].
-double product_flops(double seconds);
 
 // How fast one core reads `bytes` that lie in a row again and again [bytes/s]: from the cache that
 // holds them, else from memory. Zero where there are none.

@@ -5,9 +5,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <fmt/format.h>
 
+#include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/model/mass_spring.hpp"
 
@@ -54,19 +56,22 @@ Realization realize(const Responses& y, int rank, double noise) {
   Matrix4d now, next;
   now << y[0], y[1], y[1], y[2];
   next << y[1], y[2], y[2], y[3];
-  const Eigen::JacobiSVD<Matrix4d> svd(now, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::VectorXd root = svd.singularValues().head(rank).cwiseSqrt();
-  const Eigen::MatrixXd observes = svd.matrixU().leftCols(rank) * root.asDiagonal();
-  const Eigen::MatrixXd reaches = root.asDiagonal() * svd.matrixV().leftCols(rank).transpose();
-  const Eigen::MatrixXd a = root.cwiseInverse().asDiagonal() *
-                            svd.matrixU().leftCols(rank).transpose() * next *
-                            svd.matrixV().leftCols(rank) * root.cwiseInverse().asDiagonal();
+  const Eigen::JacobiSVD<Matrix4d, Eigen::NoQRPreconditioner> svd(
+      now, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  // The rows and columns beyond the rank are zero.
+  Eigen::Vector4d root = Eigen::Vector4d::Zero(), inverse = root;
+  root.head(rank) = svd.singularValues().head(rank).cwiseSqrt();
+  inverse.head(rank) = root.head(rank).cwiseInverse();
+  const Matrix4d observes = svd.matrixU() * root.asDiagonal();
+  const Matrix4d a = inverse.asDiagonal() *
+                     (svd.matrixU().transpose() * (next * svd.matrixV())).eval() *
+                     inverse.asDiagonal();
   Realization result;
-  Eigen::MatrixXd state = reaches.leftCols(2);
+  Eigen::Matrix<double, 4, 2> state = (svd.matrixV() * root.asDiagonal()).transpose().leftCols<2>();
   for (std::size_t n = 0; n < y.size(); ++n, state = a * state) {
-    result.explains = result.explains && is_close(y[n], observes.topRows(2) * state, noise);
+    result.explains = result.explains && is_close(y[n], observes.topRows<2>() * state, noise);
   }
-  const Eigen::VectorXcd roots = a.eigenvalues();
+  const Eigen::VectorXcd roots = general_values(a.topLeftCorner(rank, rank));
   result.roots.assign(roots.begin(), roots.end());
   return result;
 }

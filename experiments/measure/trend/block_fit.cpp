@@ -7,11 +7,11 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
 
+#include "qddot/algebra/dense_cholesky.hpp"
 #include "qddot/measure/trend/block_covariance.hpp"
+#include "qddot/measure/trend/student.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::measure {
@@ -64,15 +64,15 @@ class Series {
     const Index n = size();
     Eigen::MatrixXd columns(n, 3);  // of a and b, and y beside them
     for (Index i = 0; i < n; ++i) columns.row(i) << 1, place(i), y_[i];
-    const Eigen::LLT<Eigen::MatrixXd> factors(Eigen::MatrixXd::Identity(n, n) + ratio * x);
-    factors.matrixL().solveInPlace(columns);
+    const DenseCholesky factors(Eigen::MatrixXd::Identity(n, n) + ratio * x);
+    factors.solve_lower(columns);
     const auto line = columns.leftCols<2>();
     const Eigen::Matrix2d normal = line.transpose() * line, inverse = normal.inverse();
     const Eigen::Vector2d found = inverse * (line.transpose() * columns.col(2));
     const auto freedom = static_cast<double>(n - 2);
     const double squares = std::max(least_, (columns.col(2) - line * found).squaredNorm());
     const double variance = squares / freedom;
-    const double log_determinant = 2 * factors.matrixLLT().diagonal().array().log().sum();
+    const double log_determinant = factors.log_determinant();
     return {ratio,
             found[1],
             variance * inverse(1, 1),
@@ -89,8 +89,8 @@ class Series {
     double least = std::numeric_limits<double>::infinity(), sharpest = 0;
     for (double periods = 0.25; periods <= n / 2; periods += 0.125) {
       const double w = 2 * M_PI * periods / n;
-      const double left = squares_beside<4>([&](double t) {
-        return Eigen::Vector4d(1, std::cos(w * t), std::sin(w * t), 2 * t / n);
+      const double left = squares_beside(4, [&](double t) {
+        return Eigen::RowVector4d(1, std::cos(w * t), std::sin(w * t), 2 * t / n);
       });
       if (left < least) {
         least = left;
@@ -126,13 +126,24 @@ class Series {
   }
 
  private:
-  // The sum of squares that least squares on these functions of the place leave.
-  template <int count, class Row>
-  double squares_beside(const Row& row) const {
-    Eigen::Matrix<double, Eigen::Dynamic, count> columns(size(), count);
+  // The sum of squares that least squares on `count` functions of the place leave. The functions
+  // are made orthogonal one after the other, twice, which is enough (Parlett, The Symmetric
+  // Eigenvalue Problem, 6.9); one that depends on those before it is left out.
+  template <class Row>
+  double squares_beside(int count, const Row& row) const {
+    Eigen::MatrixXd columns(size(), count);
     for (Index i = 0; i < size(); ++i) columns.row(i) = row(place(i));
-    columns.colwise().normalize();
-    const Vec left = y_ - columns * columns.colPivHouseholderQr().solve(y_);
+    Vec left = y_;
+    for (int c = 0; c < count; ++c) {
+      auto column = columns.col(c);
+      const double length = column.norm();
+      for (int pass = 0; pass < 2; ++pass) {
+        for (int b = 0; b < c; ++b) column -= columns.col(b).dot(column) * columns.col(b);
+      }
+      const double rest = column.norm();
+      column *= rest > static_cast<double>(size()) * machine_epsilon * length ? 1 / rest : 0;
+      left -= column.dot(left) * column;
+    }
     return std::max(least_, left.squaredNorm());
   }
 
@@ -140,9 +151,9 @@ class Series {
   double squares_beside_sine(double period) const {
     const double w = 2 * M_PI / period;
     // The cosine as its difference from one, so that it is no constant for long periods.
-    return squares_beside<3>([&](double t) {
+    return squares_beside(3, [&](double t) {
       const double half = std::sin(w * t / 2);
-      return Eigen::Vector3d(1, half * half, std::sin(w * t));
+      return Eigen::RowVector3d(1, half * half, std::sin(w * t));
     });
   }
 
@@ -258,12 +269,7 @@ Interval average(const std::vector<Fit>& fits, Index n) {
   mean /= sum;
   const double deviation =
       std::sqrt(std::max(square / sum - (mean - best.slope) * (mean - best.slope), 0.0));
-  // The 97.5 % quantile of Student's t, to 0.1 % from ten degrees of freedom on and to a tenth with
-  // two (Abramowitz and Stegun, 26.7.5).
-  const double freedom = static_cast<double>(n - 2), z = 1.959964;
-  const double quantile = z + (z * z * z + z) / (4 * freedom) +
-                          (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
-  const double half = quantile * deviation;
+  const double half = student_half_width(static_cast<double>(n - 2)) * deviation;
   return {mean, mean - half, mean + half};
 }
 

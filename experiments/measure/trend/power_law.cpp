@@ -3,7 +3,8 @@
 #include <limits>
 
 #include <Eigen/Core>
-#include <boost/math/distributions/students_t.hpp>
+
+#include "qddot/measure/trend/student.hpp"
 
 namespace qddot::measure {
 
@@ -23,8 +24,7 @@ PowerLaw fit_power_law(std::span<const double> n, std::span<const double> y) {
   if (count < 3) return {slope, nothing, nothing};
   const double freedom = static_cast<double>(count - 2);
   const double variance = (b - slope * a).square().sum() / freedom / spread;
-  const double quantile = boost::math::quantile(boost::math::students_t(freedom), 0.975);
-  const double half = quantile * std::sqrt(variance);
+  const double half = student_half_width(freedom) * std::sqrt(variance);
   return {slope, slope - half, slope + half};
 }
 

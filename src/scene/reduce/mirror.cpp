@@ -7,8 +7,9 @@
 #include <span>
 #include <tuple>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
+#include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/scene/reduce/orbits.hpp"
 
 namespace qddot::reduce {
@@ -309,9 +310,9 @@ std::vector<Vector3d> candidates(const Body& body, const Frame& frame) {
     // Moments of their own keep the axes that are left out apart from the others; they come last.
     const double apart = 1 + 2 * moments.trace();
     for (int d = dimension; d < 3; ++d) moments(d, d) = apart;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments);
+    const EigenPairs axes = dense_pairs(moments);
     for (int d = 0; d < dimension; ++d) {
-      add((frame.axes * Vector3d(axes.eigenvectors().col(d))).normalized());
+      add((frame.axes * Vector3d(axes.vectors.col(d))).normalized());
     }
   };
   add_principal_axes(0, body.free);

@@ -1,0 +1,11 @@
+#include "qddot/measure/trend/student.hpp"
+
+#include <boost/math/distributions/students_t.hpp>
+
+namespace qddot::measure {
+
+double student_half_width(double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), 0.975);
+}
+
+}  // namespace qddot::measure
