@@ -7,57 +7,60 @@
 namespace qddot::command {
 
 using namespace measure;
+namespace {
 
-const std::vector<std::string>& point_columns() {
-  static const std::vector<std::string> columns = {"scene",
-                                                   "method",
-                                                   "knob",
-                                                   "value",
-                                                   "outcome",
-                                                   "t_reached",
-                                                   "error_position",
-                                                   "error_velocity",
-                                                   "error_energy",
-                                                   "time_s",
-                                                   "time_min_s",
-                                                   "setup_s",
-                                                   "steps",
-                                                   "rejected",
-                                                   "force_evaluations",
-                                                   "stiffness_evaluations",
-                                                   "factorizations",
-                                                   "solves",
-                                                   "newton_iterations",
-                                                   "indefinite_factorizations",
-                                                   "order_mean",
-                                                   "order_reductions",
-                                                   "stability_limited_steps",
-                                                   "timed_runs",
-                                                   "family",
-                                                   "order",
-                                                   "error_energy_max",
-                                                   "error_momentum_max",
-                                                   "error_modal_shares",
-                                                   "error_position_at_least",
-                                                   "error_position_at_most",
-                                                   "energy_growth"};
-  return columns;
+using Row = PointRow;
+
+double measured(const Row& row, double x) {
+  const bool is = row.point.outcome == Outcome::reached_end;
+  return is ? x : std::numeric_limits<double>::quiet_NaN();
 }
+// What is known of the position error.
+Known position(const Row& row) { return known(row.point.errors.position, row.certified); }
 
-void point_row(Csv& csv, const std::string& scene, const Point& p, double certified) {
-  const auto measured = [&](double x) {
-    return p.outcome == Outcome::reached_end ? x : std::numeric_limits<double>::quiet_NaN();
-  };
-  const Known position = known(p.errors.position, certified);
-  const Counts& c = p.counts;
-  csv.row(scene, p.method->name, knob_name(p.method->knob), p.value, name(p.outcome), p.t_reached,
-          measured(p.errors.position), measured(p.errors.velocity), measured(p.errors.energy),
-          measured(p.time), measured(p.time_min), measured(p.setup), c.steps, c.rejected,
-          c.force_evaluations, c.stiffness_evaluations, c.factorizations, c.solves,
-          c.newton_iterations, c.indefinite_factorizations, order_mean(c), c.order_reductions,
-          c.stability_limited_steps, p.timed_runs, family_name(p.method->family), p.method->order,
-          measured(p.path.energy), measured(p.path.momentum), measured(p.path.modal_shares),
-          measured(position.at_least), measured(position.at_most), p.energy_growth);
+}  // namespace
+
+const Columns<PointRow>& point_columns() {
+  static const Columns<Row> columns = {
+      {"scene", [](const Row& row) { return row.scene; }},
+      {"method", [](const Row& row) { return row.point.method->name; }},
+      {"knob", [](const Row& row) { return knob_name(row.point.method->knob); }},
+      {"value", [](const Row& row) { return row.point.value; }},
+      {"outcome", [](const Row& row) { return name(row.point.outcome); }},
+      {"t_reached", [](const Row& row) { return row.point.t_reached; }},
+      {"error_position", [](const Row& row) { return measured(row, row.point.errors.position); }},
+      {"error_velocity", [](const Row& row) { return measured(row, row.point.errors.velocity); }},
+      {"error_energy", [](const Row& row) { return measured(row, row.point.errors.energy); }},
+      {"time_s", [](const Row& row) { return measured(row, row.point.time); }},
+      {"time_min_s", [](const Row& row) { return measured(row, row.point.time_min); }},
+      {"setup_s", [](const Row& row) { return measured(row, row.point.setup); }},
+      {"steps", [](const Row& row) { return row.point.counts.steps; }},
+      {"rejected", [](const Row& row) { return row.point.counts.rejected; }},
+      {"force_evaluations", [](const Row& row) { return row.point.counts.force_evaluations; }},
+      {"stiffness_evaluations",
+       [](const Row& row) { return row.point.counts.stiffness_evaluations; }},
+      {"factorizations", [](const Row& row) { return row.point.counts.factorizations; }},
+      {"solves", [](const Row& row) { return row.point.counts.solves; }},
+      {"newton_iterations", [](const Row& row) { return row.point.counts.newton_iterations; }},
+      {"indefinite_factorizations",
+       [](const Row& row) { return row.point.counts.indefinite_factorizations; }},
+      {"order_mean", [](const Row& row) { return order_mean(row.point.counts); }},
+      {"order_reductions", [](const Row& row) { return row.point.counts.order_reductions; }},
+      {"stability_limited_steps",
+       [](const Row& row) { return row.point.counts.stability_limited_steps; }},
+      {"timed_runs", [](const Row& row) { return row.point.timed_runs; }},
+      {"family", [](const Row& row) { return family_name(row.point.method->family); }},
+      {"order", [](const Row& row) { return row.point.method->order; }},
+      {"error_energy_max", [](const Row& row) { return measured(row, row.point.path.energy); }},
+      {"error_momentum_max", [](const Row& row) { return measured(row, row.point.path.momentum); }},
+      {"error_modal_shares",
+       [](const Row& row) { return measured(row, row.point.path.modal_shares); }},
+      {"error_position_at_least",
+       [](const Row& row) { return measured(row, position(row).at_least); }},
+      {"error_position_at_most",
+       [](const Row& row) { return measured(row, position(row).at_most); }},
+      {"energy_growth", [](const Row& row) { return row.point.energy_growth; }}};
+  return columns;
 }
 
 }  // namespace qddot::command

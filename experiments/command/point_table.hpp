@@ -1,18 +1,22 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "experiments/command/csv.hpp"
+#include "experiments/command/columns.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 
 namespace qddot::command {
 
 using namespace measure;
 
-// The columns of points.csv, and one row of it; what was not measured is an empty field. The last
-// two are what is known of the position error where the reference is off by up to `certified`.
-const std::vector<std::string>& point_columns();
-void point_row(Csv& csv, const std::string& scene, const Point& point, double certified);
+// A row of points.csv: a point of a scene whose reference is off by up to `certified`.
+struct PointRow {
+  const std::string& scene;
+  const Point& point;
+  double certified;
+};
+
+// The columns of points.csv; what was not measured is an empty field.
+const Columns<PointRow>& point_columns();
 
 }  // namespace qddot::command

@@ -235,7 +235,7 @@ void tabulate(Csv& winners, Csv& of_kinds, Csv& points, const RatioStudy& one,
   }
   for (const Point& point : one.points) {
     points.field(one.ratio);
-    point_row(points, one.drawn.name, point, one.reference->certified.position);
+    point_columns().write_row(points, {one.drawn.name, point, one.reference->certified.position});
   }
 }
 
@@ -321,7 +321,7 @@ int crossover(const CommandLine& line, Arguments a, const std::vector<std::strin
   if (const auto status = study.completed()) return *status;
   CsvFile winners(a.out + "/crossover.csv", winner_columns);
   CsvFile of_kinds(a.out + "/kinds.csv", kind_columns);
-  std::vector<std::string> columns = point_columns();
+  std::vector<std::string> columns = point_columns().header();
   columns.insert(columns.begin(), "stiffness_ratio");
   CsvFile points(a.out + "/points.csv", columns);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "qddot/measure/speed/front.hpp"
+
 namespace qddot::crossover {
 namespace {
 
@@ -11,10 +13,6 @@ constexpr double never = std::numeric_limits<double>::infinity();
 
 bool reaches(const Point& point, double accuracy) {
   return point.outcome == Outcome::reached_end && point.errors.position <= accuracy;
-}
-
-void keep_faster(const Point*& fastest, const Point& point) {
-  if (!fastest || point.time < fastest->time) fastest = &point;
 }
 
 }  // namespace

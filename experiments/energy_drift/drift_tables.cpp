@@ -8,127 +8,138 @@ namespace qddot::energy_drift {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-void write_interval(Csv& csv, const Interval& interval) {
-  csv.field(interval.value);
-  csv.field(interval.low);
-  csv.field(interval.high);
-}
-
 constexpr Interval no_interval{nothing, nothing, nothing};
+
+bool is_known(const DriftRun& run) { return run.energy.verdict != Verdict::unknown; }
+
 Interval drift_of(const Trend& trend) {
   return trend.verdict == Verdict::unknown ? no_interval : trend.drift;
 }
 
-// Nothing where there is none.
-void write_positive(Csv& csv, double value) { csv.field(value > 0 ? value : nothing); }
+double if_positive(double value) { return value > 0 ? value : nothing; }
 
-void write_momentum(Csv& csv, const std::optional<Trend>& trend) {
-  write_interval(csv, trend ? drift_of(*trend) : no_interval);
-  csv.field(trend ? trend->last_error : nothing);
+std::string_view yes_or_no(bool is) { return is ? "yes" : "no"; }
+
+// NAME, NAME_low and NAME_high of interval_of(run).
+template <class Row, class IntervalOf>
+Columns<Row> interval(const std::string& name, const IntervalOf& interval_of) {
+  return {{name, [=](const Row& row) { return interval_of(row.run).value; }},
+          {name + "_low", [=](const Row& row) { return interval_of(row.run).low; }},
+          {name + "_high", [=](const Row& row) { return interval_of(row.run).high; }}};
+}
+
+Interval energy_drift(const DriftRun& run) { return drift_of(run.energy); }
+Interval late_drift(const DriftRun& run) {
+  return run.energy.rate.value != 0 || !is_known(run) ? no_interval : run.energy.late_drift;
+}
+Interval widening(const DriftRun& run) {
+  const Interval& widening = run.energy.widening;
+  return widening.high > widening.low ? widening : no_interval;
+}
+
+// NAME_drift with its interval and NAME_error_end, of a trend that may not be there.
+Columns<SummaryRow> momentum(const std::string& name, std::optional<Trend> DriftRun::*trend) {
+  auto columns = interval<SummaryRow>(name + "_drift", [=](const DriftRun& run) {
+    return run.*trend ? drift_of(*(run.*trend)) : no_interval;
+  });
+  columns += {{name + "_error_end", [=](const SummaryRow& row) {
+                 return row.run.*trend ? (row.run.*trend)->last_error : nothing;
+               }}};
+  return columns;
+}
+
+Columns<SummaryRow> make_summary_columns() {
+  using Row = SummaryRow;
+  Columns<Row> all = {{"method", [](const Row& row) { return row.run.method->name; }},
+                      {"outcome", [](const Row& row) { return name(row.run.summary.outcome); }}};
+  all += interval<Row>("drift_rate", energy_drift);
+  all += {{"oscillation",
+           [](const Row& row) { return is_known(row.run) ? row.run.energy.oscillation : nothing; }},
+          {"verdict", [](const Row& row) { return verdict(row.run, row.until); }},
+          {"knob", [](const Row& row) { return knob_name(row.run.method->knob); }},
+          {"value", [](const Row& row) { return row.run.value; }},
+          {"fate", [](const Row& row) { return verdict_name(verdict_at(row.run, row.until)); }},
+          {"t_reached", [](const Row& row) { return row.run.summary.t_reached; }},
+          {"steps", [](const Row& row) { return row.run.summary.counts.steps; }},
+          {"energy_error_end", [](const Row& row) { return row.run.path.back().error; }},
+          {"random_walk",
+           [](const Row& row) { return is_known(row.run) ? row.run.energy.walk : nothing; }}};
+  all += interval<Row>("late_drift", late_drift);
+  all += {{"has_settled", [](const Row& row) { return yes_or_no(row.run.energy.steady_from > 0); }},
+          {"exponential_rate",
+           [](const Row& row) {
+             const double rate = row.run.energy.rate.value;
+             return rate != 0 ? rate : nothing;
+           }},
+          {"damping_ratio",
+           [](const Row& row) {
+             const Trend& energy = row.run.energy;
+             return energy.verdict == Verdict::dissipates ? energy.damping_ratio : nothing;
+           }},
+          {"blow_up_time", [](const Row& row) {
+             const Trend& energy = row.run.energy;
+             return energy.verdict == Verdict::blows_up ? energy.blow_up_time : nothing;
+           }}};
+  all += momentum("momentum", &DriftRun::linear);
+  all += momentum("angular_momentum", &DriftRun::angular);
+  all +=
+      {{"compensated",
+        [](const Row& row) {
+          return yes_or_no(row.compensated && row.run.method->listens_to(Option::compensated));
+        }},
+       {"time_s", [](const Row& row) { return row.run.seconds; }},
+       {"fate_so_far", [](const Row& row) { return verdict_name(row.run.energy.verdict); }},
+       {"settled_from", [](const Row& row) { return row.run.energy.steady_from; }},
+       {"wave_period", [](const Row& row) { return if_positive(row.run.energy.period); }},
+       {"memory_low",
+        [](const Row& row) {
+          const Trend& energy = row.run.energy;
+          return energy.colour == Colour::undecided ? if_positive(energy.memory) : nothing;
+        }},
+       {"slow_period_low", [](const Row& row) { return if_positive(row.run.energy.slow_period); }}};
+  all += interval<Row>("widening", widening);
+  all += {{"needed", [](const Row& row) { return if_positive(row.run.energy.needed); }}};
+  return all;
+}
+
+Columns<ToleranceRow> make_tolerance_columns() {
+  using Row = ToleranceRow;
+  Columns<Row> all = {{"method", [](const Row& row) { return row.run.method->name; }},
+                      {"rtol", [](const Row& row) { return row.run.value; }},
+                      {"periods",
+                       [](const Row& row) {
+                         return row.run.summary.t_reached * row.scales.frequency / (2 * M_PI);
+                       }},
+                      {"outcome", [](const Row& row) { return name(row.run.summary.outcome); }}};
+  all += interval<Row>("drift_rate", energy_drift);
+  all += {{"energy_error_end", [](const Row& row) { return row.run.path.back().error; }},
+          {"steps", [](const Row& row) { return row.run.summary.counts.steps; }},
+          {"time_s", [](const Row& row) { return row.run.seconds; }}};
+  return all;
 }
 
 }  // namespace
 
-const std::vector<std::string> drift_columns = {"method",         "t",    "energy",
-                                                "relative_error", "knob", "value"};
-const std::vector<std::string> summary_columns = {"method",
-                                                  "outcome",
-                                                  "drift_rate",
-                                                  "drift_rate_low",
-                                                  "drift_rate_high",
-                                                  "oscillation",
-                                                  "verdict",
-                                                  "knob",
-                                                  "value",
-                                                  "fate",
-                                                  "t_reached",
-                                                  "steps",
-                                                  "energy_error_end",
-                                                  "random_walk",
-                                                  "late_drift",
-                                                  "late_drift_low",
-                                                  "late_drift_high",
-                                                  "has_settled",
-                                                  "exponential_rate",
-                                                  "damping_ratio",
-                                                  "blow_up_time",
-                                                  "momentum_drift",
-                                                  "momentum_drift_low",
-                                                  "momentum_drift_high",
-                                                  "momentum_error_end",
-                                                  "angular_momentum_drift",
-                                                  "angular_momentum_drift_low",
-                                                  "angular_momentum_drift_high",
-                                                  "angular_momentum_error_end",
-                                                  "compensated",
-                                                  "time_s",
-                                                  "fate_so_far",
-                                                  "settled_from",
-                                                  "wave_period",
-                                                  "memory_low",
-                                                  "slow_period_low",
-                                                  "widening",
-                                                  "widening_low",
-                                                  "widening_high",
-                                                  "needed"};
-const std::vector<std::string> tolerance_columns = {
-    "method",     "rtol",           "periods",         "outcome",
-    "drift_rate", "drift_rate_low", "drift_rate_high", "energy_error_end",
-    "steps",      "time_s"};
-
-void write_path(CsvFile& csv, const DriftRun& run) {
-  for (const DriftPoint& point : run.path) {
-    csv.row(run.method->name, point.t, point.energy, point.error, knob_name(run.method->knob),
-            run.value);
-  }
-  csv.flush_if_large();
+const Columns<PathPoint>& path_columns() {
+  using Row = PathPoint;
+  static const Columns<Row> columns = {
+      {"method", [](const Row& row) { return row.run.method->name; }},
+      {"t", [](const Row& row) { return row.point.t; }},
+      {"energy", [](const Row& row) { return row.point.energy; }},
+      {"relative_error", [](const Row& row) { return row.point.error; }},
+      {"knob", [](const Row& row) { return knob_name(row.run.method->knob); }},
+      {"value", [](const Row& row) { return row.run.value; }}};
+  return columns;
 }
 
-void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated) {
-  const Trend& e = run.energy;
-  const bool is_known = e.verdict != Verdict::unknown;
-  csv.field(run.method->name);
-  csv.field(name(run.summary.outcome));
-  write_interval(csv, drift_of(e));
-  csv.field(is_known ? e.oscillation : nothing);
-  csv.field(verdict(run, until));
-  csv.field(knob_name(run.method->knob));
-  csv.field(run.value);
-  csv.field(verdict_name(verdict_at(run, until)));
-  csv.field(run.summary.t_reached);
-  csv.field(run.summary.counts.steps);
-  csv.field(run.path.back().error);
-  csv.field(is_known ? e.walk : nothing);
-  write_interval(csv, e.rate.value != 0 || !is_known ? no_interval : e.late_drift);
-  csv.field(e.steady_from > 0 ? "yes" : "no");
-  csv.field(e.rate.value != 0 ? e.rate.value : nothing);
-  csv.field(e.verdict == Verdict::dissipates ? e.damping_ratio : nothing);
-  csv.field(e.verdict == Verdict::blows_up ? e.blow_up_time : nothing);
-  write_momentum(csv, run.linear);
-  write_momentum(csv, run.angular);
-  csv.field(compensated && run.method->listens_to(Option::compensated) ? "yes" : "no");
-  csv.field(run.seconds);
-  csv.field(verdict_name(e.verdict));
-  csv.field(e.steady_from);
-  write_positive(csv, e.period);
-  write_positive(csv, e.colour == Colour::undecided ? e.memory : 0);
-  write_positive(csv, e.slow_period);
-  write_interval(csv, e.widening.high > e.widening.low ? e.widening : no_interval);
-  write_positive(csv, e.needed);
-  csv.end_row();
+const Columns<SummaryRow>& summary_columns() {
+  static const Columns<SummaryRow> columns = make_summary_columns();
+  return columns;
 }
 
-void write_tolerance(Csv& csv, const DriftRun& run, const MotionScales& scales) {
-  csv.field(run.method->name);
-  csv.field(run.value);
-  csv.field(run.summary.t_reached * scales.frequency / (2 * M_PI));
-  csv.field(name(run.summary.outcome));
-  write_interval(csv, drift_of(run.energy));
-  csv.field(run.path.back().error);
-  csv.field(run.summary.counts.steps);
-  csv.field(run.seconds);
-  csv.end_row();
+const Columns<ToleranceRow>& tolerance_columns() {
+  static const Columns<ToleranceRow> columns = make_tolerance_columns();
+  return columns;
 }
 
 }  // namespace qddot::energy_drift

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
+#include "experiments/command/columns.hpp"
 #include "experiments/command/csv.hpp"
 #include "qddot/measure/trend/drift_run.hpp"
 
@@ -12,16 +10,28 @@ using namespace measure;
 using namespace command;
 
 // The tables of energy_drift: drift.csv, summary.csv and tolerance.csv.
-extern const std::vector<std::string> drift_columns, summary_columns, tolerance_columns;
 
-// A row for each point of the run's path.
-void write_path(CsvFile& csv, const DriftRun& run);
+// A row for each point of a run's path.
+struct PathPoint {
+  const DriftRun& run;
+  const DriftPoint& point;
+};
+const Columns<PathPoint>& path_columns();
 
-// What became of the run, one row. `until`: how far it should have come [s]; `compensated`: whether
+// What became of a run, one row. `until`: how far it should have come [s]; `compensated`: whether
 // methods that can were asked to keep what rounding takes from their sums.
-void write_summary(Csv& csv, const DriftRun& run, double until, bool compensated);
+struct SummaryRow {
+  const DriftRun& run;
+  double until;
+  bool compensated;
+};
+const Columns<SummaryRow>& summary_columns();
 
 // How an adaptive method did at its tolerance, one row.
-void write_tolerance(Csv& csv, const DriftRun& run, const MotionScales& scales);
+struct ToleranceRow {
+  const DriftRun& run;
+  const MotionScales& scales;
+};
+const Columns<ToleranceRow>& tolerance_columns();
 
 }  // namespace qddot::energy_drift

@@ -38,6 +38,7 @@
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/trend/drift_run.hpp"
+#include "qddot/measure/trend/straight_line.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::energy_drift {
@@ -196,20 +197,16 @@ double error_near(const DriftRun& run, double t) {
 std::optional<double> tolerance_exponent(const std::vector<const DriftRun*>& runs, double& t) {
   t = INFINITY;
   for (const DriftRun* run : runs) t = std::min(t, run->path.back().t);
-  double count = 0, x = 0, y = 0, xx = 0, xy = 0;
+  std::vector<double> x, y;
   for (const DriftRun* run : runs) {
     const double error = error_near(*run, t);
     if (!(error > 0)) continue;
-    const double a = std::log(run->value), b = std::log(error);
-    ++count;
-    x += a;
-    y += b;
-    xx += a * a;
-    xy += a * b;
+    x.push_back(std::log(run->value));
+    y.push_back(std::log(error));
   }
-  const double spread = count * xx - x * x;
-  if (count < 2 || !(spread > 0)) return {};
-  return (count * xy - x * y) / spread;
+  const StraightLine line = straight_line(x, y);
+  if (!(line.spread > 0)) return {};
+  return line.slope;
 }
 
 void print_verdicts(const std::vector<DriftRun>& runs, double until) {
@@ -255,9 +252,9 @@ int energy_drift(const CommandLine& line, const Arguments& a,
   Study study(line, a.out, {"drift.csv", "summary.csv", "tolerance.csv"},
               {{"scene", content_hash(drawn)}, {"name", drawn.name}});
   if (const auto status = study.completed()) return *status;
-  CsvFile paths(a.out + "/drift.csv", drift_columns);
-  CsvFile summary(a.out + "/summary.csv", summary_columns);
-  CsvFile tolerance(a.out + "/tolerance.csv", tolerance_columns);
+  CsvFile paths(a.out + "/drift.csv", path_columns().header());
+  CsvFile summary(a.out + "/summary.csv", summary_columns().header());
+  CsvFile tolerance(a.out + "/tolerance.csv", tolerance_columns().header());
 
   const Momenta momenta(start);
   MotionScales scales{};
@@ -271,9 +268,10 @@ int energy_drift(const CommandLine& line, const Arguments& a,
   });
 
   for (const DriftRun& run : runs) {
-    write_path(paths, run);
-    write_summary(summary, run, course.until, a.compensated);
-    if (run.method->knob == Knob::rtol) write_tolerance(tolerance, run, scales);
+    for (const DriftPoint& point : run.path) path_columns().write_row(paths, {run, point});
+    paths.flush_if_large();
+    summary_columns().write_row(summary, {run, course.until, a.compensated});
+    if (run.method->knob == Knob::rtol) tolerance_columns().write_row(tolerance, {run, scales});
   }
   fmt::print("{} to t = {:g} s, {:.3g} steps of {:.4g} s; energy errors over {:.4g} J\n\n",
              drawn.name, course.until, course.until / course.step_size, course.step_size,

@@ -13,6 +13,7 @@
 #include "qddot/measure/motion/error.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/motion/vibrating_modes.hpp"
+#include "qddot/measure/trend/straight_line.hpp"
 
 namespace qddot::stability_map {
 
@@ -99,17 +100,13 @@ Samples::const_iterator from(const Samples& samples, double part) {
 
 // The slope of the straight line nearest to (t, 1/2 ln X).
 double slope(Samples::const_iterator first, Samples::const_iterator last) {
-  double n = 0, t_mean = 0, x_mean = 0, covariance = 0, variance = 0;
+  std::vector<double> t, x;
   for (auto s = first; s != last; ++s) {
     if (s->ratio <= 0) continue;
-    const double x = std::log(s->ratio) / 2, dt = s->t - t_mean;
-    n += 1;
-    t_mean += dt / n;
-    variance += dt * (s->t - t_mean);
-    x_mean += (x - x_mean) / n;
-    covariance += dt * (x - x_mean);
+    t.push_back(s->t);
+    x.push_back(std::log(s->ratio) / 2);
   }
-  return variance > 0 ? covariance / variance : 0;
+  return straight_line(t, x).slope;
 }
 
 double growth_rate(const Samples& samples) {

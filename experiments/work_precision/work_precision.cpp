@@ -109,7 +109,7 @@ int work_precision(const CommandLine& line, const Arguments& a,
   Study study(line, a.out, {"points.csv", "front.csv"},
               {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
   if (const auto status = study.completed()) return *status;
-  CsvFile points_csv(a.out + "/points.csv", point_columns());
+  CsvFile points_csv(a.out + "/points.csv", point_columns().header());
   CsvFile front_csv(a.out + "/front.csv", front_columns);
 
   nlohmann::json origin = provenance(command_line, drawn, start, scene);
@@ -138,7 +138,7 @@ int work_precision(const CommandLine& line, const Arguments& a,
     auto front = fastest_at_each_accuracy(points, *reference);
     add_stability_margins(front, scene);
     for (const Point& point : points)
-      point_row(points_csv, drawn.name, point, reference->certified.position);
+      point_columns().write_row(points_csv, {drawn.name, point, reference->certified.position});
     tabulate(front_csv, drawn.name, front, judged_by(*reference));
     print_front(drawn.name, until, front, *reference);
   }

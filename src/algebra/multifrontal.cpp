@@ -203,7 +203,7 @@ class Multifrontal : public Factors {
   // The pivots [from, end), and what they take off everything after them. Whether to go on.
   bool eliminate(const Open& open, int from, int end, bool only_positive, Team& team) {
     const Front& f = open.f;
-    const int first = from / height, after = (end + height - 1) / height;
+    const int first = from / height, after = strips_of(end);
     const int tile_strips = kernels_.tile_strips;
     const auto tile = [&](int i) { return std::min(tile_strips, f.strips() - i); };
     const auto divide = [&](int until, int i, int strips, double* scaled) {

@@ -3,27 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include "qddot/measure/trend/straight_line.hpp"
 
 namespace qddot::measure {
-namespace {
-
-// The slope of y over x by least squares; zero for less than two x.
-double slope(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto mean = [](const std::vector<double>& a) {
-    double sum = 0;
-    for (const double value : a) sum += value;
-    return sum / static_cast<double>(a.size());
-  };
-  const double x_mean = mean(x), y_mean = mean(y);
-  double xx = 0, xy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - x_mean) * (x[i] - x_mean);
-    xy += (x[i] - x_mean) * (y[i] - y_mean);
-  }
-  return xx > 0 ? xy / xx : 0;
-}
-
-}  // namespace
 
 Divergence divergence(const std::vector<double>& times, const std::vector<double>& differences) {
   std::vector<double> largest;
@@ -46,7 +30,7 @@ Divergence divergence(const std::vector<double>& times, const std::vector<double
     t.push_back(times[i]);
     logarithm.push_back(std::log(largest[i]));
   }
-  const double lyapunov = slope(t, logarithm);
+  const double lyapunov = straight_line(t, logarithm).slope;
   if (near < times.size()) return {times[near], lyapunov};
   if (!(lyapunov > 0)) return regular;
   return {times.back() + std::log(apart / largest.back()) / lyapunov, lyapunov};

@@ -9,13 +9,10 @@
 #include "qddot/measure/stability/linear_step.hpp"
 
 namespace qddot::measure {
-namespace {
 
 void keep_faster(const Point*& fastest, const Point& point) {
   if (!fastest || point.time < fastest->time) fastest = &point;
 }
-
-}  // namespace
 
 std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
                                                const Reference& reference) {

@@ -23,6 +23,9 @@ struct FrontRow {
   double stability_margin = std::numeric_limits<double>::quiet_NaN();
 };
 
+// Replaces `fastest`, which may be nullptr, by `point` if that one takes less time.
+void keep_faster(const Point*& fastest, const Point& point);
+
 // Rows for the accuracies 1e-1, 1e-2, ... 1e-9; pointers into `points`.
 std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
                                                const Reference& reference);

@@ -1,31 +1,27 @@
 #include "qddot/measure/trend/power_law.hpp"
 
+#include <cmath>
 #include <limits>
+#include <vector>
 
-#include <Eigen/Core>
-
+#include "qddot/measure/trend/straight_line.hpp"
 #include "qddot/measure/trend/student.hpp"
 
 namespace qddot::measure {
 
 PowerLaw fit_power_law(std::span<const double> n, std::span<const double> y) {
-  using Array = Eigen::ArrayXd;
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-  const auto count = std::ssize(n);
-  if (count == 0) return {nothing, nothing, nothing};
-  const auto centred_logs = [&](std::span<const double> values) -> Array {
-    const Array logs = Eigen::Map<const Array>(values.data(), count).log();
-    return logs - logs.mean();
+  const auto logs = [](std::span<const double> values) {
+    std::vector<double> all;
+    for (const double value : values) all.push_back(std::log(value));
+    return all;
   };
-  const Array a = centred_logs(n), b = centred_logs(y);
-  const double spread = a.square().sum();
-  if (spread == 0) return {nothing, nothing, nothing};
-  const double slope = (a * b).sum() / spread;
-  if (count < 3) return {slope, nothing, nothing};
-  const double freedom = static_cast<double>(count - 2);
-  const double variance = (b - slope * a).square().sum() / freedom / spread;
-  const double half = student_half_width(freedom) * std::sqrt(variance);
-  return {slope, slope - half, slope + half};
+  const StraightLine line = straight_line(logs(n), logs(y));
+  if (line.spread == 0) return {nothing, nothing, nothing};
+  if (n.size() < 3) return {line.slope, nothing, nothing};
+  const auto freedom = static_cast<double>(n.size() - 2);
+  const double half = student_half_width(freedom) * std::sqrt(line.left / freedom / line.spread);
+  return {line.slope, line.slope - half, line.slope + half};
 }
 
 }  // namespace qddot::measure

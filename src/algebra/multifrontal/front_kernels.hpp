@@ -8,6 +8,10 @@ namespace qddot::multifrontal {
 
 // Dense matrices are cut into strips of so many rows; see vectors/strips.hpp.
 constexpr int strip_height = 8;
+// Strips that hold so many rows.
+[[gnu::always_inline]] constexpr int strips_of(int rows) {
+  return (rows + strip_height - 1) / strip_height;
+}
 // Pivots whose columns are taken off the rest of a front at once: as many as leave a tile's rows of
 // L in the first cache.
 constexpr int panel = 96;

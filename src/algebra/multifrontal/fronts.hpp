@@ -11,7 +11,7 @@ namespace qddot::multifrontal {
 
 // The dense matrix of one supernode: `pivots` columns that become columns of L, and the `below` x
 // `below` update of what comes after. Rows and columns are numbered with the pivots first, then, at
-// the next multiple of 8, the rows below; what lies between is zero.
+// the next whole strip, the rows below; what lies between is zero.
 struct Front {
   int first, pivots, below;
   Index factor, update;  // where its part of L and its update begin, in doubles
@@ -22,13 +22,13 @@ struct Front {
   int run_start, run_end;
   int child_start, child_end;
 
-  int pivot_strips() const { return (pivots + 7) / 8; }
-  int below_strips() const { return (below + 7) / 8; }
+  int pivot_strips() const { return strips_of(pivots); }
+  int below_strips() const { return strips_of(below); }
   int strips() const { return pivot_strips() + below_strips(); }
-  // Rows of the whole, of the pivots and of the update, filled up to strips of 8.
-  int height() const { return 8 * strips(); }
-  int pivot_height() const { return 8 * pivot_strips(); }
-  int below_height() const { return 8 * below_strips(); }
+  // Rows of the whole, of the pivots and of the update, filled up to whole strips.
+  int height() const { return strip_height * strips(); }
+  int pivot_height() const { return strip_height * pivot_strips(); }
+  int below_height() const { return strip_height * below_strips(); }
 };
 
 // Fronts [start, end), subtrees that need none but their own. Branches are small against the whole,

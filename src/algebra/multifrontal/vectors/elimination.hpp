@@ -77,7 +77,7 @@ void factorize_block(const OpenFront& f, int from, int i, const double* scaled, 
 void subtract_from_rest(const OpenFront& f, int from, int end, int i, int strips,
                         const double* scaled) {
   const int k = end - from;
-  for (int j = count(end); j < i + strips; ++j) {
+  for (int j = strips_of(end); j < i + strips; ++j) {
     const int above = j > i ? j - i : 0;  // strips of the tile above the diagonal
     double* c = column(f, j * height) + (i + above) * height;
     const double* rows = scaled + above * panel * height;

@@ -13,9 +13,6 @@ using namespace kernels::QDDOT_LEVEL;
 // its rows in the lanes of the processor's vectors.
 constexpr int height = strip_height;
 
-// Strips that hold so many rows.
-constexpr int count(int rows) { return (rows + height - 1) / height; }
-
 // Tiles of as many vectors as the processor's registers hold: 32 with AVX-512, else 16.
 constexpr int vectors = height / lanes;  // in a column of a strip
 constexpr int tile_strips = lanes == 8 ? 3 : 1;
