@@ -183,7 +183,7 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
   failed_step_ = 0;
   stop_ = std::move(stop);
   has_begun_ = false;
-  Outcome outcome;
+  Outcome outcome = Outcome::reached_end;
   double growth = 1;
   check_arguments(system_, state, t_end, observer);
   try {

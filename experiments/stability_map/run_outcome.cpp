@@ -20,10 +20,19 @@ namespace qddot::stability_map {
 using namespace measure;
 namespace {
 
+// Chosen, not derived, and said in run_outcome.hpp; verdicts depend on them where a run is at the
+// limit of what its method holds.
+
+// How often X is looked at: so many steps at first, so many times later.
 constexpr int watched_steps = 200, samples_more = 400;
+// A growth of fewer samples is fitted from its beginning.
 constexpr std::ptrdiff_t few = 8;
+// At 1 the push of compressed springs makes M - h^2 K singular.
 constexpr double nearly_singular = 0.9;
+// X over X(0): of a run that may be diverging, that is growing, and that has no bound any more.
 constexpr double suspicious = 10, growing = 3, unbounded = 1e6;
+// How many times as many iterations show whether a run's own were enough, and which part of the
+// motion's size they may change.
 constexpr int more_iterations = 5;
 constexpr double other_motion = 0.1;
 

@@ -161,7 +161,7 @@ Outcome Stepper::step_aside(State& state, double t) {
   if (!aside_) {
     auto made = method().make(method(), system(), options());
     aside_.reset(&dynamic_cast<Stepper&>(*made));
-    made.release();
+    static_cast<void>(made.release());
   }
   aside_->join(*this);
   aside_->start(now_);

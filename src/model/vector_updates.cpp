@@ -12,14 +12,14 @@ namespace {
 constexpr std::size_t most_columns = 32;
 
 void combine(const double* x, double c, const Eigen::MatrixXd& k, std::span<const double> b,
-             MutableVec out) {
+             double* out, Index n) {
   assert(std::ssize(b) <= k.cols() && b.size() <= most_columns);
   std::array<const double*, most_columns> columns;
   for (std::size_t j = 0; j < b.size(); ++j) {
     columns[j] = k.data() + static_cast<Index>(j) * k.outerStride();
   }
   kernels::vector_kernels().add_combination(x, c, columns.data(), b.data(),
-                                            static_cast<int>(b.size()), out.data(), out.size());
+                                            static_cast<int>(b.size()), out, n);
 }
 
 }  // namespace
@@ -43,12 +43,12 @@ void multiply(const ConstVec& a, const ConstVec& b, MutableVec out) {
 
 void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
                      std::span<const double> b, MutableVec out) {
-  combine(x.data(), c, k, b, out);
+  combine(x.data(), c, k, b, out.data(), out.size());
 }
 
 void set_combination(double c, const Eigen::MatrixXd& k, std::span<const double> b,
                      MutableVec out) {
-  combine(nullptr, c, k, b, out);
+  combine(nullptr, c, k, b, out.data(), out.size());
 }
 
 void set_combination(std::span<const double* const> z, const double* b, MutableVec out) {

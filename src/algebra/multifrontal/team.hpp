@@ -52,7 +52,7 @@ class Team {
       for (int i = 0; i < count; ++i) work(i);
       return;
     }
-    for (int i; (i = meeting_->draw() - first_) < count;) work(i);
+    for (int i = meeting_->draw() - first_; i < count; i = meeting_->draw() - first_) work(i);
     first_ += count + threads_;  // every thread has drawn one too many
     meeting_->wait();
   }

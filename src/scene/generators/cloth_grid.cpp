@@ -36,10 +36,13 @@ Scene draw_cloth(const GeneratorValues& p) {
                              .pinned = j == 0 && (i == 0 || i == count - 1)});
     }
   }
+  const auto node = [&](int i, int j) {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(count) +
+           static_cast<std::size_t>(j);
+  };
   const auto join = [&](int i, int j, int i2, int j2, double stiffness) {
     if (i2 >= count || j2 >= count || j2 < 0) return;
-    const auto a = static_cast<std::size_t>(i * count + j);
-    const auto b = static_cast<std::size_t>(i2 * count + j2);
+    const std::size_t a = node(i, j), b = node(i2, j2);
     const double rest = (scene.nodes[b].position - scene.nodes[a].position).norm();
     scene.springs.push_back({{a, b}, {stiffness, rest}});
   };

@@ -16,8 +16,8 @@ std::string instead_of(const char* what, double reduced, double drawn, const cha
 
 std::optional<std::string> Part::difference_from(const Body& body) const {
   const Tolerances tolerances = tolerances_of(body.x, body.v);
-  if (const auto where = places_differ(body, tolerances.place, tolerances.speed)) return where;
-  if (const auto mass = masses_differ(body)) return mass;
+  if (auto where = places_differ(body, tolerances.place, tolerances.speed)) return where;
+  if (auto mass = masses_differ(body)) return mass;
   const BoundedEnergy t = kinetic_of(body.v, body.mass, tolerances);
   if (const double own = system_->kinetic(initial_.v); differs(t, own)) {
     return instead_of("the kinetic energy at the start", own, t.value, "J");

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/command/command_line.hpp"
+#include "experiments/command/scene_choice.hpp"
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::simulate {
+
+using namespace command;
+
+// What simulate takes on its command line.
+struct Arguments {
+  SceneChoice scene;
+  std::string method, final_path, trajectory_path, energy_path, written_scene_path;
+  double step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0, energy_every = 0;
+  Options options;
+  std::vector<double> every;
+  bool list_methods = false, list_scenes = false, csv = false, explain = false;
+};
+
+void declare(CommandLine& line, Arguments& a);
+
+// These throw InvalidInput where options do not go together.
+
+// Gives each --every to the output option before it; the only one belongs to both outputs.
+void assign_every(const CommandLine& line, Arguments& a);
+
+// Asks for a file for each output.
+void require_distinct_outputs(const CommandLine& line, const Arguments& a);
+
+// Whether the command line asks for the scene as a file and has nothing that is for a run.
+bool only_writes_scene(const CommandLine& line);
+
+// The method of that name.
+const Method& require_method(const std::string& name);
+
+// The options of a run, with the step size or the tolerances that the method takes.
+Options checked_options(const CommandLine& line, const Arguments& a, const Method& method);
+
+}  // namespace qddot::simulate

@@ -1,0 +1,71 @@
+#include "experiments/simulate/outputs.hpp"
+
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/node_table.hpp"
+#include "qddot/measure/motion/samples.hpp"
+
+namespace qddot::simulate {
+
+using namespace measure;
+
+Outputs::Outputs(const Arguments& a, const ReducedScene& scene, double until)
+    : scene_(scene),
+      trajectory_times_(samples(a.trajectory_every, until)),
+      energy_times_(samples(a.energy_every, until)) {
+  const int d = scene.dimension();
+  if (!a.final_path.empty()) {
+    final_ = std::make_unique<CsvFile>(a.final_path, node_header(d, {}));
+  }
+  if (!a.trajectory_path.empty()) {
+    trajectory_ = std::make_unique<CsvFile>(a.trajectory_path, node_header(d, {"t"}));
+  }
+  if (!a.energy_path.empty()) {
+    energy_ = std::make_unique<CsvFile>(
+        a.energy_path, std::vector<std::string>{"t", "kinetic", "potential", "total"});
+  }
+  if (trajectory_ || energy_) behind_.emplace([this](const State& state) { see(state); });
+}
+
+Observer Outputs::observer() {
+  return {merged(trajectory_times_, energy_times_),
+          [this](const State& state) { behind_->see(state); }};
+}
+
+void Outputs::see(const State& state) {
+  if (trajectory_ && is_sample(trajectory_times_, state.t)) {
+    const auto nodes = scene_.expand(state);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      trajectory_->field(state.t);
+      write_node(*trajectory_, i, nodes[i], scene_.dimension());
+    }
+    trajectory_->flush_if_large();
+  }
+  if (energy_ && is_sample(energy_times_, state.t)) {
+    const double kinetic = scene_.kinetic(state);
+    const double potential = scene_.potential(state);
+    energy_->row(state.t, kinetic, potential, kinetic + potential);
+    energy_->flush_if_large();
+  }
+}
+
+void Outputs::finish(const State& state, const nlohmann::json& origin) {
+  if (behind_) behind_->finish();
+  if (final_) {
+    const auto nodes = scene_.expand(state);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      write_node(*final_, i, nodes[i], scene_.dimension());
+    }
+  }
+  const std::array files = {final_.get(), trajectory_.get(), energy_.get()};
+  for (CsvFile* file : files) {
+    if (file) file->complete(origin);
+  }
+  for (CsvFile* file : files) {
+    if (file) file->commit();
+  }
+}
+
+}  // namespace qddot::simulate

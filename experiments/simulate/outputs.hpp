@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "experiments/command/csv.hpp"
+#include "experiments/simulate/arguments.hpp"
+#include "experiments/simulate/background_observer.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
+
+namespace qddot::simulate {
+
+// The tables that a run writes: all nodes at its end, all nodes over time, the energy over time.
+class Outputs {
+ public:
+  // Throws InvalidInput where a file cannot be written. The scene must outlive it.
+  Outputs(const Arguments& a, const ReducedScene& scene, double until);
+
+  // Asks for the times of the samples.
+  Observer observer();
+  // Takes the state at time 0, before the run, or one that the observer asked for.
+  void see(const State& state);
+
+  bool is_asked_for() const { return final_ || trajectory_ || energy_; }
+  // Lets all files appear. `state`: the end; `origin`: how it was made (see provenance.hpp).
+  void finish(const State& state, const nlohmann::json& origin);
+
+ private:
+  const ReducedScene& scene_;
+  std::vector<double> trajectory_times_, energy_times_;
+  std::unique_ptr<CsvFile> final_, trajectory_, energy_;
+  std::optional<BackgroundObserver> behind_;  // writes while the run goes on
+};
+
+}  // namespace qddot::simulate
