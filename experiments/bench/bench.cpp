@@ -26,6 +26,7 @@
 #include "experiments/bench/ratio_table.hpp"
 #include "experiments/command/catalogue.hpp"
 #include "experiments/command/command_line.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
@@ -257,12 +258,11 @@ int bench(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::bench
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Measures how many times as long as ours other solvers take to the same accuracy.", "bench");
-  qddot::bench::Arguments arguments;
-  qddot::bench::declare(line, arguments);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::bench::bench(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::bench;
+  return qddot::command::enter<Arguments>(
+      {.name = "bench",
+       .summary =
+           "Measures how many times as long as ours other solvers take to the same accuracy.",
+       .has_resume = true},
+      declare, bench, argc, argv);
 }

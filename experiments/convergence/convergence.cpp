@@ -21,6 +21,7 @@
 
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/point_record.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
@@ -176,13 +177,11 @@ int convergence(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::convergence
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Measures the order of convergence of every fixed-step integrator.", "convergence");
-  qddot::convergence::Arguments arguments;
-  qddot::convergence::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::convergence::convergence(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::convergence;
+  return qddot::command::enter<Arguments>(
+      {.name = "convergence",
+       .summary = "Measures the order of convergence of every fixed-step integrator.",
+       .has_threads = true,
+       .has_resume = true},
+      declare, convergence, argc, argv);
 }

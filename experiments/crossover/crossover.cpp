@@ -39,6 +39,7 @@
 
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/point_record.hpp"
 #include "experiments/command/point_table.hpp"
 #include "experiments/command/program.hpp"
@@ -351,13 +352,11 @@ int crossover(const CommandLine& line, Arguments a, const std::vector<std::strin
 }  // namespace qddot::crossover
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Measures from which stiffness on an implicit method is the fastest.", "crossover");
-  qddot::crossover::Arguments arguments;
-  qddot::crossover::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::crossover::crossover(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::crossover;
+  return qddot::command::enter<Arguments>(
+      {.name = "crossover",
+       .summary = "Measures from which stiffness on an implicit method is the fastest.",
+       .has_threads = true,
+       .has_resume = true},
+      declare, crossover, argc, argv);
 }

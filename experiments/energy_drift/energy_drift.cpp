@@ -27,6 +27,7 @@
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
@@ -297,13 +298,10 @@ int energy_drift(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::energy_drift
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Finds out where each integrator's energy goes over a long run of one scene.",
-      "energy_drift");
-  qddot::energy_drift::Arguments arguments;
-  qddot::energy_drift::declare(line, arguments);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::energy_drift::energy_drift(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::energy_drift;
+  return qddot::command::enter<Arguments>(
+      {.name = "energy_drift",
+       .summary = "Finds out where each integrator's energy goes over a long run of one scene.",
+       .has_resume = true},
+      declare, energy_drift, argc, argv);
 }

@@ -9,6 +9,7 @@
 
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/node_table.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
@@ -88,13 +89,11 @@ int equilibrium(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::equilibrium
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Finds the stable equilibrium that a scene reaches downhill from where it is drawn.",
-      "equilibrium");
-  qddot::equilibrium::Arguments arguments;
-  qddot::equilibrium::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::equilibrium::equilibrium(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::equilibrium;
+  return qddot::command::enter<Arguments>(
+      {.name = "equilibrium",
+       .summary =
+           "Finds the stable equilibrium that a scene reaches downhill from where it is drawn.",
+       .has_threads = true},
+      declare, equilibrium, argc, argv);
 }

@@ -34,6 +34,7 @@
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
@@ -369,12 +370,10 @@ int exchange(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::exchange
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Follows the energy that stiff springs exchange, by method and step size.", "exchange");
-  qddot::exchange::Arguments arguments;
-  qddot::exchange::declare(line, arguments);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::exchange::exchange(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::exchange;
+  return qddot::command::enter<Arguments>(
+      {.name = "exchange",
+       .summary = "Follows the energy that stiff springs exchange, by method and step size.",
+       .has_resume = true},
+      declare, exchange, argc, argv);
 }

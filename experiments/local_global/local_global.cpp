@@ -32,6 +32,7 @@
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/pace.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
@@ -377,14 +378,12 @@ int local_global_program(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::local_global
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Measures what the iterations of a step of implicit Euler buy, by several solvers.",
-      "local_global");
-  qddot::local_global::Arguments arguments;
-  qddot::local_global::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::local_global::local_global_program(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::local_global;
+  return qddot::command::enter<Arguments>(
+      {.name = "local_global",
+       .summary =
+           "Measures what the iterations of a step of implicit Euler buy, by several solvers.",
+       .has_threads = true,
+       .has_resume = true},
+      declare, local_global_program, argc, argv);
 }

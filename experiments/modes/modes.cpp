@@ -15,6 +15,7 @@
 
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/scene_choice.hpp"
@@ -129,7 +130,7 @@ bool is_at_equilibrium(const Arguments& a, const Scene& scene) {
   throw InvalidInput(fmt::format("--at: {} is not allowed; it is drawn or equilibrium", a.at));
 }
 
-int modes(const Arguments& a, const std::vector<std::string>& command_line) {
+int modes(const CommandLine&, const Arguments& a, const std::vector<std::string>& command_line) {
   require_given(a.scene, "--scene", "a generator's name or a scene file");
   require_given(a.out, "--out", "the folder for the results");
   if (a.count < 1 || a.count > most_modes) {
@@ -180,12 +181,11 @@ int modes(const Arguments& a, const std::vector<std::string>& command_line) {
 }  // namespace qddot::modes
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Finds the natural modes of a scene: frequencies and shapes of its small motions.", "modes");
-  qddot::modes::Arguments arguments;
-  qddot::modes::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::modes::modes(arguments, {argv, argv + argc});
-  });
+  using namespace qddot::modes;
+  return qddot::command::enter<Arguments>(
+      {.name = "modes",
+       .summary =
+           "Finds the natural modes of a scene: frequencies and shapes of its small motions.",
+       .has_threads = true},
+      declare, modes, argc, argv);
 }

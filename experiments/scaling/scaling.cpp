@@ -31,6 +31,7 @@
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/memory.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
@@ -263,13 +264,11 @@ int scaling(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::scaling
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Measures how the cost of a step grows with the number of nodes.", "scaling");
-  qddot::scaling::Arguments arguments;
-  qddot::scaling::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::scaling::scaling(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::scaling;
+  return qddot::command::enter<Arguments>(
+      {.name = "scaling",
+       .summary = "Measures how the cost of a step grows with the number of nodes.",
+       .has_threads = true,
+       .has_resume = true},
+      declare, scaling, argc, argv);
 }

@@ -11,7 +11,6 @@
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/catalogue.hpp"
 #include "experiments/command/csv.hpp"
-#include "experiments/command/csv.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/program.hpp"
 #include "qddot/scene/invalid_input.hpp"

@@ -16,6 +16,7 @@
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/catalogue.hpp"
 #include "experiments/command/command_line.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/interruptible.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/overwriting.hpp"
@@ -169,11 +170,8 @@ int simulate(const CommandLine& line, Arguments& a, const std::vector<std::strin
 }  // namespace qddot::simulate
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line("Runs one integrator on one scene.", "simulate");
-  qddot::simulate::Arguments arguments;
-  qddot::simulate::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::simulate::simulate(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::simulate;
+  return qddot::command::enter<Arguments>(
+      {.name = "simulate", .summary = "Runs one integrator on one scene.", .has_threads = true},
+      declare, simulate, argc, argv);
 }

@@ -24,6 +24,7 @@
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/scene_choice.hpp"
@@ -223,13 +224,11 @@ int solvers(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::solvers
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Measures direct solvers of M - h^2 K against each other and the machine.", "solvers");
-  qddot::solvers::Arguments arguments;
-  qddot::solvers::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::solvers::solvers(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::solvers;
+  return qddot::command::enter<Arguments>(
+      {.name = "solvers",
+       .summary = "Measures direct solvers of M - h^2 K against each other and the machine.",
+       .has_threads = true,
+       .has_resume = true},
+      declare, solvers, argc, argv);
 }

@@ -28,6 +28,7 @@
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
@@ -364,17 +365,10 @@ int stability_map(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::stability_map
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Measures where each method is stable, and compares with theory.", "stability_map");
-  qddot::stability_map::Arguments arguments;
-  qddot::stability_map::declare(line, arguments);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&]() -> int {
-    try {
-      return qddot::stability_map::stability_map(line, arguments, {argv, argv + argc});
-    } catch (const std::domain_error& no_modes) {
-      fmt::print(stderr, "stability_map: {}\n", no_modes.what());
-      return qddot::stability_map::end_not_reached;
-    }
-  });
+  using namespace qddot::stability_map;
+  return qddot::command::enter<Arguments>(
+      {.name = "stability_map",
+       .summary = "Measures where each method is stable, and compares with theory.",
+       .has_resume = true},
+      declare, stability_map, argc, argv);
 }

@@ -20,6 +20,7 @@
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/reference_file.hpp"
@@ -268,14 +269,12 @@ int stock_sundials(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::stock_sundials
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Measures what SUNDIALS' implicit methods gain from n x n solves, against stock KLU.",
-      "stock_sundials");
-  qddot::stock_sundials::Arguments arguments;
-  qddot::stock_sundials::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::stock_sundials::stock_sundials(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::stock_sundials;
+  return qddot::command::enter<Arguments>(
+      {.name = "stock_sundials",
+       .summary =
+           "Measures what SUNDIALS' implicit methods gain from n x n solves, against stock KLU.",
+       .has_threads = true,
+       .has_resume = true},
+      declare, stock_sundials, argc, argv);
 }

@@ -17,6 +17,7 @@
 
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
@@ -217,12 +218,10 @@ int verdicts(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::verdicts
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line("Finds out how often the verdicts of energy_drift are right.",
-                                   "verdicts");
-  qddot::verdicts::Arguments arguments;
-  qddot::verdicts::declare(line, arguments);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::verdicts::verdicts(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::verdicts;
+  return qddot::command::enter<Arguments>(
+      {.name = "verdicts",
+       .summary = "Finds out how often the verdicts of energy_drift are right.",
+       .has_resume = true},
+      declare, verdicts, argc, argv);
 }

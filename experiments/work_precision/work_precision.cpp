@@ -23,6 +23,7 @@
 
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/point_record.hpp"
 #include "experiments/command/point_table.hpp"
@@ -149,13 +150,11 @@ int work_precision(const CommandLine& line, const Arguments& a,
 }  // namespace qddot::work_precision
 
 int main(int argc, char** argv) {
-  qddot::command::CommandLine line(
-      "Measures speed against accuracy of every integrator on one scene.", "work_precision");
-  qddot::work_precision::Arguments arguments;
-  qddot::work_precision::declare(line, arguments);
-  qddot::command::add_threads_option(line);
-  qddot::command::add_resume_option(line);
-  return qddot::command::run_program(line, argc, argv, [&] {
-    return qddot::work_precision::work_precision(line, arguments, {argv, argv + argc});
-  });
+  using namespace qddot::work_precision;
+  return qddot::command::enter<Arguments>(
+      {.name = "work_precision",
+       .summary = "Measures speed against accuracy of every integrator on one scene.",
+       .has_threads = true,
+       .has_resume = true},
+      declare, work_precision, argc, argv);
 }

@@ -55,64 +55,87 @@ void ImplicitStep::acceleration(const Vec& q, Vec& a) {
   a.array() /= system().mass().array();
 }
 
-Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
-  const bool is_linear = system().stiffness_is_constant();
-  bool are_new = false;                  // whether the factors were made in this stage,
-  bool are_of_u = false;                 // and for the u at hand
-  bool are_wanted = s != factorized_s_;  // whether to make them now
-  double last = 0;  // the correction before, if with these factors and of full length
+// What the iteration of a stage knows of its factors and corrections.
+struct ImplicitStep::Iteration {
+  bool wants_factors;             // before the next correction
+  bool has_new_factors = false;   // made in this stage,
+  bool has_factors_of_u = false;  // and for the u at hand
+  double last = 0;  // the size of the correction before, if with these factors and of full length
   double least = std::numeric_limits<double>::infinity();  // of all corrections so far
+
+  void note_factors() {
+    has_new_factors = has_factors_of_u = true;
+    wants_factors = false;
+    last = 0;
+  }
+};
+
+Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
+  Iteration now{.wants_factors = s != factorized_s_};
   start_ = u_;
   residual(q, s);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     if (must_stop()) return Outcome::over_budget;
-    if (are_wanted) {
-      if (const Outcome outcome = factorize(q, s); outcome != Outcome::reached_end) {
-        return outcome;
-      }
-      are_new = are_of_u = true;
-      are_wanted = false;
-      last = 0;
-    }
-    Outcome outcome = correction();
-    while (outcome == Outcome::indefinite_matrix && compression_.soften()) {
-      outcome = factorize_softened(q, s);
-      if (outcome == Outcome::reached_end) outcome = correction();
-      are_new = are_of_u = true;
-      last = 0;
-    }
-    if (outcome != Outcome::reached_end) return outcome;
-    const double size = p_.lpNorm<Eigen::Infinity>(), place = (q + u_).lpNorm<Eigen::Infinity>();
-    double rate = 1;
-    if (last > 0) rate = size / last;
-    // One correction tells nothing, but that the last stage was like this one; beyond a kink none
-    // was.
-    const bool may_be_like_last = iteration == 0 && !are_new && size <= 2 * last_missed_;
-    if (may_be_like_last && !is_linear && !crosses_kink(q)) rate = last_rate_;
-    const bool is_exact = is_linear && compression_.kept() == 1 && is_linear_along(q);
+    if (const Outcome outcome = correct(q, s, now); outcome != Outcome::reached_end) return outcome;
+    const double size = p_.lpNorm<Eigen::Infinity>(), rate = rate_of(now, q, size, iteration == 0);
     const double missed = (u_ - start_ + p_).lpNorm<Eigen::Infinity>();
     const bool is_solved = rate < 1 && rate / (1 - rate) * size <= tolerance_ * missed;
-    const bool is_rounding =
-        size <= 4 * machine_epsilon * place || (2 * size > least && size <= rounding * place);
-    if (is_exact || is_solved || is_rounding) {
+    if (is_exact(q) || is_solved || is_rounding(q, size, now.least)) {
       u_ += p_;
       last_missed_ = missed;
       // What was not seen this time is trusted less the next; with new factors nothing was seen
       // yet.
-      last_rate_ = are_new ? 1 : (iteration == 0 ? 2 * rate : rate);
+      last_rate_ = now.has_new_factors ? 1 : (iteration == 0 ? 2 * rate : rate);
       return Outcome::reached_end;
     }
-    least = std::min(least, size);
-    are_wanted = last > 0 && rate > slowest_rate && !are_of_u;
-    if (are_wanted) continue;
+    now.least = std::min(now.least, size);
+    now.wants_factors = now.last > 0 && rate > slowest_rate && !now.has_factors_of_u;
+    if (now.wants_factors) continue;
 
     const double length = search(q, s);
-    if (length == 0 && are_of_u) return Outcome::newton_failed;
-    are_wanted = length < 1;
-    are_of_u = false;
-    last = length == 1 ? size : 0;
+    if (length == 0 && now.has_factors_of_u) return Outcome::newton_failed;
+    now.wants_factors = length < 1;
+    now.has_factors_of_u = false;
+    now.last = length == 1 ? size : 0;
   }
   return Outcome::newton_failed;
+}
+
+// The next correction p, with new factors where they are wanted and with less of the compression
+// where conjugate gradients meet an indefinite matrix.
+Outcome ImplicitStep::correct(const Vec& q, double s, Iteration& now) {
+  if (now.wants_factors) {
+    if (const Outcome outcome = factorize(q, s); outcome != Outcome::reached_end) return outcome;
+    now.note_factors();
+  }
+  Outcome outcome = correction();
+  while (outcome == Outcome::indefinite_matrix && compression_.soften()) {
+    outcome = factorize_softened(q, s);
+    if (outcome == Outcome::reached_end) outcome = correction();
+    now.note_factors();
+  }
+  return outcome;
+}
+
+// How many times as large as a correction of that size the next one will be: as many as this one
+// is of the one before. The first tells nothing, but that the last stage was like this one; beyond
+// a kink none was.
+double ImplicitStep::rate_of(const Iteration& now, const Vec& q, double size, bool is_first) {
+  if (now.last > 0) return size / now.last;
+  const bool may_be_like_last = is_first && !now.has_new_factors && size <= 2 * last_missed_;
+  const bool is_like_last =
+      may_be_like_last && !system().stiffness_is_constant() && !crosses_kink(q);
+  return is_like_last ? last_rate_ : 1;
+}
+
+// Whether no correction is left to make after this one.
+bool ImplicitStep::is_exact(const Vec& q) {
+  return system().stiffness_is_constant() && compression_.kept() == 1 && is_linear_along(q);
+}
+
+bool ImplicitStep::is_rounding(const Vec& q, double size, double least) const {
+  const double place = (q + u_).lpNorm<Eigen::Infinity>();
+  return size <= 4 * machine_epsilon * place || (2 * size > least && size <= rounding * place);
 }
 
 // Whether f is linear where the residual was taken and where the correction leads to.

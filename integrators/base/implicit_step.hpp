@@ -51,6 +51,11 @@ class ImplicitStep : public FixedStep {
   // Whether a stage's f knows forces at q itself, which then have to be linear as well.
   virtual bool knows_start() const { return false; }
 
+  struct Iteration;
+  Outcome correct(const Vec& q, double s, Iteration& now);
+  double rate_of(const Iteration& now, const Vec& q, double size, bool is_first);
+  bool is_exact(const Vec& q);
+  bool is_rounding(const Vec& q, double size, double least) const;
   bool is_linear_along(const Vec& q);
   // Whether f has a kink (kinks.hpp) between q, where the residual was taken, and where the
   // correction leads to.

@@ -1,10 +1,16 @@
 #include "qddot/model/kernels/stiffness_kernel.hpp"
 
 #include <algorithm>
-#include <map>
 
 namespace qddot::kernels {
 namespace {
+
+using Written = std::vector<bool>;
+
+template <int D>
+bool is_full(const Layout<D>& layout, int i, int j) {
+  return layout.is_full(i) && layout.is_full(j);
+}
 
 // Where in K's values the block of two nodes of full blocks begins; -1 where there is none.
 template <int D>
@@ -17,47 +23,72 @@ int block_of(const SymmetricMatrix& pattern, const Layout<D>& layout, int i, int
   return found < end && *found == row ? static_cast<int>(found - rows) : -1;
 }
 
+// How many of the links between nodes of full blocks each block has, by where it begins.
+template <int D>
+std::vector<int> links_by_block(const Network& network, const Layout<D>& layout,
+                                const SymmetricMatrix& pattern) {
+  std::vector<int> count(pattern.nonZeros());
+  for (const auto& link : network.links) {
+    if (is_full(layout, link.i, link.j)) ++count[block_of(pattern, layout, link.i, link.j)];
+  }
+  return count;
+}
+
+void mark(Written& written, int first, int values) {
+  std::fill_n(written.begin() + first, values, true);
+}
+
 }  // namespace
 
 template <int D>
 StiffnessKernel<D>::StiffnessKernel(const Network& network, const Layout<D>& layout,
                                     const SpringsByNode<D>& springs,
                                     const SymmetricMatrix& pattern) {
-  // How many links each block has.
-  std::vector<int> count(pattern.nonZeros());
-  const auto is_full = [&](int i, int j) { return layout.is_full(i) && layout.is_full(j); };
-  for (const auto& [i, j, law, holds, stiff, direction] : network.links) {
-    if (is_full(i, j)) ++count[block_of(pattern, layout, i, j)];
-  }
+  const std::vector<int> links = links_by_block(network, layout, pattern);
   int full = 0;
-  for (const auto& [i, j, law, holds, stiff, direction] : network.links) {
-    if (!is_full(i, j)) continue;
-    if (count[block_of(pattern, layout, i, j)] > 1) links_left_out_.push_back(full);
+  for (const auto& link : network.links) {
+    if (!is_full(layout, link.i, link.j)) continue;
+    if (links[block_of(pattern, layout, link.i, link.j)] > 1) links_left_out_.push_back(full);
     ++full;
   }
-  const int* start = pattern.outerIndexPtr();
-  const NeighbourSlices& slices = springs.slices();
-  std::vector<bool> is_written(pattern.nonZeros());
-  const auto mark = [&](int first, int values) {
-    std::fill_n(is_written.begin() + first, values, true);
-  };
-  for (int row = 0; row < slices.rows(); ++row) {
-    columns_.resize(D * (row + 1));
-    int* columns = columns_.data() + D * row;
+  Written written(pattern.nonZeros());
+  place_columns(springs, pattern, written);
+  place_slots(layout, springs, pattern, links, written);
+  for (int i = 0; i < std::ssize(written); ++i) {
+    if (!written[i]) zeros_.push_back(i);
+  }
+}
+
+// Where the blocks on the diagonal are.
+template <int D>
+void StiffnessKernel<D>::place_columns(const SpringsByNode<D>& springs,
+                                       const SymmetricMatrix& pattern, Written& written) {
+  const int rows = springs.slices().rows();
+  columns_.resize(D * rows);
+  for (int row = 0; row < rows; ++row) {
     int own = 0;
     for (int a = D; a-- > 0;) {
       const int unknown = springs.unknowns(row)[a];
-      columns[a] = unknown >= 0 ? start[unknown] : -1;
-      if (unknown >= 0) mark(columns[a], ++own);
+      int& column = columns_[D * row + a];
+      column = unknown >= 0 ? pattern.outerIndexPtr()[unknown] : -1;
+      if (unknown >= 0) mark(written, column, ++own);
     }
   }
-  // Whether a row and a place are nodes with one link between them, and the place's is later.
+}
+
+// Where the blocks below it are, slot by slot of the springs.
+template <int D>
+void StiffnessKernel<D>::place_slots(const Layout<D>& layout, const SpringsByNode<D>& springs,
+                                     const SymmetricMatrix& pattern, const std::vector<int>& links,
+                                     Written& written) {
+  const NeighbourSlices& slices = springs.slices();
+  // The block of a row and a place that are nodes with one link between them, the place's later.
   const auto target = [&](int row, int place) {
     if (place >= slices.rows()) return -1;
     const int node = slices.node[row], later = slices.node[place];
-    if (node < 0 || later <= node || !is_full(node, later)) return -1;
+    if (node < 0 || later <= node || !is_full(layout, node, later)) return -1;
     const int block = block_of(pattern, layout, node, later);
-    return block >= 0 && count[block] == 1 ? block : -1;
+    return block >= 0 && links[block] == 1 ? block : -1;
   };
   const int lanes = springs.kernels().lanes;
   const double* law = slices.laws.data();
@@ -68,10 +99,8 @@ StiffnessKernel<D>::StiffnessKernel(const Network& network, const Layout<D>& lay
       const bool is_spring = law[t] > 0 || (slices.law_vectors == 3 && law[2 * lanes + t] > 0);
       if (is_spring) targets[t] = target(row + t, place_of(t));
       if (targets[t] < 0) continue;
-      for (int b = 0; b < D; ++b) {
-        const int* columns = columns_.data() + D * (row + t);
-        mark(targets[t] + columns[b] - columns[0] - b, D);
-      }
+      const int* columns = columns_.data() + D * (row + t);
+      for (int b = 0; b < D; ++b) mark(written, targets[t] + columns[b] - columns[0] - b, D);
     }
     law += slices.law_vectors * lanes;
     const bool has_one = std::ranges::any_of(targets, [](int block) { return block >= 0; });
@@ -86,9 +115,6 @@ StiffnessKernel<D>::StiffnessKernel(const Network& network, const Layout<D>& lay
     for (int i = begin.gather; i < end.gather; i += lanes) {
       add_slot(s * lanes, [&](int t) { return slices.gathers[i + t]; });
     }
-  }
-  for (int i = 0; i < std::ssize(is_written); ++i) {
-    if (!is_written[i]) zeros_.push_back(i);
   }
 }
 

@@ -29,6 +29,12 @@ class StiffnessKernel {
   void material_stiffness(const SpringsByNode<D>& springs, const Vec& q, SymmetricMatrix& k) const;
 
  private:
+  // Which of K's values something here writes.
+  using Written = std::vector<bool>;
+  void place_columns(const SpringsByNode<D>& springs, const SymmetricMatrix& pattern,
+                     Written& written);
+  void place_slots(const Layout<D>& layout, const SpringsByNode<D>& springs,
+                   const SymmetricMatrix& pattern, const std::vector<int>& links, Written& written);
   void write(const SpringsByNode<D>& springs, const Vec& q, TensionPart part,
              SymmetricMatrix& k) const;
 
