@@ -172,27 +172,27 @@ class Integrator {
   void set_message(std::string message) { message_ = std::move(message); }
 
   // The force and stiffness of the system, or of one that is a part of its forces; counted.
-  void force(const Vec& q, Vec& f) { force(system_, q, f); }
-  void force(const System& part, const Vec& q, Vec& f) {
+  void force(const ConstVec& q, MutableVec f) { force(system_, q, f); }
+  void force(const System& part, const ConstVec& q, MutableVec f) {
     ++counts_.force_evaluations;
     const Stopwatch watch(seconds(), &Seconds::force);
     part.force(q, f);
   }
-  void stiffness(const Vec& q, SymmetricMatrix& k) { stiffness(system_, q, k); }
-  void stiffness(const System& part, const Vec& q, SymmetricMatrix& k) {
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) { stiffness(system_, q, k); }
+  void stiffness(const System& part, const ConstVec& q, SymmetricMatrix& k) {
     ++counts_.stiffness_evaluations;
     const Stopwatch watch(seconds(), &Seconds::stiffness);
     part.stiffness(q, k);
   }
   // Likewise the system's DiscreteGradient, counted as a force; for methods that need it.
-  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) {
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) {
     ++counts_.force_evaluations;
     const Stopwatch watch(seconds(), &Seconds::force);
     discrete_gradient_->discrete_gradient(a, b, f);
   }
   // Likewise SplitStiffness::weighted_stiffness. Of a system that does not offer it, the weight
   // times all of K: with the weight going to 0, M - s K goes to M, which is positive definite.
-  void weighted_stiffness(const Vec& q, double compression_weight, SymmetricMatrix& k) {
+  void weighted_stiffness(const ConstVec& q, double compression_weight, SymmetricMatrix& k) {
     ++counts_.stiffness_evaluations;
     const Stopwatch watch(seconds(), &Seconds::stiffness);
     if (split_stiffness_) {

@@ -35,12 +35,12 @@ class Chain final : public qddot::System {
     pattern_.setFromTriplets(entries.begin(), entries.end());
   }
 
-  double potential(const Vec& q) const override {
+  double potential(const ConstVec& q) const override {
     double sum = 0;
     for (Index i = 0; i + 1 < atoms_; ++i) sum += Bond(across(q, i).norm()).energy;
     return sum;
   }
-  void force(const Vec& q, Vec& f) const override {
+  void force(const ConstVec& q, MutableVec f) const override {
     f.setZero();
     for (Index i = 0; i + 1 < atoms_; ++i) {
       const Vector2d d = across(q, i), pull = Bond(d.norm()).first * d.normalized();
@@ -49,7 +49,7 @@ class Chain final : public qddot::System {
     }
   }
   const qddot::SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const Vec& q, qddot::SymmetricMatrix& k) const override {
+  void stiffness(const ConstVec& q, qddot::SymmetricMatrix& k) const override {
     k.coeffs().setZero();
     for (Index i = 0; i + 1 < atoms_; ++i) {
       const Vector2d d = across(q, i), n = d.normalized();

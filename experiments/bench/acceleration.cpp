@@ -18,10 +18,10 @@ class WithPlainForce final : public System, public SplitStiffness, public Discre
         discrete_gradient_(capability<DiscreteGradient>(system)),
         plain_(plain) {}
 
-  void force(const Vec& q, Vec& f) const override { plain_.force(q.data(), f.data()); }
+  void force(const ConstVec& q, MutableVec f) const override { plain_.force(q.data(), f.data()); }
 
-  double potential(const Vec& q) const override { return system_.potential(q); }
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
+  double potential(const ConstVec& q) const override { return system_.potential(q); }
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
   bool offers(const std::type_info& type) const override {
@@ -29,14 +29,14 @@ class WithPlainForce final : public System, public SplitStiffness, public Discre
                                           : discrete_gradient_ != nullptr;
   }
 
-  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
     split_stiffness_->material_stiffness(q, k);
   }
-  void weighted_stiffness(const Vec& q, double compression_weight,
+  void weighted_stiffness(const ConstVec& q, double compression_weight,
                           SymmetricMatrix& k) const override {
     split_stiffness_->weighted_stiffness(q, compression_weight, k);
   }
-  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override {
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
     discrete_gradient_->discrete_gradient(a, b, f);
   }
 

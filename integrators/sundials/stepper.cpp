@@ -26,7 +26,6 @@ Stepper::Stepper(const Method& method, const System& system, const Options& opti
                                  : make_vector(system.size(), context())),
       atol_(clone(y())),
       per_mass_(system.mass().cwiseInverse()),
-      q_(system.size()),
       f_(system.size()),
       next_{0, Vec(system.size()), Vec(system.size())} {
   Halves absolute(atol());
@@ -57,8 +56,7 @@ void Stepper::set_counts(const OwnCounts& own) {
 }
 
 const Vec& Stepper::force_at(const System& part, const Eigen::Map<Vec>& q) {
-  q_ = q;
-  force(part, q_, f_);
+  force(part, q, f_);
   return f_;
 }
 
@@ -71,8 +69,7 @@ bool Stepper::set_rate(const System& part, N_Vector y, N_Vector rate) {
 }
 
 const SymmetricMatrix& Stepper::stiffness_at(const Eigen::Map<Vec>& q) {
-  q_ = q;
-  stiffness(implicit_part_, q_, k_);
+  stiffness(implicit_part_, q, k_);
   return k_;
 }
 

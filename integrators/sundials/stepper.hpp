@@ -125,7 +125,7 @@ class Stepper : public Integrator {
   Vector y_, atol_;
   std::unique_ptr<NewtonMatrix> matrix_;
   Vec per_mass_;  // 1/m
-  Vec q_, f_;
+  Vec f_;
   SymmetricMatrix k_;
   State now_, next_;
   std::optional<StepTimes> times_;  // where they are fixed

@@ -20,7 +20,7 @@ Vec all_masses(const std::vector<std::unique_ptr<System>>& blocks) {
 
 // Calls action(block, its segment of q, where that begins) for each block.
 template <class Action>
-void for_each(const std::vector<std::unique_ptr<System>>& blocks, const Vec& q,
+void for_each(const std::vector<std::unique_ptr<System>>& blocks, const ConstVec& q,
               const Action& action) {
   Index at = 0;
   for (const auto& block : blocks) {
@@ -74,14 +74,14 @@ bool BlockDiagonalSystem::offers(const std::type_info& type) const {
   return true;
 }
 
-double BlockDiagonalSystem::potential(const Vec& q) const {
+double BlockDiagonalSystem::potential(const ConstVec& q) const {
   double v = 0;
   for_each(blocks_, q,
            [&](const System& block, const Vec& own, Index) { v += block.potential(own); });
   return v;
 }
 
-void BlockDiagonalSystem::force(const Vec& q, Vec& f) const {
+void BlockDiagonalSystem::force(const ConstVec& q, MutableVec f) const {
   for_each(blocks_, q, [&](const System& block, const Vec& own, Index at) {
     Vec on_block(block.size());
     block.force(own, on_block);
@@ -89,7 +89,8 @@ void BlockDiagonalSystem::force(const Vec& q, Vec& f) const {
   });
 }
 
-void BlockDiagonalSystem::discrete_gradient(const Vec& a, const Vec& b, Vec& f) const {
+void BlockDiagonalSystem::discrete_gradient(const ConstVec& a, const ConstVec& b,
+                                            MutableVec f) const {
   for_each(blocks_, a, [&](const System& block, const Vec& own, Index at) {
     Vec on_block(block.size());
     capability<DiscreteGradient>(block)->discrete_gradient(own, b.segment(at, block.size()),
@@ -99,7 +100,7 @@ void BlockDiagonalSystem::discrete_gradient(const Vec& a, const Vec& b, Vec& f) 
 }
 
 template <class Evaluate>
-void BlockDiagonalSystem::assemble(const Vec& q, SymmetricMatrix& k,
+void BlockDiagonalSystem::assemble(const ConstVec& q, SymmetricMatrix& k,
                                    const Evaluate& evaluate) const {
   Index next = 0;
   for_each(blocks_, q, [&](const System& block, const Vec& own, Index) {
@@ -110,21 +111,21 @@ void BlockDiagonalSystem::assemble(const Vec& q, SymmetricMatrix& k,
   });
 }
 
-void BlockDiagonalSystem::stiffness(const Vec& q, SymmetricMatrix& k) const {
+void BlockDiagonalSystem::stiffness(const ConstVec& q, SymmetricMatrix& k) const {
   if (!has_stiffness()) throw std::logic_error("a block of the system computes no K");
   assemble(q, k, [](const System& block, const Vec& own, SymmetricMatrix& of_block) {
     block.stiffness(own, of_block);
   });
 }
 
-void BlockDiagonalSystem::weighted_stiffness(const Vec& q, double compression_weight,
+void BlockDiagonalSystem::weighted_stiffness(const ConstVec& q, double compression_weight,
                                              SymmetricMatrix& k) const {
   assemble(q, k, [&](const System& block, const Vec& own, SymmetricMatrix& of_block) {
     capability<SplitStiffness>(block)->weighted_stiffness(own, compression_weight, of_block);
   });
 }
 
-void BlockDiagonalSystem::material_stiffness(const Vec& q, SymmetricMatrix& k) const {
+void BlockDiagonalSystem::material_stiffness(const ConstVec& q, SymmetricMatrix& k) const {
   assemble(q, k, [](const System& block, const Vec& own, SymmetricMatrix& of_block) {
     capability<SplitStiffness>(block)->material_stiffness(own, of_block);
   });
@@ -146,7 +147,7 @@ bool BlockDiagonalSystem::stiffness_is_constant() const {
                              [](const auto& block) { return block->stiffness_is_constant(); });
 }
 
-bool BlockDiagonalSystem::is_linear_at(const Vec& q) const {
+bool BlockDiagonalSystem::is_linear_at(const ConstVec& q) const {
   bool is_linear = true;
   for_each(blocks_, q, [&](const System& block, const Vec& own, Index) {
     const auto* pieces = capability<PiecewiseLinear>(block);
@@ -155,7 +156,7 @@ bool BlockDiagonalSystem::is_linear_at(const Vec& q) const {
   return is_linear;
 }
 
-bool BlockDiagonalSystem::is_valid_at(const Vec& q) const {
+bool BlockDiagonalSystem::is_valid_at(const ConstVec& q) const {
   bool is_valid = true;
   for_each(blocks_, q, [&](const System& block, const Vec& own, Index) {
     const auto* validity = capability<Validity>(block);
@@ -186,7 +187,7 @@ Index BlockDiagonalSystem::kinks() const {
   return count;
 }
 
-void BlockDiagonalSystem::kink_lengths(const Vec& q, Vec& lengths) const {
+void BlockDiagonalSystem::kink_lengths(const ConstVec& q, MutableVec lengths) const {
   Index next = 0;
   for_each(blocks_, q, [&](const System& block, const Vec& own, Index) {
     const auto* kinks = capability<Kinks>(block);

@@ -25,31 +25,31 @@ class BlockDiagonalSystem final : public System,
  public:
   explicit BlockDiagonalSystem(std::vector<std::unique_ptr<System>> blocks);
 
-  double potential(const Vec& q) const override;
-  void force(const Vec& q, Vec& f) const override;
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  double potential(const ConstVec& q) const override;
+  void force(const ConstVec& q, MutableVec f) const override;
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override;
   bool offers(const std::type_info& type) const override;
 
-  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override;
-  void weighted_stiffness(const Vec& q, double compression_weight,
+  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
+  void weighted_stiffness(const ConstVec& q, double compression_weight,
                           SymmetricMatrix& k) const override;
-  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override;
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override;
   void laplacian(SymmetricMatrix& l) const override;
   bool bounds_stiffness() const override;
-  bool is_linear_at(const Vec& q) const override;
-  bool is_valid_at(const Vec& q) const override;
+  bool is_linear_at(const ConstVec& q) const override;
+  bool is_valid_at(const ConstVec& q) const override;
   std::optional<double> end_of_validity(const State& from, const State& to) const override;
   Index kinks() const override;
-  void kink_lengths(const Vec& q, Vec& lengths) const override;
+  void kink_lengths(const ConstVec& q, MutableVec lengths) const override;
   std::span<const std::unique_ptr<System>> blocks() const override { return blocks_; }
 
  private:
   // The blocks' columns follow one another in `k`, and so do their entries: evaluate(block, its
   // segment of q, its matrix) for each.
   template <class Evaluate>
-  void assemble(const Vec& q, SymmetricMatrix& k, const Evaluate& evaluate) const;
+  void assemble(const ConstVec& q, SymmetricMatrix& k, const Evaluate& evaluate) const;
 
   std::vector<std::unique_ptr<System>> blocks_;
   SymmetricMatrix pattern_;

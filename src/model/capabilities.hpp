@@ -28,11 +28,11 @@ class SplitStiffness {
   virtual ~SplitStiffness() = default;
   // The material part [N/m], of springs -sum tau' b b' with b the gradient of a spring's length.
   // Negative semidefinite at every q.
-  virtual void material_stiffness(const Vec& q, SymmetricMatrix& k) const = 0;
+  virtual void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const = 0;
   // K [N/m] with what compression makes indefinite scaled by the weight: of every compressed spring
   // the transverse part tau/l (I - nn'). A weight of 1 gives K to the last bit, a weight of 0 a
   // negative semidefinite matrix.
-  virtual void weighted_stiffness(const Vec& q, double compression_weight,
+  virtual void weighted_stiffness(const ConstVec& q, double compression_weight,
                                   SymmetricMatrix& k) const = 0;
 };
 
@@ -44,7 +44,7 @@ class DiscreteGradient {
   // where b = a, and f keeps linear and angular momentum as a force does (Gonzalez, Journal of
   // Nonlinear Science 6 (1996) 449-467, for springs each by itself). a, b: n, f sized by the
   // caller.
-  virtual void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const = 0;
+  virtual void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const = 0;
 };
 
 // A constant matrix L that stands for -K at every q: f(q) = -L q + the rest. Of springs it is what
@@ -67,7 +67,7 @@ class PiecewiseLinear {
   virtual ~PiecewiseLinear() = default;
   // Whether q, which may lie where no motion comes to, is one of the places between which f is
   // linear: f(b) = f(a) + K (b - a) for any two of them, and all that lie between. q: n.
-  virtual bool is_linear_at(const Vec& q) const = 0;
+  virtual bool is_linear_at(const ConstVec& q) const = 0;
 };
 
 // Where a system stands for what it was made from: outside, its forces are those of something else
@@ -76,7 +76,7 @@ class Validity {
  public:
   virtual ~Validity() = default;
   // q: n.
-  virtual bool is_valid_at(const Vec& q) const = 0;
+  virtual bool is_valid_at(const ConstVec& q) const = 0;
   // When the system stops being valid on the way from the state before a step to the one after it
   // [s]; nothing where it does not. Integrators ask after each step, and accept no step on which it
   // does.

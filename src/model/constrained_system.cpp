@@ -42,28 +42,29 @@ bool ConstrainedSystem::offers(const std::type_info& type) const {
   return true;
 }
 
-void ConstrainedSystem::force(const Vec& q, Vec& f) const {
+void ConstrainedSystem::force(const ConstVec& q, MutableVec f) const {
   system_->force(q, f);
   for (const Index i : unknowns_) f[i] = 0;
 }
 
-void ConstrainedSystem::discrete_gradient(const Vec& a, const Vec& b, Vec& f) const {
+void ConstrainedSystem::discrete_gradient(const ConstVec& a, const ConstVec& b,
+                                          MutableVec f) const {
   discrete_gradient_->discrete_gradient(a, b, f);
   for (const Index i : unknowns_) f[i] = 0;
 }
 
-void ConstrainedSystem::stiffness(const Vec& q, SymmetricMatrix& k) const {
+void ConstrainedSystem::stiffness(const ConstVec& q, SymmetricMatrix& k) const {
   system_->stiffness(q, k);
   clear_held(k);
 }
 
-void ConstrainedSystem::weighted_stiffness(const Vec& q, double compression_weight,
+void ConstrainedSystem::weighted_stiffness(const ConstVec& q, double compression_weight,
                                            SymmetricMatrix& k) const {
   split_stiffness_->weighted_stiffness(q, compression_weight, k);
   clear_held(k);
 }
 
-void ConstrainedSystem::material_stiffness(const Vec& q, SymmetricMatrix& k) const {
+void ConstrainedSystem::material_stiffness(const ConstVec& q, SymmetricMatrix& k) const {
   split_stiffness_->material_stiffness(q, k);
   clear_held(k);
 }

@@ -26,26 +26,28 @@ class ConstrainedSystem final : public System,
   // `is_held`: for each unknown of `system`.
   ConstrainedSystem(std::shared_ptr<const System> system, std::vector<bool> is_held);
 
-  double potential(const Vec& q) const override { return system_->potential(q); }
-  void force(const Vec& q, Vec& f) const override;
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  double potential(const ConstVec& q) const override { return system_->potential(q); }
+  void force(const ConstVec& q, MutableVec f) const override;
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
   bool offers(const std::type_info& type) const override;
 
-  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override;
-  void weighted_stiffness(const Vec& q, double compression_weight,
+  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
+  void weighted_stiffness(const ConstVec& q, double compression_weight,
                           SymmetricMatrix& k) const override;
-  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override;
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override;
   void laplacian(SymmetricMatrix& l) const override;
   bool bounds_stiffness() const override { return laplacian_->bounds_stiffness(); }
-  bool is_linear_at(const Vec& q) const override { return pieces_->is_linear_at(q); }
-  bool is_valid_at(const Vec& q) const override { return validity_->is_valid_at(q); }
+  bool is_linear_at(const ConstVec& q) const override { return pieces_->is_linear_at(q); }
+  bool is_valid_at(const ConstVec& q) const override { return validity_->is_valid_at(q); }
   std::optional<double> end_of_validity(const State& from, const State& to) const override {
     return validity_->end_of_validity(from, to);
   }
   Index kinks() const override { return kinks_->kinks(); }
-  void kink_lengths(const Vec& q, Vec& lengths) const override { kinks_->kink_lengths(q, lengths); }
+  void kink_lengths(const ConstVec& q, MutableVec lengths) const override {
+    kinks_->kink_lengths(q, lengths);
+  }
   const Split& split() const override { return *split_; }
 
  private:

@@ -86,7 +86,7 @@ DifferencedStiffness::DifferencedStiffness(std::shared_ptr<const System> system,
   columns_of_ = coloured(rows_of_);
 }
 
-void DifferencedStiffness::stiffness(const Vec& q, SymmetricMatrix& k) const {
+void DifferencedStiffness::stiffness(const ConstVec& q, SymmetricMatrix& k) const {
   const double largest = q.size() > 0 ? q.lpNorm<Eigen::Infinity>() : 0;
   const double d = std::cbrt(machine_epsilon) * std::max(length_, largest);
   Vec moved = q, ahead(size()), behind(size());

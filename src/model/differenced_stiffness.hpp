@@ -21,9 +21,9 @@ class DifferencedStiffness final : public System {
   DifferencedStiffness(std::shared_ptr<const System> system,
                        const std::vector<std::pair<Index, Index>>& pairs, double length = 1);
 
-  double potential(const Vec& q) const override { return system_->potential(q); }
-  void force(const Vec& q, Vec& f) const override { system_->force(q, f); }
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override;
+  double potential(const ConstVec& q) const override { return system_->potential(q); }
+  void force(const ConstVec& q, MutableVec f) const override { system_->force(q, f); }
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
 
   // How many forces one K costs.

@@ -34,7 +34,7 @@ class InTension {
   void add(const Spring& spring) { springs_.push_back(spring); }
   bool empty() const { return springs_.empty(); }
 
-  bool holds_at(const Layout<D>& layout, const Vec& q) const {
+  bool holds_at(const Layout<D>& layout, const ConstVec& q) const {
     return std::ranges::all_of(springs_, [&](const Spring& spring) {
       return difference(layout, spring, q).squaredNorm() >= bound(spring);
     });
@@ -63,7 +63,7 @@ class InTension {
     const double l = (1 - 1e-12) * spring.law.rest_length;
     return l * l;
   }
-  static Point difference(const Layout<D>& layout, const Spring& spring, const Vec& q) {
+  static Point difference(const Layout<D>& layout, const Spring& spring, const ConstVec& q) {
     if (spring.j < 0) return spring.place - layout.at(q, spring.i);
     return spring.place.cwiseProduct(layout.at(q, spring.j)) - layout.at(q, spring.i);
   }

@@ -14,7 +14,7 @@ class Kinks {
   virtual Index kinks() const = 0;
   // These lengths, with their signs [m], into `lengths`, sized by the caller: affine functions of
   // q.
-  virtual void kink_lengths(const Vec& q, Vec& lengths) const = 0;
+  virtual void kink_lengths(const ConstVec& q, MutableVec lengths) const = 0;
 };
 
 }  // namespace qddot

@@ -36,12 +36,12 @@ class Layout {
   // Whether all of its coordinates are unknowns.
   bool is_full(int i) const { return count(i) == D; }
 
-  Point at(const Vec& q, int i) const {
+  Point at(const ConstVec& q, int i) const {
     Point x = Point::Zero();
     for (int a = 0; a < count(i); ++a) x[axis(i, a)] = q[first(i) + a];
     return x;
   }
-  void add(const Point& x, int i, Vec& f) const {
+  void add(const Point& x, int i, MutableVec f) const {
     for (int a = 0; a < count(i); ++a) f[first(i) + a] += x[axis(i, a)];
   }
 

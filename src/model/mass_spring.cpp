@@ -39,14 +39,14 @@ class MassSpring final : public System,
   MassSpring(const Network& network, Forces forces)
       : MassSpring(network, forces, {network.node_mass.size(), network.zero_coordinates}) {}
 
-  double potential(const Vec& q) const override {
+  double potential(const ConstVec& q) const override {
     double v = constant_energy_ - weight_.dot(q);
     springs_.for_each(
         [&](const auto& spring) { v += spring_energy(spring.law, springs_.between(q, spring)); });
     return v;
   }
 
-  void force(const Vec& q, Vec& f) const override {
+  void force(const ConstVec& q, MutableVec f) const override {
     if (by_node_) return by_node_->sum_forces(q, weight_, f);
     f = weight_;
     springs_.add_forces(
@@ -54,7 +54,7 @@ class MassSpring final : public System,
         f);
   }
 
-  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override {
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
     f = weight_;
     springs_.add_forces(
         [&](const auto& spring) {
@@ -64,9 +64,11 @@ class MassSpring final : public System,
         f);
   }
 
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override { weighted_stiffness(q, 1, k); }
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
+    weighted_stiffness(q, 1, k);
+  }
 
-  void weighted_stiffness(const Vec& q, double compression_weight,
+  void weighted_stiffness(const ConstVec& q, double compression_weight,
                           SymmetricMatrix& k) const override {
     const auto block = [compression_weight](const SpringLaw& law, const Point& d) {
       return spring_stiffness(law, d, compression_weight);
@@ -76,7 +78,7 @@ class MassSpring final : public System,
     add_left_out(q, k, block);
   }
 
-  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
     const auto block = [](const SpringLaw& law, const Point& d) {
       return spring_material_stiffness(law, d);
     };
@@ -95,7 +97,7 @@ class MassSpring final : public System,
     return true;
   }
 
-  bool is_linear_at(const Vec& q) const override {
+  bool is_linear_at(const ConstVec& q) const override {
     const signed char* direction = directions_.data();
     bool all = true;
     springs_.for_each([&](const auto& spring) {
@@ -116,14 +118,14 @@ class MassSpring final : public System,
 
   // Elsewhere than on a line hardly a motion meets a length of zero.
   Index kinks() const override { return kinks_; }
-  void kink_lengths(const Vec& q, Vec& lengths) const override {
+  void kink_lengths(const ConstVec& q, MutableVec lengths) const override {
     Index i = 0;
     springs_.for_each([&](const auto& spring) {
       if (turns_over(spring.law)) lengths[i++] = springs_.between(q, spring)[0];
     });
   }
 
-  bool is_valid_at(const Vec& q) const override { return in_tension_.holds_at(layout_, q); }
+  bool is_valid_at(const ConstVec& q) const override { return in_tension_.holds_at(layout_, q); }
   std::optional<double> end_of_validity(const State& from, const State& to) const override {
     return in_tension_.first_slack(layout_, mass(), from, to);
   }
@@ -200,7 +202,7 @@ class MassSpring final : public System,
 
   // What the columns leave out.
   template <class BlockOf>
-  void add_left_out(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
+  void add_left_out(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block) const {
     for (const int e : columns_->links_left_out()) springs_.add_link_block(q, k, block, e);
     springs_.add_image_blocks(q, k, block);
   }

@@ -77,25 +77,25 @@ class SpringLists {
   }
 
   // d from a spring's end i to its end j, diag(mirror) x_j - x_i or point - x_i.
-  Point between(const Vec& q, const Link& link) const {
+  Point between(const ConstVec& q, const Link& link) const {
     return q.segment<D>(link.j) - q.segment<D>(link.i);
   }
-  Point between(const Vec& q, const Image& image) const {
+  Point between(const ConstVec& q, const Image& image) const {
     return image.mirror.cwiseProduct(q.segment<D>(image.j)) - q.segment<D>(image.i);
   }
-  Point between(const Vec& q, const Anchor& anchor) const {
+  Point between(const ConstVec& q, const Anchor& anchor) const {
     return anchor.point - q.segment<D>(anchor.i);
   }
-  Point between(const Vec& q, const EdgeLink& link) const {
+  Point between(const ConstVec& q, const EdgeLink& link) const {
     return link.mirror.cwiseProduct(layout_.at(q, link.j)) - layout_.at(q, link.i);
   }
-  Point between(const Vec& q, const EdgeAnchor& anchor) const {
+  Point between(const ConstVec& q, const EdgeAnchor& anchor) const {
     return anchor.point - layout_.at(q, anchor.i);
   }
 
   // Adds to f, for every spring, on_i(spring) on its end i and what that is on j.
   template <class OnI>
-  [[gnu::always_inline]] void add_forces(const OnI& on_i, Vec& f) const {
+  [[gnu::always_inline]] void add_forces(const OnI& on_i, MutableVec f) const {
     for_each([&](const auto& spring)
                  __attribute__((always_inline)) { add_force(spring, on_i(spring), f); });
   }
@@ -103,7 +103,7 @@ class SpringLists {
   // K = 0, then with S = diag(mirror), of every spring's B = block(law, d): K_ii -= B,
   // K_jj -= S B S, K_ij += B S; where i = j all three are one block.
   template <class BlockOf>
-  void assemble(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
+  void assemble(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block) const {
     k.coeffs().setZero();
     for_each([&](const auto& spring) {
       subtract_own_blocks(spring, block(spring.law, between(q, spring)), k);
@@ -114,7 +114,8 @@ class SpringLists {
 
   // The off-diagonal block of the link of that number.
   template <class BlockOf>
-  void add_link_block(const Vec& q, SymmetricMatrix& k, const BlockOf& block, std::size_t e) const {
+  void add_link_block(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block,
+                      std::size_t e) const {
     const Link& link = links_[e];
     add_below_diagonal(k, std::min(link.i, link.j), link_places_[e],
                        block(link.law, between(q, link)));
@@ -122,7 +123,7 @@ class SpringLists {
 
   // The off-diagonal blocks of images and of links whose nodes have fewer unknowns.
   template <class BlockOf>
-  void add_image_blocks(const Vec& q, SymmetricMatrix& k, const BlockOf& block) const {
+  void add_image_blocks(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block) const {
     for (std::size_t e = 0; e < images_.size(); ++e) {
       const auto& [i, j, mirror, law] = images_[e];
       const Block b = block(law, between(q, images_[e]));
@@ -158,22 +159,22 @@ class SpringLists {
     }
   }
 
-  static void add_force(const Link& link, const Point& force, Vec& f) {
+  static void add_force(const Link& link, const Point& force, MutableVec f) {
     f.segment<D>(link.i) += force;
     f.segment<D>(link.j) -= force;
   }
-  static void add_force(const Image& image, const Point& force, Vec& f) {
+  static void add_force(const Image& image, const Point& force, MutableVec f) {
     f.segment<D>(image.i) += force;
     f.segment<D>(image.j) -= image.mirror.cwiseProduct(force);
   }
-  static void add_force(const Anchor& anchor, const Point& force, Vec& f) {
+  static void add_force(const Anchor& anchor, const Point& force, MutableVec f) {
     f.segment<D>(anchor.i) += force;
   }
-  void add_force(const EdgeLink& link, const Point& force, Vec& f) const {
+  void add_force(const EdgeLink& link, const Point& force, MutableVec f) const {
     layout_.add(force, link.i, f);
     layout_.add(-link.mirror.cwiseProduct(force), link.j, f);
   }
-  void add_force(const EdgeAnchor& anchor, const Point& force, Vec& f) const {
+  void add_force(const EdgeAnchor& anchor, const Point& force, MutableVec f) const {
     layout_.add(force, anchor.i, f);
   }
 

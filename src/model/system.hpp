@@ -10,6 +10,9 @@ namespace qddot {
 
 using Index = Eigen::Index;
 using Vec = Eigen::VectorXd;
+// A vector wherever it lies, read or written in place: a Vec, a part of one, an Eigen::Map.
+using ConstVec = Eigen::Ref<const Vec>;
+using MutableVec = Eigen::Ref<Vec>;
 
 // A symmetric sparse matrix of which only the lower triangle is stored, column by column, every
 // diagonal entry present even where it is zero. Multiply with selfadjointView<Eigen::Lower>().
@@ -43,12 +46,12 @@ class System {
   // Whether some unknown has no mass, so that M^-1 and an acceleration do not exist for it.
   bool has_massless() const { return (mass_.array() == 0).any(); }
   // 1/2 v'Mv [J].
-  double kinetic(const Vec& v) const { return 0.5 * v.dot(mass_.cwiseProduct(v)); }
+  double kinetic(const ConstVec& v) const { return 0.5 * v.dot(mass_.cwiseProduct(v)); }
 
   // V(q) [J]; q: n.
-  virtual double potential(const Vec& q) const = 0;
+  virtual double potential(const ConstVec& q) const = 0;
   // f = -dV/dq [N]; q, f: n, f sized by the caller.
-  virtual void force(const Vec& q, Vec& f) const = 0;
+  virtual void force(const ConstVec& q, MutableVec f) const = 0;
 
   // The n x n pattern that K has at every q, with values zero; made once, copied by each user. A
   // system that computes no K has an empty one, 0 x 0.
@@ -57,7 +60,7 @@ class System {
   bool has_stiffness() const { return stiffness_pattern().cols() == size(); }
   // K = df/dq [N/m] into `k`, which must carry the pattern of stiffness_pattern(). Throws
   // std::logic_error where the system computes no K.
-  virtual void stiffness(const Vec& q, SymmetricMatrix& k) const;
+  virtual void stiffness(const ConstVec& q, SymmetricMatrix& k) const;
   // True only where K is the same at every q of the motion, so that that is linear.
   virtual bool stiffness_is_constant() const { return false; }
 

@@ -8,9 +8,6 @@
 // only where all is compiled for that processor. Sizes must agree; `out` may be one of the others.
 namespace qddot {
 
-using ConstVec = Eigen::Ref<const Vec>;
-using MutableVec = Eigen::Ref<Vec>;
-
 // out = x + c z
 void add_scaled(const ConstVec& x, double c, const ConstVec& z, MutableVec out);
 // out = x + c f/m, entry by entry.

@@ -18,8 +18,8 @@ namespace {
 class Plain final : public System {
  public:
   Plain() : System(Vec::Ones(2)) {}
-  double potential(const Vec& q) const override { return 0.5 * q.squaredNorm(); }
-  void force(const Vec& q, Vec& f) const override { f = -q; }
+  double potential(const ConstVec& q) const override { return 0.5 * q.squaredNorm(); }
+  void force(const ConstVec& q, MutableVec f) const override { f = -q; }
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ class Chain : public System {
   explicit Chain(Vec mass = Vec::Ones(8), double bonds = 1, double weight = 1)
       : System(std::move(mass)), bonds_(bonds), weight_(weight) {}
 
-  double potential(const Vec& q) const override {
+  double potential(const ConstVec& q) const override {
     double v = 0;
     for (Index b = 0; b <= nodes(); ++b) {
       const double p = std::pow(between(q, b).norm(), -6);
@@ -29,7 +29,7 @@ class Chain : public System {
     for (Index i = 0; i < nodes(); ++i) v += weight_ * gravity * q[2 * i + 1];
     return v;
   }
-  void force(const Vec& q, Vec& f) const override {
+  void force(const ConstVec& q, MutableVec f) const override {
     f.setZero();
     for (Index i = 0; i < nodes(); ++i) f[2 * i + 1] = -weight_ * gravity;
     for (Index b = 0; b <= nodes(); ++b) {
@@ -76,7 +76,7 @@ class ChainWithStiffness : public Chain {
   }
 
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override {
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
     k.coeffs().setZero();
     const auto add = [&](Index i, Index j, const Eigen::Matrix2d& block) {
       for (int c = 0; c < 2; ++c) {
@@ -104,7 +104,7 @@ template <class Base>
 class WithGradient : public Base, public DiscreteGradient {
  public:
   using Base::Base;
-  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override {
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
     this->force((a + b) / 2, f);
     const Vec way = b - a;
     const double square = way.squaredNorm();

@@ -30,7 +30,7 @@ inline Piece giving_up(double below, const char* words) {
   const std::shared_ptr<System> oscillator = make_mass_spring(p.network);
   const auto make = [oscillator, below, words] {
     auto relay = std::make_unique<Relay>(*oscillator);
-    relay->after_force = [below, words](const Vec& q, Vec&) {
+    relay->after_force = [below, words](const ConstVec& q, MutableVec) {
       if (q[0] <= below) throw std::runtime_error(words);
     };
     return relay;

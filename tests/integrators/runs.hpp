@@ -125,12 +125,12 @@ class Relay final : public System,
  public:
   explicit Relay(const System& system) : System(system.mass()), system_(system) {}
 
-  double potential(const Vec& q) const override { return system_.potential(q); }
-  void force(const Vec& q, Vec& f) const override {
+  double potential(const ConstVec& q) const override { return system_.potential(q); }
+  void force(const ConstVec& q, MutableVec f) const override {
     system_.force(q, f);
     if (after_force) after_force(q, f);
   }
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override {
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
     system_.stiffness(q, k);
     if (after_stiffness) after_stiffness(q, k);
   }
@@ -142,23 +142,23 @@ class Relay final : public System,
     return capability<Laplacian>(system_);
   }
 
-  void weighted_stiffness(const Vec& q, double compression_weight,
+  void weighted_stiffness(const ConstVec& q, double compression_weight,
                           SymmetricMatrix& k) const override {
     offered<SplitStiffness>(system_).weighted_stiffness(q, compression_weight, k);
     if (after_stiffness) after_stiffness(q, k);
   }
-  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
     offered<SplitStiffness>(system_).material_stiffness(q, k);
     if (after_stiffness) after_stiffness(q, k);
   }
-  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override {
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
     offered<DiscreteGradient>(system_).discrete_gradient(a, b, f);
     if (after_force) after_force(b, f);
   }
   void laplacian(SymmetricMatrix& l) const override { offered<Laplacian>(system_).laplacian(l); }
   bool bounds_stiffness() const override { return offered<Laplacian>(system_).bounds_stiffness(); }
 
-  std::function<void(const Vec& q, Vec& f)> after_force;
+  std::function<void(const ConstVec& q, MutableVec f)> after_force;
   std::function<void(const Vec& q, SymmetricMatrix& k)> after_stiffness;
 
  private:

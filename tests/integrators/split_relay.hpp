@@ -21,7 +21,7 @@ class SplitRelay final : public System,
         whole(system),
         block_(std::make_shared<Relay>(*split_of(system)->stiff_block)),
         split_{stiff, soft, block_, split_of(system)->stiff_unknowns} {
-    block_->after_force = [this](const Vec& q, Vec& f) {
+    block_->after_force = [this](const ConstVec& q, MutableVec f) {
       if (stiff->after_force) stiff->after_force(q, f);
     };
     block_->after_stiffness = [this](const Vec& q, SymmetricMatrix& k) {
@@ -29,23 +29,23 @@ class SplitRelay final : public System,
     };
   }
 
-  double potential(const Vec& q) const override { return whole.potential(q); }
-  void force(const Vec& q, Vec& f) const override { whole.force(q, f); }
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override { whole.stiffness(q, k); }
+  double potential(const ConstVec& q) const override { return whole.potential(q); }
+  void force(const ConstVec& q, MutableVec f) const override { whole.force(q, f); }
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override { whole.stiffness(q, k); }
   const SymmetricMatrix& stiffness_pattern() const override { return whole.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return whole.stiffness_is_constant(); }
   bool offers(const std::type_info& type) const override {
     return type == typeid(SplitForces) || whole.offers(type);
   }
 
-  void weighted_stiffness(const Vec& q, double compression_weight,
+  void weighted_stiffness(const ConstVec& q, double compression_weight,
                           SymmetricMatrix& k) const override {
     whole.weighted_stiffness(q, compression_weight, k);
   }
-  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override {
+  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
     whole.material_stiffness(q, k);
   }
-  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override {
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
     whole.discrete_gradient(a, b, f);
   }
   void laplacian(SymmetricMatrix& l) const override { whole.laplacian(l); }
@@ -69,7 +69,7 @@ struct Asked {
 // Counts from now on what the relay is asked for; `asked` must live as long as it.
 inline void count_into(Asked& asked, SplitRelay& relay) {
   const auto count = [](Relay& half, std::int64_t& forces, std::int64_t& stiffnesses) {
-    half.after_force = [&forces](const Vec&, Vec&) { ++forces; };
+    half.after_force = [&forces](const ConstVec&, MutableVec) { ++forces; };
     half.after_stiffness = [&stiffnesses](const Vec&, SymmetricMatrix&) { ++stiffnesses; };
   };
   count(*relay.stiff, asked.stiff_force, asked.stiff_stiffness);

@@ -281,7 +281,7 @@ BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_from_some_place_on_ends_the_run_b
   const auto system = make_mass_spring(o.problem().network);
   for (const Method& method : interpolating()) {
     Relay relay(*system);
-    relay.after_force = [](const Vec& q, Vec& f) {
+    relay.after_force = [](const ConstVec& q, MutableVec f) {
       if (q[0] < 0) f[0] = NAN;
     };
     BOOST_TEST_CONTEXT(method.name) {
@@ -309,7 +309,7 @@ BOOST_AUTO_TEST_CASE(a_start_without_a_force_is_refused) {
   const auto system = make_mass_spring(p.network);
   for (const Method& method : interpolating()) {
     Relay relay(*system);
-    relay.after_force = [](const Vec&, Vec& f) { f[2] = INFINITY; };
+    relay.after_force = [](const ConstVec&, MutableVec f) { f[2] = INFINITY; };
     const Run r = run(method, relay, p.initial, 1, {.rtol = 1e-6});
     BOOST_TEST(name(r.summary.outcome) == "not_finite");
     BOOST_TEST(same(r.state, p.initial));
@@ -322,7 +322,7 @@ BOOST_AUTO_TEST_CASE(a_motion_that_is_over_in_finite_time_ends_there) {
   const auto system = make_mass_spring(Oscillator{.mass = 1}.problem().network);
   for (const Method& method : interpolating()) {
     Relay relay(*system);
-    relay.after_force = [](const Vec& q, Vec& f) { f[0] = 6 * q[0] * q[0]; };
+    relay.after_force = [](const ConstVec& q, MutableVec f) { f[0] = 6 * q[0] * q[0]; };
     relay.after_stiffness = [](const Vec& q, SymmetricMatrix& k) { k.coeffRef(0, 0) = 12 * q[0]; };
     BOOST_TEST_CONTEXT(method.name) {
       const Run r = run(method, relay, {0, Vec{{1}}, Vec{{2}}}, 2, {.rtol = 1e-6});
@@ -340,7 +340,7 @@ BOOST_AUTO_TEST_CASE(a_run_can_be_stopped_between_two_steps) {
   for (const Method& method : interpolating()) {
     std::stop_source budget;
     Relay relay(*c.system);
-    relay.after_force = [&, calls = 0](const Vec&, Vec&) mutable {
+    relay.after_force = [&, calls = 0](const ConstVec&, MutableVec) mutable {
       if (++calls == 200) budget.request_stop();
     };
     const Run r = run(method, relay, c.initial, 100, {.rtol = 1e-8}, {}, budget.get_token());

@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(a_state_between_steps_is_kept_where_the_next_step_fails) {
     BOOST_TEST_CONTEXT(method.name) {
       Relay relay(*system);
       bool fails = false;
-      relay.after_force = [&](const Vec&, Vec&) {
+      relay.after_force = [&](const ConstVec&, MutableVec) {
         if (fails) throw std::runtime_error("no more");
       };
       const auto begin_to_fail = [&](const State& s) { fails = s.t > 0.5; };

@@ -56,7 +56,9 @@ BOOST_AUTO_TEST_CASE(a_motion_that_collapses_fails_the_error_test) {
   const Problem p = Oscillator().problem();
   const auto system = make_mass_spring(p.network);
   Relay relay(*system);
-  relay.after_force = [](const Vec& q, Vec& f) { f[0] = q[0] > 0 ? -1 / (q[0] * q[0]) : NAN; };
+  relay.after_force = [](const ConstVec& q, MutableVec f) {
+    f[0] = q[0] > 0 ? -1 / (q[0] * q[0]) : NAN;
+  };
   relay.after_stiffness = [](const Vec& q, SymmetricMatrix& k) {
     k.coeffRef(0, 0) = 2 / (q[0] * q[0] * q[0]);
   };
@@ -151,7 +153,7 @@ BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_is_named_from_the_first_on) {
     for (const int first_bad : {1, 30}) {
       BOOST_TEST_CONTEXT(method.name << " from the force " << first_bad << " on") {
         Relay relay(*system);
-        relay.after_force = [&, calls = 0](const Vec&, Vec& f) mutable {
+        relay.after_force = [&, calls = 0](const ConstVec&, MutableVec f) mutable {
           if (++calls >= first_bad) f[0] = NAN;
         };
         const Run r = run(method, relay, p.initial, 1, options_of(method, 0.01, 1e-6));

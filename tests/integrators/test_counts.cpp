@@ -32,7 +32,7 @@ Counts count_with_rest(const char* method, const Problem& p) {
 // Counts the calls that arrive at a system.
 struct Watch {
   explicit Watch(const System& system) : relay(system) {
-    relay.after_force = [this](const Vec&, Vec&) { ++forces; };
+    relay.after_force = [this](const ConstVec&, MutableVec) { ++forces; };
     relay.after_stiffness = [this](const Vec&, SymmetricMatrix&) { ++stiffnesses; };
   }
   Relay relay;

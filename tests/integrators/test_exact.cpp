@@ -236,7 +236,7 @@ BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_and_a_stop_end_the_run_at_the_las
   std::stop_source budget;
   for (const bool stops : {false, true}) {
     Relay relay(*system);
-    relay.after_force = [&, calls = 0](const Vec&, Vec& f) mutable {
+    relay.after_force = [&, calls = 0](const ConstVec&, MutableVec f) mutable {
       if (++calls < 20) return;
       if (stops) budget.request_stop();
       if (!stops) f[3] = NAN;

@@ -207,7 +207,7 @@ BOOST_AUTO_TEST_CASE(a_force_wrong_by_a_thousandth_is_noticed_and_a_wrong_matrix
   const auto system = make_mass_spring(with_split(p.network));
   const State end = by_kahan_li(*system, p.initial);
   SplitRelay wrong_force(*system), wrong_matrix(*system);
-  wrong_force.whole.after_force = [](const Vec&, Vec& f) { f *= 1.001; };
+  wrong_force.whole.after_force = [](const ConstVec&, MutableVec f) { f *= 1.001; };
   wrong_matrix.stiff->after_stiffness = [](const Vec&, SymmetricMatrix& k) { k *= 2; };
   for (const Form& form : forms()) {
     const Method& method = method_named(form.name);
@@ -371,7 +371,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_number_in_a_force_or_in_a_matrix_is_named) {
           if (++calls == 40) k.coeffs()[0] = NAN;
         };
       } else {
-        relay.whole.after_force = [&](const Vec&, Vec& f) {
+        relay.whole.after_force = [&](const ConstVec&, MutableVec f) {
           if (++calls == 40) f[0] = NAN;
         };
       }

@@ -72,9 +72,9 @@ struct Transverse {
 class Secretive final : public System {
  public:
   explicit Secretive(const System& system) : System(system.mass()), system_(system) {}
-  double potential(const Vec& q) const override { return system_.potential(q); }
-  void force(const Vec& q, Vec& f) const override { system_.force(q, f); }
-  void stiffness(const Vec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
+  double potential(const ConstVec& q) const override { return system_.potential(q); }
+  void force(const ConstVec& q, MutableVec f) const override { system_.force(q, f); }
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
 
  private:
@@ -257,7 +257,7 @@ BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_ends_the_run_where_it_was) {
   for (const Method& method : all()) {
     BOOST_TEST_CONTEXT(method.name) {
       Relay relay(*system);
-      relay.after_force = [calls = 0](const Vec&, Vec& f) mutable {
+      relay.after_force = [calls = 0](const ConstVec&, MutableVec f) mutable {
         if (++calls > 25) f[1] = NAN;
       };
       const Run r = run(method, relay, p.initial, 1, {.step_size = 0.01});

@@ -327,7 +327,7 @@ BOOST_AUTO_TEST_CASE(a_massless_node_whose_forces_balance_nowhere_is_refused) {
   bound.network.anchors.push_back({1, {0, 0, 0}, {1}});
   const auto system = make_mass_spring(bound.network);
   Relay rootless(*system);
-  rootless.after_force = [](const Vec& q, Vec& f) { f[1] = -1 - q[1] * q[1]; };
+  rootless.after_force = [](const ConstVec& q, MutableVec f) { f[1] = -1 - q[1] * q[1]; };
   rootless.after_stiffness = [](const Vec& q, SymmetricMatrix& k) { k.coeffRef(1, 1) = -2 * q[1]; };
   for (const Method& method : accepting(Knob::rtol)) {
     for (const System* bad :

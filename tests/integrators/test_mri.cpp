@@ -90,7 +90,9 @@ BOOST_AUTO_TEST_CASE(a_force_wrong_by_a_thousandth_in_either_half_is_noticed) {
   const State end = by_kahan_li(*system, p.initial, 1);
   for (const bool in_stiff : {true, false}) {
     SplitRelay wrong(*system);
-    (in_stiff ? wrong.stiff : wrong.soft)->after_force = [](const Vec&, Vec& f) { f *= 1.001; };
+    (in_stiff ? wrong.stiff : wrong.soft)->after_force = [](const ConstVec&, MutableVec f) {
+      f *= 1.001;
+    };
     for (const Method& method : split_methods_of(Knob::step_size)) {
       const Orders observed = observed_orders(method, wrong, p.initial, end, coarsest);
       BOOST_TEST(!is_of_order(method.order, observed), method.name);

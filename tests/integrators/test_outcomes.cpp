@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(any_knob_however_coarse_ends_in_a_sound_state) {
           const double t_end = 50 * coarse;
           std::stop_source budget;  // 1e5 forces are hundreds a step
           Relay relay(*system);
-          relay.after_force = [&, calls = 0](const Vec&, Vec&) mutable {
+          relay.after_force = [&, calls = 0](const ConstVec&, MutableVec) mutable {
             if (++calls == 100000) budget.request_stop();
           };
           const Run r = run(method, relay, p.initial, t_end, options_of(method, coarse, coarse), {},

@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(a_run_out_of_time_ends_where_all_parts_last_were_together) 
         double seen = 0;
         const Piece last_straw = {[&] {
                                     auto relay = std::make_unique<Relay>(*oscillator);
-                                    relay->after_force = [&](const Vec& q, Vec&) {
+                                    relay->after_force = [&](const ConstVec& q, MutableVec) {
                                       if (q[0] <= -0.2) budget.request_stop();
                                     };
                                     return relay;

@@ -11,18 +11,18 @@ using namespace qddot;
 
 namespace {
 
-using Spoil = void (*)(Vec& f);
+using Spoil = void (*)(MutableVec f);
 
 void break_it(Vec&) { throw std::runtime_error("the spring broke"); }
-void lose_it(Vec& f) { f[0] = NAN; }
+void lose_it(MutableVec f) { f[0] = NAN; }
 
 Options options_for(const Method& method) { return options_of(method, 0.01, 1e-6); }
 
 // A split hammock of which one half's forces are spoiled from one of them on.
 struct Spoiled {
   Spoiled(bool in_stiff, int first_bad, Spoil spoil) {
-    (in_stiff ? relay.stiff : relay.soft)->after_force = [this, first_bad, spoil](const Vec&,
-                                                                                  Vec& f) {
+    (in_stiff ? relay.stiff : relay.soft)->after_force = [this, first_bad, spoil](const ConstVec&,
+                                                                                  MutableVec f) {
       if (++calls >= first_bad) spoil(f);
     };
   }
@@ -104,7 +104,7 @@ BOOST_AUTO_TEST_CASE(a_stop_is_heard) {
     const auto system = make_mass_spring(with_split(p.network));
     SplitRelay relay(*system);
     std::stop_source budget;
-    relay.soft->after_force = [&, calls = 0](const Vec&, Vec&) mutable {
+    relay.soft->after_force = [&, calls = 0](const ConstVec&, MutableVec) mutable {
       if (++calls == 50) budget.request_stop();
     };
     const Run r = run(method, relay, p.initial, 1e6, options_for(method), {}, budget.get_token());

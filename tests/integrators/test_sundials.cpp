@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(a_force_wrong_by_a_thousandth_is_noticed) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(p.network);
   Relay wrong(*system);
-  wrong.after_force = [](const Vec&, Vec& f) { f *= 1.001; };
+  wrong.after_force = [](const ConstVec&, MutableVec f) { f *= 1.001; };
   const Run exact = run(method_named("kahan_li8"), *system, p.initial, 1, {.step_size = 1. / 512});
   for (const Method& method : methods_of(Family::sundials, Knob::rtol)) {
     BOOST_TEST(accuracy(method, wrong, p.initial, exact.state).worst_factor >

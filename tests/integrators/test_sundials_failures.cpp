@@ -17,7 +17,7 @@ bool contains(const std::string& text, const std::string& part) {
 
 // From the 40th force or the third stiffness on, all of them fail.
 void break_forces(Relay& relay) {
-  relay.after_force = [calls = 0](const Vec&, Vec&) mutable {
+  relay.after_force = [calls = 0](const ConstVec&, MutableVec) mutable {
     if (++calls >= 40) throw std::runtime_error("the spring broke");
   };
 }
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(a_force_that_becomes_no_number_ends_the_run_at_the_last_acc
       // thousands of times what it takes to get there.
       std::stop_source budget;
       Relay relay(*system);
-      relay.after_force = [&, calls = 0](const Vec& q, Vec& f) mutable {
+      relay.after_force = [&, calls = 0](const ConstVec& q, MutableVec f) mutable {
         if (q[0] < 0.2) f[0] = NAN;
         if (++calls == 100000) budget.request_stop();
       };
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(a_message_of_sundials_reaches_the_summary_in_one_line) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(p.network);
   Relay relay(*system);
-  relay.after_force = [](const Vec&, Vec& f) { f[0] = NAN; };
+  relay.after_force = [](const ConstVec&, MutableVec f) { f[0] = NAN; };
   for (const Method& method : methods_of(Family::sundials)) {
     BOOST_TEST_CONTEXT(method.name) {
       const Run r = run(method, relay, p.initial, 1, options_for(method));

@@ -19,8 +19,8 @@ namespace {
 class Plain : public System {
  public:
   Plain() : System(Vec::Ones(1)) {}
-  double potential(const Vec& q) const override { return 0.5 * q.squaredNorm(); }
-  void force(const Vec& q, Vec& f) const override { f = -q; }
+  double potential(const ConstVec& q) const override { return 0.5 * q.squaredNorm(); }
+  void force(const ConstVec& q, MutableVec f) const override { f = -q; }
 };
 
 // The same with K.
@@ -28,7 +28,7 @@ class WithStiffness : public Plain {
  public:
   WithStiffness() : pattern_(1, 1) { pattern_.insert(0, 0) = 0; }
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const Vec&, SymmetricMatrix& k) const override { k.coeffs()[0] = -1; }
+  void stiffness(const ConstVec&, SymmetricMatrix& k) const override { k.coeffs()[0] = -1; }
 
  private:
   SymmetricMatrix pattern_;
@@ -37,14 +37,16 @@ class WithStiffness : public Plain {
 // With one capability more; where it says a place, that is at q = 1.
 class WithSplitStiffness final : public WithStiffness, public SplitStiffness {
  public:
-  void material_stiffness(const Vec& q, SymmetricMatrix& k) const override { stiffness(q, k); }
-  void weighted_stiffness(const Vec& q, double, SymmetricMatrix& k) const override {
+  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override { stiffness(q, k); }
+  void weighted_stiffness(const ConstVec& q, double, SymmetricMatrix& k) const override {
     stiffness(q, k);
   }
 };
 class WithDiscreteGradient final : public Plain, public DiscreteGradient {
  public:
-  void discrete_gradient(const Vec& a, const Vec& b, Vec& f) const override { f = -(a + b) / 2; }
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
+    f = -(a + b) / 2;
+  }
 };
 class WithLaplacian final : public WithStiffness, public Laplacian {
  public:
@@ -53,16 +55,16 @@ class WithLaplacian final : public WithStiffness, public Laplacian {
 };
 class WithPieces final : public Plain, public PiecewiseLinear {
  public:
-  bool is_linear_at(const Vec& q) const override { return q[0] < 1; }
+  bool is_linear_at(const ConstVec& q) const override { return q[0] < 1; }
 };
 class WithValidity final : public Plain, public Validity {
  public:
-  bool is_valid_at(const Vec& q) const override { return q[0] < 1; }
+  bool is_valid_at(const ConstVec& q) const override { return q[0] < 1; }
 };
 class WithKink final : public Plain, public Kinks {
  public:
   Index kinks() const override { return 1; }
-  void kink_lengths(const Vec& q, Vec& lengths) const override { lengths[0] = q[0] - 1; }
+  void kink_lengths(const ConstVec& q, MutableVec lengths) const override { lengths[0] = q[0] - 1; }
 };
 class WithSplit final : public Plain, public SplitForces {
  public:
@@ -80,7 +82,7 @@ class Declines final : public Plain, public DiscreteGradient {
   bool offers(const std::type_info& type) const override {
     return type != typeid(DiscreteGradient) || offers_;
   }
-  void discrete_gradient(const Vec&, const Vec&, Vec&) const override {}
+  void discrete_gradient(const ConstVec&, const ConstVec&, MutableVec) const override {}
 
  private:
   bool offers_;

@@ -78,7 +78,7 @@ SpringTable SpringsByNode<D>::table() const {
 }
 
 template <int D>
-void SpringsByNode<D>::sum_forces(const Vec& q, const Vec& offset, Vec& f) const {
+void SpringsByNode<D>::sum_forces(const ConstVec& q, const Vec& offset, MutableVec f) const {
   const SpringTable springs = table();
   for_slices(q, [&](const Positions& positions, int from, int end) {
     kernels_.force(springs, positions, offset.data(), f.data(), from, end);

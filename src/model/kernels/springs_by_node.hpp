@@ -31,13 +31,13 @@ class SpringsByNode {
   //   sum over its springs of (tau/l) (x_j - x_i),
   // which differs from a sum spring by spring by rounding, and by nothing with the number of
   // threads. q, offset, f: n. May be called from any thread.
-  void sum_forces(const Vec& q, const Vec& offset, Vec& f) const;
+  void sum_forces(const ConstVec& q, const Vec& offset, MutableVec f) const;
 
   // Calls action(positions at q, from, end) for slices [from, end) until all have been, by several
   // threads (OpenMP's) where there are enough springs: what it does must depend on nothing that it
   // does elsewhere.
   template <class Action>
-  void for_slices(const Vec& q, const Action& action) const;
+  void for_slices(const ConstVec& q, const Action& action) const;
 
  private:
   struct Image {
@@ -62,7 +62,7 @@ class SpringsByNode {
 
 template <int D>
 template <class Action>
-void SpringsByNode<D>::for_slices(const Vec& q, const Action& action) const {
+void SpringsByNode<D>::for_slices(const ConstVec& q, const Action& action) const {
   const Positions positions = memory();
   const SpringTable springs = table();
   const int count = slices_.count();
