@@ -183,7 +183,7 @@ void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
 
 // Throws Interrupted, once what was measured of the scene is in the tables.
 void compare(Study& study, const Entry& entry, const std::vector<std::unique_ptr<Peer>>& peers,
-             const Arguments& a, nlohmann::json origin, CsvFile& points, CsvFile& table) {
+             const Arguments& a, const nlohmann::json& origin, CsvFile& points, CsvFile& table) {
   const Scene start = started(entry.drawn, entry.choice);
   const std::string folder = fmt::format("{}/{}_{:g}", a.out, entry.drawn.name, entry.until);
   require_folder(folder);

@@ -29,7 +29,7 @@ Run timed(Peer& peer, ForceKind force, const Problem& problem, double value, con
   std::vector<double> seconds{run.seconds};
   double spent = run.seconds;
   while (std::ssize(seconds) < pace.repeats && spent < long_enough) {
-    const Run again = peer.run(problem, force, value, pace.limit);
+    Run again = peer.run(problem, force, value, pace.limit);
     if (again.outcome != Outcome::reached_end) return again;
     seconds.push_back(again.seconds);
     spent += again.seconds;

@@ -32,7 +32,7 @@ std::string pace_in_words(double t, double until, double seconds) {
 }
 
 Pace::Pace(std::string program, const Integrator& integrator, double until)
-    : watcher_([this, program = std::move(program), &integrator, until](std::stop_token over) {
+    : watcher_([this, program = std::move(program), &integrator, until](const std::stop_token& over) {
         const auto start = std::chrono::steady_clock::now();
         for (const double look : looks) {
           std::unique_lock lock(mutex_);

@@ -248,7 +248,7 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
                "reference is made anew\n",
                in_one_line(file));
   }
-  const Reference reference = made(scene, start, until, needed);
+  Reference reference = made(scene, start, until, needed);
   nlohmann::json json = origin;
   json.update(to_json(reference));
   json["key"] = key;

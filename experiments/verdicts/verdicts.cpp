@@ -50,7 +50,7 @@ void declare(CommandLine& line, Arguments& a) {
 }
 
 std::vector<SyntheticKind> chosen_kinds(const std::vector<std::string>& names) {
-  const std::vector<SyntheticKind> all = synthetic_kinds();
+  std::vector<SyntheticKind> all = synthetic_kinds();
   if (names.empty()) return all;
   std::vector<SyntheticKind> chosen;
   for (const std::string& name : names) {

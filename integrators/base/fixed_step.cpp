@@ -67,7 +67,7 @@ Outcome FixedStep::step_aside(double t) {
   if (!aside_) {
     auto made = method().make(method(), system(), options());
     aside_.reset(&dynamic_cast<FixedStep&>(*made));
-    made.release();
+    static_cast<void>(made.release());
   }
   aside_->join(*this);
   aside_->resume(*this, now_);

@@ -13,7 +13,7 @@ namespace {
 
 using Spoil = void (*)(MutableVec f);
 
-void break_it(Vec&) { throw std::runtime_error("the spring broke"); }
+void break_it(MutableVec) { throw std::runtime_error("the spring broke"); }
 void lose_it(MutableVec f) { f[0] = NAN; }
 
 Options options_for(const Method& method) { return options_of(method, 0.01, 1e-6); }

@@ -15,7 +15,7 @@ namespace qddot::measure {
 class Deadline {
  public:
   explicit Deadline(double seconds)
-      : watcher_([this, seconds](std::stop_token disarmed) {
+      : watcher_([this, seconds](const std::stop_token& disarmed) {
           std::unique_lock lock(mutex_);
           wake_.wait_for(lock, disarmed, std::chrono::duration<double>(seconds),
                          [] { return false; });

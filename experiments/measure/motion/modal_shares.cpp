@@ -18,7 +18,7 @@ std::optional<ModalShares> ModalShares::at_equilibrium(const ReducedScene& scene
   return {};
 }
 
-ModalShares::ModalShares(const Vec& mass, Eigen::MatrixXd shapes)
+ModalShares::ModalShares(const Vec& mass, const Eigen::MatrixXd& shapes)
     : mass_(mass), impulses_(mass.asDiagonal() * shapes) {}
 
 Vec ModalShares::kinetic(const Vec& v) const {

@@ -25,7 +25,7 @@ class ModalShares {
   Vec mean(const std::vector<State>& path) const;
 
  private:
-  ModalShares(const Vec& mass, Eigen::MatrixXd shapes);
+  ModalShares(const Vec& mass, const Eigen::MatrixXd& shapes);
 
   Vec mass_;
   Eigen::MatrixXd impulses_;  // M x_j, a column each

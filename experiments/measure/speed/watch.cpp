@@ -14,7 +14,7 @@ std::vector<double> looks(const Method& method, const Options& options, double u
   const bool fixed = method.knob == Knob::step_size && method.order > 0;
   // Each part of a system has steps of its own, which were all counted.
   const double whole =
-      fixed ? std::round(until / options.step_size) : static_cast<double>(steps / 4);
+      fixed ? std::round(until / options.step_size) : std::floor(static_cast<double>(steps) / 4);
   const double count = std::clamp(whole, 1.0, Watch::most_looks);
   std::vector<double> times;
   for (double i = 1; i < count; ++i) {

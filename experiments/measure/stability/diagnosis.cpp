@@ -211,7 +211,7 @@ std::string diagnosis(const Method& method, const Options& options, const Reduce
                                     Outcome::indefinite_matrix, Outcome::newton_failed};
   const bool is_diagnosed = std::ranges::find(diagnosed, summary.outcome) != diagnosed.end();
   if (is_diagnosed || summary.outcome == Outcome::step_too_small) {
-    if (const std::string extreme = extreme_start(scene); !extreme.empty()) return extreme;
+    if (std::string extreme = extreme_start(scene); !extreme.empty()) return extreme;
   }
   if (!has_own_step(method) || !is_diagnosed) return "";
   const auto begin = std::chrono::steady_clock::now();
