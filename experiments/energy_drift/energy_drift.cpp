@@ -36,10 +36,10 @@
 #include "experiments/command/study.hpp"
 #include "experiments/energy_drift/drift_record.hpp"
 #include "experiments/energy_drift/drift_tables.hpp"
+#include "qddot/algebra/straight_line.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/trend/drift_run.hpp"
-#include "qddot/measure/trend/straight_line.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::energy_drift {

@@ -7,13 +7,13 @@
 #include <stop_token>
 #include <vector>
 
+#include "qddot/algebra/straight_line.hpp"
 #include "qddot/integrators/base/step_times.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/error.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/motion/vibrating_modes.hpp"
-#include "qddot/measure/trend/straight_line.hpp"
 
 namespace qddot::stability_map {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "qddot/measure/trend/straight_line.hpp"
+#include "qddot/algebra/straight_line.hpp"
 
 namespace qddot::measure {
 

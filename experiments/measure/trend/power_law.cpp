@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "qddot/measure/trend/straight_line.hpp"
+#include "qddot/algebra/straight_line.hpp"
 #include "qddot/measure/trend/student.hpp"
 
 namespace qddot::measure {

@@ -1,8 +1,8 @@
-#include "qddot/measure/trend/straight_line.hpp"
+#include "qddot/algebra/straight_line.hpp"
 
 #include <Eigen/Core>
 
-namespace qddot::measure {
+namespace qddot {
 
 StraightLine straight_line(std::span<const double> x, std::span<const double> y) {
   if (x.empty()) return {};
@@ -17,4 +17,4 @@ StraightLine straight_line(std::span<const double> x, std::span<const double> y)
   return line;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot

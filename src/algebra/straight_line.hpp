@@ -2,7 +2,7 @@
 
 #include <span>
 
-namespace qddot::measure {
+namespace qddot {
 
 // The straight line y = level + slope (x - middle) that leaves the least sum of squares, and the
 // sums of squares that x spreads about its mean `middle` and that the line leaves of y.
@@ -14,4 +14,4 @@ struct StraightLine {
 // x, y: as many of each. The slope is zero where all x are one.
 StraightLine straight_line(std::span<const double> x, std::span<const double> y);
 
-}  // namespace qddot::measure
+}  // namespace qddot

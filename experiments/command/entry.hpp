@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/command/command_line.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/study.hpp"
+
+namespace qddot::command {
+
+// What --help says of a program, and which options it shares with others.
+struct Entry {
+  std::string name, summary;
+  bool has_threads = false, has_resume = false;
+};
+
+// main() of a program: declare(line, arguments) adds its own options, body(line, arguments, words)
+// does the rest, `words` the command line as it was given (see run_program).
+template <class Arguments, class Declare, class Body>
+int enter(const Entry& entry, const Declare& declare, const Body& body, int argc, char** argv) {
+  CommandLine line(entry.summary, entry.name);
+  Arguments arguments;
+  declare(line, arguments);
+  if (entry.has_threads) add_threads_option(line);
+  if (entry.has_resume) add_resume_option(line);
+  return run_program(line, argc, argv, [&] {
+    return body(line, arguments, std::vector<std::string>(argv, argv + argc));
+  });
+}
+
+}  // namespace qddot::command
