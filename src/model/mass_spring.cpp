@@ -139,7 +139,7 @@ class MassSpring final : public System,
       : System(masses(network, layout)),
         layout_(layout),
         pattern_(pattern.make()),
-        springs_(network, layout, pattern),
+        springs_(network, layout_, pattern),
         weight_(weights(network, layout)),
         constant_energy_(network.constant_energy) {
     note_tension(network);
