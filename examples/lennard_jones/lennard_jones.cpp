@@ -9,7 +9,8 @@
 
 namespace {
 
-using qddot::Index, qddot::Vec, Eigen::Matrix2d, Eigen::Vector2d;
+using qddot::Index, qddot::Vec, qddot::ConstVec, qddot::MutableVec;
+using Eigen::Matrix2d, Eigen::Vector2d;
 
 constexpr double e = 1, s = 1;  // [J], [m]
 
@@ -63,7 +64,7 @@ class Chain final : public qddot::System {
   }
 
  private:
-  static Vector2d across(const Vec& q, Index i) {
+  static Vector2d across(const ConstVec& q, Index i) {
     return q.segment<2>(2 * i + 2) - q.segment<2>(2 * i);
   }
   // Into the lower triangle, which is what is stored.
