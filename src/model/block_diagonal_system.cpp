@@ -24,7 +24,7 @@ void for_each(const std::vector<std::unique_ptr<System>>& blocks, const ConstVec
               const Action& action) {
   Index at = 0;
   for (const auto& block : blocks) {
-    action(*block, Vec(q.segment(at, block->size())), at);
+    action(*block, ConstVec(q.segment(at, block->size())), at);
     at += block->size();
   }
 }
@@ -77,25 +77,21 @@ bool BlockDiagonalSystem::offers(const std::type_info& type) const {
 double BlockDiagonalSystem::potential(const ConstVec& q) const {
   double v = 0;
   for_each(blocks_, q,
-           [&](const System& block, const Vec& own, Index) { v += block.potential(own); });
+           [&](const System& block, const ConstVec& own, Index) { v += block.potential(own); });
   return v;
 }
 
 void BlockDiagonalSystem::force(const ConstVec& q, MutableVec f) const {
-  for_each(blocks_, q, [&](const System& block, const Vec& own, Index at) {
-    Vec on_block(block.size());
-    block.force(own, on_block);
-    f.segment(at, block.size()) = on_block;
+  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index at) {
+    block.force(own, f.segment(at, block.size()));
   });
 }
 
 void BlockDiagonalSystem::discrete_gradient(const ConstVec& a, const ConstVec& b,
                                             MutableVec f) const {
-  for_each(blocks_, a, [&](const System& block, const Vec& own, Index at) {
-    Vec on_block(block.size());
-    capability<DiscreteGradient>(block)->discrete_gradient(own, b.segment(at, block.size()),
-                                                           on_block);
-    f.segment(at, block.size()) = on_block;
+  for_each(blocks_, a, [&](const System& block, const ConstVec& own, Index at) {
+    const Index n = block.size();
+    capability<DiscreteGradient>(block)->discrete_gradient(own, b.segment(at, n), f.segment(at, n));
   });
 }
 
@@ -103,7 +99,7 @@ template <class Evaluate>
 void BlockDiagonalSystem::assemble(const ConstVec& q, SymmetricMatrix& k,
                                    const Evaluate& evaluate) const {
   Index next = 0;
-  for_each(blocks_, q, [&](const System& block, const Vec& own, Index) {
+  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index) {
     SymmetricMatrix of_block = block.stiffness_pattern();
     evaluate(block, own, of_block);
     k.coeffs().segment(next, of_block.nonZeros()) = of_block.coeffs();
@@ -113,20 +109,20 @@ void BlockDiagonalSystem::assemble(const ConstVec& q, SymmetricMatrix& k,
 
 void BlockDiagonalSystem::stiffness(const ConstVec& q, SymmetricMatrix& k) const {
   if (!has_stiffness()) throw std::logic_error("a block of the system computes no K");
-  assemble(q, k, [](const System& block, const Vec& own, SymmetricMatrix& of_block) {
+  assemble(q, k, [](const System& block, const ConstVec& own, SymmetricMatrix& of_block) {
     block.stiffness(own, of_block);
   });
 }
 
 void BlockDiagonalSystem::weighted_stiffness(const ConstVec& q, double compression_weight,
                                              SymmetricMatrix& k) const {
-  assemble(q, k, [&](const System& block, const Vec& own, SymmetricMatrix& of_block) {
+  assemble(q, k, [&](const System& block, const ConstVec& own, SymmetricMatrix& of_block) {
     capability<SplitStiffness>(block)->weighted_stiffness(own, compression_weight, of_block);
   });
 }
 
 void BlockDiagonalSystem::material_stiffness(const ConstVec& q, SymmetricMatrix& k) const {
-  assemble(q, k, [](const System& block, const Vec& own, SymmetricMatrix& of_block) {
+  assemble(q, k, [](const System& block, const ConstVec& own, SymmetricMatrix& of_block) {
     capability<SplitStiffness>(block)->material_stiffness(own, of_block);
   });
 }
@@ -149,7 +145,7 @@ bool BlockDiagonalSystem::stiffness_is_constant() const {
 
 bool BlockDiagonalSystem::is_linear_at(const ConstVec& q) const {
   bool is_linear = true;
-  for_each(blocks_, q, [&](const System& block, const Vec& own, Index) {
+  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index) {
     const auto* pieces = capability<PiecewiseLinear>(block);
     is_linear = is_linear && (pieces ? pieces->is_linear_at(own) : block.stiffness_is_constant());
   });
@@ -158,7 +154,7 @@ bool BlockDiagonalSystem::is_linear_at(const ConstVec& q) const {
 
 bool BlockDiagonalSystem::is_valid_at(const ConstVec& q) const {
   bool is_valid = true;
-  for_each(blocks_, q, [&](const System& block, const Vec& own, Index) {
+  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index) {
     const auto* validity = capability<Validity>(block);
     is_valid = is_valid && (!validity || validity->is_valid_at(own));
   });
@@ -168,7 +164,7 @@ bool BlockDiagonalSystem::is_valid_at(const ConstVec& q) const {
 std::optional<double> BlockDiagonalSystem::end_of_validity(const State& from,
                                                            const State& to) const {
   std::optional<double> first;
-  for_each(blocks_, from.q, [&](const System& block, const Vec& own, Index at) {
+  for_each(blocks_, from.q, [&](const System& block, const ConstVec& own, Index at) {
     const auto* validity = capability<Validity>(block);
     if (!validity) return;
     const Index n = block.size();
@@ -189,13 +185,11 @@ Index BlockDiagonalSystem::kinks() const {
 
 void BlockDiagonalSystem::kink_lengths(const ConstVec& q, MutableVec lengths) const {
   Index next = 0;
-  for_each(blocks_, q, [&](const System& block, const Vec& own, Index) {
+  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index) {
     const auto* kinks = capability<Kinks>(block);
     if (!kinks) return;
-    Vec of_block(kinks->kinks());
-    kinks->kink_lengths(own, of_block);
-    lengths.segment(next, of_block.size()) = of_block;
-    next += of_block.size();
+    kinks->kink_lengths(own, lengths.segment(next, kinks->kinks()));
+    next += kinks->kinks();
   });
 }
 
