@@ -36,8 +36,9 @@ double sum(const double* x, std::ptrdiff_t n) {
     unroll<8>([&]<int c>() __attribute__((always_inline)) { sums[c] += load(x + i + c * lanes); });
   }
   double total = 0;
-  for (const Lanes& part : sums) {
-    for (int t = 0; t < lanes; ++t) total += part[t];
+  // By number: a deduced type, as of a range's elements, forgets that Lanes may lie anywhere.
+  for (int c = 0; c < 8; ++c) {
+    for (int t = 0; t < lanes; ++t) total += sums[c][t];
   }
   return total;
 }
