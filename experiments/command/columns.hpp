@@ -11,8 +11,7 @@
 
 namespace qddot::command {
 
-// The columns of a table whose rows are made of a `Source` each: a name and what stands below it
-// side by side, so that neither can be written without the other.
+// The columns of a table, each with its name and its value. A row is made from one `Source`.
 template <class Source>
 class Columns {
  public:

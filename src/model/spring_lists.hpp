@@ -10,9 +10,9 @@
 
 namespace qddot {
 
-// A network's springs by how their ends are found among the unknowns, and the sums over them that
-// force and stiffness are. Springs between nodes all of whose coordinates are unknowns are kept
-// apart, by their first unknowns alone; the few that touch a node with fewer go through the layout.
+// The springs of a network, in lists by how their ends are found among the unknowns, and the sums
+// over them that force and stiffness are. Most springs join nodes all of whose coordinates are
+// unknowns: they keep the first unknowns of their ends. The few others go through the layout.
 template <int D>
 class SpringLists {
  public:
