@@ -15,8 +15,9 @@ struct Entry {
   bool has_threads = false, has_resume = false;
 };
 
-// main() of a program. declare(line, arguments) adds the program's own options; body(line, arguments,
-// words) does the work, where `words` is the command line as it was given (see run_program).
+// main() of a program. declare(line, arguments) adds the program's own options; body(line,
+// arguments, words) does the work, where `words` is the command line as it was given (see
+// run_program).
 template <class Arguments, class Declare, class Body>
 int enter(const Entry& entry, const Declare& declare, const Body& body, int argc, char** argv) {
   CommandLine line(entry.summary, entry.name);
