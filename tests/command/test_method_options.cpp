@@ -189,16 +189,18 @@ BOOST_AUTO_TEST_CASE(options_of_how_steps_are_solved_are_refused_where_they_mean
 }
 
 BOOST_AUTO_TEST_CASE(iterations_follow_the_solve_tolerance_and_damping_the_spectral_radius) {
-  const auto last = [](const Table& table, const char* column) {
-    return table.value(table.rows.size() / 2, column);
+  // At one of the step sizes from the coarsest on: how many there are depends on the time they
+  // take.
+  const auto seventh = [](const Table& table, const char* column) {
+    return table.value(6, column);
   };
   const Table loose = points("trapezoidal", {"--solve-tolerance", "1e-2"});
   const Table tight = points("trapezoidal", {"--solve-tolerance", "1e-12"});
-  BOOST_TEST(last(tight, "steps") == last(loose, "steps"));
-  BOOST_TEST(last(tight, "newton_iterations") > last(loose, "newton_iterations"));
+  BOOST_TEST(seventh(tight, "steps") == seventh(loose, "steps"));
+  BOOST_TEST(seventh(tight, "newton_iterations") > seventh(loose, "newton_iterations"));
   const Table damped = points("generalized_alpha", {"--spectral-radius", "0"});
   const Table undamped = points("generalized_alpha", {"--spectral-radius", "1"});
-  BOOST_TEST(last(damped, "error_energy") > 10 * last(undamped, "error_energy"));
+  BOOST_TEST(seventh(damped, "error_energy") > 10 * seventh(undamped, "error_energy"));
 }
 
 BOOST_AUTO_TEST_CASE(the_columns_are_empty_or_0_where_they_mean_nothing) {
