@@ -9,8 +9,8 @@
 
 namespace {
 
-using qddot::Index, qddot::Vec, qddot::ConstVec, qddot::MutableVec;
 using Eigen::Matrix2d, Eigen::Vector2d;
+using qddot::Index, qddot::Vec, qddot::ConstVec, qddot::MutableVec;
 
 constexpr double e = 1, s = 1;  // [J], [m]
 

@@ -32,21 +32,22 @@ std::string pace_in_words(double t, double until, double seconds) {
 }
 
 Pace::Pace(std::string program, const Integrator& integrator, double until)
-    : watcher_([this, program = std::move(program), &integrator, until](const std::stop_token& over) {
-        const auto start = std::chrono::steady_clock::now();
-        for (const double look : looks) {
-          std::unique_lock lock(mutex_);
-          wake_.wait_until(lock, over,
-                           start + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                       std::chrono::duration<double>(look)),
-                           [] { return false; });
-          if (over.stop_requested()) return;
-          const std::string words =
-              pace_in_words(integrator.reached(), until, seconds_since(start));
-          if (words.empty()) continue;
-          fmt::print(stderr, "{}: {}\n", program, words);
-          return;
-        }
-      }) {}
+    : watcher_(
+          [this, program = std::move(program), &integrator, until](const std::stop_token& over) {
+            const auto start = std::chrono::steady_clock::now();
+            for (const double look : looks) {
+              std::unique_lock lock(mutex_);
+              wake_.wait_until(lock, over,
+                               start + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                           std::chrono::duration<double>(look)),
+                               [] { return false; });
+              if (over.stop_requested()) return;
+              const std::string words =
+                  pace_in_words(integrator.reached(), until, seconds_since(start));
+              if (words.empty()) continue;
+              fmt::print(stderr, "{}: {}\n", program, words);
+              return;
+            }
+          }) {}
 
 }  // namespace qddot::command

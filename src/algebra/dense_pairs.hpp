@@ -10,8 +10,8 @@ struct EigenPairs {
   Eigen::MatrixXd vectors;
 };
 
-// Eigenpairs of small matrices; values of symmetric ones ascend, and their lower triangles are read.
-// Here alone Eigen's solvers are instantiated, which takes seconds.
+// Eigenpairs of small matrices; values of symmetric ones ascend, and their lower triangles are
+// read. Here alone Eigen's solvers are instantiated, which takes seconds.
 
 // A x = w x; vectors of length 1.
 EigenPairs dense_pairs(const Eigen::MatrixXd& a);

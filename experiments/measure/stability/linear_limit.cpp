@@ -19,7 +19,9 @@ double growth(const Method& method, double h_omega) {
   return linear_step(method, h_omega).spectral_radius() - 1;
 }
 
-bool grows(const Method& method, double h_omega) { return growth(method, h_omega) > growth_rounding; }
+bool grows(const Method& method, double h_omega) {
+  return growth(method, h_omega) > growth_rounding;
+}
 
 // Half the sum of the two leading roots: below 1 where they are a pair on the unit circle, above
 // where they have parted along the real axis.
