@@ -4,7 +4,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "qddot/model/block_pattern.hpp"
 #include "qddot/model/directions.hpp"
 #include "qddot/model/in_tension.hpp"
 #include "qddot/model/kernels/springs_by_node.hpp"
@@ -87,7 +86,7 @@ class MassSpring final : public System,
     add_left_out(q, k, block);
   }
 
-  const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
+  const SymmetricMatrix& stiffness_pattern() const override { return springs_.pattern(); }
   bool stiffness_is_constant() const override { return linear_; }
   bool offers(const std::type_info& type) const override {
     if (type == typeid(PiecewiseLinear)) return linear_ && keeps_directions();
@@ -132,14 +131,9 @@ class MassSpring final : public System,
 
  private:
   MassSpring(const Network& network, Forces forces, const Layout<D>& layout)
-      : MassSpring(network, forces, layout, joined(network, layout)) {}
-
-  MassSpring(const Network& network, Forces forces, const Layout<D>& layout,
-             BlockPattern<D> pattern)
       : System(masses(network, layout)),
         layout_(layout),
-        pattern_(pattern.make()),
-        springs_(network, layout_, pattern),
+        springs_(network, layout_),
         weight_(weights(network, layout)),
         constant_energy_(network.constant_energy) {
     note_tension(network);
@@ -147,7 +141,7 @@ class MassSpring final : public System,
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
       by_node_.emplace(network, layout_);
-      columns_.emplace(network, layout_, *by_node_, pattern_);
+      columns_.emplace(network, layout_, *by_node_, springs_.pattern());
     }
     linear_ = network.uses_constant_stiffness;
     springs_.for_each([&](const auto& spring) {
@@ -173,13 +167,6 @@ class MassSpring final : public System,
   bool keeps_directions() const { return !directions_.empty(); }
   bool turns_over(const SpringLaw& law) const {
     return D == 1 && law.rest_length > 0 && !keeps_directions();
-  }
-
-  static BlockPattern<D> joined(const Network& network, const Layout<D>& layout) {
-    BlockPattern<D> pattern(layout);
-    for (const auto& link : network.links) pattern.join(link.i, link.j);
-    for (const auto& link : network.image_links) pattern.join(link.i, link.j);
-    return pattern;
   }
 
   void note_tension(const Network& network) {
@@ -208,7 +195,6 @@ class MassSpring final : public System,
   }
 
   Layout<D> layout_;
-  SymmetricMatrix pattern_;
   SpringLists<D> springs_;
   InTension<D> in_tension_;              // once more, those that hold in tension only
   Vec weight_;                           // M g + load [N]

@@ -46,9 +46,12 @@ class SpringLists {
     SpringLaw law;
   };
 
-  // Keeps the layout. The pattern must have joined the network's links.
-  SpringLists(const Network& network, const Layout<D>& layout, const BlockPattern<D>& pattern)
-      : layout_(layout) {
+  // Keeps the layout, which must outlive it.
+  SpringLists(const Network& network, const Layout<D>& layout) : layout_(layout) {
+    BlockPattern<D> pattern(layout_);
+    for (const auto& link : network.links) pattern.join(link.i, link.j);
+    for (const auto& link : network.image_links) pattern.join(link.i, link.j);
+    pattern_ = pattern.make();
     for (const auto& link : network.links) {
       take({link.i, link.j, pattern.place(link.i, link.j), Point::Ones(), link.law}, true);
     }
@@ -65,6 +68,9 @@ class SpringLists {
       }
     }
   }
+
+  // The pattern of K.
+  const SymmetricMatrix& pattern() const { return pattern_; }
 
   // Calls see(spring) for each, list by list.
   template <class See>
@@ -231,6 +237,7 @@ class SpringLists {
   }
 
   const Layout<D>& layout_;
+  SymmetricMatrix pattern_;
   std::vector<Link> links_;
   std::vector<Image> images_;
   std::vector<Anchor> anchors_;

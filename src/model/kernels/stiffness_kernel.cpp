@@ -5,8 +5,6 @@
 namespace qddot::kernels {
 namespace {
 
-using Written = std::vector<bool>;
-
 template <int D>
 bool is_full(const Layout<D>& layout, int i, int j) {
   return layout.is_full(i) && layout.is_full(j);
@@ -34,7 +32,7 @@ std::vector<int> links_by_block(const Network& network, const Layout<D>& layout,
   return count;
 }
 
-void mark(Written& written, int first, int values) {
+void mark(std::vector<bool>& written, int first, int values) {
   std::fill_n(written.begin() + first, values, true);
 }
 
