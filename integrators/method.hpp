@@ -32,7 +32,6 @@ enum class Trait {
   accepts_massless,  // runs systems with nodes of no mass
   interpolates,      // between its steps, for an Observer
   bounds_steps,      // holds its steps to 1/w_max, where the system has K
-  stock_solver,      // one of SUNDIALS' own matrices and solvers, which a twin does without
 };
 
 // What a method asks of a system beside its forces.
@@ -70,6 +69,8 @@ struct Method {
   SetOf<Trait> traits{};
   SetOf<Need> needs{};
   SetOf<Option> takes{};
+  // The method that this one is with SUNDIALS' own matrix and solver; empty where it is none.
+  std::string stock_of{};
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Options&) = nullptr;
 
   bool is(Trait trait) const { return traits.has(trait); }

@@ -1,6 +1,5 @@
 // Integrators of our registry: our own, on the smallest system of the scene or on the one that
-// peers get, and SUNDIALS' implicit ones the stock way, KLU on 2n x 2n, which are tuned as those on
-// _klu.
+// peers get, and SUNDIALS' implicit ones with its own matrix and solver, KLU on 2n x 2n.
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
 #include "qddot/integrators/registry.hpp"

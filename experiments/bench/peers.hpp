@@ -14,7 +14,7 @@ std::unique_ptr<Peer> odeint_mclachlan();
 std::unique_ptr<Peer> arkode_erk4();
 // One of our own methods, on the scene's smallest system or on the one with pins alone left out.
 std::unique_ptr<Peer> our_method(const std::string& method, bool smallest);
-// An implicit solver of SUNDIALS the stock way: a method of our registry that ends on _klu.
+// An implicit method of SUNDIALS with SUNDIALS' own matrix and solver: one of ours with a stock_of.
 std::unique_ptr<Peer> stock_implicit(const std::string& method);
 // A method of SciPy's solve_ivp: DOP853, Radau or BDF, in a process of its own. `force_library`:
 // the path of force_library.cpp's library, through which Python calls our f; empty where there is

@@ -35,14 +35,14 @@ void print_methods(bool as_csv) {
   if (as_csv) {
     Csv csv({"name", "order", "family", "knob", "implicit", "symplectic", "needs_stiffness",
              "accepts_massless", "needs_constant_stiffness", "needs_split", "needs_laplacian",
-             "takes_iterations", "summary", "source"});
+             "takes_iterations", "summary", "source", "stock_of"});
     for (const Method& m : methods()) {
       csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.is(Trait::implicit)),
               yes(m.is(Trait::symplectic)),
               yes(m.asks(Need::stiffness) || m.is(Trait::bounds_steps)),
               yes(m.is(Trait::accepts_massless)), yes(m.asks(Need::constant_stiffness)),
               yes(m.asks(Need::split_forces)), yes(m.asks(Need::laplacian)),
-              yes(m.listens_to(Option::iterations)), m.summary, m.source);
+              yes(m.listens_to(Option::iterations)), m.summary, m.source, m.stock_of);
     }
     fmt::print("{}", csv.text());
     return;

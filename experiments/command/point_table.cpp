@@ -59,7 +59,8 @@ const Columns<PointRow>& point_columns() {
        [](const Row& row) { return measured(row, position(row).at_least); }},
       {"error_position_at_most",
        [](const Row& row) { return measured(row, position(row).at_most); }},
-      {"energy_growth", [](const Row& row) { return row.point.energy_growth; }}};
+      {"energy_growth", [](const Row& row) { return row.point.energy_growth; }},
+      {"stock_of", [](const Row& row) { return row.point.method->stock_of; }}};
   return columns;
 }
 

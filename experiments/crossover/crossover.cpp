@@ -140,7 +140,7 @@ std::vector<RatioStudy> ratio_studies(const Arguments& a, const StiffFamily& fam
 std::vector<const Method*> competitors(const Arguments& a, const RatioStudy& stiffest) {
   auto selected = select_methods(a.methods, *stiffest.scene, a.family);
   if (a.methods.empty()) {
-    std::erase_if(selected, [](const Method* method) { return method->is(Trait::stock_solver); });
+    std::erase_if(selected, [](const Method* method) { return !method->stock_of.empty(); });
   }
   return selected;
 }

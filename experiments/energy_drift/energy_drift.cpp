@@ -133,7 +133,7 @@ struct Job {
 std::vector<Job> jobs_of(const Arguments& a, double step_size, const ReducedScene& scene) {
   std::vector<Job> jobs;
   for (const Method* method : select_methods(a.methods, scene, a.scene.name)) {
-    if (a.methods.empty() && method->is(Trait::stock_solver)) continue;
+    if (a.methods.empty() && !method->stock_of.empty()) continue;
     if (method->knob == Knob::step_size) {
       jobs.push_back({method, step_size, a.method_limit});
     } else {

@@ -20,6 +20,7 @@ class Run:
     scene: str
     method: str
     family: str
+    stock_of: str
     knob: str
     value: float
     outcome: str
@@ -138,6 +139,7 @@ def read_runs(path, column="error_position"):
         runs.append(
             Run(
                 **{name: row[name] for name in texts},
+                stock_of=row.get("stock_of") or "",
                 value=parse(path, line, row, "value", True),
                 error=parse(path, line, row, column, False),
                 time=parse(path, line, row, "time_s", False),

@@ -55,8 +55,7 @@ FAMILIES = {
     "hand-written": Family("hand-written", WARM, "-", True),
     "sundials": Family("SUNDIALS", COOL, (0, (4, 1.8)), False),
 }
-# The stock way of a method of SUNDIALS, by the end of its name: its own colour, dotted.
-STOCK_SUFFIX = "_klu"
+# A method of SUNDIALS with SUNDIALS' own matrix and solver: in that method's colour, dotted.
 STOCK = Family("its stock way, KLU", COOL, (0, (1, 1.4)), False, 1.1)
 
 
@@ -93,8 +92,8 @@ class Look:
         }
 
 
-def assign_looks(family_of_method):
-    """A look for each method, by its place among the methods of its family.
+def assign_looks(methods):
+    """A look for each method of {name: (family, stock_of)}, by its place in its family.
 
     Colours and markers advance together; their counts have no common divisor, so a pair comes
     back only after their product (42 methods of one family). A stock way looks like the method
@@ -102,9 +101,9 @@ def assign_looks(family_of_method):
     """
     seen = {}
     looks = {}
-    for method, name in family_of_method.items():
-        if method.removesuffix(STOCK_SUFFIX) in looks:
-            own = looks[method.removesuffix(STOCK_SUFFIX)]
+    for method, (name, stock_of) in methods.items():
+        if stock_of in looks:
+            own = looks[stock_of]
             looks[method] = Look(own.color, own.marker, STOCK)
             continue
         index = seen.get(name, 0)

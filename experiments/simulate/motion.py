@@ -65,7 +65,8 @@ def call_simulate(*words):
 def method_looks():
     """The look of every method, as in the charts."""
     table = io.StringIO(call_simulate("--list-methods", "--csv")[1])
-    return assign_looks({row["name"]: row["family"] for row in csv.DictReader(table)})
+    rows = csv.DictReader(table)
+    return assign_looks({row["name"]: (row["family"], row["stock_of"]) for row in rows})
 
 
 def simulate(name, look, method, scene, h, every, until):

@@ -179,7 +179,7 @@ void tabulate_linear(Csv& csv, const std::vector<const Method*>& methods) {
 void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>& methods) {
   for (const Method* method : methods) {
     if (method->knob != Knob::rtol || method->asks(Need::split_forces) ||
-        method->is(Trait::stock_solver)) {
+        !method->stock_of.empty()) {
       continue;
     }
     for (const double rtol : tolerances) {

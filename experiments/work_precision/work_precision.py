@@ -155,7 +155,7 @@ def panel_height(view):
 def draw(views, reference, interruption, fallback_scene):
     """The whole picture of one view and more below it as a sheet."""
     main, *more = views
-    looks = assign_looks({run.method: run.family for run in main.runs})
+    looks = assign_looks({run.method: (run.family, run.stock_of) for run in main.runs})
     failed = failures.failing(measurements.sweeps(main.runs))
     sentences = warnings(reference, interruption)
     header = HEADER + HORIZON * len(sentences)

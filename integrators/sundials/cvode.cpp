@@ -127,25 +127,25 @@ class Adams final : public Cvode {
 };
 
 template <MakeMatrix make_matrix>
-Method bdf(const char* name, const char* solver) {
-  return {
-      .name = name,
-      .summary = fmt::format("SUNDIALS CVODE, adaptive BDF of order 1 to 5, {}", solver),
-      .source = "Hindmarsh et al., SUNDIALS, ACM TOMS 31:3 (2005) 363-396, section 2.1",
-      .order = 5,
-      .family = Family::sundials,
-      .knob = Knob::rtol,
-      .traits = SetOf<Trait>{Trait::implicit}.with(Trait::stock_solver, make_matrix == make_klu),
-      .needs = {Need::stiffness},
-      .takes = SetOf<Option>{Option::max_order, Option::stability_detection}.with(
-          Option::solver, make_matrix == make_structured),
-      .make = create<Bdf<make_matrix>>};
+Method bdf(const char* name, const char* solver, const char* stock_of = "") {
+  return {.name = name,
+          .summary = fmt::format("SUNDIALS CVODE, adaptive BDF of order 1 to 5, {}", solver),
+          .source = "Hindmarsh et al., SUNDIALS, ACM TOMS 31:3 (2005) 363-396, section 2.1",
+          .order = 5,
+          .family = Family::sundials,
+          .knob = Knob::rtol,
+          .traits = {Trait::implicit},
+          .needs = {Need::stiffness},
+          .takes = SetOf<Option>{Option::max_order, Option::stability_detection}.with(
+              Option::solver, make_matrix == make_structured),
+          .stock_of = stock_of,
+          .make = create<Bdf<make_matrix>>};
 }
 
 }  // namespace
 
 Method cvode_bdf() { return bdf<make_structured>("cvode_bdf", "n x n solves"); }
-Method cvode_bdf_klu() { return bdf<make_klu>("cvode_bdf_klu", "stock KLU"); }
+Method cvode_bdf_klu() { return bdf<make_klu>("cvode_bdf_klu", "stock KLU", "cvode_bdf"); }
 
 Method cvode_adams() {
   return {.name = "cvode_adams",

@@ -1,6 +1,9 @@
 // ARKODE's adaptive diagonally implicit Runge-Kutta methods of order 2 to 5 by Newton's method,
 // each with the structured n x n matrix and the stock way with KLU. Orders and error estimates are
 // those of the named table.
+#include <string>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
@@ -38,29 +41,30 @@ class Dirk final : public Arkode {
 };
 
 template <int order, MakeMatrix make_matrix>
-Method dirk(const char* suffix, const char* solver) {
+Method dirk(std::string name, const char* solver, std::string stock_of = {}) {
   static_assert(tables[order - 2].order == order);
   const Table& table = tables[order - 2];
-  return {
-      .name = fmt::format("arkode_dirk{}{}", order, suffix),
-      .summary = fmt::format("SUNDIALS ARKODE, adaptive DIRK of order {}, ARKODE_{}, {}", order,
-                             table.name, solver),
-      .source = table.source,
-      .order = order,
-      .family = Family::sundials,
-      .knob = Knob::rtol,
-      .traits = SetOf<Trait>{Trait::implicit}.with(Trait::stock_solver, make_matrix == make_klu),
-      .needs = {Need::stiffness},
-      .takes = SetOf<Option>{}.with(Option::solver, make_matrix == make_structured),
-      .make = create<Dirk<order, make_matrix>>};
+  return {.name = std::move(name),
+          .summary = fmt::format("SUNDIALS ARKODE, adaptive DIRK of order {}, ARKODE_{}, {}", order,
+                                 table.name, solver),
+          .source = table.source,
+          .order = order,
+          .family = Family::sundials,
+          .knob = Knob::rtol,
+          .traits = {Trait::implicit},
+          .needs = {Need::stiffness},
+          .takes = SetOf<Option>{}.with(Option::solver, make_matrix == make_structured),
+          .stock_of = std::move(stock_of),
+          .make = create<Dirk<order, make_matrix>>};
 }
 template <int order>
 Method structured() {
-  return dirk<order, make_structured>("", "n x n solves");
+  return dirk<order, make_structured>(fmt::format("arkode_dirk{}", order), "n x n solves");
 }
 template <int order>
 Method stock() {
-  return dirk<order, make_klu>("_klu", "stock KLU");
+  const auto own = structured<order>().name;
+  return dirk<order, make_klu>(own + "_klu", "stock KLU", own);
 }
 
 }  // namespace

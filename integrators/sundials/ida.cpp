@@ -334,7 +334,7 @@ class Ida final : public Stepper {
 };
 
 template <MakeMatrix make_matrix>
-Method ida(const char* name, const char* solver) {
+Method ida(const char* name, const char* solver, const char* stock_of = "") {
   return {.name = name,
           .summary = fmt::format("SUNDIALS IDA, adaptive BDF of order 1 to 5 in residual form, {}",
                                  solver),
@@ -342,17 +342,17 @@ Method ida(const char* name, const char* solver) {
           .order = 5,
           .family = Family::sundials,
           .knob = Knob::rtol,
-          .traits = SetOf<Trait>{Trait::implicit, Trait::accepts_massless}.with(
-              Trait::stock_solver, make_matrix == make_klu),
+          .traits = {Trait::implicit, Trait::accepts_massless},
           .needs = {Need::stiffness},
           .takes =
               SetOf<Option>{Option::max_order}.with(Option::solver, make_matrix == make_structured),
+          .stock_of = stock_of,
           .make = create<Ida<make_matrix>>};
 }
 
 }  // namespace
 
 Method ida() { return ida<make_structured>("ida", "n x n solves"); }
-Method ida_klu() { return ida<make_klu>("ida_klu", "stock KLU"); }
+Method ida_klu() { return ida<make_klu>("ida_klu", "stock KLU", "ida"); }
 
 }  // namespace qddot::registered

@@ -142,8 +142,13 @@ BOOST_AUTO_TEST_CASE(facts_about_a_method_fit_together) {
       if (method.is(Trait::accepts_massless)) BOOST_TEST(method.is(Trait::implicit));
       if (method.varies_order() || method.is(Trait::interpolates))
         BOOST_TEST((method.knob == Knob::rtol));
-      if (method.is(Trait::stock_solver))
-        BOOST_TEST(find_method(method.name.substr(0, method.name.size() - 4)));
+      if (!method.stock_of.empty()) {
+        const Method* own = find_method(method.stock_of);
+        BOOST_REQUIRE(own);
+        BOOST_TEST(own->stock_of.empty());
+        BOOST_TEST(own->order == method.order);
+        BOOST_TEST((own->traits == method.traits && own->needs == method.needs));
+      }
     }
   }
   BOOST_TEST(family_name(Family::hand_written) != family_name(Family::sundials));

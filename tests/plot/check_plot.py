@@ -1,0 +1,236 @@
+#!/usr/bin/python3
+"""Whether the parts of the pictures read tables, choose the front, place labels and word numbers
+as they say."""
+
+import math
+import tempfile
+import unittest
+from pathlib import Path
+
+import band
+import failures
+import labels
+import measurements
+import names
+import style
+from measurements import BadInput, Run
+
+HEADER = "scene,method,family,stock_of,knob,value,outcome,error_position,time_s\n"
+
+
+def a_run(method="verlet", value=1e-3, error=1e-3, time=1.0, **others):
+    """A run that reached the end."""
+    facts = {"scene": "s", "family": "hand-written", "stock_of": "", "knob": "step_size"}
+    facts |= {"method": method, "value": value, "outcome": "reached_end", "error": error}
+    return Run(**(facts | {"time": time} | others))
+
+
+class Tables(unittest.TestCase):
+    """Reading of points.csv and front.csv."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = str(Path(folder.name) / "points.csv")
+
+    def runs(self, text, **options):
+        """The runs of a table with this text."""
+        Path(self.path).write_text(text, encoding="utf-8")
+        return measurements.read_runs(self.path, **options)
+
+    def refusal(self, text):
+        """Why a table with this text is refused."""
+        with self.assertRaises(BadInput) as refused:
+            self.runs(text)
+        return str(refused.exception).replace(self.path, "FILE")
+
+    def test_cells_become_a_run(self):
+        (run,) = self.runs(HEADER + "s,ida_klu,sundials,ida,rtol,1e-4,reached_end,2e-3,0.5\n")
+        self.assertEqual((run.method, run.family, run.stock_of), ("ida_klu", "sundials", "ida"))
+        self.assertEqual((run.value, run.error, run.time), (1e-4, 2e-3, 0.5))
+        self.assertEqual(run.failure, "")
+        self.assertFalse(run.is_uncertain)
+
+    def test_a_table_need_not_say_whose_stock_way_a_method_is(self):
+        header = HEADER.replace(",stock_of", "")
+        (run,) = self.runs(header + "s,verlet,hand-written,step_size,1e-4,reached_end,2e-3,0.5\n")
+        self.assertEqual(run.stock_of, "")
+
+    def test_what_is_no_point_says_why(self):
+        row = "s,verlet,hand-written,,step_size,1e-3,{}\n"
+        ends = {
+            "newton_failed,,": "Newton failed",
+            "reached_end,,1": "error not measured",
+            "reached_end,1e9,1": "error above 3",
+            "reached_end,1e-3,": "not timed",
+        }
+        runs = self.runs(HEADER + "".join(row.format(end) for end in ends))
+        self.assertEqual([run.failure for run in runs], list(ends.values()))
+
+    def test_a_refusal_names_file_line_and_cell(self):
+        row = "s,verlet,hand-written,,step_size,{},reached_end,1e-3,1\n"
+        self.assertEqual(
+            self.refusal(HEADER + row.format("1e-3") + row.format("tiny")),
+            "FILE, line 3: value is 'tiny', not a number.",
+        )
+        self.assertEqual(
+            self.refusal(HEADER + row.format("-1")),
+            "FILE, line 2: value must be a positive number.",
+        )
+        self.assertEqual(
+            self.refusal(HEADER.replace(",time_s", "")), "FILE has no column time_s."
+        )
+        self.assertEqual(
+            self.refusal(HEADER + "s,,hand-written,,step_size,1,reached_end,1,1\n"),
+            "FILE, line 2: method, knob and outcome must not be empty.",
+        )
+
+    def test_a_front_is_of_methods_that_ran(self):
+        Path(self.path).write_text("accuracy,method,error_position,time_s\n1e-3,rk4,1e-4,1\n")
+        with self.assertRaisesRegex(BadInput, "line 2: there are no runs of rk4"):
+            measurements.read_front(self.path, [a_run("verlet")])
+        (point,) = measurements.read_front(self.path, [a_run("rk4")])
+        self.assertEqual((point.accuracy, point.method), (1e-3, "rk4"))
+
+
+class Front(unittest.TestCase):
+    """The fastest method at each accuracy."""
+
+    def front(self, *runs):
+        """The front as {exponent of the accuracy: method}."""
+        points = measurements.fastest_at_each_accuracy(runs)
+        return {round(math.log10(point.accuracy)): point.method for point in points}
+
+    def test_the_fastest_of_those_accurate_enough(self):
+        coarse, fine = a_run("coarse", error=5e-3, time=1), a_run("fine", error=5e-5, time=9)
+        self.assertEqual(
+            self.front(coarse, fine), {-1: "coarse", -2: "coarse", -3: "fine", -4: "fine"}
+        )
+
+    def test_what_is_not_known_counts_against_a_run(self):
+        uncertain = a_run("uncertain", error=5e-3, known=(4e-3, 2e-2))
+        self.assertTrue(uncertain.is_uncertain)
+        self.assertEqual(self.front(uncertain), {-1: "uncertain"})
+
+    def test_failures_and_other_motions_are_not_on_it(self):
+        self.assertEqual(self.front(a_run(outcome="diverged"), a_run(counts=False)), {})
+
+    def test_neighbouring_accuracies_of_one_method_are_one_stretch(self):
+        points = measurements.fastest_at_each_accuracy(
+            [a_run("a", error=5e-4), a_run("b", error=5e-6, time=2)]
+        )
+        half = math.sqrt(10)
+        (first, high, top), (second, bottom, low) = (
+            (method, low, high) for method, low, high in band.stretches(points)
+        )
+        self.assertEqual((first, second), ("a", "b"))
+        # a from 1e-1 to 1e-3 and half a decade beyond, b from there on.
+        self.assertAlmostEqual(top, 0.1 * half)
+        self.assertAlmostEqual(high, 1e-3 / half)
+        self.assertAlmostEqual(low, high)
+        self.assertAlmostEqual(bottom, 1e-5 / half)
+
+
+class Looks(unittest.TestCase):
+    """Colours, markers and lines of methods."""
+
+    def test_no_two_methods_of_a_family_look_alike(self):
+        looks = style.assign_looks({f"m{i}": ("hand-written", "") for i in range(42)})
+        self.assertEqual(len({(look.color, look.marker) for look in looks.values()}), 42)
+
+    def test_a_stock_way_looks_like_its_method_but_for_the_line(self):
+        looks = style.assign_looks(
+            {"ida": ("sundials", ""), "other": ("sundials", "ida"), "last": ("sundials", "")}
+        )
+        own, stock = looks["ida"], looks["other"]
+        self.assertEqual((own.color, own.marker), (stock.color, stock.marker))
+        self.assertNotEqual(own.family.line, stock.family.line)
+        # It takes no colour away from the others.
+        self.assertEqual(looks["last"].color, style.COOL[1])
+        # Without its method in the picture it is one of its family.
+        alone = style.assign_looks({"other": ("sundials", "ida")})["other"]
+        self.assertEqual(alone.family, style.FAMILIES["sundials"])
+
+    def test_letters_are_dark_enough_for_white(self):
+        # A contrast of 4.5 asks for a relative luminance below 0.18; of the sum of sRGB values,
+        # which this is, 0.42 is about that for a grey.
+        for color in (*style.WARM, *style.COOL):
+            text = style.Look(color, "o", style.FAMILIES["sundials"]).text_color
+            red, green, blue = style.to_rgb(text)
+            self.assertLess(0.2126 * red + 0.7152 * green + 0.0722 * blue, 0.43)
+
+
+class Words(unittest.TestCase):
+    """Numbers and names as they are shown."""
+
+    def test_numbers(self):
+        self.assertEqual(
+            [style.number(x) for x in (0.5, 0.1, 999, 1000, 2e-3, 3.34e-14, -2.5e6)],
+            ["0.5", "0.1", "999", "1e3", "2e-3", "3.3e-14", "-2.5e6"],
+        )
+        self.assertEqual(
+            [style.power_of_ten(x) for x in (1e-3, 1, 10, 1e5)], ["1e-3", "1", "10", "1e5"]
+        )
+        self.assertEqual(
+            [style.seconds(x) for x in (3, 5e-3, 2e-5, 4e-9, 1e-12, 0.99995)],
+            ["3 s", "5 ms", "20 µs", "4 ns", "0.001 ns", "1 s"],
+        )
+
+    def test_a_narrow_range_is_widened_about_its_middle(self):
+        low, high = style.widened(1.0, 2.0, 1)
+        self.assertAlmostEqual(high / low, 10)
+        self.assertAlmostEqual(low * high, 2.0)
+        self.assertEqual(style.widened(1.0, 100.0, 1), (1.0, 100.0))
+
+    def test_long_and_odd_names_fit_one_line(self):
+        self.assertEqual(names.shown("a\nb"), "a b")
+        self.assertEqual(names.shown("$x$"), r"\$x\$")
+        self.assertEqual(len(names.shown("n" * 200)), names.LONGEST)
+        self.assertEqual(
+            style.short_names(["arkode_erk_4", "arkode_erk_5", "ida"]),
+            ["arkode_erk_4", "…_5", "ida"],
+        )
+
+    def test_where_in_a_sweep_runs_failed(self):
+        span, sweep = failures.span_in_words, [1e-3, 1e-2, 1e-1, 1]
+        self.assertEqual(span(sweep, sweep, "h"), "every h")
+        self.assertEqual(span([1e-1, 1], sweep, "h"), "h ≥ 0.1")
+        self.assertEqual(span([1e-3, 1e-2], sweep, "h"), "h ≤ 1e-2")
+        self.assertEqual(span([1e-2], sweep, "h"), "h = 1e-2")
+        self.assertEqual(span([1e-2, 1e-1], sweep, "h"), "1e-2 ≤ h ≤ 0.1")
+        self.assertEqual(span([1e-3, 1e-1], sweep, "h"), "h = 1e-3, 0.1")
+        self.assertEqual(span([1e-3], [1e-3], "h"), "h = 1e-3")
+
+
+class Labels(unittest.TestCase):
+    """Placing of labels."""
+
+    BOUNDS = (0, 0, 400, 300)
+
+    def test_labels_at_one_point_keep_off_each_other_and_inside(self):
+        size = (60, 12)
+        places = labels.place_labels(
+            [[(200, 150)]] * 6, [size] * 6, self.BOUNDS, labels.Ink(self.BOUNDS)
+        )
+        for i, place in enumerate(places):
+            for other in places[:i]:
+                self.assertFalse(labels.overlap(place.box, other.box))
+            x, y = place.center
+            self.assertTrue(size[0] / 2 <= x <= 400 - size[0] / 2)
+            self.assertTrue(size[1] / 2 <= y <= 300 - size[1] / 2)
+
+    def test_a_label_keeps_off_what_is_drawn(self):
+        ink = labels.Ink(self.BOUNDS)
+        for x in range(0, 200, labels.CELL):  # all to the left of the anchor is full
+            ink.add_line((x, 0), (x, 300))
+        (place,) = labels.place_labels([[(204, 150)]], [(60, 12)], self.BOUNDS, ink)
+        self.assertGreater(place.box[0], 196)
+
+    def test_crossing_segments(self):
+        self.assertTrue(labels.cross((0, 0), (2, 2), (0, 2), (2, 0)))
+        self.assertFalse(labels.cross((0, 0), (2, 2), (3, 0), (5, 2)))
+        self.assertFalse(labels.cross((0, 0), (1, 1), (0, 3), (3, 0)))
+
+
+if __name__ == "__main__":
+    unittest.main()
