@@ -2,7 +2,6 @@
 // each with the structured n x n matrix and the stock way with KLU. Orders and error estimates are
 // those of the named table.
 #include <string>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -41,10 +40,10 @@ class Dirk final : public Arkode {
 };
 
 template <int order, MakeMatrix make_matrix>
-Method dirk(std::string name, const char* solver, std::string stock_of = {}) {
+Method dirk(const std::string& name, const char* solver, const std::string& stock_of = {}) {
   static_assert(tables[order - 2].order == order);
   const Table& table = tables[order - 2];
-  return {.name = std::move(name),
+  return {.name = name,
           .summary = fmt::format("SUNDIALS ARKODE, adaptive DIRK of order {}, ARKODE_{}, {}", order,
                                  table.name, solver),
           .source = table.source,
@@ -54,7 +53,7 @@ Method dirk(std::string name, const char* solver, std::string stock_of = {}) {
           .traits = {Trait::implicit},
           .needs = {Need::stiffness},
           .takes = SetOf<Option>{}.with(Option::solver, make_matrix == make_structured),
-          .stock_of = std::move(stock_of),
+          .stock_of = stock_of,
           .make = create<Dirk<order, make_matrix>>};
 }
 template <int order>
