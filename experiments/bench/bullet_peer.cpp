@@ -16,8 +16,6 @@
 
 namespace qddot::bench {
 
-using namespace command;
-
 using namespace measure;
 namespace {
 
