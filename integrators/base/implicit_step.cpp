@@ -8,7 +8,9 @@
 namespace qddot {
 namespace {
 
+// Newton's method takes some ten where it converges at all.
 constexpr int most_iterations = 100;
+// Less than 2^-30 of a correction moves the energy by rounding alone.
 constexpr int most_halvings = 30;
 // Corrections that shrink more slowly than this are worth new factors, which cost as much as some
 // ten solves.

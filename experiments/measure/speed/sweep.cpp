@@ -11,6 +11,7 @@
 namespace qddot::measure {
 namespace {
 
+// To either side; errors meet rounding long before.
 constexpr int most_points = 60;
 
 // Values of the knob, finer with the number. Number 0 of a step size is h w = 4 for explicit

@@ -21,6 +21,7 @@
 namespace qddot::measure {
 namespace {
 
+// Looks at the energy in a run; step sizes from h/2 to h/4096 that are tried for one that holds.
 constexpr int looks = 32, most_halvings = 12;
 constexpr std::size_t most_named = 3;
 // A motion is still what it was while its energy has changed by less than this part of the largest

@@ -138,7 +138,7 @@ class Search {
   // Whether a spring with a direction is too short to say which: rounding could put its ends into
   // one place, and what it does there is not known.
   bool has_unclear_spring() const {
-    constexpr double clear = 1024;
+    constexpr double clear = 1024;  // a direction known to a thousandth
     return std::ranges::any_of(body_.springs, [&](const Spring& spring) {
       const auto [a, b] = spring.nodes;
       return spring.law.rest_length > 0 && !((body_.x[b] - body_.x[a]).norm() > clear * tolerance_);
@@ -152,7 +152,8 @@ class Search {
     Plane plane{direction};
     if (std::abs(direction.dot(body_.gravity)) > rounding * body_.gravity.norm()) return {};
     center(plane);
-    // A principal axis is known less well than the nodes: what it maps them to decides it.
+    // A principal axis is known less well than the nodes: to the square root of rounding where two
+    // moments are nearly equal. What it maps the nodes to decides it.
     constexpr double coarse = 1e-7;
     const bool is_exact = (plane.normal.array() == 0).count() == 2;
     if (!is_exact) {
