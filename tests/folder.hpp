@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // The names of what stands in a folder, in order and each followed by a space.
 inline std::string listing(const std::string& folder) {
@@ -45,4 +45,4 @@ class Folder {
                                 fmt::format("qddot_test_{}_{:x}", getpid(), std::random_device{}());
 };
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -8,7 +8,7 @@
 
 #include "qddot/model/capabilities.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // The slope of the line through the points (x_i, y_i) by least squares.
 inline double slope(const Vec& x, const Vec& y) {
@@ -93,4 +93,4 @@ double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return (a - b).allFinite() ? largest : INFINITY;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace qddot {
+namespace qddot::inline tests {
 
 Eigen::Vector3d in_space(const Vec& x) {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -92,4 +92,4 @@ Problem hammock(int dimension) {
   return p;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

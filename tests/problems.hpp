@@ -5,7 +5,7 @@
 
 #include "qddot/model/mass_spring.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // A network and where it starts.
 struct Problem {
@@ -51,4 +51,4 @@ Network with_split(Network network);
 // frequencies are below 25 rad/s and no spring comes near zero length.
 Problem hammock(int dimension);
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

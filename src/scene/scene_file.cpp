@@ -57,7 +57,7 @@ toml::table parse(const std::string& text, const std::string& path) {
   }
 }
 
-Node node_in(const Table& table, int dimension) {
+Node node_in(const TomlTable& table, int dimension) {
   table.allow_keys({"position", "velocity", "mass", "pinned"});
   Node node;
   node.position = table.vector("position", dimension);
@@ -67,7 +67,7 @@ Node node_in(const Table& table, int dimension) {
   return node;
 }
 
-Spring spring_in(const Table& table, const std::vector<Node>& nodes) {
+Spring spring_in(const TomlTable& table, const std::vector<Node>& nodes) {
   table.allow_keys({"nodes", "stiffness", "rest_length", "quartic"});
   const auto [i, j] = table.node_pair("nodes", nodes.size());
   const double distance = (nodes[j].position - nodes[i].position).norm();
@@ -77,15 +77,15 @@ Spring spring_in(const Table& table, const std::vector<Node>& nodes) {
                   .quartic = table.number_or(0, "quartic", not_negative)}};
 }
 
-void add_nodes_and_springs(const Table& file, const SceneLimits& limits, Scene& scene) {
+void add_nodes_and_springs(const TomlTable& file, const SceneLimits& limits, Scene& scene) {
   file.allow_keys(
       {"name", "dimension", "gravity", "until", "start", "stiff_above", "nodes", "springs"});
   scene.dimension = file.integer("dimension", 1, 3);
-  const std::vector<Table> nodes = file.tables("nodes"), springs = file.tables("springs");
+  const std::vector<TomlTable> nodes = file.tables("nodes"), springs = file.tables("springs");
   require_within(limits, {nodes.size(), springs.size()}, file.place());
-  for (const Table& table : nodes) scene.nodes.push_back(node_in(table, scene.dimension));
+  for (const TomlTable& table : nodes) scene.nodes.push_back(node_in(table, scene.dimension));
   if (scene.nodes.empty()) file.refuse("nodes", "lists of at least one node");
-  for (const Table& table : springs) scene.springs.push_back(spring_in(table, scene.nodes));
+  for (const TomlTable& table : springs) scene.springs.push_back(spring_in(table, scene.nodes));
 }
 
 std::string generator_names() {
@@ -94,7 +94,7 @@ std::string generator_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-Scene generated(const Table& table, const SceneLimits& limits) {
+Scene generated(const TomlTable& table, const SceneLimits& limits) {
   const std::string kind = table.text("kind");
   const Generator* generator = find_generator(kind);
   if (!generator) table.refuse("kind", generator_names());
@@ -106,7 +106,7 @@ Scene generated(const Table& table, const SceneLimits& limits) {
 }
 
 // Throws InvalidInput unless the nodes come from one of what they may come from.
-void require_one_origin(const Table& file) {
+void require_one_origin(const TomlTable& file) {
   std::vector<std::string> given;
   for (const auto& [key, written] : {std::pair("nodes", "[[nodes]]"), std::pair("mesh", "[mesh]"),
                                      std::pair("generator", "[generator]")}) {
@@ -120,7 +120,7 @@ void require_one_origin(const Table& file) {
                                  fmt::join(given, " and "), allowed));
 }
 
-bool starts_at_equilibrium(const Table& file) {
+bool starts_at_equilibrium(const TomlTable& file) {
   if (!file.has("start")) return false;
   const std::string start = file.text("start");
   if (start != "drawn" && start != "equilibrium")
@@ -156,7 +156,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
                   const std::filesystem::path& folder, const SceneLimits& limits,
                   const TextSource& read) {
   const toml::table content = parse(text, path);
-  const Table file(content, path);
+  const TomlTable file(content, path);
   require_one_origin(file);
   Scene scene;
   if (file.has("generator")) {

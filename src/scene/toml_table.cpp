@@ -34,27 +34,27 @@ std::string written(const toml::node& node) {
 
 }  // namespace
 
-std::vector<std::string> Table::keys() const {
+std::vector<std::string> TomlTable::keys() const {
   std::vector<std::string> all;
   for (const auto& [key, value] : table_) all.emplace_back(key.str());
   return all;
 }
 
-void Table::allow_keys(std::initializer_list<std::string_view> keys) const {
+void TomlTable::allow_keys(std::initializer_list<std::string_view> keys) const {
   for (const auto& [key, value] : table_) {
     if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
       fail(key, fmt::format("it is an unknown key; allowed are {}", fmt::join(keys, ", ")));
   }
 }
 
-double Table::number(std::string_view key, const Range& range) const {
+double TomlTable::number(std::string_view key, const Range& range) const {
   const toml::node* node = table_.get(key);
   const auto value = node ? finite_number(*node) : std::nullopt;
   if (!value || !range.holds(*value)) refuse(key, range.words);
   return *value;
 }
 
-Eigen::Vector3d Table::vector(std::string_view key, int size) const {
+Eigen::Vector3d TomlTable::vector(std::string_view key, int size) const {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   const toml::array* array = table_[key].as_array();
   bool good = array && array->size() == static_cast<std::size_t>(size);
@@ -67,14 +67,14 @@ Eigen::Vector3d Table::vector(std::string_view key, int size) const {
   return x;
 }
 
-int Table::integer(std::string_view key, int low, int high) const {
+int TomlTable::integer(std::string_view key, int low, int high) const {
   const auto* value = table_[key].as_integer();
   if (!value || value->get() < low || value->get() > high)
     refuse(key, fmt::format("integers from {} to {}", low, high));
   return static_cast<int>(value->get());
 }
 
-std::array<std::size_t, 2> Table::node_pair(std::string_view key, std::size_t count) const {
+std::array<std::size_t, 2> TomlTable::node_pair(std::string_view key, std::size_t count) const {
   const toml::array* array = table_[key].as_array();
   if (!array || array->size() != 2 || !array->is_homogeneous<std::int64_t>())
     refuse(key, fmt::format("pairs of nodes from 0 to {}", count - 1));
@@ -88,55 +88,55 @@ std::array<std::size_t, 2> Table::node_pair(std::string_view key, std::size_t co
   return pair;
 }
 
-bool Table::flag_or_false(std::string_view key) const {
+bool TomlTable::flag_or_false(std::string_view key) const {
   if (!has(key)) return false;
   const auto* flag = table_[key].as_boolean();
   if (!flag) refuse(key, "true and false");
   return flag->get();
 }
 
-std::string Table::text(std::string_view key) const {
+std::string TomlTable::text(std::string_view key) const {
   const auto* text = table_[key].as_string();
   if (!text) refuse(key, "quoted texts");
   return text->get();
 }
 
-Table Table::table(std::string_view key) const {
+TomlTable TomlTable::table(std::string_view key) const {
   const auto* table = table_[key].as_table();
   if (!table) refuse(key, fmt::format("tables, written [{}]", key));
   return {*table, file_, name_of(key)};
 }
 
-std::vector<Table> Table::tables(std::string_view key) const {
+std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
   if (!has(key)) return {};
   const toml::array* array = table_[key].as_array();
   if (!array || !(array->empty() || array->is_array_of_tables()))
     refuse(key, fmt::format("arrays of tables, written [[{}]]", name_of(key)));
-  std::vector<Table> all;
+  std::vector<TomlTable> all;
   all.reserve(array->size());
   for (const toml::node& node : *array)
     all.emplace_back(*node.as_table(), file_, fmt::format("{}[{}]", name_of(key), all.size()));
   return all;
 }
 
-void Table::refuse(std::string_view key, std::string_view allowed) const {
+void TomlTable::refuse(std::string_view key, std::string_view allowed) const {
   const toml::node* node = table_.get(key);
   const std::string what = node ? shown(written(*node)) + " is not allowed" : "it is missing";
   fail(key, fmt::format("{}; allowed are {}", what, allowed));
 }
 
-void Table::fail(std::string_view key, std::string_view what) const {
+void TomlTable::fail(std::string_view key, std::string_view what) const {
   const toml::node* node = table_.get(key);
   throw InvalidInput(fmt::format("{}:{}: {}: {}", file_,
                                  (node ? *node : table_).source().begin.line, name_of(key), what));
 }
 
-std::string Table::place() const {
+std::string TomlTable::place() const {
   if (entry_.empty()) return file_;
   return fmt::format("{}:{}: {}", file_, table_.source().begin.line, entry_);
 }
 
-std::string Table::name_of(std::string_view key) const {
+std::string TomlTable::name_of(std::string_view key) const {
   return entry_.empty() ? shown(key) : fmt::format("{}.{}", entry_, shown(key));
 }
 

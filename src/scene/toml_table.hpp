@@ -22,10 +22,10 @@ inline constexpr Range positive{[](double x) { return x > 0; }, "finite numbers 
 
 // A table of a TOML file and its place there. Whatever it does not hold as asked for is refused:
 // InvalidInput with file, line, entry, key, value and what is allowed. Integers serve as numbers.
-class Table {
+class TomlTable {
  public:
   // `table` and `file` must outlive this; `entry` is empty for the file's top level.
-  Table(const toml::table& table, const std::string& file, std::string entry = "")
+  TomlTable(const toml::table& table, const std::string& file, std::string entry = "")
       : table_(table), file_(file), entry_(std::move(entry)) {}
 
   bool has(std::string_view key) const { return table_.contains(key); }
@@ -47,9 +47,9 @@ class Table {
   std::array<std::size_t, 2> node_pair(std::string_view key, std::size_t count) const;
   bool flag_or_false(std::string_view key) const;
   std::string text(std::string_view key) const;
-  Table table(std::string_view key) const;
+  TomlTable table(std::string_view key) const;
   // The tables of an array of tables; none where the key is missing.
-  std::vector<Table> tables(std::string_view key) const;
+  std::vector<TomlTable> tables(std::string_view key) const;
 
   // Refuses what stands at `key`, or that nothing does. `allowed` completes "allowed are".
   [[noreturn]] void refuse(std::string_view key, std::string_view allowed) const;

@@ -1,6 +1,6 @@
 #include "tests/fuzz/corpus.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 const std::vector<Sample>& corpus() {
   static const std::vector<Sample> samples = {
@@ -123,4 +123,4 @@ max = [0.5, 9, 9]
   return samples;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // A small file that is read without complaint; the ending of its name says what it is.
 struct Sample {
@@ -13,4 +13,4 @@ struct Sample {
 // Scene files of all kinds, and meshes of all formats, which the scene files name.
 const std::vector<Sample>& corpus();
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

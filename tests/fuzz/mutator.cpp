@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace qddot {
+namespace qddot::inline tests {
 namespace {
 
 constexpr std::array<std::string_view, 36> numbers = {"-1",
@@ -217,4 +217,4 @@ std::string Mutator::insertion() {
   }
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // Spoils texts, the same ones in the same way for the same seed.
 class Mutator {
@@ -26,4 +26,4 @@ class Mutator {
   std::mt19937_64 random_;
 };
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

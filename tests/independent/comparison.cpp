@@ -12,7 +12,7 @@
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/scene/reduce/part.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 using namespace measure;
 namespace {
@@ -344,4 +344,4 @@ Comparisons compare_methods(const DrawnMotion& motion) {
   return all;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

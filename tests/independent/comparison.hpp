@@ -7,7 +7,7 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/independent/plain_motion.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // A drawn scene's motion to its horizon by the independent model, and how well any code that rounds
 // to double precision can know it.
@@ -60,4 +60,4 @@ Comparisons compare_reductions(const DrawnMotion& motion);
 // differ by less and less, so must they from the motion.
 Comparisons compare_methods(const DrawnMotion& motion);
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

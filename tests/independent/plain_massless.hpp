@@ -4,7 +4,7 @@
 
 #include "tests/independent/plain_model.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // Newton's iteration on -K d = f over the coordinates of the massless nodes that the scene's
 // dimension has, by Cholesky's factorisation without blocks: where a pivot is not positive the
@@ -98,4 +98,4 @@ bool PlainModel<Real>::place_massless(Vector& x) const {
   return false;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -5,7 +5,7 @@
 
 #include "qddot/scene/scene.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // A real of quadruple precision (113 bits), of which the language has no root.
 using Quadruple = __float128;
@@ -123,6 +123,6 @@ class PlainModel {
   std::vector<std::size_t> massless_;
 };
 
-}  // namespace qddot
+}  // namespace qddot::inline tests
 
 #include "tests/independent/plain_massless.hpp"

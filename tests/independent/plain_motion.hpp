@@ -7,7 +7,7 @@
 
 #include "tests/independent/plain_model.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // Positions [m] and velocities [m/s] of all nodes at the time t [s].
 template <class Real>
@@ -150,4 +150,4 @@ class PlainMotion {
   Vector x_[levels], v_[levels];
 };
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-namespace qddot {
+namespace qddot::inline tests {
 namespace {
 
 using Eigen::Vector3d;
@@ -370,4 +370,4 @@ RandomScene random_scene(std::uint64_t seed) {
   return random;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -5,7 +5,7 @@
 
 #include "qddot/scene/scene.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // A small scene made by chance, valid, with a horizon of a few of its fastest vibrations, and what
 // is special about it. The same seed gives the same scene everywhere.
@@ -20,4 +20,4 @@ struct RandomScene {
 // springs; springs of rest length zero; massless joints; and all of it far from the origin.
 RandomScene random_scene(std::uint64_t seed);
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

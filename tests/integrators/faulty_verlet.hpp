@@ -3,7 +3,7 @@
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/runs.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // Velocity Verlet with its second kick longer by so many thousandths: with none the method itself,
 // with one a fault that the tests have to see.
@@ -32,4 +32,4 @@ Method faulty_verlet() {
   return method;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -11,7 +11,7 @@
 // own: a chain in the plane between two pins, whose neighbours are bound by Lennard and Jones' law
 //   V(r) = e ((s/r)^12 - 2 (s/r)^6),  e = 1 J, at rest at s = 1 m, where V'' = 72 N/m.
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // The chain by V and f alone.
 class Chain : public System {
@@ -125,4 +125,4 @@ class DividedChain final : public WithGradient<ChainWithStiffness>, public Split
                {0, 1, 2, 3, 4, 5, 6, 7}};
 };
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

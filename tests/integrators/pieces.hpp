@@ -8,7 +8,7 @@
 #include "qddot/model/block_diagonal_system.hpp"
 #include "tests/integrators/runs.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // A system that can be made again and again, and where it starts.
 struct Piece {
@@ -90,4 +90,4 @@ inline Run run(const Method& method, const Piece& alone, double t_end, const Opt
   return run(method, *system, alone.start, t_end, options, observer);
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

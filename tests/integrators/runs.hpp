@@ -10,7 +10,7 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 struct Run {
   Summary summary;
@@ -187,4 +187,4 @@ inline Network linear_chain(int n, double mass, double stiffness) {
   return network;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -4,7 +4,7 @@
 
 #include "tests/integrators/runs.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // Speaks for another split system, and lets a test see or change what its halves say; what is asked
 // of the stiff block is asked of the stiff half.
@@ -94,4 +94,4 @@ inline Network with_all_named(Network network, bool stiff) {
   return network;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

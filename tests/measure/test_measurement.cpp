@@ -23,7 +23,7 @@ const ReducedScene& orbit() {
 }
 
 const Reference& reference() {
-  static const Reference made = make_reference(orbit(), until, 1);
+  static const Reference made = make_reference(orbit(), until, 100);
   return made;
 }
 

@@ -20,7 +20,7 @@ struct Watched {
   Scene drawn;
   double until;
   ReducedScene scene{drawn};
-  Reference reference = make_reference(scene, until, 1);
+  Reference reference = make_reference(scene, until, 100);
   Watch watch{drawn, scene, until, reference};
 
   Point point(const char* method, double value) const {

@@ -4,7 +4,7 @@
 
 #include "qddot/model/mass_spring.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // A network with image links and a point of it.
 struct ImageSample {
@@ -110,4 +110,4 @@ void for_random_images(const Check& check) {
   }
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

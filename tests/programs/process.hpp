@@ -18,7 +18,7 @@
 #include "tests/folder.hpp"
 #include "tests/fragments.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 inline std::string read_all(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -167,4 +167,4 @@ inline Table parse_csv(const std::string& text) {
 
 inline Table read_csv(const std::string& path) { return parse_csv(read_all(path)); }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -31,7 +31,7 @@ struct Crossed {
   explicit Crossed(const Words& more) {
     result =
         run("crossover", joined({"--nodes", "5", "--ratios", "1e4,1", "--repeats", "1",
-                                 "--point-limit", "0.2", "--until", "0.1", "--out", folder / "out"},
+                                 "--point-limit", "5", "--until", "0.1", "--out", folder / "out"},
                                 more));
     BOOST_TEST_REQUIRE(result.status == 0, result.err);
     winners = read_csv(folder / "out/crossover.csv");

@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(what_drifts_is_the_method_and_not_what_its_solves_leave) {
   const auto rate = [](std::vector<std::string> words) {
     const Folder folder;
     words.insert(words.end(), {"--scene", "orbit", "--until", "5000", "--methods",
-                               "trapezoidal,generalized_alpha"});
+                               "trapezoidal,generalized_alpha", "--method-limit", "1000"});
     const Exit result = run_energy_drift(folder, words);
     BOOST_TEST_REQUIRE(result.status == 0, result.err);
     const Table summary = table_in(folder, "summary.csv");

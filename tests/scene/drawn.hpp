@@ -11,7 +11,7 @@
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 inline Scene draw(const std::string& generator, const GeneratorValues& values = {}) {
   return generate(*find_generator(generator), values, "test");
@@ -87,4 +87,4 @@ inline double farthest(const std::vector<Node>& a, const std::vector<Node>& b) {
   return largest;
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

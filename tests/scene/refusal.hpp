@@ -7,7 +7,7 @@
 
 #include "qddot/scene/invalid_input.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // What is said of something that is not taken; empty where it is.
 template <class Reading>
@@ -36,4 +36,4 @@ inline std::string with(std::string text, const std::string& old_part,
   return text.replace(at, old_part.size(), new_part);
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

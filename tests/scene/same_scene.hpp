@@ -6,7 +6,7 @@
 
 #include "qddot/scene/scene.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 inline bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -44,4 +44,4 @@ inline std::string first_difference(const Scene& a, const Scene& b) {
   return content_hash(a) == content_hash(b) ? "" : "hash";
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

@@ -5,7 +5,7 @@
 #include "qddot/scene/scene_file.hpp"
 #include "tests/scene/refusal.hpp"
 
-namespace qddot {
+namespace qddot::inline tests {
 
 // Two nodes and a spring, of which each test spoils a part.
 inline const std::string two_links =
@@ -56,4 +56,4 @@ inline std::string refusal(const std::string& text) {
   return refusal_of([&] { parsed(text); });
 }
 
-}  // namespace qddot
+}  // namespace qddot::inline tests

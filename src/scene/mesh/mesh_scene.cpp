@@ -14,7 +14,8 @@ namespace {
 
 using namespace mesh;
 
-Mesh read_file(const Table& table, const std::filesystem::path& folder, const TextSource& read) {
+Mesh read_file(const TomlTable& table, const std::filesystem::path& folder,
+               const TextSource& read) {
   const std::string file = table.text("file");
   const bool has_control =
       std::ranges::any_of(file, [](unsigned char c) { return std::iscntrl(c); });
@@ -28,7 +29,7 @@ Mesh read_file(const Table& table, const std::filesystem::path& folder, const Te
 }
 
 // The pairs of nodes that springs against bending join.
-std::vector<std::array<std::size_t, 2>> bending_pairs(const Table& table, const Mesh& mesh) {
+std::vector<std::array<std::size_t, 2>> bending_pairs(const TomlTable& table, const Mesh& mesh) {
   const double stiffness = table.number_or(0, "bending_stiffness", not_negative);
   if (stiffness == 0) return {};
   auto pairs = opposite_vertices(mesh);
@@ -40,7 +41,7 @@ std::vector<std::array<std::size_t, 2>> bending_pairs(const Table& table, const 
   return pairs;
 }
 
-double mass_of_each(const Table& table, std::size_t nodes) {
+double mass_of_each(const TomlTable& table, std::size_t nodes) {
   if (table.has("node_mass") == table.has("total_mass"))
     table.fail("node_mass", "allowed is exactly one of node_mass and total_mass");
   if (table.has("node_mass")) return table.number("node_mass", not_negative);
@@ -93,7 +94,7 @@ std::string in_words(const Eigen::Vector3d& x) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x[0], x[1], x[2]);
 }
 
-void pin(const Table& box, std::vector<Node>& nodes) {
+void pin(const TomlTable& box, std::vector<Node>& nodes) {
   box.allow_keys({"min", "max"});
   const Eigen::Vector3d low = box.vector("min", 3), high = box.vector("max", 3);
   if ((low.array() > high.array()).any()) box.refuse("max", "arrays that are nowhere below min");
@@ -115,7 +116,7 @@ void pin(const Table& box, std::vector<Node>& nodes) {
 
 }  // namespace
 
-void add_mesh(const Table& table, const std::filesystem::path& folder, const TextSource& read,
+void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const TextSource& read,
               const SceneLimits& limits, Scene& scene) {
   table.allow_keys(
       {"file", "scale", "stiffness", "bending_stiffness", "node_mass", "total_mass", "pin"});
@@ -139,7 +140,7 @@ void add_mesh(const Table& table, const std::filesystem::path& folder, const Tex
     scene.nodes.push_back({.position = scale * vertex, .mass = mass});
   add_springs(mesh.edges, stiffness, scene);
   add_springs(bending, bending_stiffness, scene);
-  for (const Table& box : table.tables("pin")) pin(box, scene.nodes);
+  for (const TomlTable& box : table.tables("pin")) pin(box, scene.nodes);
 }
 
 }  // namespace qddot

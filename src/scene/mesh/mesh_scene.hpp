@@ -14,7 +14,7 @@ namespace qddot {
 // it lies in a [[mesh.pin]] box (in scaled coordinates [m]). Other vertices are left out, with a
 // warning. The mesh file is sought from `folder` and its text taken from `read`. Throws
 // InvalidInput for a mesh without edges and a box without vertices as for any other mistake.
-void add_mesh(const Table& table, const std::filesystem::path& folder, const TextSource& read,
+void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const TextSource& read,
               const SceneLimits& limits, Scene& scene);
 
 }  // namespace qddot
