@@ -196,8 +196,8 @@ BOOST_AUTO_TEST_CASE(nothing_finer_is_taken_than_what_is_enough) {
   const Course& course = oscillator();
   const auto is_last = [](const Point& point) { return point.errors.position <= 1e-3; };
   const auto points = measure::sweep(
-      *find_method("verlet"), course.scene, course.until, course.reference, short_runs,
-      [](const Point&) {}, is_last);
+      *find_method("verlet"), course.scene, course.until, course.reference,
+      {.seconds = 60, .repeats = 1}, [](const Point&) {}, is_last);
   BOOST_TEST_REQUIRE(points.size() >= 2u);
   BOOST_TEST((reached(points.back()) && is_last(points.back())));
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
