@@ -1,9 +1,11 @@
 #include "qddot/integrators/base/implicit_step.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "qddot/model/machine_epsilon.hpp"
+#include "qddot/model/vector_updates.hpp"
 
 namespace qddot {
 namespace {
@@ -211,7 +213,7 @@ Outcome ImplicitStep::correction() {
     return outcome;
   }
   p_ = -p_;
-  return p_.allFinite() ? Outcome::reached_end : Outcome::not_finite;
+  return std::isfinite(squared_norm(p_)) ? Outcome::reached_end : Outcome::not_finite;
 }
 
 // Moves u along p by the first of 1, 1/2, 1/4, ... of it that halves the residual, or else
@@ -219,14 +221,14 @@ Outcome ImplicitStep::correction() {
 // residual. Without a g to decrease, by all of it. Returns that part, or 0, with u as it was, if
 // there is none.
 double ImplicitStep::search(const Vec& q, double s) {
-  const double norm = r_.norm(), slope = r_.dot(p_);
+  const double norm = std::sqrt(squared_norm(r_)), slope = r_.dot(p_);
   double g = std::numeric_limits<double>::quiet_NaN();
   before_ = u_;
   double length = 1;
   for (int halvings = 0; halvings < most_halvings; ++halvings, length /= 2) {
-    u_ = before_ + length * p_;
+    add_scaled(before_, length, p_, u_);
     residual(q, s);
-    if (!is_minimisation() || r_.norm() <= 0.5 * norm) return length;
+    if (!is_minimisation() || std::sqrt(squared_norm(r_)) <= 0.5 * norm) return length;
     const double g_there = objective(q, s);
     if (std::isnan(g)) {
       u_.swap(before_);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "qddot/model/vector_updates.hpp"
+
 namespace qddot::multifrontal {
 
 namespace {
@@ -22,7 +24,9 @@ void TriangularSolves::solve(const Vec& b, Vec& x) {
   double *y = y_.get(), *z = gathered_.get();
   for (Index i = 0; i < b.size(); ++i) y[place[i]] = b[i];
   for (const Front& f : fronts_) kernels_.forward(factor(f), y, z);
-  for (Index i = 0; i < b.size(); ++i) y[i] /= pivot_[i];
+  const Eigen::Map<const Vec> pivots(pivot_, b.size());
+  Eigen::Map<Vec> unknowns(y, b.size());
+  divide(unknowns, pivots, unknowns);
   for (const Front* f = fronts_.end(); f != fronts_.begin();) kernels_.backward(factor(*--f), y, z);
   x.resize(b.size());
   for (Index i = 0; i < b.size(); ++i) x[i] = y[place[i]];
