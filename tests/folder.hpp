@@ -10,7 +10,8 @@
 
 #include <fmt/format.h>
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // The names of what stands in a folder, in order and each followed by a space.
 inline std::string listing(const std::string& folder) {
@@ -45,4 +46,5 @@ class Folder {
                                 fmt::format("qddot_test_{}_{:x}", getpid(), std::random_device{}());
 };
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -8,7 +8,8 @@
 
 #include "qddot/model/capabilities.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // The slope of the line through the points (x_i, y_i) by least squares.
 inline double slope(const Vec& x, const Vec& y) {
@@ -93,4 +94,5 @@ double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return (a - b).allFinite() ? largest : INFINITY;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -2,7 +2,8 @@
 
 #include <utility>
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 Eigen::Vector3d in_space(const Vec& x) {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -92,4 +93,5 @@ Problem hammock(int dimension) {
   return p;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

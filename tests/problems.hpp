@@ -5,7 +5,8 @@
 
 #include "qddot/model/mass_spring.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // A network and where it starts.
 struct Problem {
@@ -51,4 +52,5 @@ Network with_split(Network network);
 // frequencies are below 25 rad/s and no spring comes near zero length.
 Problem hammock(int dimension);
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -1,6 +1,7 @@
 #include "tests/fuzz/corpus.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 const std::vector<Sample>& corpus() {
   static const std::vector<Sample> samples = {
@@ -123,4 +124,5 @@ max = [0.5, 9, 9]
   return samples;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // A small file that is read without complaint; the ending of its name says what it is.
 struct Sample {
@@ -13,4 +14,5 @@ struct Sample {
 // Scene files of all kinds, and meshes of all formats, which the scene files name.
 const std::vector<Sample>& corpus();
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -5,7 +5,8 @@
 #include <string_view>
 #include <vector>
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 namespace {
 
 constexpr std::array<std::string_view, 36> numbers = {"-1",
@@ -217,4 +218,5 @@ std::string Mutator::insertion() {
   }
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -4,7 +4,8 @@
 #include <random>
 #include <string>
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // Spoils texts, the same ones in the same way for the same seed.
 class Mutator {
@@ -26,4 +27,5 @@ class Mutator {
   std::mt19937_64 random_;
 };
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

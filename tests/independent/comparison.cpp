@@ -12,7 +12,8 @@
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/scene/reduce/part.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 using namespace measure;
 namespace {
@@ -344,4 +345,5 @@ Comparisons compare_methods(const DrawnMotion& motion) {
   return all;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -7,7 +7,8 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/independent/plain_motion.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // A drawn scene's motion to its horizon by the independent model, and how well any code that rounds
 // to double precision can know it.
@@ -60,4 +61,5 @@ Comparisons compare_reductions(const DrawnMotion& motion);
 // differ by less and less, so must they from the motion.
 Comparisons compare_methods(const DrawnMotion& motion);
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

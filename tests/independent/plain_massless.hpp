@@ -4,7 +4,8 @@
 
 #include "tests/independent/plain_model.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // Newton's iteration on -K d = f over the coordinates of the massless nodes that the scene's
 // dimension has, by Cholesky's factorisation without blocks: where a pivot is not positive the
@@ -98,4 +99,5 @@ bool PlainModel<Real>::place_massless(Vector& x) const {
   return false;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -5,7 +5,8 @@
 
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // A real of quadruple precision (113 bits), of which the language has no root.
 using Quadruple = __float128;
@@ -123,6 +124,7 @@ class PlainModel {
   std::vector<std::size_t> massless_;
 };
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot
 
 #include "tests/independent/plain_massless.hpp"

@@ -7,7 +7,8 @@
 
 #include "tests/independent/plain_model.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // Positions [m] and velocities [m/s] of all nodes at the time t [s].
 template <class Real>
@@ -150,4 +151,5 @@ class PlainMotion {
   Vector x_[levels], v_[levels];
 };
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

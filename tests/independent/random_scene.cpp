@@ -9,7 +9,8 @@
 
 #include <Eigen/Geometry>
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 namespace {
 
 using Eigen::Vector3d;
@@ -370,4 +371,5 @@ RandomScene random_scene(std::uint64_t seed) {
   return random;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

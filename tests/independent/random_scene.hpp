@@ -5,7 +5,8 @@
 
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // A small scene made by chance, valid, with a horizon of a few of its fastest vibrations, and what
 // is special about it. The same seed gives the same scene everywhere.
@@ -20,4 +21,5 @@ struct RandomScene {
 // springs; springs of rest length zero; massless joints; and all of it far from the origin.
 RandomScene random_scene(std::uint64_t seed);
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -3,7 +3,8 @@
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/runs.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // Velocity Verlet with its second kick longer by so many thousandths: with none the method itself,
 // with one a fault that the tests have to see.
@@ -32,4 +33,5 @@ Method faulty_verlet() {
   return method;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

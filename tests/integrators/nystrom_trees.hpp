@@ -4,7 +4,8 @@
 
 #include "qddot/integrators/base/nystrom.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // A term of the Taylor series of q'' = g(q) and what the stages of a Nystrom method make of it
 // (Hairer, Norsett and Wanner, Solving ODEs I, section II.14): the derivative of g in c_i v of some
@@ -86,4 +87,5 @@ inline double order_defect(const std::vector<NystromTree>& trees, const std::vec
   return largest;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

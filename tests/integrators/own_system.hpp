@@ -11,7 +11,8 @@
 // own: a chain in the plane between two pins, whose neighbours are bound by Lennard and Jones' law
 //   V(r) = e ((s/r)^12 - 2 (s/r)^6),  e = 1 J, at rest at s = 1 m, where V'' = 72 N/m.
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // The chain by V and f alone.
 class Chain : public System {
@@ -125,4 +126,5 @@ class DividedChain final : public WithGradient<ChainWithStiffness>, public Split
                {0, 1, 2, 3, 4, 5, 6, 7}};
 };
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -8,7 +8,8 @@
 #include "qddot/model/block_diagonal_system.hpp"
 #include "tests/integrators/runs.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // A system that can be made again and again, and where it starts.
 struct Piece {
@@ -90,4 +91,5 @@ inline Run run(const Method& method, const Piece& alone, double t_end, const Opt
   return run(method, *system, alone.start, t_end, options, observer);
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -10,7 +10,8 @@
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 struct Run {
   Summary summary;
@@ -187,4 +188,5 @@ inline Network linear_chain(int n, double mass, double stiffness) {
   return network;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -6,7 +6,8 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/integrators/runs.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // A scene as it is and as it is reduced by everything there is.
 inline const Reductions with_and_without[] = {Reductions::only({Reduction::pins}), {}};
@@ -55,4 +56,5 @@ inline void add_random_body(std::mt19937& random, std::size_t count, const Eigen
   }
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

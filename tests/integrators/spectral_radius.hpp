@@ -4,7 +4,8 @@
 
 #include <Eigen/Core>
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // The larger modulus of the eigenvalues t +- sqrt(t^2 - d), t half the trace and d the determinant.
 inline double spectral_radius(const Eigen::Matrix2d& matrix) {
@@ -13,4 +14,5 @@ inline double spectral_radius(const Eigen::Matrix2d& matrix) {
   return t * t < d ? std::sqrt(d) : std::abs(t) + std::sqrt(t * t - d);
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

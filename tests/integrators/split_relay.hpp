@@ -4,7 +4,8 @@
 
 #include "tests/integrators/runs.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // Speaks for another split system, and lets a test see or change what its halves say; what is asked
 // of the stiff block is asked of the stiff half.
@@ -94,4 +95,5 @@ inline Network with_all_named(Network network, bool stiff) {
   return network;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -4,7 +4,8 @@
 
 #include "qddot/model/mass_spring.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // A network with image links and a point of it.
 struct ImageSample {
@@ -110,4 +111,5 @@ void for_random_images(const Check& check) {
   }
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -18,7 +18,7 @@ import studies
 
 EXPERIMENTS = Path(__file__).resolve().parents[2] / "experiments"
 
-# Of each study its pictures, and the table whose column `method` the first of them must name.
+# The pictures of each study, and the table whose column `method` the first of them must name.
 PICTURES = {
     "work_precision": (("chart", "chart_energy"), "points.csv"),
     "stability_map": (("stability_map", "stability_modes"), "limits.csv"),

@@ -18,7 +18,8 @@
 #include "tests/folder.hpp"
 #include "tests/fragments.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 inline std::string read_all(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -167,4 +168,5 @@ inline Table parse_csv(const std::string& text) {
 
 inline Table read_csv(const std::string& path) { return parse_csv(read_all(path)); }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -9,7 +9,7 @@ import re
 import sys
 from pathlib import Path
 
-OPENS = re.compile(r"^namespace(?: ([\w: ]+))? \{$")
+OPENS = re.compile(r"^(?:inline )?namespace(?: ([\w:]+))? \{$")
 CLOSES = re.compile(r"^\}  // namespace")
 SUITE = re.compile(r"^BOOST_AUTO_TEST_SUITE\((\w+)")
 SUITE_ENDS = re.compile(r"^BOOST_AUTO_TEST_SUITE_END")

@@ -11,7 +11,8 @@
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 inline Scene draw(const std::string& generator, const GeneratorValues& values = {}) {
   return generate(*find_generator(generator), values, "test");
@@ -87,4 +88,5 @@ inline double farthest(const std::vector<Node>& a, const std::vector<Node>& b) {
   return largest;
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

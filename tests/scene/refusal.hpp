@@ -7,7 +7,8 @@
 
 #include "qddot/scene/invalid_input.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // What is said of something that is not taken; empty where it is.
 template <class Reading>
@@ -36,4 +37,5 @@ inline std::string with(std::string text, const std::string& old_part,
   return text.replace(at, old_part.size(), new_part);
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

@@ -6,7 +6,8 @@
 
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 inline bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -44,4 +45,5 @@ inline std::string first_difference(const Scene& a, const Scene& b) {
   return content_hash(a) == content_hash(b) ? "" : "hash";
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot

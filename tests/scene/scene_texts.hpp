@@ -5,7 +5,8 @@
 #include "qddot/scene/scene_file.hpp"
 #include "tests/scene/refusal.hpp"
 
-namespace qddot::inline tests {
+namespace qddot {
+inline namespace tests {
 
 // Two nodes and a spring, of which each test spoils a part.
 inline const std::string two_links =
@@ -56,4 +57,5 @@ inline std::string refusal(const std::string& text) {
   return refusal_of([&] { parsed(text); });
 }
 
-}  // namespace qddot::inline tests
+}  // namespace tests
+}  // namespace qddot
