@@ -37,8 +37,6 @@ using namespace measure;
 using namespace command;
 namespace {
 
-constexpr const char* stock_suffix = "_klu";
-
 struct Arguments {
   SceneChoice scene;
   std::string out;
@@ -71,17 +69,24 @@ struct Pair {
   const Method* stock;
 };
 
+const Method* stock_way_of(const Method& method) {
+  const auto found = std::ranges::find(methods(), method.name, &Method::stock_of);
+  return found == methods().end() ? nullptr : &*found;
+}
+
 std::vector<Pair> select_pairs(const std::vector<std::string>& names, const ReducedScene& scene,
                                const std::string& source) {
   std::vector<Pair> pairs;
   for (const Method* method : select_methods(names, scene, source)) {
-    if (const Method* stock = find_method(method->name + stock_suffix)) {
+    if (const Method* stock = stock_way_of(*method)) {
       pairs.push_back({method, stock});
     } else if (!names.empty()) {
-      throw InvalidInput(fmt::format(
-          "--methods: {} has no stock way beside it; allowed are those of which there is one "
-          "with {} behind its name",
-          method->name, stock_suffix));
+      std::vector<std::string> allowed;
+      for (const Method& m : methods()) {
+        if (!m.stock_of.empty()) allowed.push_back(m.stock_of);
+      }
+      throw InvalidInput(fmt::format("--methods: {} has no stock way beside it; allowed are {}",
+                                     method->name, fmt::join(allowed, ", ")));
     }
   }
   return pairs;
