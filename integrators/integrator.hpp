@@ -190,8 +190,9 @@ class Integrator {
     const Stopwatch watch(seconds(), &Seconds::force);
     discrete_gradient_->discrete_gradient(a, b, f);
   }
-  // Likewise SplitStiffness::weighted_stiffness. Of a system that does not offer it, the weight
-  // times all of K: with the weight going to 0, M - s K goes to M, which is positive definite.
+  // Likewise SplitStiffness::weighted_stiffness. Where a system does not offer it, this is the
+  // weight times all of K: with the weight going to 0, M - s K goes to M, which is positive
+  // definite.
   void weighted_stiffness(const ConstVec& q, double compression_weight, SymmetricMatrix& k) {
     ++counts_.stiffness_evaluations;
     const Stopwatch watch(seconds(), &Seconds::stiffness);

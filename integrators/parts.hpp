@@ -22,7 +22,7 @@ class Parts final : public Integrator {
   double reached() const override;
 
  private:
-  struct Piece {
+  struct Part {
     Index first;  // of its unknowns
     std::unique_ptr<Integrator> integrator;
     State state, begin;           // now, and where the present run_to began
@@ -33,14 +33,14 @@ class Parts final : public Integrator {
   void start(const State& state) override;
   Outcome run_to(State& state, double t_stop) override;
 
-  void start(Piece& piece);
-  // Brings the piece to t_end from where it begins, whether or not it has run from there before.
-  Outcome run_piece(Piece& piece, double t_end);
+  void start(Part& part);
+  // Brings the part to t_end from where it begins, whether or not it has run from there before.
+  Outcome run_part(Part& part, double t_end);
   void gather(State& state);
-  double growth_of(Piece& piece);
+  double growth_of(Part& part);
   double energy_growth(const State& state) override;
 
-  std::vector<Piece> pieces_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace qddot

@@ -13,11 +13,10 @@ const std::vector<Method>& methods();
 // The method of that name, or nullptr.
 const Method* find_method(std::string_view name);
 
-// An integrator for `system`, which must outlive it; allocates and analyses all it needs. Of a
-// system that consists of blocks, each gets an integrator of its own. Where the method does not fit
-// the system (see misfit), advance() says why and does nothing. Throws
-// std::invalid_argument, naming the option, its value and what is allowed, where an option cannot
-// be (check_options).
+// An integrator for `system`, which must outlive it; allocates and analyses all it needs. Each
+// block of a system of blocks gets an integrator of its own. Where the method does not fit the
+// system (see misfit), advance() says why and does nothing. Throws std::invalid_argument, naming
+// the option, its value and what is allowed, where an option cannot be (check_options).
 std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
                                             const Options& options);
 

@@ -23,7 +23,7 @@ RIGHT, TOP, BOTTOM = 0.25, 1.0, 0.55
 LABELS, CHARACTER, LEAST_WIDTH = 0.45, 0.082, 11.3
 REFERENCE_HEIGHT, HEADS = 1.45, 0.3
 HIGHEST = 1.45
-# Of more springs than that, those are drawn that come to have the most energy.
+# Where there are more springs, those are drawn that come to have the most energy.
 MOST_SPRINGS = 5
 SPRINGS = (COOL[0], WARM[0], COOL[1], WARM[4], COOL[2])
 SUM = INK

@@ -169,7 +169,7 @@ class DampingSheet:
         self.sheet = Sheet(WIDTH, self.height())
 
     def height(self):
-        """Of the sheet; the lower half is left out where there is nothing in it."""
+        """The sheet's height; the lower half is left out where there is nothing in it."""
         rows = 2 if self.modes or self.chosen else 1
         return TOP + rows * PANEL_HEIGHT + (rows - 1) * DOWN + 0.75
 

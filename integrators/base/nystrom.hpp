@@ -27,8 +27,8 @@ struct NystromPair {
 // Steps of a pair, whose higher order is propagated. Each attempt takes s - 1 forces, an accepted
 // one another at its end unless that is its last stage. The error test does not see an instability
 // of modes that hardly move yet, so steps are held to h <= stable_hw/w_max, with Gershgorin's bound
-// of the largest frequency, taken anew every few steps. Of a system without K nothing bounds it,
-// and the error test has to do.
+// of the largest frequency, taken anew every few steps. Where a system has no K, nothing bounds the
+// frequency, and the error test has to do.
 class Nystrom final : public AdaptiveStep {
  public:
   Nystrom(const Method& method, const System& system, const Options& options,

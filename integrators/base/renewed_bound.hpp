@@ -8,8 +8,9 @@
 namespace qddot {
 
 // Gershgorin's bound of the largest frequency w_max [1/s] of a system along its motion: taken anew
-// every 50 steps only, for it changes with the positions, but much less than these do. Of a system
-// that computes no K nothing is known: the bound is 0, as where nothing pulls, and limits no step.
+// every 50 steps only, for it changes with the positions, but much less than these do. Where a
+// system computes no K, nothing is known: the bound is 0, as where nothing pulls, and limits no
+// step.
 class RenewedBound {
  public:
   explicit RenewedBound(const System& system)

@@ -4,7 +4,7 @@
 // or the stock way with KLU. (Hindmarsh et al., ACM TOMS 31:3 (2005) 363-396.) Everything that is
 // not set here is left at IDA's default.
 //
-// M may be singular. Of a massless node, 0 = f is a constraint on its position (index 1), which the
+// M may be singular. For a massless node, 0 = f constrains its position (index 1), which the
 // error test sees like all others: where it moves fast, longer steps would throw Newton's iteration
 // onto another balance, a saddle of its energy. Its velocity v = q' is of index 2 (Brenan,
 // Campbell, Petzold, Numerical Solution of IVPs in DAEs, section 5.2), but nothing depends on it:

@@ -95,7 +95,7 @@ class Blocks {
 
 // A system divided in two: f = stiff->force + soft->force, and V and K are sums likewise. Both have
 // all of its unknowns and masses, and it is valid where both are. The pattern of each one's K is
-// that of its own forces alone. Where the whole system has K, all of these have. Of a network, the
+// that of its own forces alone. Where the whole system has K, all of these have. In a network, the
 // soft system has weight, loads and constants, and either may be without springs.
 struct Split {
   std::shared_ptr<const System> stiff, soft;

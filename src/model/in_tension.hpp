@@ -76,8 +76,8 @@ class InTension {
   // resolves it. In longer steps the rates of l at the two ends count without what they have in
   // common but the lengths do not show, which is an error of first order of the velocities; and no
   // more than a vibration can make of them, whose speed takes it as far as itself divided by w,
-  // where the cubic goes up to a quarter of it times h. Of a vibration that turns more than once in
-  // a step, h w > 8, the two ends tell nothing.
+  // where the cubic goes up to a quarter of it times h. The two ends tell nothing of a
+  // vibration that turns more than once in a step, h w > 8.
   static SquaredLength path(const Layout<D>& layout, const Vec& mass, const Spring& spring,
                             const State& from, const State& to) {
     const double h = to.t - from.t;

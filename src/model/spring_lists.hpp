@@ -19,7 +19,7 @@ class SpringLists {
   using Point = Eigen::Matrix<double, D, 1>;
   using Block = Eigen::Matrix<double, D, D>;
 
-  // i, j: first unknowns. Of an image link, j may be i.
+  // i, j: first unknowns; j may be i for an image link.
   struct Link {
     int i, j;
     SpringLaw law;

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "tests/integrators/pieces.hpp"
+#include "tests/integrators/parts.hpp"
 
 BOOST_AUTO_TEST_SUITE(parts)
 
@@ -19,10 +19,10 @@ bool are_alone(const Run& whole, const Together& together, const std::vector<Run
   return true;
 }
 
-std::vector<Run> runs_alone(const Method& method, const std::vector<Piece>& pieces,
+std::vector<Run> runs_alone(const Method& method, const std::vector<Part>& parts,
                             const Observer& observer = {}) {
   std::vector<Run> alone;
-  for (const Piece& one : pieces) {
+  for (const Part& one : parts) {
     alone.push_back(run(method, one, t_end, options_for(method), observer));
     BOOST_TEST(alone.back().summary.message == "");
   }
@@ -42,10 +42,10 @@ struct Film {
 BOOST_AUTO_TEST_CASE(every_method_takes_each_part_as_if_it_were_alone) {
   for (const Method& method : methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      const std::vector<Piece> pieces = pieces_for(method);
-      const Together together(pieces);
+      const std::vector<Part> parts = parts_for(method);
+      const Together together(parts);
       const Run whole = run(method, together, t_end, options_for(method));
-      const std::vector<Run> alone = runs_alone(method, pieces);
+      const std::vector<Run> alone = runs_alone(method, parts);
       BOOST_TEST(whole.summary.message == "");
       BOOST_TEST(whole.state.t == t_end);
       BOOST_TEST(whole.summary.t_reached == t_end);
@@ -62,9 +62,9 @@ BOOST_AUTO_TEST_CASE(adaptive_methods_take_for_each_part_the_steps_that_it_needs
   const Oscillator slow{.stiffness = 2}, fast{.stiffness = 20000};  // 1 and 100 rad/s
   for (const Method& method : methods_of(Knob::rtol)) {
     BOOST_TEST_CONTEXT(method.name) {
-      const std::vector<Piece> pieces = {piece(slow.problem()), piece(fast.problem())};
-      const std::vector<Run> alone = runs_alone(method, pieces);
-      const Together together(pieces);
+      const std::vector<Part> parts = {part(slow.problem()), part(fast.problem())};
+      const std::vector<Run> alone = runs_alone(method, parts);
+      const Together together(parts);
       const Run whole = run(method, together, t_end, options_for(method));
       BOOST_TEST(are_alone(whole, together, alone));
       BOOST_TEST(10 * alone[0].summary.counts.steps < alone[1].summary.counts.steps);
@@ -86,15 +86,15 @@ BOOST_AUTO_TEST_CASE(an_observer_sees_all_parts_at_the_same_time) {
                                      t_end};
   for (const Method& method : methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      const std::vector<Piece> pieces = pieces_for(method);
-      const Together together(pieces);
+      const std::vector<Part> parts = parts_for(method);
+      const Together together(parts);
       Film film(times);
       const Run whole = run(method, together, t_end, options_for(method), film.observer);
       BOOST_TEST(whole.summary.message == "");
       BOOST_TEST_REQUIRE(film.states.size() == times.size());
-      for (std::size_t i = 0; i < pieces.size(); ++i) {
+      for (std::size_t i = 0; i < parts.size(); ++i) {
         Film own(times);
-        run(method, pieces[i], t_end, options_for(method), own.observer);
+        run(method, parts[i], t_end, options_for(method), own.observer);
         for (std::size_t k = 0; k < times.size(); ++k) {
           BOOST_TEST(film.states[k].t == times[k]);
           BOOST_TEST(same(together.part(film.states[k], i), own.states[k]));
@@ -106,11 +106,11 @@ BOOST_AUTO_TEST_CASE(an_observer_sees_all_parts_at_the_same_time) {
 
 BOOST_AUTO_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed) {
   for (const Method& method : methods()) {
-    if (method.asks(Need::split_forces)) continue;  // which the piece that gives up has not
+    if (method.asks(Need::split_forces)) continue;  // which the part that gives up has not
     BOOST_TEST_CONTEXT(method.name) {
-      std::vector<Piece> pieces = pieces_for(method);
-      pieces.insert(pieces.begin(), giving_up(-0.2, "no more"));
-      const Together together(pieces);
+      std::vector<Part> parts = parts_for(method);
+      parts.insert(parts.begin(), giving_up(-0.2, "no more"));
+      const Together together(parts);
       const auto integrator = make_integrator(method, *together.system, options_for(method));
       const double early = start_time + 0.1;
       State first = together.start, failed = together.start, second = together.start;
@@ -138,16 +138,16 @@ BOOST_AUTO_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed) {
 }
 
 BOOST_AUTO_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing) {
-  const Piece nothing = {[] { return make_mass_spring({.dimension = 2}); }, {start_time, {}, {}}};
+  const Part nothing = {[] { return make_mass_spring({.dimension = 2}); }, {start_time, {}, {}}};
   for (const Method& method : methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      const std::vector<Piece> pieces = pieces_for(method);
-      const auto group = [](std::vector<Piece> few) {
+      const std::vector<Part> parts = parts_for(method);
+      const auto group = [](std::vector<Part> few) {
         const State start = Together(few).start;
-        return Piece{[few] { return std::move(Together(few).system); }, start};
+        return Part{[few] { return std::move(Together(few).system); }, start};
       };
-      const Together flat(pieces), nested({group({}), nothing, group({pieces[0], nothing}),
-                                           group({group({pieces[1]}), pieces[2]})});
+      const Together flat(parts), nested({group({}), nothing, group({parts[0], nothing}),
+                                          group({group({parts[1]}), parts[2]})});
       const Run a = run(method, flat, t_end, options_for(method));
       const Run b = run(method, nested, t_end, options_for(method));
       BOOST_TEST(b.summary.message == "");
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing) {
 BOOST_AUTO_TEST_CASE(a_run_to_its_own_start_changes_nothing) {
   for (const Method& method : methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Together together(pieces_for(method));
+      const Together together(parts_for(method));
       const Run r = run(method, together, start_time, options_for(method));
       BOOST_TEST(r.summary.message == "");
       BOOST_TEST(same(r.state, together.start));
@@ -178,9 +178,9 @@ BOOST_AUTO_TEST_CASE(what_one_part_is_refused_for_all_are) {
   massless.network.node_mass.setZero();
   for (const Method& method : methods()) {
     BOOST_TEST_CONTEXT(method.name) {
-      std::vector<Piece> pieces = pieces_for(method);
+      std::vector<Part> parts = parts_for(method);
       const auto outcome = [&] {
-        const Together together(pieces);
+        const Together together(parts);
         const Run r = run(method, together, t_end, options_for(method));
         if (r.summary.outcome != Outcome::reached_end) {
           BOOST_TEST(same(r.state, together.start));
@@ -188,11 +188,11 @@ BOOST_AUTO_TEST_CASE(what_one_part_is_refused_for_all_are) {
         }
         return name(r.summary.outcome);
       };
-      pieces.push_back(piece(hammock(2)));
+      parts.push_back(part(hammock(2)));
       BOOST_TEST(outcome() == (method.asks(Need::constant_stiffness) ? "stiffness_varies"
                                : method.asks(Need::split_forces)     ? "no_stiff_set"
                                                                      : "reached_end"));
-      pieces.back() = piece(massless);
+      parts.back() = part(massless);
       BOOST_TEST(outcome() ==
                  (method.is(Trait::accepts_massless) ? "reached_end" : "singular_mass"));
     }

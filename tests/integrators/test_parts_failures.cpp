@@ -2,7 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "tests/integrators/pieces.hpp"
+#include "tests/integrators/parts.hpp"
 
 BOOST_AUTO_TEST_SUITE(parts_failures)
 
@@ -39,8 +39,8 @@ void check_same(const Method& method, const State& a, const State& b, bool to_th
 
 // Runs `bad` among others, at each place, without and with an observer that looks in before: all
 // end at the time that it reaches alone, and each where it is alone at that time.
-void check_failure(const Method& method, const Piece& bad, Outcome outcome) {
-  const std::vector<Piece> good = pieces_for(method);
+void check_failure(const Method& method, const Part& bad, Outcome outcome) {
+  const std::vector<Part> good = parts_for(method);
   const Options options = options_for(method);
   for (const Observer& observer : {Observer{}, early}) {
     const Run alone = run(method, bad, t_end, options, observer);
@@ -49,9 +49,9 @@ void check_failure(const Method& method, const Piece& bad, Outcome outcome) {
     BOOST_TEST(alone.state.t < t_end);
     for (std::size_t place = 0; place <= good.size(); ++place) {
       BOOST_TEST_CONTEXT(method.name << ", place " << place << ", " << observer.times.size()) {
-        std::vector<Piece> pieces = good;
-        pieces.insert(pieces.begin() + static_cast<std::ptrdiff_t>(place), bad);
-        const Together together(pieces);
+        std::vector<Part> parts = good;
+        parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(place), bad);
+        const Together together(parts);
         const Run r = run(method, together, t_end, options, observer);
         BOOST_TEST(name(r.summary.outcome) == name(outcome));
         BOOST_TEST(r.thrown == alone.thrown);
@@ -59,9 +59,9 @@ void check_failure(const Method& method, const Piece& bad, Outcome outcome) {
         BOOST_TEST(r.state.t == alone.state.t);
         BOOST_TEST(r.summary.t_reached == r.state.t);
         BOOST_TEST(same(together.part(r.state, place), alone.state));
-        for (std::size_t i = 0; i < pieces.size(); ++i) {
+        for (std::size_t i = 0; i < parts.size(); ++i) {
           if (i == place) continue;
-          const Run own = run(method, pieces[i], r.state.t, options, observer);
+          const Run own = run(method, parts[i], r.state.t, options, observer);
           check_same(method, together.part(r.state, i), own.state, observer.times.empty());
         }
       }
@@ -70,11 +70,11 @@ void check_failure(const Method& method, const Piece& bad, Outcome outcome) {
 }
 
 // A mass that swings back on a spring which may not be compressed, after a quarter of a period.
-Piece string(double quarter_period) {
+Part string(double quarter_period) {
   const double omega = M_PI / (2 * quarter_period);
   Problem p{{.dimension = 1, .node_mass = Vec::Ones(1)}, {0, Vec{{1.5}}, Vec::Zero(1)}};
   p.network.anchors = {{0, {0, 0, 0}, {omega * omega, 1}, Holds::in_tension}};
-  return piece(p);
+  return part(p);
 }
 
 }  // namespace
@@ -86,14 +86,14 @@ BOOST_AUTO_TEST_CASE(a_part_that_diverges_ends_the_run_of_all_at_its_last_step) 
     // splitting of order 6 is stable in places far beyond its limit, but nowhere above h w = 9.4.
     const double beyond = method.name == "blanes_moan6" ? 3.2 : 2;
     const double omega = 100 * beyond * std::max(2.0, method.stability_limit.value_or(2));
-    check_failure(method, piece(Oscillator{.mass = 1, .stiffness = omega * omega}.problem()),
+    check_failure(method, part(Oscillator{.mass = 1, .stiffness = omega * omega}.problem()),
                   Outcome::diverged);
   }
 }
 
 BOOST_AUTO_TEST_CASE(a_part_that_throws_ends_the_run_of_all_at_its_last_step) {
   for (const Method& method : methods()) {
-    if (method.asks(Need::split_forces)) continue;  // which the piece that gives up has not
+    if (method.asks(Need::split_forces)) continue;  // which the part that gives up has not
     check_failure(method, giving_up(-0.2, "no more"), Outcome::solver_failed);
   }
 }
@@ -107,16 +107,16 @@ BOOST_AUTO_TEST_CASE(a_part_that_goes_slack_ends_the_run_of_all_at_its_last_step
 BOOST_AUTO_TEST_CASE(of_several_parts_that_fail_the_earliest_decides_in_any_order) {
   for (const Method& method : general_methods()) {
     if (method.name == "dprkn12") continue;  // whose steps are longer than failures are apart
-    const std::vector<Piece> bad = {string(0.4), giving_up(-0.5, "late"), giving_up(0.2, "early"),
-                                    piece(hammock(2))};
+    const std::vector<Part> bad = {string(0.4), giving_up(-0.5, "late"), giving_up(0.2, "early"),
+                                   part(hammock(2))};
     const Run first = run(method, bad[2], t_end, options_for(method));
     BOOST_TEST(first.thrown == "early");
     std::vector<std::size_t> order = {0, 1, 2, 3};
     do {
       BOOST_TEST_CONTEXT(method.name << " " << order[0] << order[1] << order[2] << order[3]) {
-        std::vector<Piece> pieces;
-        for (const std::size_t i : order) pieces.push_back(bad[i]);
-        const Together together(pieces);
+        std::vector<Part> parts;
+        for (const std::size_t i : order) parts.push_back(bad[i]);
+        const Together together(parts);
         const Run r = run(method, together, t_end, options_for(method));
         BOOST_TEST(r.thrown == "early");
         // Where its last step was depends on where an adaptive method wanted to stop.
@@ -124,7 +124,7 @@ BOOST_AUTO_TEST_CASE(of_several_parts_that_fail_the_earliest_decides_in_any_orde
         BOOST_TEST(std::abs(r.state.t - first.state.t) < 0.05);
         BOOST_TEST(r.summary.t_reached == r.state.t);
         for (std::size_t i = 0; i < order.size(); ++i) {
-          const Run own = run(method, pieces[i], r.state.t, options_for(method));
+          const Run own = run(method, parts[i], r.state.t, options_for(method));
           BOOST_TEST(own.summary.message == "");
           check_same(method, together.part(r.state, i), own.state, false);
         }
@@ -142,17 +142,17 @@ BOOST_AUTO_TEST_CASE(a_run_out_of_time_ends_where_all_parts_last_were_together) 
         const std::shared_ptr<System> oscillator = make_mass_spring(Oscillator().problem().network);
         // Asks to stop at a force well after the observer's time, whatever the steps.
         double seen = 0;
-        const Piece last_straw = {[&] {
-                                    auto relay = std::make_unique<Relay>(*oscillator);
-                                    relay->after_force = [&](const ConstVec& q, MutableVec) {
-                                      if (q[0] <= -0.2) budget.request_stop();
-                                    };
-                                    return relay;
-                                  },
-                                  piece(Oscillator().problem()).start};
-        std::vector<Piece> pieces = pieces_for(method);
-        pieces.insert(pieces.begin() + static_cast<std::ptrdiff_t>(place), last_straw);
-        const Together together(pieces);
+        const Part last_straw = {[&] {
+                                   auto relay = std::make_unique<Relay>(*oscillator);
+                                   relay->after_force = [&](const ConstVec& q, MutableVec) {
+                                     if (q[0] <= -0.2) budget.request_stop();
+                                   };
+                                   return relay;
+                                 },
+                                 part(Oscillator().problem()).start};
+        std::vector<Part> parts = parts_for(method);
+        parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(place), last_straw);
+        const Together together(parts);
         State shown;
         const Observer observer{{start_time + 0.05}, [&](const State& s) {
                                   shown = s;
@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(a_run_out_of_time_ends_where_all_parts_last_were_together) 
 BOOST_AUTO_TEST_CASE(a_step_that_no_part_can_take_is_refused_for_all) {
   for (const Method& method : methods_of(Knob::step_size)) {
     BOOST_TEST_CONTEXT(method.name) {
-      const Together together(pieces_for(method));
+      const Together together(parts_for(method));
       const Run r = run(method, together, t_end, {.step_size = 1e-20});
       BOOST_TEST(name(r.summary.outcome) == "step_too_small");
       BOOST_TEST(r.summary.message == advice(Outcome::step_too_small));

@@ -3,7 +3,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/integrators/base/fixed_step.hpp"
-#include "tests/integrators/pieces.hpp"
+#include "tests/integrators/parts.hpp"
 #include "tests/integrators/scenes.hpp"
 
 BOOST_AUTO_TEST_SUITE(split_methods)
@@ -83,21 +83,21 @@ BOOST_AUTO_TEST_CASE(one_that_needs_a_constant_stiffness_as_well_is_told_of_that
 }
 
 BOOST_AUTO_TEST_CASE(every_part_has_to_be_split_but_one_without_unknowns) {
-  const std::vector<Piece> pieces = pieces_for(method);
-  const Together together(pieces);
+  const std::vector<Part> parts = parts_for(method);
+  const Together together(parts);
   BOOST_TEST(applies_to(method, *together.system));
   const double t_end = start_time + 0.1;
   const Run whole = run(method, together, t_end, options);
   BOOST_TEST(whole.summary.message == "");
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Run alone = run(method, pieces[i], t_end, options);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Run alone = run(method, parts[i], t_end, options);
     BOOST_TEST(same(together.part(whole.state, i), alone.state));
   }
 
-  std::vector<Piece> more = pieces;
+  std::vector<Part> more = parts;
   more.push_back({[] { return make_mass_spring({.dimension = 2}); }, {start_time, {}, {}}});
   BOOST_TEST(run(method, Together(more), t_end, options).summary.message == "");
-  more.insert(more.begin() + 1, piece(hammock(2)));
+  more.insert(more.begin() + 1, part(hammock(2)));
   const Together unlike(more);
   const Run refused = run(method, unlike, t_end, options);
   BOOST_TEST(name(refused.summary.outcome) == "no_stiff_set");

@@ -1,4 +1,4 @@
-// A part of another body is told from its own: what every reduction is checked by.
+// A reduced part is told from one that was drawn otherwise: what every reduction is checked by.
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/scene/reduce/part.hpp"
@@ -11,17 +11,17 @@ using namespace qddot::reduce;
 
 namespace {
 
-Body body_of(const Scene& scene) {
-  return make_body(joined(components_of(scene.nodes, scene.springs)).front(), scene.nodes,
-                   scene.springs, scene.gravity);
+DrawnPart drawn_part(const Scene& scene) {
+  return reduce::drawn_part(joined(parts_of(scene.nodes, scene.springs)).front(), scene.nodes,
+                            scene.springs, scene.gravity);
 }
 
 template <class Change>
 std::string difference(const Scene& scene, const Change& change) {
-  const Part part(body_of(scene), scene.dimension, Reductions());
+  const Part part(drawn_part(scene), scene.dimension, Reductions());
   Scene other = scene;
   change(other);
-  return part.difference_from(body_of(other)).value_or("");
+  return part.difference_from(drawn_part(other)).value_or("");
 }
 
 bool says(const std::string& sentence, const std::string& words) {
@@ -30,7 +30,7 @@ bool says(const std::string& sentence, const std::string& words) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(a_part_is_the_body_that_it_was_made_of) {
+BOOST_AUTO_TEST_CASE(a_part_is_the_drawn_one_that_it_was_made_of) {
   for (const Generator& generator : generators()) {
     const Scene scene = draw(generator.name);
     BOOST_TEST(difference(scene, [](Scene&) {}) == "", generator.name);

@@ -79,10 +79,10 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
 // vibrations for hours. Ways of two kinds are refined by turns, the cheapest next,
 //   explicit and symplectic, with steps that resolve every vibration:  Verlet, Kahan-Li;
 //   by error control, explicit and implicit:  Fehlberg's 7(8) pair, IDA;
-// until one of either kind agree to half of it, or time is up: `certified` then is twice by how
-// much the nearest two differ. Two of one kind prove nothing: implicit methods may agree on having
-// damped what vibrates. Of the rounding nothing is measured. Throws NoReference if a kind never
-// reaches the end.
+// until one of either kind agree to half of it, or time is up: `certified` is then twice the
+// difference of the nearest two. Two of one kind prove nothing: implicit methods may agree on
+// having damped what vibrates. Rounding is not measured. Throws NoReference if a kind never reaches
+// the end.
 Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds);
 
 }  // namespace qddot::measure

@@ -17,9 +17,9 @@
 namespace qddot::measure {
 namespace {
 
-// Ratios of the variances of a walk in a block and of noise: from `least_ratio`/n^2, of which a
-// walk adds a third to the variance of the slope, to a walk alone. Of an oscillation and of noise:
-// up to one whose period is known far better than to a block.
+// Ratios of the variances of a walk in a block and of noise: from `least_ratio`/n^2, where a walk
+// adds a third to the variance of the slope, to a walk alone. Ratios of those of an oscillation and
+// of noise: up to an oscillation whose period is known far better than to a block.
 constexpr double least_ratio = 4, most_ratio = 1e4, ratio_step = 2;
 constexpr double least_share = 1.0 / 16, most_share = 1e8, share_step = 4, sharp_step = 16;
 // 2 ln of the ratio of likelihoods that chance exceeds once in a hundred times, the variance of the

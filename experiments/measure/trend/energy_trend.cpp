@@ -229,7 +229,7 @@ void fit_widening(Line& line, std::span<const Sample> samples) {
 }
 
 // The last part of a run that has done something else before, if it has.
-std::optional<Line> settled_line(std::span<const Sample> samples, const Line& whole) {
+std::optional<Line> steady_line(std::span<const Sample> samples, const Line& whole) {
   const double duration = samples.back().t;
   for (const LastPart& part : last_parts) {
     const double begin = part.begin * duration;
@@ -278,7 +278,7 @@ void take_line(Trend& trend, std::span<const Sample> samples, const TrendScales&
   const auto second = line_through(after(samples, half), half);
   trend.late_drift = cautious_drift(second ? *second : *line, duration);
   const double largest_mean = line->largest_mean;
-  if (const auto last = settled_line(samples, *line)) {
+  if (const auto last = steady_line(samples, *line)) {
     line = last;
     trend.steady_from = line->begin;
     trend.before = line->start;

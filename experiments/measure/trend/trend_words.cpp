@@ -23,7 +23,7 @@ std::string no_drift_words(const Interval& drift) {
                      std::max(std::abs(drift.low), std::abs(drift.high)));
 }
 
-std::string settled_words(const Trend& trend) {
+std::string steady_words(const Trend& trend) {
   return trend.steady_from > 0 ? fmt::format(" from t = {:.3g} s on, after {:.1e} until then",
                                              trend.steady_from, trend.before)
                                : "";
@@ -81,15 +81,15 @@ std::string in_words(const Trend& trend, const TrendScales& scales) {
     case Verdict::bounded:
       return fmt::format("bounded: oscillates by {:.1e}{}{}, {}{}", trend.oscillation,
                          period_words(trend), beneath_words(trend), no_drift_words(trend.drift),
-                         settled_words(trend));
+                         steady_words(trend));
     case Verdict::undecided:
-      return undecided_words(trend) + settled_words(trend);
+      return undecided_words(trend) + steady_words(trend);
     case Verdict::widens:
       return fmt::format(
           "widens: its oscillation of {:.1e} grows by {:.2g} of that a second ({:.2g} to {:.2g}), "
           "{}{}",
           trend.oscillation, trend.widening.value, trend.widening.low, trend.widening.high,
-          no_drift_words(trend.drift), settled_words(trend));
+          no_drift_words(trend.drift), steady_words(trend));
     case Verdict::round_off: {
       const double root_step = trend.walk * std::sqrt(scales.step);
       if (trend.drift.excludes_zero()) {
@@ -105,7 +105,7 @@ std::string in_words(const Trend& trend, const TrendScales& scales) {
     }
     case Verdict::drifts:
       return fmt::format("drifts by {}{}, oscillates by {:.1e}{}", drift_words(trend.drift),
-                         settled_words(trend), trend.oscillation, change_words(trend));
+                         steady_words(trend), trend.oscillation, change_words(trend));
     case Verdict::dissipates:
       return fmt::format(
           "dissipates like a damping ratio of {:.2g} (energy falls at {:.3g}/s, by {:.2g} of its "

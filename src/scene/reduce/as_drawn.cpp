@@ -1,6 +1,6 @@
 #include "qddot/scene/reduce/as_drawn.hpp"
 
-#include "qddot/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/drawn_part.hpp"
 
 namespace qddot::reduce {
 namespace {

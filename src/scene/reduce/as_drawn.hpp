@@ -20,8 +20,8 @@ struct Tolerances {
   double place = 0, speed = 0;
 };
 
-// Three mirrors may each move a node by the rounding that they allow (see body.hpp), and a plane or
-// line that is found by one more; as much again is for turning coordinates there and back.
+// Three mirrors may each move a node by the rounding that they allow (see drawn_part.hpp), and a
+// plane or line that is found by one more; as much again is for turning coordinates there and back.
 Tolerances tolerances_of(const std::vector<Eigen::Vector3d>& x,
                          const std::vector<Eigen::Vector3d>& v);
 
@@ -29,8 +29,8 @@ Tolerances tolerances_of(const std::vector<Eigen::Vector3d>& x,
 // another way of adding up may come. Both ends, the rest length and its sum with others may be off
 // by the tolerance of positions, which changes s = l - l0 by D, four times that and rounding, and
 //   V by no more than |tau| D + 1/2 tau'(|s| + D) D^2 (Taylor; tau' grows with |s|).
-// Laws, masses and gravity may be off by `rounding` (see body.hpp), a sum of n terms by n eps of
-// their sizes, each at most as large as at the largest coordinate.
+// Laws, masses and gravity may be off by `rounding` (see drawn_part.hpp), a sum of n terms by n eps
+// of their sizes, each at most as large as at the largest coordinate.
 BoundedEnergy potential_of(std::span<const Spring> springs, const std::vector<Eigen::Vector3d>& x,
                            const std::vector<double>& mass, const Eigen::Vector3d& gravity,
                            const Tolerances& tolerances);

@@ -4,9 +4,9 @@
 
 namespace qddot::reduce {
 
-struct Body;
+struct DrawnPart;
 
-// The frame that falls with a body to which nothing is pinned. Its springs' forces add up to zero,
+// The frame that falls with a part to which nothing is pinned. Its springs' forces add up to zero,
 // so that its centre of mass obeys X'' = g whatever they do. With V0 the mean velocity of its
 // masses at the start and
 //   D(t) = V0 t + 1/2 g t^2,  x_i(t) = y_i(t) + D(t),
@@ -26,15 +26,15 @@ struct Fall {
   Eigen::Vector3d velocity_at(double t) const { return velocity + t * gravity; }
 };
 
-// Turns the body's velocities and gravity into those in the frame that falls with it, and leaves
-// that in Body::fall; nothing where some node is pinned, none has mass, or one is on no spring and
-// without mass, so that nothing decides its motion.
-void let_fall(Body& body);
+// Turns the part's velocities and gravity into those in the frame that falls with it, and leaves
+// that in DrawnPart::fall; nothing where some node is pinned, none has mass, or one is on no spring
+// and without mass, so that nothing decides its motion.
+void let_fall(DrawnPart& drawn);
 
-// Whether the body, as seen from that frame, does nothing: all nodes are at rest and all springs at
+// Whether the part, as seen from that frame, does nothing: all nodes are at rest and all springs at
 // their rest lengths, within rounding. Then V is at its least, and T + V = V keeps it there for
 // ever. An equilibrium of springs that pull and push is not taken for rest: the slightest push may
 // move it.
-bool rests(const Body& body);
+bool rests(const DrawnPart& drawn);
 
 }  // namespace qddot::reduce

@@ -8,10 +8,10 @@ namespace qddot::reduce {
 namespace {
 
 // Whether coordinate d is the same for all positions, and zero for whatever moves or pulls.
-bool is_shared(const Body& body, int d) {
+bool is_shared(const DrawnPart& drawn, int d) {
   const auto rests = [&](const Eigen::Vector3d& v) { return v[d] == 0; };
-  return body.gravity[d] == 0 && std::ranges::all_of(body.v, rests) &&
-         std::ranges::all_of(body.x, [&](const auto& x) { return x[d] == body.x.front()[d]; });
+  return drawn.gravity[d] == 0 && std::ranges::all_of(drawn.v, rests) &&
+         std::ranges::all_of(drawn.x, [&](const auto& x) { return x[d] == drawn.x.front()[d]; });
 }
 
 // Orthonormal directions that span, within rounding, what they have been given.
@@ -48,14 +48,14 @@ class Span {
 };
 
 // What spans the motion, from the point farthest above its noise to the least.
-Span span_of(const Body& body) {
-  const double noise = rounding * largest_coordinate(body.x);
-  const double speed_noise = rounding * largest_coordinate(body.v);
+Span span_of(const DrawnPart& drawn) {
+  const double noise = rounding * largest_coordinate(drawn.x);
+  const double speed_noise = rounding * largest_coordinate(drawn.v);
   Span span;
   do {
-    for (const auto& x : body.x) span.offer(x - body.x.front(), noise);
-    for (const auto& v : body.v) span.offer(v, speed_noise);
-    span.offer(body.gravity, rounding * body.gravity.norm());
+    for (const auto& x : drawn.x) span.offer(x - drawn.x.front(), noise);
+    for (const auto& v : drawn.v) span.offer(v, speed_noise);
+    span.offer(drawn.gravity, rounding * drawn.gravity.norm());
   } while (span.take() && span.rank() < 3);
   return span;
 }
@@ -75,10 +75,10 @@ Eigen::Matrix3d complete(Eigen::Matrix3d axes, int count) {
   return axes;
 }
 
-Frame frame_of(const Body& body, int dimension) {
+Frame frame_of(const DrawnPart& drawn, int dimension) {
   Frame frame{.dimension = 0};
   std::array<bool, 3> is_kept{};
-  for (int d = 0; d < dimension; ++d) is_kept[d] = !is_shared(body, d);
+  for (int d = 0; d < dimension; ++d) is_kept[d] = !is_shared(drawn, d);
   // Where nothing moves, one coordinate remains to say so.
   if (std::ranges::count(is_kept, true) == 0) is_kept[0] = true;
   int dropped = 3;
@@ -89,23 +89,23 @@ Frame frame_of(const Body& body, int dimension) {
     if (is_kept[d]) {
       frame.axes.col(frame.dimension++) = Eigen::Vector3d::Unit(d);
     } else {
-      frame.origin[d] = body.x.front()[d];
+      frame.origin[d] = drawn.x.front()[d];
     }
   }
 
   // Beyond that, lengths overflow.
   constexpr double largest = 1e150;
-  for (const double size : {largest_coordinate(body.x), largest_coordinate(body.v),
-                            body.gravity.lpNorm<Eigen::Infinity>()}) {
+  for (const double size : {largest_coordinate(drawn.x), largest_coordinate(drawn.v),
+                            drawn.gravity.lpNorm<Eigen::Infinity>()}) {
     if (size > largest) return frame;
   }
-  const Span span = span_of(body);
+  const Span span = span_of(drawn);
   if (span.rank() == 0 || span.rank() >= frame.dimension) return frame;
   for (int d = 0; d < 3; ++d) {
     // Shared but for a deviation.
     if (is_kept[d] && span.remainder(Eigen::Vector3d::Unit(d)).norm() > 1 - 1e-9) return frame;
   }
-  Frame rotated{span.rank(), body.x.front(), complete(span.basis(), span.rank())};
+  Frame rotated{span.rank(), drawn.x.front(), complete(span.basis(), span.rank())};
   return rotated;
 }
 

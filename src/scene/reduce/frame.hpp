@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "qddot/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/drawn_part.hpp"
 
 namespace qddot::reduce {
 
@@ -29,7 +29,7 @@ struct Frame {
 // An orthonormal matrix whose first `count` columns are those of `axes`, which must be orthonormal.
 Eigen::Matrix3d complete(Eigen::Matrix3d axes, int count);
 
-// The smallest subspace in which the body's motion stays. Let all positions (of free nodes and of
+// The smallest subspace in which the part's motion stays. Let all positions (of free nodes and of
 // the pinned ones they are held to), all velocities and gravity lie in a subspace W. A spring pulls
 // along the difference of its ends, so all forces lie in W while all positions do: the components
 // normal to W obey y'' = 0 with y = y' = 0, and stay zero. Sought are first the scene's coordinates
@@ -38,6 +38,6 @@ Eigen::Matrix3d complete(Eigen::Matrix3d axes, int count);
 //
 // A coordinate that is shared almost, but not to the bit, counts as not shared: a deviation of one
 // rounding may be there on purpose, to start a buckling.
-Frame frame_of(const Body& body, int dimension);
+Frame frame_of(const DrawnPart& drawn, int dimension);
 
 }  // namespace qddot::reduce

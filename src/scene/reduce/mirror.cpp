@@ -98,10 +98,11 @@ class Ends {
 bool nearly(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
 
 // Nodes in an order in which each comes after a neighbour where it has one before it at all.
-std::vector<int> along_springs(const Body& body, const std::vector<std::vector<int>>& neighbours) {
+std::vector<int> along_springs(const DrawnPart& drawn,
+                               const std::vector<std::vector<int>>& neighbours) {
   std::vector<int> order;
-  std::vector<bool> is_seen(body.x.size(), false);
-  for (int first = 0; first < std::ssize(body.x); ++first) {
+  std::vector<bool> is_seen(drawn.x.size(), false);
+  for (int first = 0; first < std::ssize(drawn.x); ++first) {
     if (is_seen[first]) continue;
     is_seen[first] = true;
     order.push_back(first);
@@ -117,52 +118,53 @@ std::vector<int> along_springs(const Body& body, const std::vector<std::vector<i
 
 class Search {
  public:
-  explicit Search(const Body& body)
-      : body_(body),
-        tolerance_(rounding * largest_coordinate(body.x)),
-        speed_tolerance_(rounding * largest_coordinate(body.v)),
-        places_(body.x),
-        ends_(body.springs),
-        neighbours_(body.x.size()),
-        order_(body.x.size()) {
+  explicit Search(const DrawnPart& drawn)
+      : drawn_(drawn),
+        tolerance_(rounding * largest_coordinate(drawn.x)),
+        speed_tolerance_(rounding * largest_coordinate(drawn.v)),
+        places_(drawn.x),
+        ends_(drawn.springs),
+        neighbours_(drawn.x.size()),
+        order_(drawn.x.size()) {
     std::iota(order_.begin(), order_.end(), 0);
     if (!places_.any_shared(tolerance_)) return;
-    for (const Spring& spring : body.springs) {
+    for (const Spring& spring : drawn.springs) {
       const auto [a, b] = spring.nodes;
       neighbours_[a].push_back(static_cast<int>(b));
       neighbours_[b].push_back(static_cast<int>(a));
     }
-    order_ = along_springs(body, neighbours_);
+    order_ = along_springs(drawn, neighbours_);
   }
 
   // Whether a spring with a direction is too short to say which: rounding could put its ends into
   // one place, and what it does there is not known.
   bool has_unclear_spring() const {
     constexpr double clear = 1024;  // a direction known to a thousandth
-    return std::ranges::any_of(body_.springs, [&](const Spring& spring) {
+    return std::ranges::any_of(drawn_.springs, [&](const Spring& spring) {
       const auto [a, b] = spring.nodes;
-      return spring.law.rest_length > 0 && !((body_.x[b] - body_.x[a]).norm() > clear * tolerance_);
+      return spring.law.rest_length > 0 &&
+             !((drawn_.x[b] - drawn_.x[a]).norm() > clear * tolerance_);
     });
   }
 
-  // A plane normal to `direction` that mirrors the body, with the images of the nodes; these
+  // A plane normal to `direction` that mirrors the part, with the images of the nodes; these
   // commute with those under `earlier` planes at right angles to it.
   std::optional<std::pair<Plane, Images>> mirror(const Vector3d& direction,
                                                  const std::vector<Images>& earlier) const {
     Plane plane{direction};
-    if (std::abs(direction.dot(body_.gravity)) > rounding * body_.gravity.norm()) return {};
+    if (std::abs(direction.dot(drawn_.gravity)) > rounding * drawn_.gravity.norm()) return {};
     center(plane);
     // A principal axis is known less well than the nodes: to the square root of rounding where two
     // moments are nearly equal. What it maps the nodes to decides it.
     constexpr double coarse = 1e-7;
     const bool is_exact = (plane.normal.array() == 0).count() == 2;
     if (!is_exact) {
-      const double extent = largest_coordinate(body_.x);
+      const double extent = largest_coordinate(drawn_.x);
       const auto roughly =
           images(plane, std::max(tolerance_, coarse * extent), coarse * extent, {}, {});
       if (!roughly || !refine(plane, *roughly)) return {};
       center(plane);
-      if (std::abs(plane.normal.dot(body_.gravity)) > rounding * body_.gravity.norm()) return {};
+      if (std::abs(plane.normal.dot(drawn_.gravity)) > rounding * drawn_.gravity.norm()) return {};
     }
     // The image of the first node decides those of its neighbours; of several in one place, any may
     // be it.
@@ -179,7 +181,7 @@ class Search {
   // Through the middle of all nodes, which a mirror image shares.
   void center(Plane& plane) const {
     double low = INFINITY, high = -INFINITY;
-    for (const Vector3d& x : body_.x) {
+    for (const Vector3d& x : drawn_.x) {
       low = std::min(low, plane.normal.dot(x));
       high = std::max(high, plane.normal.dot(x));
     }
@@ -187,15 +189,15 @@ class Search {
   }
 
   bool are_alike(const Plane& plane, int i, int j, double speed_tolerance) const {
-    const int free = static_cast<int>(body_.free);
+    const int free = static_cast<int>(drawn_.free);
     return (j < free) == (i < free) &&
-           nearly(body_.mass[i], body_.mass[j], rounding * body_.mass[i]) &&
-           (plane.turned(body_.v[i]) - body_.v[j]).norm() <= speed_tolerance;
+           nearly(drawn_.mass[i], drawn_.mass[j], rounding * drawn_.mass[i]) &&
+           (plane.turned(drawn_.v[i]) - drawn_.v[j]).norm() <= speed_tolerance;
   }
 
   std::vector<int> candidates(const Plane& plane, int i) const {
     std::vector<int> all;
-    places_.find(plane.image(body_.x[i]), tolerance_, [&](int j) {
+    places_.find(plane.image(drawn_.x[i]), tolerance_, [&](int j) {
       if (are_alike(plane, i, j, speed_tolerance_)) all.push_back(j);
       return false;
     });
@@ -206,11 +208,11 @@ class Search {
   // has the image j, then g i has g j. That is possible where the same g leave i and j in place.
   std::optional<Images> images(const Plane& plane, double tolerance, double speed_tolerance,
                                const std::vector<Images>& earlier, std::optional<int> first) const {
-    Images all(body_.x.size(), -1);
+    Images all(drawn_.x.size(), -1);
     const Orbits orbits(earlier);
     for (const int i : order_) {
       if (all[i] >= 0) continue;
-      const int image = places_.find(plane.image(body_.x[i]), tolerance, [&](int j) {
+      const int image = places_.find(plane.image(drawn_.x[i]), tolerance, [&](int j) {
         return (i != order_.front() || !first || j == *first) && all[j] < 0 &&
                are_alike(plane, i, j, speed_tolerance) && orbits.are_fixed_alike(i, j) &&
                neighbours_agree(i, j, all);
@@ -238,7 +240,7 @@ class Search {
     for (std::size_t i = 0; i < images.size(); ++i) {
       const auto j = static_cast<std::size_t>(images[i]);
       if (j > i) {
-        const Vector3d difference = body_.x[j] - body_.x[i];
+        const Vector3d difference = drawn_.x[j] - drawn_.x[i];
         sum += difference.dot(plane.normal) < 0 ? Vector3d(-difference) : difference;
       }
     }
@@ -249,14 +251,14 @@ class Search {
 
   // Where all nodes lie on the plane, that is for the dimension to say.
   bool moves_any(const Images& images) const {
-    for (std::size_t i = 0; i < body_.free; ++i) {
+    for (std::size_t i = 0; i < drawn_.free; ++i) {
       if (images[i] != static_cast<int>(i)) return true;
     }
     return false;
   }
 
   bool maps_springs(const Images& images) const {
-    return std::ranges::all_of(body_.springs, [&](const Spring& spring) {
+    return std::ranges::all_of(drawn_.springs, [&](const Spring& spring) {
       const auto [a, b] = spring.nodes;
       return are_springs_alike(static_cast<int>(a), static_cast<int>(b), images[a], images[b]);
     });
@@ -266,7 +268,7 @@ class Search {
   bool are_springs_alike(int a, int b, int c, int d) const {
     const auto own = ends_.between(a, b), other = ends_.between(c, d);
     return std::ranges::equal(own, other, [&](std::size_t e, std::size_t f) {
-      const Spring &drawn = body_.springs[e], &image = body_.springs[f];
+      const Spring &drawn = drawn_.springs[e], &image = drawn_.springs[f];
       const SpringLaw &one = drawn.law, &two = image.law;
       return nearly(one.rest_length, two.rest_length, tolerance_) &&
              nearly(one.stiffness, two.stiffness, rounding * one.stiffness) &&
@@ -274,7 +276,7 @@ class Search {
     });
   }
 
-  const Body& body_;
+  const DrawnPart& drawn_;
   double tolerance_, speed_tolerance_;
   Places places_;
   Ends ends_;
@@ -283,7 +285,7 @@ class Search {
 };
 
 // Directions worth trying, in space, within the frame.
-std::vector<Vector3d> candidates(const Body& body, const Frame& frame) {
+std::vector<Vector3d> candidates(const DrawnPart& drawn, const Frame& frame) {
   std::vector<Vector3d> all;
   const auto add = [&](const Vector3d& direction) {
     const bool is_new = std::ranges::none_of(
@@ -301,11 +303,11 @@ std::vector<Vector3d> candidates(const Body& body, const Frame& frame) {
   const auto add_principal_axes = [&](std::size_t first, std::size_t last) {
     if (last - first < 2) return;
     Vector3d mean = Vector3d::Zero();
-    for (std::size_t i = first; i < last; ++i) mean += frame.point(body.x[i]);
+    for (std::size_t i = first; i < last; ++i) mean += frame.point(drawn.x[i]);
     mean /= static_cast<double>(last - first);
     Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
     for (std::size_t i = first; i < last; ++i) {
-      const Vector3d y = frame.point(body.x[i]) - mean;
+      const Vector3d y = frame.point(drawn.x[i]) - mean;
       moments += y * y.transpose();
     }
     // Moments of their own keep the axes that are left out apart from the others; they come last.
@@ -316,19 +318,19 @@ std::vector<Vector3d> candidates(const Body& body, const Frame& frame) {
       add((frame.axes * Vector3d(axes.vectors.col(d))).normalized());
     }
   };
-  add_principal_axes(0, body.free);
-  add_principal_axes(body.free, body.x.size());
+  add_principal_axes(0, drawn.free);
+  add_principal_axes(drawn.free, drawn.x.size());
   return all;
 }
 
 }  // namespace
 
-Mirrors mirrors_of(const Body& body, const Frame& frame) {
-  const Search search(body);
+Mirrors mirrors_of(const DrawnPart& drawn, const Frame& frame) {
+  const Search search(drawn);
   std::vector<Plane> planes;
   Mirrors mirrors{.frame = frame};
   if (search.has_unclear_spring()) return mirrors;
-  for (const Vector3d& direction : candidates(body, frame)) {
+  for (const Vector3d& direction : candidates(drawn, frame)) {
     const bool is_apart = std::ranges::all_of(
         planes, [&](const Plane& plane) { return std::abs(plane.normal.dot(direction)) < 1e-7; });
     if (!is_apart || std::ssize(planes) == frame.dimension) continue;

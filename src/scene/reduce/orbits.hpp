@@ -4,7 +4,7 @@
 
 namespace qddot::reduce {
 
-// Reflections as permutations of a body's nodes: each its own inverse, all commuting, so that the
+// Reflections as permutations of a part's nodes: each its own inverse, all commuting, so that the
 // group they generate acts on the nodes. An element of the group is a set of reflections, a bit for
 // each; the orbit of a node is what the elements make of it.
 class Orbits {

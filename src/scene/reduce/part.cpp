@@ -1,7 +1,7 @@
 #include "qddot/scene/reduce/part.hpp"
 
 #include "qddot/model/constrained_system.hpp"
-#include "qddot/scene/reduce/folded.hpp"
+#include "qddot/scene/reduce/folded_part.hpp"
 #include "qddot/scene/reduce/straight.hpp"
 
 namespace qddot::reduce {
@@ -10,17 +10,17 @@ namespace {
 constexpr int no_number = -1;
 
 // The numbers that the originals have in the network: of the free ones, or of the pinned ones too.
-std::vector<int> numbers_of(const Body& body, const Folded& half, bool with_pins) {
-  std::vector<int> numbers(body.nodes.size(), no_number);
+std::vector<int> numbers_of(const DrawnPart& drawn, const FoldedPart& half, bool with_pins) {
+  std::vector<int> numbers(drawn.nodes.size(), no_number);
   int next = 0;
-  for (std::size_t i = 0; i < (with_pins ? body.nodes.size() : body.free); ++i) {
+  for (std::size_t i = 0; i < (with_pins ? drawn.nodes.size() : drawn.free); ++i) {
     if (half.images[i].original == i) numbers[i] = next++;
   }
   return numbers;
 }
 
-void add_spring(const Folded::Spring& spring, const Folded& half, const std::vector<int>& numbers,
-                Network& network) {
+void add_spring(const FoldedPart::Spring& spring, const FoldedPart& half,
+                const std::vector<int>& numbers, Network& network) {
   const auto& [a, b, mirror, law, holds, stiff] = spring;
   const int i = numbers[a], j = numbers[b];
   if (i == no_number) {
@@ -34,40 +34,40 @@ void add_spring(const Folded::Spring& spring, const Folded& half, const std::vec
   }
 }
 
-// Massless nodes on two springs, by the body's numbers. They fold up where these are compressed,
+// Massless nodes on two springs, by the part's numbers. They fold up where these are compressed,
 // across the line that is all that a network of one dimension knows.
-std::vector<bool> joints_of(const Body& body) {
-  std::vector<int> springs(body.nodes.size(), 0);
-  for (const Spring& spring : body.springs) {
+std::vector<bool> joints_of(const DrawnPart& drawn) {
+  std::vector<int> springs(drawn.nodes.size(), 0);
+  for (const Spring& spring : drawn.springs) {
     for (const std::size_t i : spring.nodes) ++springs[i];
   }
   std::vector<bool> joints;
-  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
-    joints.push_back(i < body.free && body.mass[i] == 0 && springs[i] == 2);
+  for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
+    joints.push_back(i < drawn.free && drawn.mass[i] == 0 && springs[i] == 2);
   }
   return joints;
 }
 
 }  // namespace
 
-Part::Part(const Body& body, int dimension, const Reductions& reductions)
-    : origin_(body.origin), fall_(body.fall) {
+Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
+    : origin_(drawn.origin), fall_(drawn.fall) {
   Frame frame{.dimension = dimension};
-  if (reductions.has(Reduction::dimension)) frame = frame_of(body, dimension);
+  if (reductions.has(Reduction::dimension)) frame = frame_of(drawn, dimension);
   mirrors_.frame = frame;
-  if (reductions.has(Reduction::mirror)) mirrors_ = mirrors_of(body, frame);
+  if (reductions.has(Reduction::mirror)) mirrors_ = mirrors_of(drawn, frame);
 
   const bool with_pins = !reductions.has(Reduction::pins);
   const int axes = frame.dimension;
-  const Folded half = folded(body, mirrors_);
-  const std::vector<int> numbers = numbers_of(body, half, with_pins);
+  const FoldedPart half = folded(drawn, mirrors_);
+  const std::vector<int> numbers = numbers_of(drawn, half, with_pins);
 
   Network network{.dimension = axes};
   network.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
-  network.offers_split = body.offers_split;
+  network.offers_split = drawn.offers_split;
   std::vector<double> q, v;
   std::vector<bool> is_held;
-  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+  for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     if (numbers[i] == no_number) continue;
     Unknowns unknowns{std::ssize(q), 0, {}};
     for (int d = 0; d < axes; ++d) {
@@ -75,7 +75,7 @@ Part::Part(const Body& body, int dimension, const Reductions& reductions)
       unknowns.axis[static_cast<std::size_t>(unknowns.count++)] = d;
       q.push_back(half.y[i][d]);
       v.push_back(half.w[i][d]);
-      is_held.push_back(i >= body.free);
+      is_held.push_back(i >= drawn.free);
     }
     layout_.push_back(unknowns);
     if (mirrors_.count > 0) network.zero_coordinates.push_back(half.on_planes[i]);
@@ -85,23 +85,23 @@ Part::Part(const Body& body, int dimension, const Reductions& reductions)
   const auto count = std::ssize(layout_);
   network.node_mass = Vec::Zero(count);
   network.load = Vec::Zero(axes * count);
-  const Eigen::Vector3d g = mirrors_.frame.direction(body.gravity);
-  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+  const Eigen::Vector3d g = mirrors_.frame.direction(drawn.gravity);
+  for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     const int number = numbers[half.images[i].original];
     if (number == no_number) continue;
     // What holds a pinned node bears its weight as well; its mass only has to be some number.
-    network.node_mass[number] += i < body.free ? body.mass[i] : 1;
-    for (int d = 0; d < axes; ++d) network.load[axes * number + d] += body.mass[i] * g[d];
-    network.constant_energy -= body.mass[i] * body.gravity.dot(mirrors_.frame.origin);
-    energy_of_origin_ -= body.mass[i] * body.gravity.dot(origin_);
-    if (i >= body.free) continue;
-    nodes_.push_back(body.nodes[i]);
-    masses_.push_back(body.mass[i]);
+    network.node_mass[number] += i < drawn.free ? drawn.mass[i] : 1;
+    for (int d = 0; d < axes; ++d) network.load[axes * number + d] += drawn.mass[i] * g[d];
+    network.constant_energy -= drawn.mass[i] * drawn.gravity.dot(mirrors_.frame.origin);
+    energy_of_origin_ -= drawn.mass[i] * drawn.gravity.dot(origin_);
+    if (i >= drawn.free) continue;
+    nodes_.push_back(drawn.nodes[i]);
+    masses_.push_back(drawn.mass[i]);
     images_.push_back({number, half.images[i].signs});
   }
   network.links.reserve(half.springs.size());
-  const std::vector<bool> joints = joints_of(body);
-  for (Folded::Spring spring : half.springs) {
+  const std::vector<bool> joints = joints_of(drawn);
+  for (FoldedPart::Spring spring : half.springs) {
     const bool would_fold = axes == 1 && dimension > 1 && (joints[spring.a] || joints[spring.b]);
     if (would_fold) spring.holds = Holds::in_tension;
     add_spring(spring, half, numbers, network);

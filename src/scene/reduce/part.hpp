@@ -7,23 +7,23 @@
 #include <vector>
 
 #include "qddot/model/mass_spring.hpp"
-#include "qddot/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/drawn_part.hpp"
 #include "qddot/scene/reduce/frame.hpp"
 #include "qddot/scene/reduce/mirror.hpp"
 #include "qddot/scene/reduce/reductions.hpp"
 
 namespace qddot::reduce {
 
-// A body's motion in the fewest unknowns. Every node's position is an affine function of them,
+// A part's motion in the fewest unknowns. Every node's position is an affine function of them,
 //   x_i = origin + frame.origin + axes diag(signs_i) y_original(i),   in short x = P q + c,
 // where the originals are the nodes on one side of each mirror. With the energy of all springs
 // written in q the equations of motion are those of M = P'M_full P, f = P'f_full, K = P'K_full P.
 // Springs that are images of each other have the same energy: one stands for all, stiffer by their
-// number, and nothing is multiplied by P. The origin is the body's own (see Body): what is small in
-// the body keeps its digits wherever the body lies.
+// number, and nothing is multiplied by P. The origin is the part's own (see DrawnPart): what is
+// small in the part keeps its digits wherever the part lies.
 class Part {
  public:
-  Part(const Body& body, int dimension, const Reductions& reductions);
+  Part(const DrawnPart& drawn, int dimension, const Reductions& reductions);
 
   const System& system() const { return *system_; }
   // Where its unknowns start.
@@ -31,7 +31,7 @@ class Part {
   // Gives away the system; the rest remains.
   std::unique_ptr<System> take_system() { return std::move(system_); }
 
-  // In coordinates from the body's origin.
+  // In coordinates from the part's origin.
   const Mirrors& mirrors() const { return mirrors_; }
   const Eigen::Vector3d& origin() const { return origin_; }
   // What the potential energy has beside that of the system [J]: -M g.origin.
@@ -57,11 +57,12 @@ class Part {
   };
   Moments moments(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v) const;
 
-  // In which way, with both numbers, it is not `body` at the start: nodes, masses, positions,
-  // velocities and energies are compared, up to what rounding and the tolerances of its reductions
-  // make of them. Momenta and angular momenta follow from the first four. Nothing where all agree,
-  // as they do by construction: a defect of a reduction shows here. Before take_system().
-  std::optional<std::string> difference_from(const Body& body) const;
+  // In which way, with both numbers, it is not the drawn one at the start: nodes, masses,
+  // positions, velocities and energies are compared, up to what rounding and the tolerances of its
+  // reductions make of them. Momenta and angular momenta follow from the first four. Nothing where
+  // all agree, as they do by construction: a defect of a reduction shows here. Before
+  // take_system().
+  std::optional<std::string> difference_from(const DrawnPart& drawn) const;
 
  private:
   // A node as the image of an original, by the signs of its coordinates.
@@ -79,12 +80,12 @@ class Part {
   struct Motion {
     Eigen::Vector3d x, v;
   };
-  // The motion of its node number i, from the body's origin.
+  // The motion of its node number i, from the part's origin.
   Motion motion(std::size_t i, const Eigen::Ref<const Vec>& q,
                 const Eigen::Ref<const Vec>& v) const;
-  std::optional<std::string> places_differ(const Body& body, double tolerance,
+  std::optional<std::string> places_differ(const DrawnPart& drawn, double tolerance,
                                            double speed_tolerance) const;
-  std::optional<std::string> masses_differ(const Body& body) const;
+  std::optional<std::string> masses_differ(const DrawnPart& drawn) const;
 
   Mirrors mirrors_;
   Eigen::Vector3d origin_;

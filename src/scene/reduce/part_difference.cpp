@@ -14,36 +14,37 @@ std::string instead_of(const char* what, double reduced, double drawn, const cha
 
 }  // namespace
 
-std::optional<std::string> Part::difference_from(const Body& body) const {
-  const Tolerances tolerances = tolerances_of(body.x, body.v);
-  if (auto where = places_differ(body, tolerances.place, tolerances.speed)) return where;
-  if (auto mass = masses_differ(body)) return mass;
-  const BoundedEnergy t = kinetic_of(body.v, body.mass, tolerances);
+std::optional<std::string> Part::difference_from(const DrawnPart& drawn) const {
+  const Tolerances tolerances = tolerances_of(drawn.x, drawn.v);
+  if (auto where = places_differ(drawn, tolerances.place, tolerances.speed)) return where;
+  if (auto mass = masses_differ(drawn)) return mass;
+  const BoundedEnergy t = kinetic_of(drawn.v, drawn.mass, tolerances);
   if (const double own = system_->kinetic(initial_.v); differs(t, own)) {
     return instead_of("the kinetic energy at the start", own, t.value, "J");
   }
-  const BoundedEnergy v = potential_of(body.springs, body.x, body.mass, body.gravity, tolerances);
+  const BoundedEnergy v =
+      potential_of(drawn.springs, drawn.x, drawn.mass, drawn.gravity, tolerances);
   if (const double own = system_->potential(initial_.q); differs(v, own)) {
     return instead_of("the potential energy at the start", own, v.value, "J");
   }
   return {};
 }
 
-std::optional<std::string> Part::places_differ(const Body& body, double tolerance,
+std::optional<std::string> Part::places_differ(const DrawnPart& drawn, double tolerance,
                                                double speed_tolerance) const {
-  if (nodes_.size() != body.free) {
-    return fmt::format("{} of {} nodes would move", nodes_.size(), body.free);
+  if (nodes_.size() != drawn.free) {
+    return fmt::format("{} of {} nodes would move", nodes_.size(), drawn.free);
   }
-  for (std::size_t i = 0; i < body.free; ++i) {
-    if (nodes_[i] != body.nodes[i]) return fmt::format("node {} would not move", body.nodes[i]);
+  for (std::size_t i = 0; i < drawn.free; ++i) {
+    if (nodes_[i] != drawn.nodes[i]) return fmt::format("node {} would not move", drawn.nodes[i]);
     const Motion start = motion(i, initial_.q, initial_.v);
-    const double off = (start.x - body.x[i]).norm();
+    const double off = (start.x - drawn.x[i]).norm();
     if (off > tolerance) {
-      return fmt::format("node {} would start {:.3g} m from its place", body.nodes[i], off);
+      return fmt::format("node {} would start {:.3g} m from its place", drawn.nodes[i], off);
     }
-    const double speed_off = (start.v - body.v[i]).norm();
+    const double speed_off = (start.v - drawn.v[i]).norm();
     if (speed_off > speed_tolerance) {
-      return fmt::format("node {} would start with a velocity off by {:.3g} m/s", body.nodes[i],
+      return fmt::format("node {} would start with a velocity off by {:.3g} m/s", drawn.nodes[i],
                          speed_off);
     }
   }
@@ -51,13 +52,13 @@ std::optional<std::string> Part::places_differ(const Body& body, double toleranc
 }
 
 // P'M_full P is diagonal: the masses of all images of each original.
-std::optional<std::string> Part::masses_differ(const Body& body) const {
+std::optional<std::string> Part::masses_differ(const DrawnPart& drawn) const {
   Vec mass = Vec::Zero(initial_.q.size());
   std::vector<bool> moves(static_cast<std::size_t>(mass.size()), false);
-  for (std::size_t i = 0; i < body.free; ++i) {
+  for (std::size_t i = 0; i < drawn.free; ++i) {
     const Unknowns& unknowns = layout_[static_cast<std::size_t>(images_[i].original)];
     for (int a = 0; a < unknowns.count; ++a) {
-      mass[unknowns.first + a] += body.mass[i];
+      mass[unknowns.first + a] += drawn.mass[i];
       moves[static_cast<std::size_t>(unknowns.first + a)] = true;
     }
   }

@@ -30,11 +30,11 @@ std::vector<bool> on_lines(const std::vector<Node>& nodes, const std::vector<Spr
                            const Eigen::Vector3d& gravity, int dimension) {
   std::vector<bool> is_on_line(nodes.size(), dimension == 1);
   if (dimension == 1) return is_on_line;
-  for (const Component& component : components_of(nodes, springs)) {
-    Body body = make_body(component, nodes, springs, gravity);
-    let_fall(body);  // whether that is left out or not, no part leaves a line by falling
-    if (frame_of(body, dimension).dimension > 1) continue;
-    for (const std::size_t node : component.nodes) is_on_line[node] = true;
+  for (const PartMembers& members : parts_of(nodes, springs)) {
+    DrawnPart drawn = drawn_part(members, nodes, springs, gravity);
+    let_fall(drawn);  // whether that is left out or not, no part leaves a line by falling
+    if (frame_of(drawn, dimension).dimension > 1) continue;
+    for (const std::size_t node : members.nodes) is_on_line[node] = true;
   }
   return is_on_line;
 }
@@ -92,40 +92,40 @@ void Reduced::leave_out_static_springs(const std::vector<Spring>& springs) {
   }
 }
 
-std::vector<Component> Reduced::divide(const std::vector<Spring>& springs,
-                                       const Reductions& reductions) {
+std::vector<PartMembers> Reduced::divide(const std::vector<Spring>& springs,
+                                         const Reductions& reductions) {
   std::vector<bool> is_condensed(nodes_.size(), false);
   for (const Series& series : series_) {
     for (const auto& joint : series.joints) is_condensed[joint.node] = true;
   }
-  std::vector<Component> components;
+  std::vector<PartMembers> parts;
   std::vector<std::size_t> flying;
-  for (Component& component : components_of(nodes_, springs)) {
-    const std::size_t first = component.nodes.front();
+  for (PartMembers& members : parts_of(nodes_, springs)) {
+    const std::size_t first = members.nodes.front();
     if (is_condensed[first]) continue;  // on no spring any more
-    if (component.springs.empty() && reductions.has(Reduction::free_flight)) {
+    if (members.springs.empty() && reductions.has(Reduction::free_flight)) {
       const bool is_heavy = nodes_[first].mass > 0;
       flying_.push_back({first, nodes_[first].velocity,
                          is_heavy ? gravity_ : Eigen::Vector3d(Eigen::Vector3d::Zero())});
       flying.push_back(first);
     } else {
-      components.push_back(std::move(component));
+      parts.push_back(std::move(members));
     }
   }
   if (!flying.empty()) report(Reduction::free_flight, flying_sentence(flying));
-  if (!reductions.has(Reduction::parts)) return joined(components);
-  if (components.size() > 1) report(Reduction::parts, parts_sentence(components.size()));
-  return components;
+  if (!reductions.has(Reduction::parts)) return joined(parts);
+  if (parts.size() > 1) report(Reduction::parts, parts_sentence(parts.size()));
+  return parts;
 }
 
-void Reduced::build(const std::vector<Component>& components, const std::vector<Spring>& springs,
+void Reduced::build(const std::vector<PartMembers>& parts, const std::vector<Spring>& springs,
                     const Reductions& reductions) {
   std::vector<std::unique_ptr<System>> systems;
   Index n = 0;
-  for (const Component& component : components) {
-    const std::optional<Body> body = body_of(component, springs, reductions);
-    if (!body) continue;
-    Part& part = parts_.emplace_back(faithful_part(*body, reductions));
+  for (const PartMembers& members : parts) {
+    const std::optional<DrawnPart> drawn = moving_part(members, springs, reductions);
+    if (!drawn) continue;
+    Part& part = parts_.emplace_back(faithful_part(*drawn, reductions));
     systems.push_back(part.take_system());
     static_energy_ += part.energy_of_origin();
     n += part.initial().q.size();
@@ -153,32 +153,33 @@ void Reduced::build(const std::vector<Component>& components, const std::vector<
   }
 }
 
-std::optional<Body> Reduced::body_of(const Component& component, const std::vector<Spring>& springs,
-                                     const Reductions& reductions) {
-  Body body = make_body(component, nodes_, springs, gravity_);
-  body.offers_split = stiff_above_.has_value();
-  if (!reductions.has(Reduction::falling)) return body;
-  let_fall(body);
-  if (!rests(body)) return body;
+std::optional<DrawnPart> Reduced::moving_part(const PartMembers& members,
+                                              const std::vector<Spring>& springs,
+                                              const Reductions& reductions) {
+  DrawnPart drawn = drawn_part(members, nodes_, springs, gravity_);
+  drawn.offers_split = stiff_above_.has_value();
+  if (!reductions.has(Reduction::falling)) return drawn;
+  let_fall(drawn);
+  if (!rests(drawn)) return drawn;
   ++resting_;
-  for (const std::size_t node : body.nodes) {
-    flying_.push_back({node, body.fall.velocity, body.fall.gravity});
+  for (const std::size_t node : drawn.nodes) {
+    flying_.push_back({node, drawn.fall.velocity, drawn.fall.gravity});
   }
   return {};
 }
 
-Part Reduced::faithful_part(const Body& body, Reductions reductions) {
-  Part part(body, dimension_, reductions);
+Part Reduced::faithful_part(const DrawnPart& drawn, Reductions reductions) {
+  Part part(drawn, dimension_, reductions);
   for (const Reduction suspect :
        {Reduction::mirror, Reduction::dimension, Reduction::constant_stiffness}) {
     if (!reductions.has(suspect)) continue;
-    const auto difference = part.difference_from(body);
+    const auto difference = part.difference_from(drawn);
     if (!difference) return part;
     report(suspect, mistaken_sentence(*difference));
     reductions = reductions.without(suspect);
-    part = Part(body, dimension_, reductions);
+    part = Part(drawn, dimension_, reductions);
   }
-  if (const auto difference = part.difference_from(body)) throw defect(*difference);
+  if (const auto difference = part.difference_from(drawn)) throw defect(*difference);
   return part;
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "qddot/model/system.hpp"
-#include "qddot/scene/reduce/components.hpp"
 #include "qddot/scene/reduce/part.hpp"
+#include "qddot/scene/reduce/part_members.hpp"
 #include "qddot/scene/reduce/reductions.hpp"
 #include "qddot/scene/reduce/series.hpp"
 #include "qddot/scene/reduce/way_back.hpp"
@@ -52,15 +52,16 @@ class Reduced final : public WayBack {
   void leave_out_pins();
   void merge(std::vector<Spring>& springs);
   void condense(std::vector<Spring>& springs);
-  std::vector<Component> divide(const std::vector<Spring>& springs, const Reductions& reductions);
-  // The body of a component as its motion is integrated; nothing where it rests in its fall.
-  std::optional<Body> body_of(const Component& component, const std::vector<Spring>& springs,
-                              const Reductions& reductions);
+  std::vector<PartMembers> divide(const std::vector<Spring>& springs, const Reductions& reductions);
+  // The part as its motion is integrated; nothing where it rests in its fall.
+  std::optional<DrawnPart> moving_part(const PartMembers& members,
+                                       const std::vector<Spring>& springs,
+                                       const Reductions& reductions);
   void leave_out_static_springs(const std::vector<Spring>& springs);
-  void build(const std::vector<Component>& components, const std::vector<Spring>& springs,
+  void build(const std::vector<PartMembers>& parts, const std::vector<Spring>& springs,
              const Reductions& reductions);
-  // Reduced as far as it starts as the body does.
-  Part faithful_part(const Body& body, Reductions reductions);
+  // Reduced as far as it still starts as drawn.
+  Part faithful_part(const DrawnPart& drawn, Reductions reductions);
   // That each free node has one place, and that energies are the scene's. Positions and velocities
   // of nodes on springs are compared part by part, those of joints are placed by their series.
   void check(const Scene& scene) const;

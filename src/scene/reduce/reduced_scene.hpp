@@ -45,7 +45,7 @@ class ReducedScene {
   ReducedScene(ReducedScene&&) noexcept;
   ReducedScene& operator=(ReducedScene&&) noexcept;
 
-  // May consist of parts (see System::parts).
+  // May consist of parts (see Blocks).
   const System& system() const;
   // Positions and velocities at t = 0.
   const State& initial() const;

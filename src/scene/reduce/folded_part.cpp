@@ -1,4 +1,4 @@
-#include "qddot/scene/reduce/folded.hpp"
+#include "qddot/scene/reduce/folded_part.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -27,7 +27,7 @@ int original_of(int i, const Orbits& orbits, int mirrors, const std::vector<Vect
   return best;
 }
 
-std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const Folded& half) {
+std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedPart& half) {
   std::vector<ImageOf> images(half.y.size());
   for (int i = 0; i < std::ssize(images); ++i) {
     if (original_of(i, orbits, mirrors, half.y) != i) continue;
@@ -45,23 +45,24 @@ std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const Folded& 
 }
 
 // Which springs may be added: those between the same ends in the same way, of the same length.
-auto ends(const Folded::Spring& spring) {
+auto ends(const FoldedPart::Spring& spring) {
   const auto [low, high] = std::minmax(spring.a, spring.b);
   return std::tuple(low, high, spring.mirror[0], spring.mirror[1], spring.mirror[2], spring.holds);
 }
 
 // One spring for each set of images, as stiff as all of them, at the place of the first.
-std::vector<Folded::Spring> summed(const std::vector<Folded::Spring>& springs, double tolerance) {
+std::vector<FoldedPart::Spring> summed(const std::vector<FoldedPart::Spring>& springs,
+                                       double tolerance) {
   std::vector<std::size_t> order(springs.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [&](std::size_t e) {
     return std::tuple(ends(springs[e]), springs[e].law.rest_length);
   });
-  std::vector<Folded::Spring> sums = springs;
+  std::vector<FoldedPart::Spring> sums = springs;
   std::vector<bool> is_summed(springs.size(), false);
   for (std::size_t i = 1, first = 0; i < order.size(); ++i) {
-    Folded::Spring& sum = sums[order[first]];
-    const Folded::Spring& next = springs[order[i]];
+    FoldedPart::Spring& sum = sums[order[first]];
+    const FoldedPart::Spring& next = springs[order[i]];
     if (ends(next) != ends(sum) || next.law.rest_length - sum.law.rest_length > tolerance) {
       first = i;
       continue;
@@ -71,7 +72,7 @@ std::vector<Folded::Spring> summed(const std::vector<Folded::Spring>& springs, d
     sum.stiff = sum.stiff || next.stiff;
     is_summed[order[i]] = true;
   }
-  std::vector<Folded::Spring> left;
+  std::vector<FoldedPart::Spring> left;
   for (std::size_t e = 0; e < sums.size(); ++e) {
     if (!is_summed[e]) left.push_back(sums[e]);
   }
@@ -80,12 +81,12 @@ std::vector<Folded::Spring> summed(const std::vector<Folded::Spring>& springs, d
 
 }  // namespace
 
-Folded folded(const Body& body, const Mirrors& mirrors) {
-  Folded result;
+FoldedPart folded(const DrawnPart& drawn, const Mirrors& mirrors) {
+  FoldedPart result;
   const Orbits orbits(mirrors.images);
-  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
-    result.y.push_back(mirrors.frame.point(body.x[i]));
-    result.w.push_back(mirrors.frame.direction(body.v[i]));
+  for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
+    result.y.push_back(mirrors.frame.point(drawn.x[i]));
+    result.w.push_back(mirrors.frame.direction(drawn.v[i]));
     const unsigned zero = orbits.zero_coordinates(static_cast<int>(i));
     for (int d = 0; d < mirrors.count; ++d) {
       if (zero >> d & 1) result.y[i][d] = result.w[i][d] = 0;
@@ -93,11 +94,11 @@ Folded folded(const Body& body, const Mirrors& mirrors) {
     result.on_planes.push_back(zero);
   }
   result.images = images_of(orbits, mirrors.count, result);
-  result.springs.reserve(body.springs.size());
-  for (const qddot::Spring& spring : body.springs) {
+  result.springs.reserve(drawn.springs.size());
+  for (const qddot::Spring& spring : drawn.springs) {
     const ImageOf &a = result.images[spring.nodes[0]], &b = result.images[spring.nodes[1]];
-    Folded::Spring image{a.original, b.original,   a.signs.cwiseProduct(b.signs),
-                         spring.law, spring.holds, spring.stiff};
+    FoldedPart::Spring image{a.original, b.original,   a.signs.cwiseProduct(b.signs),
+                             spring.law, spring.holds, spring.stiff};
     // A sign of a coordinate that is zero at one end changes no length.
     const unsigned zero = result.on_planes[a.original] | result.on_planes[b.original];
     for (int d = 0; d < mirrors.count; ++d) {
@@ -108,7 +109,7 @@ Folded folded(const Body& body, const Mirrors& mirrors) {
     result.springs.push_back(image);
   }
   if (mirrors.count > 0) {
-    result.springs = summed(result.springs, rounding * largest_coordinate(body.x));
+    result.springs = summed(result.springs, rounding * largest_coordinate(drawn.x));
   }
   return result;
 }

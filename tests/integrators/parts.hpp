@@ -12,21 +12,21 @@ namespace qddot {
 inline namespace tests {
 
 // A system that can be made again and again, and where it starts.
-struct Piece {
+struct Part {
   std::function<std::unique_ptr<System>()> make;
   State start;
 };
 
 constexpr double start_time = 0.7;
 
-inline Piece piece(const Problem& p) {
+inline Part part(const Problem& p) {
   return {[network = p.network] { return make_mass_spring(network); },
           {start_time, p.initial.q, p.initial.v}};
 }
 
 // The oscillator, whose force throws `words` where it has come to `below` [m] or less; it starts at
 // 0.8 m and is at -0.2 m after 0.2 s.
-inline Piece giving_up(double below, const char* words) {
+inline Part giving_up(double below, const char* words) {
   const Problem p = Oscillator().problem();
   const std::shared_ptr<System> oscillator = make_mass_spring(p.network);
   const auto make = [oscillator, below, words] {
@@ -39,19 +39,19 @@ inline Piece giving_up(double below, const char* words) {
   return {make, {start_time, p.initial.q, p.initial.v}};
 }
 
-// Pieces as the parts of one system.
+// Parts as one system.
 struct Together {
-  explicit Together(const std::vector<Piece>& pieces) {
-    std::vector<std::unique_ptr<System>> parts;
+  explicit Together(const std::vector<Part>& parts) {
+    std::vector<std::unique_ptr<System>> blocks;
     Index n = 0;
-    for (const Piece& one : pieces) {
-      parts.push_back(one.make());
-      n += parts.back()->size();
+    for (const Part& one : parts) {
+      blocks.push_back(one.make());
+      n += blocks.back()->size();
     }
-    system = std::make_unique<BlockDiagonalSystem>(std::move(parts));
+    system = std::make_unique<BlockDiagonalSystem>(std::move(blocks));
     start = {start_time, Vec(n), Vec(n)};
     Index at = 0;
-    for (const Piece& one : pieces) {
+    for (const Part& one : parts) {
       start.q.segment(at, one.start.q.size()) = one.start.q;
       start.v.segment(at, one.start.q.size()) = one.start.v;
       at += one.start.q.size();
@@ -69,23 +69,23 @@ struct Together {
   State start;
 };
 
-// Pieces that the method applies to: of different sizes, dimensions and frequencies.
-inline std::vector<Piece> pieces_for(const Method& method) {
-  std::vector<Piece> pieces;
+// Parts that the method applies to: of different sizes, dimensions and frequencies.
+inline std::vector<Part> parts_for(const Method& method) {
+  std::vector<Part> parts;
   for (Problem& p :
        std::array{method.asks(Need::constant_stiffness) ? linear_hammock(2) : hammock(2),
                   Oscillator().problem(), linear_hammock(3)}) {
     if (method.asks(Need::split_forces)) p.network = with_split(p.network);
-    pieces.push_back(piece(p));
+    parts.push_back(part(p));
   }
-  return pieces;
+  return parts;
 }
 
 inline Run run(const Method& method, const Together& whole, double t_end, const Options& options,
                const Observer& observer = {}, std::stop_token stop = {}) {
   return run(method, *whole.system, whole.start, t_end, options, observer, std::move(stop));
 }
-inline Run run(const Method& method, const Piece& alone, double t_end, const Options& options,
+inline Run run(const Method& method, const Part& alone, double t_end, const Options& options,
                const Observer& observer = {}) {
   const auto system = alone.make();
   return run(method, *system, alone.start, t_end, options, observer);

@@ -1,4 +1,4 @@
-#include "qddot/scene/reduce/components.hpp"
+#include "qddot/scene/reduce/part_members.hpp"
 
 #include <algorithm>
 
@@ -6,8 +6,8 @@
 
 namespace qddot::reduce {
 
-std::vector<Component> components_of(const std::vector<Node>& nodes,
-                                     const std::vector<Spring>& springs) {
+std::vector<PartMembers> parts_of(const std::vector<Node>& nodes,
+                                  const std::vector<Spring>& springs) {
   std::vector<std::size_t> rank(nodes.size()), parent(nodes.size());
   boost::disjoint_sets sets(rank.data(), parent.data());
   for (std::size_t i = 0; i < nodes.size(); ++i) sets.make_set(i);
@@ -17,31 +17,31 @@ std::vector<Component> components_of(const std::vector<Node>& nodes,
   }
 
   constexpr auto none = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> number(nodes.size(), none);  // of the component of each set's root
-  std::vector<Component> components;
-  const auto component_of = [&](std::size_t node) -> Component& {
+  std::vector<std::size_t> number(nodes.size(), none);  // of the part of each set's root
+  std::vector<PartMembers> parts;
+  const auto part_of = [&](std::size_t node) -> PartMembers& {
     std::size_t& place = number[sets.find_set(node)];
     if (place == none) {
-      place = components.size();
-      components.emplace_back();
+      place = parts.size();
+      parts.emplace_back();
     }
-    return components[place];
+    return parts[place];
   };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (!nodes[i].pinned) component_of(i).nodes.push_back(i);
+    if (!nodes[i].pinned) part_of(i).nodes.push_back(i);
   }
   for (std::size_t e = 0; e < springs.size(); ++e) {
     const auto [a, b] = springs[e].nodes;
     if (nodes[a].pinned && nodes[b].pinned) continue;
-    component_of(nodes[a].pinned ? b : a).springs.push_back(e);
+    part_of(nodes[a].pinned ? b : a).springs.push_back(e);
   }
-  return components;
+  return parts;
 }
 
-std::vector<Component> joined(const std::vector<Component>& components) {
-  if (components.empty()) return {};
-  Component all;
-  for (const Component& one : components) {
+std::vector<PartMembers> joined(const std::vector<PartMembers>& parts) {
+  if (parts.empty()) return {};
+  PartMembers all;
+  for (const PartMembers& one : parts) {
     all.nodes.insert(all.nodes.end(), one.nodes.begin(), one.nodes.end());
     all.springs.insert(all.springs.end(), one.springs.begin(), one.springs.end());
   }

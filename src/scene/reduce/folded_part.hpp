@@ -5,12 +5,12 @@
 #include <Eigen/Core>
 
 #include "qddot/model/mass_spring.hpp"
-#include "qddot/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/drawn_part.hpp"
 #include "qddot/scene/reduce/mirror.hpp"
 
 namespace qddot::reduce {
 
-// A node of a body as the image diag(signs) y of an original one, its own or another of its orbit
+// A node of a part as the image diag(signs) y of an original one, its own or another of its orbit
 // under the group of all mirrors (see orbits.hpp). The original lies on the side of each mirror
 // where its coordinate is not negative; where nodes coincide, it is the first of those.
 struct ImageOf {
@@ -18,8 +18,8 @@ struct ImageOf {
   Eigen::Vector3d signs;
 };
 
-// A body folded along its mirrors.
-struct Folded {
+// A part folded along its mirrors.
+struct FoldedPart {
   std::vector<Eigen::Vector3d> y, w;  // positions and velocities of all nodes in the mirrors' frame
   std::vector<ImageOf> images;        // of all nodes
   std::vector<unsigned> on_planes;    // of all nodes, a bit for each coordinate that stays zero
@@ -33,6 +33,6 @@ struct Folded {
   std::vector<Spring> springs;
 };
 
-Folded folded(const Body& body, const Mirrors& mirrors);
+FoldedPart folded(const DrawnPart& drawn, const Mirrors& mirrors);
 
 }  // namespace qddot::reduce

@@ -4,32 +4,32 @@
 
 #include <Eigen/Core>
 
-#include "qddot/scene/reduce/components.hpp"
 #include "qddot/scene/reduce/fall.hpp"
+#include "qddot/scene/reduce/part_members.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot::reduce {
 
-// One component with all that acts on it: its nodes, the pinned nodes that its springs hold it to,
+// One part with all that acts on it: its nodes, the pinned nodes that its springs hold it to,
 // and gravity; numbered anew.
-struct Body {
+struct DrawnPart {
   std::vector<std::size_t> nodes{};  // the scene's numbers: free nodes, then pinned ones
   std::size_t free = 0;              // how many are free
-  // Where x = 0 is in the scene: at zero, or, where the body is far from it for its size, at a node
-  // of the body. Positions are then exact differences, and rounding and tolerances go with the
-  // body's size instead of its distance from the scene's origin.
+  // Where x = 0 is in the scene: at zero, or, where the part is far from it for its size, at a node
+  // of the part. Positions are then exact differences, and rounding and tolerances go with the
+  // part's size instead of its distance from the scene's origin.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> x{}, v{};  // of all of them; v = 0 where pinned
   std::vector<double> mass{};             // of all of them; 0 where pinned
-  std::vector<Spring> springs{};          // between numbers of this body
+  std::vector<Spring> springs{};          // between numbers of this part
   Eigen::Vector3d gravity =
       Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
   Fall fall{};                  // the frame that v and gravity are seen from, see let_fall
   bool offers_split = false;    // whether its system is to offer SplitForces
 };
 
-Body make_body(const Component& component, const std::vector<Node>& nodes,
-               const std::vector<Spring>& springs, const Eigen::Vector3d& gravity);
+DrawnPart drawn_part(const PartMembers& members, const std::vector<Node>& nodes,
+                     const std::vector<Spring>& springs, const Eigen::Vector3d& gravity);
 
 // What rounding may have done to numbers of this size: coordinates that come from a few operations.
 inline constexpr double rounding = 64 * 0x1p-52;

@@ -1,4 +1,4 @@
-#include "qddot/scene/reduce/body.hpp"
+#include "qddot/scene/reduce/drawn_part.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,46 +26,46 @@ Eigen::Vector3d local_origin(const std::vector<Eigen::Vector3d>& x) {
 
 }  // namespace
 
-Body make_body(const Component& component, const std::vector<Node>& nodes,
-               const std::vector<Spring>& springs, const Eigen::Vector3d& gravity) {
-  Body body{.nodes = component.nodes, .free = component.nodes.size(), .gravity = gravity};
+DrawnPart drawn_part(const PartMembers& members, const std::vector<Node>& nodes,
+                     const std::vector<Spring>& springs, const Eigen::Vector3d& gravity) {
+  DrawnPart drawn{.nodes = members.nodes, .free = members.nodes.size(), .gravity = gravity};
   std::vector<std::size_t> pins;
-  for (const std::size_t e : component.springs) {
+  for (const std::size_t e : members.springs) {
     for (const std::size_t node : springs[e].nodes) {
       if (nodes[node].pinned) pins.push_back(node);
     }
   }
   std::ranges::sort(pins);
   pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
-  body.nodes.insert(body.nodes.end(), pins.begin(), pins.end());
+  drawn.nodes.insert(drawn.nodes.end(), pins.begin(), pins.end());
 
-  for (auto* vectors : {&body.x, &body.v}) vectors->reserve(body.nodes.size());
+  for (auto* vectors : {&drawn.x, &drawn.v}) vectors->reserve(drawn.nodes.size());
   double total_mass = 0;
-  for (const std::size_t i : body.nodes) {
+  for (const std::size_t i : drawn.nodes) {
     const Node& node = nodes[i];
-    body.x.push_back(node.position);
-    body.v.push_back(node.pinned ? Eigen::Vector3d::Zero() : node.velocity);
-    body.mass.push_back(node.pinned ? 0 : node.mass);
-    total_mass += body.mass.back();
+    drawn.x.push_back(node.position);
+    drawn.v.push_back(node.pinned ? Eigen::Vector3d::Zero() : node.velocity);
+    drawn.mass.push_back(node.pinned ? 0 : node.mass);
+    total_mass += drawn.mass.back();
   }
-  if (total_mass == 0) body.gravity.setZero();
-  body.origin = local_origin(body.x);
-  for (Eigen::Vector3d& x : body.x) x -= body.origin;
+  if (total_mass == 0) drawn.gravity.setZero();
+  drawn.origin = local_origin(drawn.x);
+  for (Eigen::Vector3d& x : drawn.x) x -= drawn.origin;
 
   // Both runs of the node list are ascending.
-  const auto free_end = body.nodes.begin() + static_cast<std::ptrdiff_t>(body.free);
+  const auto free_end = drawn.nodes.begin() + static_cast<std::ptrdiff_t>(drawn.free);
   const auto number = [&](std::size_t node) {
-    const auto found = nodes[node].pinned ? std::lower_bound(free_end, body.nodes.end(), node)
-                                          : std::lower_bound(body.nodes.begin(), free_end, node);
-    return static_cast<std::size_t>(found - body.nodes.begin());
+    const auto found = nodes[node].pinned ? std::lower_bound(free_end, drawn.nodes.end(), node)
+                                          : std::lower_bound(drawn.nodes.begin(), free_end, node);
+    return static_cast<std::size_t>(found - drawn.nodes.begin());
   };
-  body.springs.reserve(component.springs.size());
-  for (const std::size_t e : component.springs) {
+  drawn.springs.reserve(members.springs.size());
+  for (const std::size_t e : members.springs) {
     const auto [a, b] = springs[e].nodes;
-    body.springs.push_back(
+    drawn.springs.push_back(
         {{number(a), number(b)}, springs[e].law, springs[e].holds, springs[e].stiff});
   }
-  return body;
+  return drawn;
 }
 
 double largest_coordinate(const std::vector<Eigen::Vector3d>& vectors) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "qddot/scene/scene.hpp"
+
+namespace qddot::reduce {
+
+// Numbers of the nodes that springs join, directly or through each other, and of these springs.
+// Pinned nodes join nothing, since they pass no motion on, and belong to no part.
+struct PartMembers {
+  std::vector<std::size_t> nodes;    // not pinned, ascending
+  std::vector<std::size_t> springs;  // with an end among them, ascending
+};
+
+// The parts of a scene in the order of their first nodes; by union-find, in nearly linear time.
+std::vector<PartMembers> parts_of(const std::vector<Node>& nodes,
+                                  const std::vector<Spring>& springs);
+
+// The same nodes and springs as one part; none of none.
+std::vector<PartMembers> joined(const std::vector<PartMembers>& parts);
+
+}  // namespace qddot::reduce
