@@ -11,7 +11,7 @@ namespace {
 
 const char* reduced_name(bool smallest) { return smallest ? "all" : "pins"; }
 
-std::string in_words(const Ratio& ratio) {
+std::string ratio_in_words(const Ratio& ratio) {
   if (!ratio.is_known()) return "-";
   const int digits = ratio.ratio < 10 ? 1 : 0;
   return fmt::format("{}{:.{}f}", ratio.is_bound ? "> " : "", ratio.ratio, digits);
@@ -54,7 +54,7 @@ void print_ratios(const std::vector<Ratio>& ratios, const std::vector<double>& a
   const auto count = accuracies.size();
   for (std::size_t i = 0; i < ratios.size(); ++i) {
     if (i % count == 0) fmt::print("\n{:<20} {:<8}", ratios[i].peer, ratios[i].force);
-    fmt::print(" {:>9}", in_words(ratios[i]));
+    fmt::print(" {:>9}", ratio_in_words(ratios[i]));
   }
   fmt::print("\n\n");
   std::fflush(stdout);  // the next scene takes minutes

@@ -75,7 +75,7 @@ Contents read(const std::string& path) {
 }
 
 // Text that is no UTF-8 is mended.
-std::string in_words(const nlohmann::json& json) {
+std::string json_in_words(const nlohmann::json& json) {
   return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
@@ -85,7 +85,8 @@ std::string difference(const nlohmann::json& there, const nlohmann::json& asked)
     const nlohmann::json other = there.is_object() ? there.value(name, nlohmann::json()) : nullptr;
     if (other == value) continue;
     if (value.is_object() && other.is_object()) return difference(other, value);
-    return fmt::format("its {} is {} instead of {}", name, in_words(other), in_words(value));
+    return fmt::format("its {} is {} instead of {}", name, json_in_words(other),
+                       json_in_words(value));
   }
   for (const auto& [name, value] : there.items()) {
     if (!asked.contains(name)) return fmt::format("it was made with {}", name);

@@ -64,7 +64,7 @@ class WrittenScene {
   std::unique_ptr<WholeFile> file_;
 };
 
-std::string in_words(const Counts& c) {
+std::string counts_in_words(const Counts& c) {
   std::string words =
       fmt::format("{} steps, {} force and {} stiffness evaluations, {} factorisations", c.steps,
                   c.force_evaluations, c.stiffness_evaluations, c.factorizations);
@@ -83,7 +83,8 @@ std::string in_words(const Counts& c) {
 
 int explain_only(const Arguments& a) {
   const Scene start = started(load(a.scene), a.scene);
-  fmt::print("{}", in_words(explain(start, ReducedScene(start, reductions_of(a.scene))), start));
+  fmt::print("{}", explanation_in_words(explain(start, ReducedScene(start, reductions_of(a.scene))),
+                                        start));
   return done;
 }
 
@@ -148,7 +149,7 @@ int simulate(const CommandLine& line, Arguments& a, const std::vector<std::strin
   }
   fmt::print("{} on {}: {} at t = {:g} s after {}, in {:.3g} s\n", method.name,
              in_one_line(drawn.name), why ? "interrupted" : name(summary.outcome),
-             summary.t_reached, in_words(summary.counts), seconds);
+             summary.t_reached, counts_in_words(summary.counts), seconds);
   if (why) {
     fmt::print(stderr, "simulate: interrupted by {}: {} of {} s reached\n", why->by,
                summary.t_reached, until);

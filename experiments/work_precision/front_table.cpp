@@ -16,7 +16,7 @@ namespace {
 // A step that is nearer to its limit is warned of.
 constexpr double small_margin = 0.15;
 
-std::string in_words(double seconds) {
+std::string time_in_words(double seconds) {
   if (seconds < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
   if (seconds < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
   if (seconds < 1) return fmt::format("{:.3g} ms", seconds * 1e3);
@@ -42,7 +42,7 @@ std::string rival(const FrontRow& row) {
   const Point* other =
       row.fastest == row.fastest_sundials ? row.fastest_hand_written : row.fastest_sundials;
   if (!other) return "";
-  return fmt::format("{} {}, {:.3g} x", other->method->name, in_words(other->time),
+  return fmt::format("{} {}, {:.3g} x", other->method->name, time_in_words(other->time),
                      other->time / row.fastest->time);
 }
 
@@ -92,7 +92,7 @@ void print_front(const std::string& scene, double until, const std::vector<Front
       const double error = judged_error(*p, reference);
       has_doubts |= is_uncertain(error, certified(reference));
       fmt::print("{:<9.0e} {:<20} {:<16} {:>9}  {:>9}   {}\n", row.accuracy, p->method->name,
-                 knob_in_words(*p), error_in_words(error, reference), in_words(p->time),
+                 knob_in_words(*p), error_in_words(error, reference), time_in_words(p->time),
                  rival(row));
     } else {
       fmt::print("{:<9.0e} {}\n", row.accuracy, why_empty(row, reference));

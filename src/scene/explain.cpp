@@ -131,7 +131,7 @@ Explanation explain(const Scene& scene, const ReducedScene& reduced,
   return e;
 }
 
-std::string in_words(const Explanation& e, const Scene& scene) {
+std::string explanation_in_words(const Explanation& e, const Scene& scene) {
   std::string words =
       fmt::format("{}: {} nodes, {} springs; {} unknowns of {} are left\n", scene.name,
                   scene.nodes.size(), scene.springs.size(), e.unknowns, e.drawn_unknowns);

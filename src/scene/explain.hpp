@@ -43,6 +43,6 @@ Explanation explain(const Scene& scene, const ReducedScene& reduced,
                     const ExplanationLimits& limits = {});
 
 // In some lines, each ended by a line feed.
-std::string in_words(const Explanation& explanation, const Scene& scene);
+std::string explanation_in_words(const Explanation& explanation, const Scene& scene);
 
 }  // namespace qddot

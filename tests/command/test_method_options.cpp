@@ -35,10 +35,10 @@ Exit measure(const std::string& out, const std::string& list, const Words& more,
 // Both programs refuse the words with one sentence that holds the fragments, and make no file.
 void check_refused(const Words& words, const Words& fragments) {
   const Exit one = simulate("ida", words);
-  BOOST_TEST(complains(one, 2, "simulate", fragments), in_words(one, words));
+  BOOST_TEST(complains(one, 2, "simulate", fragments), exit_in_words(one, words));
   const Folder folder;
   const Exit many = measure(folder / "out", "ida", words);
-  BOOST_TEST(complains(many, 2, "work_precision", fragments), in_words(many, words));
+  BOOST_TEST(complains(many, 2, "work_precision", fragments), exit_in_words(many, words));
   BOOST_TEST(one.out + many.out == "");
   BOOST_TEST(folder.listing() == "");
 }
@@ -48,7 +48,7 @@ Table points(const std::string& list, const Words& more, const std::string& scen
   const Folder folder;
   const Exit result = measure(folder / "out", list, more,
                               scene.empty() ? "orbit" : folder.write("scene.toml", scene));
-  BOOST_TEST_REQUIRE(result.status == 0, in_words(result, more));
+  BOOST_TEST_REQUIRE(result.status == 0, exit_in_words(result, more));
   return read_csv(folder / "out/points.csv");
 }
 

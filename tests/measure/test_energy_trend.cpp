@@ -59,7 +59,7 @@ bool holds(const Interval& interval, double value) {
 }
 
 bool says(const Trend& trend, const std::string& words, const TrendScales& scales = {.step = h}) {
-  return in_words(trend, scales).find(words) != std::string::npos;
+  return trend_in_words(trend, scales).find(words) != std::string::npos;
 }
 
 }  // namespace

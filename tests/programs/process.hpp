@@ -87,7 +87,7 @@ inline bool complains(const Exit& run, int status, const std::string& program,
          run.err.find('\n') + 1 == run.err.size() && contains(run.err, fragments);
 }
 
-inline std::string in_words(const Exit& run, const std::vector<std::string>& arguments) {
+inline std::string exit_in_words(const Exit& run, const std::vector<std::string>& arguments) {
   std::string text;
   for (const std::string& argument : arguments) text += argument + ' ';
   return fmt::format("{}gives {}: {}", text, run.status, run.err);
@@ -102,9 +102,9 @@ inline void check_refused(const std::string& program, std::vector<std::string> w
     if (word.starts_with("OUT")) word = folder / word;
   }
   const Exit result = run(program, words);
-  BOOST_TEST(complains(result, 2, program, fragments), in_words(result, words));
+  BOOST_TEST(complains(result, 2, program, fragments), exit_in_words(result, words));
   BOOST_TEST(result.out == "");
-  BOOST_TEST(folder.listing() == "", in_words(result, words));
+  BOOST_TEST(folder.listing() == "", exit_in_words(result, words));
 }
 
 // The number that is all of the text; throws where it is none.

@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
   for (const auto& [words, fragments] : cases) {
     const Folder folder;
     const Exit result = run_energy_drift(folder, words);
-    BOOST_TEST(complains(result, 2, "energy_drift", fragments), in_words(result, words));
+    BOOST_TEST(complains(result, 2, "energy_drift", fragments), exit_in_words(result, words));
     BOOST_TEST(folder.listing() == "");
   }
   const Folder folder;

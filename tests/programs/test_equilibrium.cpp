@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
       {{"--scene", "cloth", "--finall", "x"}, {"--finall"}}};
   for (const auto& [words, fragments] : cases) {
     const Exit result = run("equilibrium", words);
-    BOOST_TEST(complains(result, 2, "equilibrium", fragments), in_words(result, words));
+    BOOST_TEST(complains(result, 2, "equilibrium", fragments), exit_in_words(result, words));
     BOOST_TEST(result.out == "");
   }
   BOOST_TEST(folder.listing() == "");

@@ -194,7 +194,7 @@ BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
   for (const auto& [words, fragments] : cases) {
     const Folder folder;
     const Exit result = run_modes(folder, words);
-    BOOST_TEST(complains(result, 2, "modes", fragments), in_words(result, words));
+    BOOST_TEST(complains(result, 2, "modes", fragments), exit_in_words(result, words));
     BOOST_TEST(folder.listing() == "");
   }
   const Exit no_folder = run("modes", {"--scene", "cloth"});

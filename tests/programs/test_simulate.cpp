@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(each_output_has_the_every_behind_it_and_a_single_one_is_for
       arguments.push_back(word.ends_with(".csv") ? folder / word : word);
     }
     const Exit result = run("simulate", arguments);
-    BOOST_TEST(result.status == 0, in_words(result, arguments));
+    BOOST_TEST(result.status == 0, exit_in_words(result, arguments));
     return std::array{std::ssize(read_csv(folder / "g.csv").rows) / 2,
                       std::ssize(read_csv(folder / "e.csv").rows)};
   };

@@ -38,9 +38,9 @@ void check_refused(const std::map<std::string, Words>& options, const Words& fra
   const Folder folder;
   const Words words = words_of(options, folder);
   const Exit result = run("simulate", words);
-  BOOST_TEST(complains(result, 2, "simulate", fragments), in_words(result, words));
+  BOOST_TEST(complains(result, 2, "simulate", fragments), exit_in_words(result, words));
   BOOST_TEST(result.out == "");
-  BOOST_TEST(folder.listing() == "", in_words(result, words));
+  BOOST_TEST(folder.listing() == "", exit_in_words(result, words));
 }
 
 void check_value_refused(const std::string& option, const std::string& value,
@@ -139,7 +139,7 @@ BOOST_AUTO_TEST_CASE(a_value_that_is_missing_is_missed) {
     Words words = words_of(others, folder);
     words.push_back(option);
     const Exit result = run("simulate", words);
-    BOOST_TEST(complains(result, 2, "simulate", {option}), in_words(result, words));
+    BOOST_TEST(complains(result, 2, "simulate", {option}), exit_in_words(result, words));
     BOOST_TEST(folder.listing() == "");
   }
 }
@@ -168,7 +168,7 @@ BOOST_AUTO_TEST_CASE(options_given_twice_or_unknown_are_refused) {
     Words words = words_of(good_options(), folder);
     words.insert(words.end(), {option, "0.5"});
     const Exit result = run("simulate", words);
-    BOOST_TEST(complains(result, 2, "simulate", {option}), in_words(result, words));
+    BOOST_TEST(complains(result, 2, "simulate", {option}), exit_in_words(result, words));
   }
 }
 
@@ -238,7 +238,7 @@ BOOST_AUTO_TEST_CASE(two_outputs_do_not_go_to_one_file) {
                          "--step-size", "0.1",          "--final",  folder / "f.csv",
                          "--energy",    folder / other, "--every",  "1"};
     const Exit result = run("simulate", words);
-    BOOST_TEST(complains(result, 2, "simulate", {other}), in_words(result, words));
+    BOOST_TEST(complains(result, 2, "simulate", {other}), exit_in_words(result, words));
     BOOST_TEST(folder.listing() == "");
   }
 }
@@ -248,7 +248,7 @@ BOOST_AUTO_TEST_CASE(a_sidecar_that_cannot_be_written_is_known_before_the_table)
   std::filesystem::create_directories(folder / "f.json");
   const Words words = words_of(good_options(), folder);
   const Exit result = run("simulate", words);
-  BOOST_TEST(complains(result, 2, "simulate", {"f.json"}), in_words(result, words));
+  BOOST_TEST(complains(result, 2, "simulate", {"f.json"}), exit_in_words(result, words));
   BOOST_TEST(folder.listing() == "f.json ");
 }
 

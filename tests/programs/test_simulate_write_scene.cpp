@@ -19,7 +19,7 @@ Words with(Words words, const Words& more) {
 
 void check_refused(const Words& words, const Words& fragments) {
   const Exit result = run("simulate", words);
-  BOOST_TEST(complains(result, 2, "simulate", fragments), in_words(result, words));
+  BOOST_TEST(complains(result, 2, "simulate", fragments), exit_in_words(result, words));
   BOOST_TEST(result.out == "");
 }
 

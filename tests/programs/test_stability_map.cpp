@@ -160,8 +160,8 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_sentence_and_nothing_is_written) {
   for (const auto& [words, fragments] : cases) {
     const Folder folder;
     const Exit result = run_map(folder, words);
-    BOOST_TEST(complains(result, 2, "stability_map", fragments), in_words(result, words));
-    BOOST_TEST(folder.listing() == "", in_words(result, words));
+    BOOST_TEST(complains(result, 2, "stability_map", fragments), exit_in_words(result, words));
+    BOOST_TEST(folder.listing() == "", exit_in_words(result, words));
   }
   const Exit nowhere = run("stability_map", small);
   BOOST_TEST(complains(nowhere, 2, "stability_map", {"--out"}));

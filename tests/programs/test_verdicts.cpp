@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
   for (const auto& [words, fragments] : cases) {
     const Folder folder;
     const Exit result = run_verdicts(folder, words);
-    BOOST_TEST(complains(result, 2, "verdicts", fragments), in_words(result, words));
+    BOOST_TEST(complains(result, 2, "verdicts", fragments), exit_in_words(result, words));
     BOOST_TEST(folder.listing() == "");
   }
   const Exit no_folder = run("verdicts", {});

@@ -153,7 +153,7 @@ Verdict verdict_at(const DriftRun& run, double until) {
 std::string verdict(const DriftRun& run, double until) {
   const Outcome outcome = run.summary.outcome;
   const double t = run.summary.t_reached;
-  std::string words = in_words(run.energy, run.scales);
+  std::string words = trend_in_words(run.energy, run.scales);
   if (outcome == Outcome::reached_end || run.energy.verdict == Verdict::blows_up) return words;
   const std::string part = fmt::format("{:.2g} % of the run", 100 * t / until);
   if (verdict_at(run, until) == Verdict::unknown) {

@@ -74,6 +74,6 @@ Trend trend_of(std::span<const Sample> samples, Outcome outcome, const TrendScal
 Trend line_of(std::span<const Sample> samples, const TrendScales& scales);
 
 // The trend in words; "no drift" only where the interval of the slope holds zero.
-std::string in_words(const Trend& trend, const TrendScales& scales);
+std::string trend_in_words(const Trend& trend, const TrendScales& scales);
 
 }  // namespace qddot::measure

@@ -76,7 +76,7 @@ std::string change_words(const Trend& trend) {
 
 }  // namespace
 
-std::string in_words(const Trend& trend, const TrendScales& scales) {
+std::string trend_in_words(const Trend& trend, const TrendScales& scales) {
   switch (trend.verdict) {
     case Verdict::bounded:
       return fmt::format("bounded: oscillates by {:.1e}{}{}, {}{}", trend.oscillation,

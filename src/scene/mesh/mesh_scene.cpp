@@ -90,7 +90,7 @@ std::string unused_sentence(const std::string& file, std::size_t unused) {
                      unused == 1 ? "is" : "are", unused == 1 ? "it" : "them");
 }
 
-std::string in_words(const Eigen::Vector3d& x) {
+std::string point_in_words(const Eigen::Vector3d& x) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x[0], x[1], x[2]);
 }
 
@@ -108,10 +108,11 @@ void pin(const TomlTable& box, std::vector<Node>& nodes) {
     mesh.extend(node.position);
   }
   if (!catches_any)
-    box.fail("min", fmt::format(
-                        "the box {} to {} holds no vertex of the mesh, which with its scale spans "
-                        "{} to {}; allowed are boxes that hold one",
-                        in_words(low), in_words(high), in_words(mesh.min()), in_words(mesh.max())));
+    box.fail("min",
+             fmt::format("the box {} to {} holds no vertex of the mesh, which with its scale spans "
+                         "{} to {}; allowed are boxes that hold one",
+                         point_in_words(low), point_in_words(high), point_in_words(mesh.min()),
+                         point_in_words(mesh.max())));
 }
 
 }  // namespace
