@@ -35,6 +35,7 @@ AdaptiveStep::AdaptiveStep(const Method& method, const System& system, const Opt
       atol_q_(options.atol > 0 ? options.atol : options.rtol * options.length),
       atol_v_(options.atol > 0 ? options.atol : options.rtol * options.speed),
       per_mass_(system.mass().cwiseInverse()),
+      f_(system.size()),
       error_q_(system.size()),
       error_v_(system.size()),
       instants_(std::max<std::size_t>(accuracy.instants, 2) + 1,
@@ -44,15 +45,14 @@ AdaptiveStep::AdaptiveStep(const Method& method, const System& system, const Opt
   if (kinks_.has_kinks() && accuracy_.instants > 2) accuracy_.instants = 0;
 }
 
-void AdaptiveStep::acceleration(const Vec& q, Vec& a) {
-  force(q, a);
-  multiply(a, per_mass_, a);
+void AdaptiveStep::acceleration(const Vec& q, MutableVec a) {
+  force(q, f_);
+  multiply(f_, per_mass_, a);
 }
 
 double AdaptiveStep::norm(const State& at, const Vec& q, const Vec& v) const {
   const double rtol = options().rtol;
-  const double sum = (q.array() / (rtol * at.q.array().abs() + atol_q_)).square().sum() +
-                     (v.array() / (rtol * at.v.array().abs() + atol_v_)).square().sum();
+  const double sum = squared_error(q, rtol, at.q, atol_q_) + squared_error(v, rtol, at.v, atol_v_);
   return std::sqrt(sum / static_cast<double>(2 * q.size()));
 }
 

@@ -48,7 +48,7 @@ class AdaptiveStep : public Integrator {
   // To be called by those that override it.
   void start(const State& state) override;
   // a = M^-1 f(q); counted.
-  void acceleration(const Vec& q, Vec& a);
+  void acceleration(const Vec& q, MutableVec a);
 
  private:
   Outcome run_to(State& state, double t_stop) final;
@@ -73,6 +73,7 @@ class AdaptiveStep : public Integrator {
   Accuracy accuracy_;
   double atol_q_, atol_v_;
   Vec per_mass_;  // 1/m
+  Vec f_;
   Vec error_q_, error_v_;
   std::vector<Instant> instants_;  // a ring, with a place for the next attempt
   std::size_t newest_ = 0, count_ = 0;

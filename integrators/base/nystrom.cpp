@@ -45,13 +45,11 @@ Outcome Nystrom::attempt(const Instant& now, double h, Instant& next, Vec& error
   k_.col(0) = now.a;
   for (Index i = 1; i < k_.cols(); ++i) {
     const auto row = static_cast<std::size_t>(i);
-    add_scaled(q, pair_.c[row] * h, v, stage_);
-    add_combination(stage_, h * h, k_, pair_.a[row], stage_);
-    acceleration(stage_, next.a);
-    k_.col(i) = next.a;
+    add_combination(q, pair_.c[row] * h, v, h * h, k_, pair_.a[row], stage_);
+    acceleration(stage_, k_.col(i));
   }
-  add_scaled(q, h, v, next.state.q);
-  add_combination(next.state.q, h * h, k_, pair_.b, next.state.q);
+  if (is_first_same_as_last_) next.a = k_.rightCols<1>();
+  add_combination(q, h, v, h * h, k_, pair_.b, next.state.q);
   add_combination(v, h, k_, pair_.b_prime, next.state.v);
   set_combination(h * h, k_, error_b_, error_q);
   set_combination(h, k_, error_b_prime_, error_v);

@@ -11,14 +11,14 @@ namespace {
 // The most stages that a table has.
 constexpr std::size_t most_columns = 32;
 
-void combine(const double* x, double c, const Eigen::MatrixXd& k, std::span<const double> b,
-             double* out, Index n) {
+void combine(const double* x, double d, const double* v, double c, const Eigen::MatrixXd& k,
+             std::span<const double> b, double* out, Index n) {
   assert(std::ssize(b) <= k.cols() && b.size() <= most_columns);
   std::array<const double*, most_columns> columns;
   for (std::size_t j = 0; j < b.size(); ++j) {
     columns[j] = k.data() + static_cast<Index>(j) * k.outerStride();
   }
-  kernels::vector_kernels().add_combination(x, c, columns.data(), b.data(),
+  kernels::vector_kernels().add_combination(x, d, v, c, columns.data(), b.data(),
                                             static_cast<int>(b.size()), out, n);
 }
 
@@ -43,21 +43,30 @@ void multiply(const ConstVec& a, const ConstVec& b, MutableVec out) {
 
 void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
                      std::span<const double> b, MutableVec out) {
-  combine(x.data(), c, k, b, out.data(), out.size());
+  combine(x.data(), 0, nullptr, c, k, b, out.data(), out.size());
+}
+
+void add_combination(const ConstVec& x, double d, const ConstVec& v, double c,
+                     const Eigen::MatrixXd& k, std::span<const double> b, MutableVec out) {
+  combine(x.data(), d, v.data(), c, k, b, out.data(), out.size());
 }
 
 void set_combination(double c, const Eigen::MatrixXd& k, std::span<const double> b,
                      MutableVec out) {
-  combine(nullptr, c, k, b, out.data(), out.size());
+  combine(nullptr, 0, nullptr, c, k, b, out.data(), out.size());
 }
 
 void set_combination(std::span<const double* const> z, const double* b, MutableVec out) {
-  kernels::vector_kernels().add_combination(nullptr, 1, z.data(), b, static_cast<int>(z.size()),
-                                            out.data(), out.size());
+  kernels::vector_kernels().add_combination(nullptr, 0, nullptr, 1, z.data(), b,
+                                            static_cast<int>(z.size()), out.data(), out.size());
 }
 
 double squared_norm(const ConstVec& x) {
   return kernels::vector_kernels().squared_norm(x.data(), x.size());
+}
+
+double squared_error(const ConstVec& x, double rtol, const ConstVec& y, double atol) {
+  return kernels::vector_kernels().squared_error(x.data(), rtol, y.data(), atol, x.size());
 }
 
 }  // namespace qddot

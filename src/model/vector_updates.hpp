@@ -19,11 +19,16 @@ void multiply(const ConstVec& a, const ConstVec& b, MutableVec out);
 // out = x + c K b with the first columns of K, as many as b has, at most 32.
 void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
                      std::span<const double> b, MutableVec out);
+// out = x + d v + c K b, likewise.
+void add_combination(const ConstVec& x, double d, const ConstVec& v, double c,
+                     const Eigen::MatrixXd& k, std::span<const double> b, MutableVec out);
 // out = c K b
 void set_combination(double c, const Eigen::MatrixXd& k, std::span<const double> b, MutableVec out);
 // out_i = b_0 z_0i + b_1 z_1i + ...
 void set_combination(std::span<const double* const> z, const double* b, MutableVec out);
 // |x|^2
 double squared_norm(const ConstVec& x);
+// The sum of (x_i/(rtol |y_i| + atol))^2: errors x of y in units of what is tolerated.
+double squared_error(const ConstVec& x, double rtol, const ConstVec& y, double atol);
 
 }  // namespace qddot

@@ -40,7 +40,7 @@ BOOST_AUTO_TEST_CASE(combinations_are_products_with_columns) {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   for (Index n = 1; n < 80; n += 3) {
     const Eigen::MatrixXd k = Eigen::MatrixXd::Random(n, 5);
-    const Vec x = Vec::Random(n);
+    const Vec x = Vec::Random(n), y = Vec::Random(n);
     const std::vector<double> b = {0.3, -2, 1, 0.5};
     const Vec weights = Eigen::Map<const Vec>(b.data(), 4);
     const Vec product = k.leftCols(4) * weights;
@@ -49,6 +49,9 @@ BOOST_AUTO_TEST_CASE(combinations_are_products_with_columns) {
     Vec out(n);
     add_combination(x, 0.7, k, b, out);
     BOOST_TEST((out - (x + 0.7 * product)).lpNorm<Eigen::Infinity>() <= rounding + epsilon);
+    add_combination(x, 0.3, y, 0.7, k, b, out);
+    BOOST_TEST((out - (x + 0.3 * y + 0.7 * product)).lpNorm<Eigen::Infinity>() <=
+               rounding + 2 * epsilon);
     set_combination(0.7, k, b, out);
     BOOST_TEST((out - 0.7 * product).lpNorm<Eigen::Infinity>() <= rounding);
     const std::vector<const double*> columns = {k.col(0).data(), k.col(1).data(), k.col(2).data(),
@@ -57,6 +60,10 @@ BOOST_AUTO_TEST_CASE(combinations_are_products_with_columns) {
     BOOST_TEST((out - product).lpNorm<Eigen::Infinity>() <= rounding);
     BOOST_TEST(std::abs(squared_norm(x) - x.squaredNorm()) <=
                static_cast<double>(n) * epsilon * x.squaredNorm());
+    const double error = (x.array() / (0.2 * y.array().abs() + 0.1)).square().sum();
+    // Each term rounds four times more, the square twice as much.
+    BOOST_TEST(std::abs(squared_error(x, 0.2, y, 0.1) - error) <=
+               static_cast<double>(n + 8) * epsilon * error);
   }
 }
 

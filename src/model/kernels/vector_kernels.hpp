@@ -15,11 +15,16 @@ struct VectorKernels {
   // out = f/m and out = a b, number by number.
   void (*divide)(const double* f, const double* m, double* out, std::ptrdiff_t n);
   void (*multiply)(const double* a, const double* b, double* out, std::ptrdiff_t n);
-  // out = x + c (b_0 z_0 + b_1 z_1 + ...) of `count` vectors; without x where that is nullptr.
-  void (*add_combination)(const double* x, double c, const double* const* z, const double* b,
-                          int count, double* out, std::ptrdiff_t n);
+  // out = x + d v + c (b_0 z_0 + b_1 z_1 + ...) of `count` vectors; without x or v where that is
+  // nullptr.
+  void (*add_combination)(const double* x, double d, const double* v, double c,
+                          const double* const* z, const double* b, int count, double* out,
+                          std::ptrdiff_t n);
   // x_0^2 + x_1^2 + ...
   double (*squared_norm)(const double* x, std::ptrdiff_t n);
+  // The same of x_i/(rtol |y_i| + atol).
+  double (*squared_error)(const double* x, double rtol, const double* y, double atol,
+                          std::ptrdiff_t n);
 };
 
 // Returns the version in use.

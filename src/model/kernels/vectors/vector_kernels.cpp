@@ -32,9 +32,9 @@ void multiply(const double* a, const double* b, double* out, std::ptrdiff_t n) {
 
 // The next `width` vectors of add_combination: as many sums side by side hide what one waits for.
 template <int width>
-[[gnu::always_inline]] inline void combine(const double* x, double c, const double* const* z,
-                                           const double* b, int count, double* out,
-                                           std::ptrdiff_t i) {
+[[gnu::always_inline]] inline void combine(const double* x, double d, const double* v, double c,
+                                           const double* const* z, const double* b, int count,
+                                           double* out, std::ptrdiff_t i) {
   Lanes sum[width] = {};
   for (int j = 0; j < count; ++j) {
     const double* from = z[j] + i;
@@ -43,19 +43,25 @@ template <int width>
   }
   for (int w = 0; w < width; ++w) {
     const std::ptrdiff_t at = i + w * lanes;
-    store(out + at, x ? load(x + at) + c * sum[w] : c * sum[w]);
+    if (!x) {
+      store(out + at, c * sum[w]);
+    } else if (!v) {
+      store(out + at, load(x + at) + c * sum[w]);
+    } else {
+      store(out + at, load(x + at) + d * load(v + at) + c * sum[w]);
+    }
   }
 }
 
-void add_combination(const double* x, double c, const double* const* z, const double* b, int count,
-                     double* out, std::ptrdiff_t n) {
+void add_combination(const double* x, double d, const double* v, double c, const double* const* z,
+                     const double* b, int count, double* out, std::ptrdiff_t n) {
   std::ptrdiff_t i = 0;
-  for (; i + 4 * lanes <= n; i += 4 * lanes) combine<4>(x, c, z, b, count, out, i);
-  for (; i + lanes <= n; i += lanes) combine<1>(x, c, z, b, count, out, i);
+  for (; i + 4 * lanes <= n; i += 4 * lanes) combine<4>(x, d, v, c, z, b, count, out, i);
+  for (; i + lanes <= n; i += lanes) combine<1>(x, d, v, c, z, b, count, out, i);
   for (; i < n; ++i) {
     double sum = 0;
     for (int j = 0; j < count; ++j) sum += b[j] * z[j][i];
-    out[i] = x ? x[i] + c * sum : c * sum;
+    out[i] = !x ? c * sum : !v ? x[i] + c * sum : x[i] + d * v[i] + c * sum;
   }
 }
 
@@ -75,6 +81,36 @@ double squared_norm(const double* x, std::ptrdiff_t n) {
   return total;
 }
 
+// x/(rtol |y| + atol)
+[[gnu::always_inline]] inline Lanes in_tolerances(Lanes x, double rtol, Lanes y, double atol) {
+  const Lanes size = reinterpret_cast<Lanes>(reinterpret_cast<LaneNumbers>(y) & __LONG_MAX__);
+  return x / (rtol * size + atol);
+}
+
+double squared_error(const double* x, double rtol, const double* y, double atol, std::ptrdiff_t n) {
+  Lanes sums[2] = {};
+  std::ptrdiff_t i = 0;
+  for (; i + 2 * lanes <= n; i += 2 * lanes) {
+    unroll<2>([&]<int w>() __attribute__((always_inline)) {
+      const std::ptrdiff_t at = i + w * lanes;
+      const Lanes error = in_tolerances(load(x + at), rtol, load(y + at), atol);
+      sums[w] += error * error;
+    });
+  }
+  Lanes sum = sums[0] + sums[1];
+  for (; i + lanes <= n; i += lanes) {
+    const Lanes error = in_tolerances(load(x + i), rtol, load(y + i), atol);
+    sum += error * error;
+  }
+  double total = 0;
+  for (int t = 0; t < lanes; ++t) total += sum[t];
+  for (; i < n; ++i) {
+    const double error = x[i] / (rtol * __builtin_fabs(y[i]) + atol);
+    total += error * error;
+  }
+  return total;
+}
+
 }  // namespace
 
 extern const VectorKernels vector_kernels;
@@ -83,6 +119,7 @@ const VectorKernels vector_kernels = {.add_scaled = add_scaled,
                                       .divide = divide,
                                       .multiply = multiply,
                                       .add_combination = add_combination,
-                                      .squared_norm = squared_norm};
+                                      .squared_norm = squared_norm,
+                                      .squared_error = squared_error};
 
 }  // namespace qddot::kernels::QDDOT_LEVEL
