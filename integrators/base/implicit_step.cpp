@@ -213,7 +213,9 @@ Outcome ImplicitStep::correction() {
     return outcome;
   }
   p_ = -p_;
-  return std::isfinite(squared_norm(p_)) ? Outcome::reached_end : Outcome::not_finite;
+  // Squares overflow where numbers do not.
+  const bool is_finite = std::isfinite(squared_norm(p_)) || p_.allFinite();
+  return is_finite ? Outcome::reached_end : Outcome::not_finite;
 }
 
 // Moves u along p by the first of 1, 1/2, 1/4, ... of it that halves the residual, or else
