@@ -164,8 +164,8 @@ BOOST_AUTO_TEST_CASE(it_is_the_same_to_the_bit_with_any_number_of_threads) {
 BOOST_AUTO_TEST_CASE(slices_hold_every_neighbour_once) {
   const Network network = grid(2, 13, shuffled(13 * 13)).network;
   auto neighbours = neighbours_in(network);
-  const int lanes = spring_kernels(2).lanes;
-  const NeighbourSlices slices = slice_neighbours(neighbours, 0, lanes);
+  constexpr int lanes = slice_rows;
+  const NeighbourSlices slices = slice_neighbours(neighbours, 0);
   BOOST_TEST(slices.law_vectors == 2);
   std::vector<std::vector<std::pair<int, double>>> found(neighbours.size());
   for (int s = 0; s < slices.count(); ++s) {
@@ -204,8 +204,8 @@ BOOST_AUTO_TEST_CASE(slots_of_a_grid_are_of_one_shift_and_no_slot_is_wasted) {
   for (const bool is_grid : {true, false}) {
     const auto order = is_grid ? in_order(side * side) : shuffled(side * side);
     const Network network = grid(3, side, order).network;
-    const int lanes = spring_kernels(3).lanes;
-    const NeighbourSlices slices = slice_neighbours(neighbours_in(network), 0, lanes);
+    constexpr int lanes = slice_rows;
+    const NeighbourSlices slices = slice_neighbours(neighbours_in(network), 0);
     const double slots = static_cast<double>(slices.shifts.size()),
                  gathers = static_cast<double>(slices.gathers.size()) / lanes;
     const double least = 2.0 * static_cast<double>(network.links.size()) / lanes;

@@ -15,15 +15,15 @@ using Rows = std::vector<std::vector<Neighbour>>;  // by places
 
 class Slicer {
  public:
-  Slicer(const std::vector<std::vector<Neighbour>>& neighbours, int extras, int lanes,
+  Slicer(const std::vector<std::vector<Neighbour>>& neighbours, int extras,
          const std::vector<int>& order)
-      : neighbours_(neighbours), lanes_(lanes), place_(neighbours.size() + extras) {
+      : neighbours_(neighbours), place_(neighbours.size() + extras) {
     const int nodes = static_cast<int>(neighbours.size());
-    const int rows = (nodes + lanes - 1) / lanes * lanes;
+    const int rows = (nodes + slice_rows - 1) / slice_rows * slice_rows;
     result_.node = order;
     result_.node.resize(rows, -1);
     result_.places = rows + extras;
-    result_.gathered.resize((result_.places + lanes - 1) / lanes);
+    result_.gathered.resize((result_.places + slice_rows - 1) / slice_rows);
     for (int row = 0; row < nodes; ++row) place_[order[row]] = row;
     std::iota(place_.begin() + nodes, place_.end(), rows);
     for (const auto& own : neighbours) {
@@ -35,7 +35,7 @@ class Slicer {
   }
 
   NeighbourSlices slice() {
-    for (int row = 0; row < result_.rows(); row += lanes_) {
+    for (int row = 0; row < result_.rows(); row += slice_rows) {
       begin_slice();
       Rows rows = rows_from(row);
       take_shifts(row, rows);
@@ -48,7 +48,7 @@ class Slicer {
 
  private:
   // A slot of one shift is worth it where it serves at least so many rows.
-  int enough_rows() const { return lanes_ > 4 ? lanes_ / 2 : 2; }
+  static constexpr int enough_rows = slice_rows / 2;
 
   void begin_slice() {
     result_.slices.push_back({static_cast<int>(result_.shifts.size()),
@@ -56,8 +56,8 @@ class Slicer {
   }
 
   Rows rows_from(int first) const {
-    Rows rows(lanes_);
-    for (int t = 0; t < lanes_; ++t) {
+    Rows rows(slice_rows);
+    for (int t = 0; t < slice_rows; ++t) {
       if (result_.node[first + t] < 0) continue;
       rows[t] = neighbours_[result_.node[first + t]];
       for (Neighbour& neighbour : rows[t]) neighbour.point = place_[neighbour.point];
@@ -72,7 +72,7 @@ class Slicer {
     while (found) {
       found = false;
       std::vector<int> shifts;
-      for (int t = 0; t < lanes_; ++t) {
+      for (int t = 0; t < slice_rows; ++t) {
         for (std::size_t e = 0; e < rows[t].size(); ++e) {
           if (e > 0 && rows[t][e].point == rows[t][e - 1].point) continue;
           shifts.push_back(rows[t][e].point - first - t);
@@ -82,8 +82,8 @@ class Slicer {
       for (auto next = shifts.begin(); next != shifts.end();) {
         const int shift = *next;
         const auto end = std::upper_bound(next, shifts.end(), shift);
-        const bool is_within = first + shift >= 0 && first + shift + lanes_ <= result_.places;
-        if (end - next >= enough_rows() && is_within) {
+        const bool is_within = first + shift >= 0 && first + shift + slice_rows <= result_.places;
+        if (end - next >= enough_rows && is_within) {
           take_shift(first, shift, rows);
           found = true;
         }
@@ -94,8 +94,8 @@ class Slicer {
 
   void take_shift(int first, int shift, Rows& rows) {
     result_.shifts.push_back(shift);
-    std::vector<SpringLaw> laws(lanes_);
-    for (int t = 0; t < lanes_; ++t) {
+    std::vector<SpringLaw> laws(slice_rows);
+    for (int t = 0; t < slice_rows; ++t) {
       const auto found = std::ranges::find(rows[t], first + t + shift, &Neighbour::point);
       if (found == rows[t].end()) continue;
       laws[t] = found->law;
@@ -104,17 +104,22 @@ class Slicer {
     append(laws);
   }
 
+  // A row without a spring looks at one of another's ends: towards itself it would be without
+  // length, which is computed in a slower way.
   void take_gathers(int first, const Rows& rows) {
     std::size_t most = 0;
     for (const auto& row : rows) most = std::max(most, row.size());
     for (std::size_t e = 0; e < most; ++e) {
-      std::vector<SpringLaw> laws(lanes_);
-      for (int t = 0; t < lanes_; ++t) {
+      int longest = 0;
+      while (e >= rows[longest].size()) ++longest;
+      const int other = rows[longest][e].point;
+      std::vector<SpringLaw> laws(slice_rows);
+      for (int t = 0; t < slice_rows; ++t) {
         const bool has_one = e < rows[t].size();
-        const int place = has_one ? rows[t][e].point : first + t;
+        const int place = has_one ? rows[t][e].point : other != first + t ? other : first + longest;
         if (has_one) laws[t] = rows[t][e].law;
         result_.gathers.push_back(place);
-        result_.gathered[place / lanes_] = true;
+        result_.gathered[place / slice_rows] = true;
       }
       append(laws);
     }
@@ -131,32 +136,31 @@ class Slicer {
   }
 
   const std::vector<std::vector<Neighbour>>& neighbours_;
-  int lanes_;
   std::vector<int> place_;  // of each point
   std::vector<double> laws_;
   NeighbourSlices result_;
 };
 
-double cost(const NeighbourSlices& slices, int lanes) {
+double cost(const NeighbourSlices& slices) {
   return static_cast<double>(slices.shifts.size()) +
-         cost_of_gather * static_cast<double>(slices.gathers.size()) / lanes;
+         cost_of_gather * static_cast<double>(slices.gathers.size()) / slice_rows;
 }
 
 }  // namespace
 
-NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours, int extras,
-                                 int lanes) {
+NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours,
+                                 int extras) {
   std::vector<int> order(neighbours.size());
   std::iota(order.begin(), order.end(), 0);
-  NeighbourSlices as_given = Slicer(neighbours, extras, lanes, order).slice();
+  NeighbourSlices as_given = Slicer(neighbours, extras, order).slice();
   if (as_given.gathers.empty()) return as_given;
   for (std::size_t begin = 0; begin < order.size(); begin += window) {
     const std::size_t end = std::min(begin + window, order.size());
     std::stable_sort(order.begin() + begin, order.begin() + end,
                      [&](int a, int b) { return neighbours[a].size() > neighbours[b].size(); });
   }
-  NeighbourSlices sorted = Slicer(neighbours, extras, lanes, order).slice();
-  return cost(sorted, lanes) < cost(as_given, lanes) ? std::move(sorted) : std::move(as_given);
+  NeighbourSlices sorted = Slicer(neighbours, extras, order).slice();
+  return cost(sorted) < cost(as_given) ? std::move(sorted) : std::move(as_given);
 }
 
 }  // namespace qddot::kernels

@@ -14,13 +14,12 @@ struct Neighbour {
   SpringLaw law;
 };
 
-// The springs of all nodes, laid out for a processor that evaluates as many at once as its vectors
-// have lanes: a row is a node, a slice is `lanes` rows, a slot one spring of each of them. Every
-// spring stands here twice, once for each end, so that a row sums its own forces and nothing is
-// scattered. Where a row has fewer springs than others, slots are filled with springs of no
-// stiffness. This is the format SELL-C-sigma (Kreutzer, Hager, Wellein, Fehske, Bishop, SIAM J.
-// Sci. Comput. 36 (2014) C401-C423) with, besides slots that gather, slots of one shift, as most
-// are inside of a grid.
+// The springs of all nodes, laid out for a processor that evaluates several at once: a row is a
+// node, a slice is `slice_rows` rows, a slot one spring of each of them. Every spring stands here
+// twice, once for each end, so that a row sums its own forces and nothing is scattered. Where a row
+// has fewer springs than others, slots are filled with springs of no stiffness. This is the format
+// SELL-C-sigma (Kreutzer, Hager, Wellein, Fehske, Bishop, SIAM J. Sci. Comput. 36 (2014) C401-C423)
+// with, besides slots that gather, slots of one shift, as most are inside of a grid.
 struct NeighbourSlices {
   // The node of each row, -1 where a row only fills up the last slice. Rows are the first places;
   // then come the points that are no nodes, in order.
@@ -28,13 +27,13 @@ struct NeighbourSlices {
   int places = 0;
   std::vector<Slice> slices;  // and the end
   std::vector<int> shifts;    // of a slot: its rows' neighbours are at the rows' places plus this
-  std::vector<int> gathers;   // of a slot: `lanes` places
+  std::vector<int> gathers;   // of a slot: `slice_rows` places
   // The stiffness of the springs of a slot's rows; then, where any spring of all has one, their
   // rest lengths; then, where any has one, their quartic stiffness. In a slice first the slots of
   // one shift, then those that gather.
   Vec laws;
   int law_vectors = 1;
-  std::vector<char> gathered;  // of `lanes` places each: whether any slot gathers from these
+  std::vector<char> gathered;  // of a slice: whether any slot gathers from its places
 
   int rows() const { return static_cast<int>(node.size()); }
   int count() const { return static_cast<int>(slices.size()) - 1; }
@@ -42,7 +41,6 @@ struct NeighbourSlices {
 
 // neighbours[i]: those of node i < N; points N, ..., N + extras - 1 are no nodes. Rows are in the
 // nodes' order, or sorted by their number of springs within windows where that leaves fewer slots.
-NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours, int extras,
-                                 int lanes);
+NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours, int extras);
 
 }  // namespace qddot::kernels

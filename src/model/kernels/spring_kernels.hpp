@@ -6,6 +6,10 @@
 // must not instantiate what others share; the linker might keep the copy for wider vectors.
 namespace qddot::kernels {
 
+// The rows of a slice: a vector's with AVX-512, and so many everywhere, so that all processors add
+// the springs of a node in the same order.
+constexpr int slice_rows = 8;
+
 // Where a slice's slots begin; they end where those of the next begin.
 struct Slice {
   int shift, gather;
@@ -22,7 +26,7 @@ struct SpringTable {
   const int *shifts, *gathers;
   const double* laws;
   int law_vectors;
-  const int* unknowns;   // D of each row
+  const int* unknowns;   // D of each row; where a coordinate x is none, -1 - x
   const Order* orders;   // of the slices
   const char* gathered;  // of the slices: whether any slot gathers from their rows
 };
@@ -51,10 +55,13 @@ struct TensionPart {
   double compression;
 };
 
+// How a spring's length and quotient tau/l are computed: by the processor's own root and division,
+// the root from an estimate, or both. All have the same bits. See vectors/roots.hpp.
+enum class Roots { processor, estimated_root, estimated };
+constexpr int kinds_of_roots = 3;
+
 // One version's functions for D dimensions; each works on the slices [from, end).
 struct SpringKernels {
-  int lanes;  // of a vector, and rows of a slice
-
   // Puts the rows' coordinates at q where they are looked up.
   void (*place)(const SpringTable&, const double* q, const Positions&, int from, int end);
   // f = offset + the forces of the rows' springs.
@@ -65,7 +72,7 @@ struct SpringKernels {
                     double* values, int from, int end);
 };
 
-// Returns the version in use for 1, 2 or 3 dimensions.
-const SpringKernels& spring_kernels(int dimension);
+// Returns the version in use for 1, 2 or 3 dimensions; nullptr where it has no such roots.
+const SpringKernels* spring_kernels(int dimension, Roots roots);
 
 }  // namespace qddot::kernels

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "qddot/model/kernels/roots.hpp"
+
 namespace qddot::kernels {
 
 template <int D>
@@ -40,23 +42,26 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout)
     neighbours[link.i].push_back({image_of(link.j, link.mirror), link.law});
     neighbours[link.j].push_back({image_of(link.i, link.mirror), link.law});
   }
-  slices_ = slice_neighbours(neighbours, static_cast<int>(points_.size() + images_.size()),
-                             kernels_.lanes);
+  slices_ = slice_neighbours(neighbours, static_cast<int>(points_.size() + images_.size()));
+  kernels_ = spring_kernels(D, can_be_estimated(slices_) ? roots() : Roots::processor);
 
   std::vector<int> place(nodes);
   for (int row = 0; row < slices_.rows(); ++row) {
     unknowns_.insert(unknowns_.end(), D, -1);
     const int node = slices_.node[row];
-    if (node < 0) continue;
+    if (node < 0) {  // each at a place of its own, so that none is without distance to another
+      unknowns_[D * row] = -2 - row;
+      continue;
+    }
     place[node] = row;
     for (int a = 0; a < layout.count(node); ++a) {
       unknowns_[D * row + layout.axis(node, a)] = layout.first(node) + a;
     }
   }
   for (Image& image : images_) image.source = place[image.source];
-  for (int row = 0; row < slices_.rows(); row += kernels_.lanes) {
+  for (int row = 0; row < slices_.rows(); row += slice_rows) {
     Order order = Order::by_slice;
-    for (int e = 0; e < D * kernels_.lanes; ++e) {
+    for (int e = 0; e < D * slice_rows; ++e) {
       const int* own = unknowns(row + e / D);
       if (own[0] != unknowns(row)[0] + e / D * D) order = std::max(order, Order::by_row);
       if (own[0] < 0 || own[e % D] != own[0] + e % D) order = Order::none;
@@ -81,13 +86,13 @@ template <int D>
 void SpringsByNode<D>::sum_forces(const ConstVec& q, const Vec& offset, MutableVec f) const {
   const SpringTable springs = table();
   for_slices(q, [&](const Positions& positions, int from, int end) {
-    kernels_.force(springs, positions, offset.data(), f.data(), from, end);
+    kernels_->force(springs, positions, offset.data(), f.data(), from, end);
   });
 }
 
 template <int D>
 Positions SpringsByNode<D>::memory() const {
-  const Index stride = (slices_.places + kernels_.lanes - 1) / kernels_.lanes * kernels_.lanes;
+  const Index stride = (slices_.places + slice_rows - 1) / slice_rows * slice_rows;
   thread_local Vec numbers;
   const Index size = stride * (D > 1 ? D + point_stride<D> : D);
   if (numbers.size() < size) numbers.resize(size);

@@ -12,8 +12,8 @@
 namespace qddot::kernels {
 
 // The springs of a network in D = 1, 2 or 3 dimensions, by the processor's vectors: each node looks
-// at its own springs, as many nodes side by side as a vector has lanes, so that a spring is
-// evaluated twice, once from each end, and a node's sums are its own. What a node is pulled towards
+// at its own springs, several nodes side by side, so that a spring is evaluated twice, once from
+// each end, and a node's sums are its own. What a node is pulled towards
 // is a node, the mirror image of one, or a fixed point.
 template <int D>
 class SpringsByNode {
@@ -21,16 +21,17 @@ class SpringsByNode {
   SpringsByNode(const Network& network, const Layout<D>& layout);
 
   const NeighbourSlices& slices() const { return slices_; }
-  // The D coordinates of a row; -1 where one is always zero and no unknown.
+  // The D coordinates of a row; -1 - x where one is always x and no unknown.
   const int* unknowns(int row) const { return unknowns_.data() + D * row; }
-  const SpringKernels& kernels() const { return kernels_; }
+  const SpringKernels& kernels() const { return *kernels_; }
   // Everything as kernels read it; valid as long as this.
   SpringTable table() const;
 
   // f = offset + the forces of the springs [N], of each node
   //   sum over its springs of (tau/l) (x_j - x_i),
   // which differs from a sum spring by spring by rounding, and by nothing with the number of
-  // threads. q, offset, f: n. May be called from any thread.
+  // threads, the kind of roots, and the width of vectors (but without fused products, v2). q,
+  // offset, f: n. May be called from any thread.
   void sum_forces(const ConstVec& q, const Vec& offset, MutableVec f) const;
 
   // Calls action(positions at q, from, end) for slices [from, end) until all have been, by several
@@ -52,7 +53,7 @@ class SpringsByNode {
   // What is no node; after all slices.
   void place_extras(const Positions& positions) const;
 
-  const SpringKernels& kernels_ = spring_kernels(D);
+  const SpringKernels* kernels_;
   std::vector<std::array<double, D>> points_;
   std::vector<Image> images_;  // extras are the points, then these
   NeighbourSlices slices_;
@@ -66,9 +67,9 @@ void SpringsByNode<D>::for_slices(const ConstVec& q, const Action& action) const
   const Positions positions = memory();
   const SpringTable springs = table();
   const int count = slices_.count();
-  const Index slots = std::ssize(slices_.shifts) + std::ssize(slices_.gathers) / kernels_.lanes;
+  const Index slots = std::ssize(slices_.shifts) + std::ssize(slices_.gathers) / slice_rows;
   if (slots < slots_worth_threads || omp_in_parallel() || omp_get_max_threads() == 1) {
-    kernels_.place(springs, q.data(), positions, 0, count);
+    kernels_->place(springs, q.data(), positions, 0, count);
     place_extras(positions);
     return action(positions, 0, count);
   }
@@ -77,7 +78,7 @@ void SpringsByNode<D>::for_slices(const ConstVec& q, const Action& action) const
     const Index thread = omp_get_thread_num(), threads = omp_get_num_threads();
     const int from = static_cast<int>(count * thread / threads),
               end = static_cast<int>(count * (thread + 1) / threads);
-    kernels_.place(springs, q.data(), positions, from, end);
+    kernels_->place(springs, q.data(), positions, from, end);
 #pragma omp barrier
 #pragma omp single
     place_extras(positions);

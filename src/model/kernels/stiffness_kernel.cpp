@@ -88,19 +88,18 @@ void StiffnessKernel<D>::place_slots(const Layout<D>& layout, const SpringsByNod
     const int block = block_of(pattern, layout, node, later);
     return block >= 0 && links[block] == 1 ? block : -1;
   };
-  const int lanes = springs.kernels().lanes;
   const double* law = slices.laws.data();
   const auto add_slot = [&](int row, const auto& place_of) {
-    std::vector<int> targets(lanes, -1);
-    for (int t = 0; t < lanes; ++t) {
+    std::vector<int> targets(slice_rows, -1);
+    for (int t = 0; t < slice_rows; ++t) {
       // A slot has springs of no stiffness where a row has none.
-      const bool is_spring = law[t] > 0 || (slices.law_vectors == 3 && law[2 * lanes + t] > 0);
+      const bool is_spring = law[t] > 0 || (slices.law_vectors == 3 && law[2 * slice_rows + t] > 0);
       if (is_spring) targets[t] = target(row + t, place_of(t));
       if (targets[t] < 0) continue;
       const int* columns = columns_.data() + D * (row + t);
       for (int b = 0; b < D; ++b) mark(written, targets[t] + columns[b] - columns[0] - b, D);
     }
-    law += slices.law_vectors * lanes;
+    law += slices.law_vectors * slice_rows;
     const bool has_one = std::ranges::any_of(targets, [](int block) { return block >= 0; });
     slot_targets_.push_back(has_one ? static_cast<int>(targets_.size()) : -1);
     if (has_one) targets_.insert(targets_.end(), targets.begin(), targets.end());
@@ -108,10 +107,10 @@ void StiffnessKernel<D>::place_slots(const Layout<D>& layout, const SpringsByNod
   for (int s = 0; s < slices.count(); ++s) {
     const auto &begin = slices.slices[s], &end = slices.slices[s + 1];
     for (int i = begin.shift; i < end.shift; ++i) {
-      add_slot(s * lanes, [&](int t) { return s * lanes + t + slices.shifts[i]; });
+      add_slot(s * slice_rows, [&](int t) { return s * slice_rows + t + slices.shifts[i]; });
     }
-    for (int i = begin.gather; i < end.gather; i += lanes) {
-      add_slot(s * lanes, [&](int t) { return slices.gathers[i + t]; });
+    for (int i = begin.gather; i < end.gather; i += slice_rows) {
+      add_slot(s * slice_rows, [&](int t) { return slices.gathers[i + t]; });
     }
   }
 }

@@ -1,22 +1,31 @@
 #pragma once
 
+#include "qddot/model/kernels/vectors/roots.hpp"
 #include "qddot/model/kernels/vectors/slots.hpp"
 
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 
 // tau/l of one slot's springs, whose squared lengths are l2; 0 where l = 0, as in spring.hpp.
-template <int law_vectors>
-[[gnu::always_inline]] inline Lanes tension_by_length(Lanes l2, const double* law) {
-  const Lanes stiffness = load(law);
+template <int law_vectors, Roots roots>
+[[gnu::always_inline]] inline Lanes tension_by_length(Lanes l2, const double* law, Range& range) {
   if constexpr (law_vectors == 1) {
-    return stiffness;
+    return load(law);
   } else {
-    const Lanes l = square_root(l2), s = l - load(law + lanes);
-    Lanes tension = s * stiffness;
-    if constexpr (law_vectors == 3) tension = s * (stiffness + load(law + 2 * lanes) * (s * s));
-    const Lanes ratio = tension / l;
-    return l > 0 ? ratio : Lanes{};
+    const auto tension = [law](Lanes l) __attribute__((always_inline)) {
+      const Lanes s = l - load(law + slice_rows);
+      if constexpr (law_vectors == 2) return s * load(law);
+      return s * (load(law) + load(law + 2 * slice_rows) * (s * s));
+    };
+    if constexpr (roots == Roots::processor) {
+      const Lanes l = square_root(l2), ratio = tension(l) / l;
+      return l > 0 ? ratio : Lanes{};
+    } else {
+      range.add(l2);
+      const auto [l, half_inverse] = estimated_root(l2);
+      if constexpr (roots == Roots::estimated_root) return tension(l) / l;
+      return estimated_quotient(tension(l), l, half_inverse);
+    }
   }
 }
 
@@ -28,19 +37,19 @@ template <int law_vectors>
   if constexpr (law_vectors == 1) {
     return stiffness * d;
   } else {
-    const Lanes rest_length = load(law + lanes);
+    const Lanes rest_length = load(law + slice_rows);
     const Lanes s = d - (d > 0 ? rest_length : -rest_length);
     Lanes force = s * stiffness;
-    if constexpr (law_vectors == 3) force = s * (stiffness + load(law + 2 * lanes) * (s * s));
+    if constexpr (law_vectors == 3) force = s * (stiffness + load(law + 2 * slice_rows) * (s * s));
     return d != 0 ? force : Lanes{};
   }
 }
 
-// f = offset + sum of a slice's rows.
+// f = offset + sum of the rows of a part of a slice.
 template <int D>
-[[gnu::always_inline]] inline void put(const SpringTable& springs, int slice, const Lanes (&sum)[D],
-                                       const double* offset, double* f) {
-  const int* unknowns = springs.unknowns + D * slice * lanes;
+[[gnu::always_inline]] inline void put(const SpringTable& springs, int slice, int part,
+                                       const Lanes (&sum)[D], const double* offset, double* f) {
+  const int* unknowns = springs.unknowns + D * (slice * slice_rows + part * lanes);
   const Order order = springs.orders[slice];
   if (order == Order::by_slice) return interleave<D>(sum, offset + unknowns[0], f + unknowns[0]);
   double sums[D][lanes];
@@ -53,35 +62,40 @@ template <int D>
   }
 }
 
-template <int D, int law_vectors>
+template <int D, int law_vectors, Roots chosen>
 void sum_forces(const SpringTable& springs, const Positions& positions, const double* offset,
                 double* f, int from, int end) {
-  for (int slice = from; slice < end; ++slice) {
-    Lanes sum[D] = {};
-    const auto add = [&](int, const Lanes(&d)[D], Lanes l2, const double* law)
-        __attribute__((always_inline)) {
-      if constexpr (D == 1) {
-        sum[0] += force_on_line<law_vectors>(d[0], law);
-      } else {
-        const Lanes ratio = tension_by_length<law_vectors>(l2, law);
-        for (int a = 0; a < D; ++a) sum[a] += ratio * d[a];
-      }
-    };
-    for_slots<D, law_vectors>(springs, slice, positions, add);
-    put<D>(springs, slice, sum, offset, f);
+  constexpr Roots roots = D == 1 || law_vectors == 1 ? Roots::processor : chosen;
+  for (int i = from * parts_of_slice; i < end * parts_of_slice; ++i) {
+    const int slice = i / parts_of_slice, part = i % parts_of_slice;
+    Lanes sum[D];
+    by_roots<roots>([&]<Roots in_use>(Range & range) __attribute__((always_inline)) {
+      for (int a = 0; a < D; ++a) sum[a] = Lanes{};
+      for_slots<D, law_vectors>(
+          springs, slice, part, positions,
+          [&](int, const Lanes(&d)[D], Lanes l2, const double* law) __attribute__((always_inline)) {
+            if constexpr (D == 1) {
+              sum[0] += force_on_line<law_vectors>(d[0], law);
+            } else {
+              const Lanes ratio = tension_by_length<law_vectors, in_use>(l2, law, range);
+              for (int a = 0; a < D; ++a) sum[a] += ratio * d[a];
+            }
+          });
+    });
+    put<D>(springs, slice, part, sum, offset, f);
   }
 }
 
-template <int D>
+template <int D, Roots roots>
 void force(const SpringTable& springs, const Positions& positions, const double* offset, double* f,
            int from, int end) {
   switch (springs.law_vectors) {
     case 1:
-      return sum_forces<D, 1>(springs, positions, offset, f, from, end);
+      return sum_forces<D, 1, roots>(springs, positions, offset, f, from, end);
     case 2:
-      return sum_forces<D, 2>(springs, positions, offset, f, from, end);
+      return sum_forces<D, 2, roots>(springs, positions, offset, f, from, end);
     default:
-      return sum_forces<D, 3>(springs, positions, offset, f, from, end);
+      return sum_forces<D, 3, roots>(springs, positions, offset, f, from, end);
   }
 }
 

@@ -5,10 +5,26 @@
 #include "qddot/model/kernels/vectors/stiffness.hpp"
 
 namespace qddot::kernels::QDDOT_LEVEL {
+namespace {
 
-extern const SpringKernels spring_kernels[3];
-const SpringKernels spring_kernels[3] = {{lanes, place<1>, force<1>, stiffness<1>},
-                                         {lanes, place<2>, force<2>, stiffness<2>},
-                                         {lanes, place<3>, force<3>, stiffness<3>}};
+template <int D, Roots roots>
+constexpr SpringKernels kernels() {
+  if constexpr (roots == Roots::processor || has_estimates) {
+    return {place<D>, force<D, roots>, stiffness<D, roots>};
+  } else {
+    return {};
+  }
+}
+
+}  // namespace
+
+#define QDDOT_ROW(roots) \
+  { kernels<1, roots>(), kernels<2, roots>(), kernels<3, roots>() }
+
+extern const SpringKernels spring_kernels[kinds_of_roots][3];
+const SpringKernels spring_kernels[kinds_of_roots][3] = {
+    QDDOT_ROW(Roots::processor), QDDOT_ROW(Roots::estimated_root), QDDOT_ROW(Roots::estimated)};
+
+#undef QDDOT_ROW
 
 }  // namespace qddot::kernels::QDDOT_LEVEL

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "qddot/model/kernels/vectors/roots.hpp"
 #include "qddot/model/kernels/vectors/slots.hpp"
 
 namespace qddot::kernels::QDDOT_LEVEL {
@@ -21,16 +22,18 @@ constexpr int entry(int a, int b) {
 struct Slopes {
   Lanes along, across, inverse_length;
 };
-template <int D, int law_vectors, class Counted>
-[[gnu::always_inline]] inline Slopes slopes(Lanes l2, const double* law, const Counted& counted) {
+template <int D, int law_vectors, Roots roots, class Counted>
+[[gnu::always_inline]] inline Slopes slopes(Lanes l2, const double* law, const Counted& counted,
+                                            Range& range) {
   const Lanes stiffness = load(law);
   if constexpr (law_vectors == 1 || (D == 1 && law_vectors == 2)) {
     return {stiffness, stiffness, Lanes{}};
   } else {
-    const Lanes l = square_root(l2), rest_length = load(law + lanes), s = l - rest_length;
+    if constexpr (roots != Roots::processor) range.add(l2);
+    const Lanes l = root_of<roots>(l2), rest_length = load(law + slice_rows), s = l - rest_length;
     Lanes along = stiffness, tension = s * stiffness;
     if constexpr (law_vectors == 3) {
-      const Lanes quartic = load(law + 2 * lanes) * (s * s);
+      const Lanes quartic = load(law + 2 * slice_rows) * (s * s);
       along = stiffness + 3 * quartic;
       tension = s * (stiffness + quartic);
     }
@@ -74,51 +77,67 @@ template <int D>
   }
 }
 
+// The blocks of one slot's springs.
+template <int D>
+[[gnu::always_inline]] inline void set_blocks(const Lanes (&d)[D], const Slopes& slope,
+                                              Lanes (&block)[triangle<D>]) {
+  for (int b = 0; b < D; ++b) {
+    const Lanes n = d[b] * slope.inverse_length;
+    for (int a = b; a < D; ++a) {
+      Lanes& entry_ab = block[entry<D>(a, b)];
+      entry_ab = (slope.along - slope.across) * n * (d[a] * slope.inverse_length);
+      if (a == b) entry_ab = D == 1 ? slope.along : entry_ab + slope.across;
+    }
+  }
+}
+
 // With tau/l as counted(tau/l, l0).
-template <int D, int law_vectors, class Counted>
+template <int D, int law_vectors, Roots chosen, class Counted>
 void write(const SpringTable& springs, const Positions& positions, const StiffnessTable& table,
            const Counted& counted, double* values, int from, int end) {
-  for (int slice = from; slice < end; ++slice) {
-    const int first = springs.slices[slice].shift + springs.slices[slice].gather / lanes;
-    const int* columns = table.columns + D * slice * lanes;
-    Lanes own[triangle<D>] = {};
-    const auto add = [&](int slot, const Lanes(&d)[D], Lanes l2, const double* law)
-        __attribute__((always_inline)) {
-      const Slopes slope = slopes<D, law_vectors>(l2, law, counted);
-      Lanes block[triangle<D>];
-      for (int b = 0; b < D; ++b) {
-        const Lanes n = d[b] * slope.inverse_length;
-        for (int a = b; a < D; ++a) {
-          Lanes& entry_ab = block[entry<D>(a, b)];
-          entry_ab = (slope.along - slope.across) * n * (d[a] * slope.inverse_length);
-          if (a == b) entry_ab = D == 1 ? slope.along : entry_ab + slope.across;
-        }
-      }
-      for (int e = 0; e < triangle<D>; ++e) own[e] -= block[e];
-      const int at = table.slot_targets[first + slot];
-      if (at >= 0) put_blocks<D>(block, table.targets + at, columns, values);
-    };
-    for_slots<D, law_vectors>(springs, slice, positions, add);
+  constexpr Roots roots = D == 1 || law_vectors == 1 ? Roots::processor : chosen;
+  for (int i = from * parts_of_slice; i < end * parts_of_slice; ++i) {
+    const int slice = i / parts_of_slice, part = i % parts_of_slice;
+    const int first = springs.slices[slice].shift + springs.slices[slice].gather / slice_rows;
+    const int* columns = table.columns + D * (slice * slice_rows + part * lanes);
+    Lanes own[triangle<D>];
+    by_roots<roots>([&]<Roots in_use>(Range & range) __attribute__((always_inline)) {
+      for (Lanes& entry : own) entry = Lanes{};
+      for_slots<D, law_vectors>(
+          springs, slice, part, positions,
+          [&](int slot, const Lanes(&d)[D], Lanes l2, const double* law)
+              __attribute__((always_inline)) {
+                Lanes block[triangle<D>];
+                set_blocks<D>(d, slopes<D, law_vectors, in_use>(l2, law, counted, range), block);
+                for (int e = 0; e < triangle<D>; ++e) own[e] -= block[e];
+                const int at = table.slot_targets[first + slot];
+                if (at < 0) return;
+                put_blocks<D>(block, table.targets + at + part * lanes, columns, values);
+              });
+    });
     put_own<D>(own, columns, values);
   }
 }
 
-template <int D, class Counted>
+template <int D, Roots roots, class Counted>
 void write(const SpringTable& springs, const Positions& positions, const StiffnessTable& table,
            const Counted& counted, double* values, int from, int end) {
   switch (springs.law_vectors) {
     case 1:
-      return write<D, 1>(springs, positions, table, counted, values, from, end);
+      return write<D, 1, roots>(springs, positions, table, counted, values, from, end);
     case 2:
-      return write<D, 2>(springs, positions, table, counted, values, from, end);
+      return write<D, 2, roots>(springs, positions, table, counted, values, from, end);
     default:
-      return write<D, 3>(springs, positions, table, counted, values, from, end);
+      return write<D, 3, roots>(springs, positions, table, counted, values, from, end);
   }
 }
 
-template <int D>
+// Inverse lengths are the processor's own quotients: the others are next to the nearest number
+// only.
+template <int D, Roots chosen>
 void stiffness(const SpringTable& springs, const Positions& positions, const StiffnessTable& table,
                TensionPart part, double* values, int from, int end) {
+  constexpr Roots roots = chosen == Roots::processor ? Roots::processor : Roots::estimated_root;
   const auto softened = [part](Lanes across, Lanes) __attribute__((always_inline)) {
     return across < 0 ? across * part.compression : across;
   };
@@ -126,9 +145,9 @@ void stiffness(const SpringTable& springs, const Positions& positions, const Sti
     return rest_length > 0 ? Lanes{} : across;
   };
   if (part.is_material) {
-    write<D>(springs, positions, table, material, values, from, end);
+    write<D, roots>(springs, positions, table, material, values, from, end);
   } else {
-    write<D>(springs, positions, table, softened, values, from, end);
+    write<D, roots>(springs, positions, table, softened, values, from, end);
   }
 }
 

@@ -1,0 +1,122 @@
+#include "qddot/model/kernels/roots.hpp"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace qddot::kernels {
+namespace {
+
+constexpr std::array<std::string_view, kinds_of_roots> root_names = {"processor", "estimated_root",
+                                                                     "estimated"};
+
+// A row of nodes with springs to the next twelve, as many as there are to the nodes before.
+class Sample {
+ public:
+  Sample() {
+    for (int i = 0; i < nodes; ++i) {
+      for (int j = std::max(0, i - reach); j < std::min(nodes, i + reach + 1); ++j) {
+        if (j != i) neighbours_[i].push_back({j, {.stiffness = 100, .rest_length = 0.9}});
+      }
+    }
+    slices_ = slice_neighbours(neighbours_, 0);
+    orders_.assign(slices_.count(), Order::by_slice);
+    for (int i = 0; i < 3 * slices_.rows(); ++i) unknowns_.push_back(i);
+    q_ = Vec::LinSpaced(std::ssize(unknowns_), 0, 100);
+    x_ = Vec::Zero(std::ssize(unknowns_) + 4 * slices_.rows());
+    offset_ = f_ = Vec::Zero(std::ssize(unknowns_));
+  }
+
+  // How long the forces take [s].
+  double time(const SpringKernels& kernels) {
+    using Clock = std::chrono::steady_clock;
+    const SpringTable springs{.slices = slices_.slices.data(),
+                              .shifts = slices_.shifts.data(),
+                              .gathers = slices_.gathers.data(),
+                              .laws = slices_.laws.data(),
+                              .law_vectors = slices_.law_vectors,
+                              .unknowns = unknowns_.data(),
+                              .orders = orders_.data(),
+                              .gathered = slices_.gathered.data()};
+    const Positions positions{x_.data(), slices_.rows(), x_.data() + 3 * slices_.rows()};
+    const auto start = Clock::now();
+    kernels.place(springs, q_.data(), positions, 0, slices_.count());
+    kernels.force(springs, positions, offset_.data(), f_.data(), 0, slices_.count());
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  }
+
+ private:
+  static constexpr int nodes = 64 * slice_rows, reach = 12;
+
+  std::vector<std::vector<Neighbour>> neighbours_{nodes};
+  NeighbourSlices slices_;
+  std::vector<Order> orders_;
+  std::vector<int> unknowns_;
+  Vec q_, x_, offset_, f_;
+};
+
+// By turns, and the least of each: what else the processor does meanwhile lengthens some passes.
+Roots fastest() {
+  constexpr int turns = 40;  // of some 10 microseconds each
+  Sample sample;
+  std::array<double, kinds_of_roots> least;
+  least.fill(std::numeric_limits<double>::infinity());
+  for (int turn = 0; turn < turns; ++turn) {
+    for (int i = 0; i < kinds_of_roots; ++i) {
+      const SpringKernels* kernels = spring_kernels(3, static_cast<Roots>(i));
+      if (kernels) least[i] = std::min(least[i], sample.time(*kernels));
+    }
+  }
+  return static_cast<Roots>(std::ranges::min_element(least) - least.begin());
+}
+
+Roots chosen_roots() {
+  const char* wanted = std::getenv("QDDOT_ROOTS");
+  if (!wanted) return fastest();
+  const auto found = std::ranges::find(root_names, wanted);
+  const auto roots = static_cast<Roots>(found - root_names.begin());
+  if (found != root_names.end() && spring_kernels(3, roots)) return roots;
+  throw std::runtime_error("this processor has no kernels with QDDOT_ROOTS=" + std::string(wanted));
+}
+
+// A power of two on either side of which lie the stiffnesses of springs that can be estimated: the
+// length being in [2^-128, 2^128), their tension is then 0 or in [2^-800, 2^800].
+constexpr double extreme = 0x1p200;
+
+bool is_moderate(double stiffness) {
+  return stiffness == 0 || (stiffness >= 1 / extreme && stiffness <= extreme);
+}
+
+}  // namespace
+
+Roots roots() {
+  static const Roots roots = chosen_roots();
+  return roots;
+}
+
+std::span<const std::string_view> names_of_roots() { return root_names; }
+
+bool can_be_estimated(const NeighbourSlices& slices) {
+  if (slices.law_vectors == 1) return true;
+  const Index stride = slices.law_vectors * slice_rows;
+  for (Index at = 0; at < slices.laws.size(); at += stride) {
+    for (int t = 0; t < slice_rows; ++t) {
+      const double* law = slices.laws.data() + at + t;
+      const double stiffness = law[0], rest_length = law[slice_rows],
+                   quartic = slices.law_vectors > 2 ? law[2 * slice_rows] : 0;
+      // Without stiffness, a rest length leaves a tension of minus zero.
+      const bool is_spring = stiffness > 0 || quartic > 0 || rest_length == 0;
+      if (!is_spring || !is_moderate(stiffness) || !is_moderate(quartic) || rest_length > extreme) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace qddot::kernels

@@ -1,0 +1,151 @@
+#pragma once
+
+#include "qddot/model/kernels/spring_kernels.hpp"
+#include "qddot/model/kernels/vectors/lanes.hpp"
+
+#if defined __AVX512F__ || (defined __AVX2__ && defined __FMA__)
+#include <immintrin.h>
+#define QDDOT_ESTIMATES 1
+#else
+#define QDDOT_ESTIMATES 0
+#endif
+
+// The processor's root and division take many times as long as its products. Where it has estimates
+// of 1/sqrt(a) and fused multiply-adds, there is another way to the same bits.
+//
+// Root. With y the estimate, 1/sqrt(a) (1 + d), |d| <= 2^-14 (AVX-512) or 1.5 2^-12: g = a y and
+// h = y/2 are near sqrt(a) and 1/(2 sqrt(a)), and with e = 1/2 - g h both times
+//   (1 - 2e)^(-1/2) = 1 + e + 3/2 e^2 + 5/2 e^3 + 35/8 e^4 + ...
+// are as close as rounding lets them be: relative errors of at most 2.1 2^-53. What is left,
+// r = a - g^2, one fused operation knows exactly, and g + r h differs from sqrt(a) by less than
+// 7 2^-106 sqrt(a). Rounded it is the nearest number unless sqrt(a) is that near to the middle m of
+// two. For a in [1, 4), a - m^2 is an odd multiple of 2^-106, below 28 of which there are only few
+// a: the tests try them all.
+//
+// Quotient. s = 2h and once more s + s (1 - s l) is next to 1/l or the nearest number to it, p = t
+// s next to t/l, and p + (t - p l) s the nearest number to t/l (Markstein, IBM J. Research and
+// Development 34 (1990) 111-119, theorem 1), which needs s to be the nearest to 1/l. Where it is
+// not, it is almost as near as the nearest, for l in [1, 2) off by 2^-54 + 12 2^-107 at most: with
+// m the middle of two quotients, t - m l = k 2^-105 and k odd, the result is wrong only where
+// |k| l < l^2 |s - 1/l| 2^53 + ..., so k = 1 and l the last number below 2; the tests try that,
+// too.
+//
+// No number on the way may be too small or too large: see `is_near_one` and SpringsByNode.
+namespace qddot::kernels::QDDOT_LEVEL {
+namespace {
+
+constexpr bool has_estimates = QDDOT_ESTIMATES;
+
+#if QDDOT_ESTIMATES
+
+// a b + c and c - a b, each rounded once.
+[[gnu::always_inline]] inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
+#ifdef __AVX512F__
+  return _mm512_fmadd_pd(a, b, c);
+#else
+  return _mm256_fmadd_pd(a, b, c);
+#endif
+}
+[[gnu::always_inline]] inline Lanes subtract_product(Lanes a, Lanes b, Lanes c) {
+#ifdef __AVX512F__
+  return _mm512_fnmadd_pd(a, b, c);
+#else
+  return _mm256_fnmadd_pd(a, b, c);
+#endif
+}
+
+// Whether numbers are in [2^-128, 2^128) or, where estimates are made in single precision,
+// [2^-64, 2^64): asked of many at once, by their exponents.
+class Range {
+ public:
+  void add(Lanes a) { seen_ |= reinterpret_cast<LaneNumbers>(a) - ((1023l - half) << 52); }
+  bool holds() const {
+#ifdef __AVX512F__
+    return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(seen_), _mm512_set1_epi64(beyond)) == 0;
+#else
+    return _mm256_testz_si256(reinterpret_cast<__m256i>(seen_), _mm256_set1_epi64x(beyond));
+#endif
+  }
+
+ private:
+#ifdef __AVX512F__
+  static constexpr long half = 128;
+#else
+  static constexpr long half = 64;
+#endif
+  static constexpr long beyond = -((2 * half) << 52);
+
+  LaneNumbers seen_ = {};
+};
+
+// The root of a in the range, and about 1/(2 sqrt(a)).
+struct Root {
+  Lanes root, half_inverse;
+};
+[[gnu::always_inline]] inline Root estimated_root(Lanes a) {
+  const Lanes one = 1 + Lanes{};
+#ifdef __AVX512F__
+  const Lanes y = _mm512_rsqrt14_pd(a);
+#else
+  const Lanes y = _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(a)));
+#endif
+  const Lanes h = 0.5 * y, g = a * y, e = subtract_product(g, h, 0.5 * one);
+#ifdef __AVX512F__
+  const Lanes cubic = 2.5 * one;
+#else
+  const Lanes cubic = add_product(e, 4.375 * one, 2.5 * one);
+#endif
+  const Lanes c = e * add_product(e, add_product(e, cubic, 1.5 * one), one);
+  const Lanes near_root = add_product(g, c, g), half_inverse = add_product(h, c, h);
+  const Lanes rest = subtract_product(near_root, near_root, a);
+  return {add_product(rest, half_inverse, near_root), half_inverse};
+}
+
+// t/l, given about 1/(2 l).
+[[gnu::always_inline]] inline Lanes estimated_quotient(Lanes t, Lanes l, Lanes half_inverse) {
+  const Lanes near_inverse = half_inverse + half_inverse;
+  const Lanes inverse =
+      add_product(near_inverse, subtract_product(near_inverse, l, 1 + Lanes{}), near_inverse);
+  const Lanes near_quotient = t * inverse;
+  return add_product(subtract_product(near_quotient, l, t), inverse, near_quotient);
+}
+
+#else
+
+// Nothing to estimate with: the processor's own.
+class Range {
+ public:
+  void add(Lanes) {}
+  bool holds() const { return true; }
+};
+struct Root {
+  Lanes root, half_inverse;
+};
+[[gnu::always_inline]] inline Root estimated_root(Lanes a) { return {square_root(a), Lanes{}}; }
+[[gnu::always_inline]] inline Lanes estimated_quotient(Lanes t, Lanes l, Lanes) { return t / l; }
+
+#endif
+
+// The root of a; in the range, unless it is the processor's.
+template <Roots roots>
+[[gnu::always_inline]] inline Lanes root_of(Lanes a) {
+  if constexpr (roots == Roots::processor) {
+    return square_root(a);
+  } else {
+    return estimated_root(a).root;
+  }
+}
+
+// Calls with_roots<roots>(range) and, if it met numbers that are not in the range, once more with
+// the processor's own.
+template <Roots roots, class WithRoots>
+[[gnu::always_inline]] inline void by_roots(const WithRoots& with_roots) {
+  Range range;
+  with_roots.template operator()<roots>(range);
+  if (roots != Roots::processor && !range.holds()) {
+    with_roots.template operator()<Roots::processor>(range);
+  }
+}
+
+}  // namespace
+}  // namespace qddot::kernels::QDDOT_LEVEL
