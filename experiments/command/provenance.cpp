@@ -14,6 +14,7 @@
 
 #include "experiments/command/build_info.hpp"
 #include "qddot/model/kernels/level.hpp"
+#include "qddot/model/kernels/roots.hpp"
 #include "qddot/scene/explain.hpp"
 #include "qddot/scene/reduce/part.hpp"
 
@@ -44,6 +45,7 @@ nlohmann::json provenance(const std::vector<std::string>& command_line) {
           {"compiler", build_info::compiler},
           {"flags", build_info::flags},
           {"kernels", kernels::levels()[static_cast<std::size_t>(kernels::level())]},
+          {"roots", kernels::names_of_roots()[static_cast<std::size_t>(kernels::roots())]},
           {"cpu", processor()},
           {"libraries",
            {{"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,

@@ -25,6 +25,7 @@ class Sample {
       }
     }
     slices_ = slice_neighbours(neighbours_, 0);
+    uses_.assign(slices_.shifts.size(), {RingUse::none, 0});
     orders_.assign(slices_.count(), Order::by_slice);
     for (int i = 0; i < 3 * slices_.rows(); ++i) unknowns_.push_back(i);
     q_ = Vec::LinSpaced(std::ssize(unknowns_), 0, 100);
@@ -38,6 +39,8 @@ class Sample {
     const SpringTable springs{.slices = slices_.slices.data(),
                               .shifts = slices_.shifts.data(),
                               .gathers = slices_.gathers.data(),
+                              .rings = nullptr,
+                              .ring_uses = uses_.data(),
                               .laws = slices_.laws.data(),
                               .law_vectors = slices_.law_vectors,
                               .unknowns = unknowns_.data(),
@@ -46,7 +49,7 @@ class Sample {
     const Positions positions{x_.data(), slices_.rows(), x_.data() + 3 * slices_.rows()};
     const auto start = Clock::now();
     kernels.place(springs, q_.data(), positions, 0, slices_.count());
-    kernels.force(springs, positions, offset_.data(), f_.data(), 0, slices_.count());
+    kernels.force(springs, positions, nullptr, offset_.data(), f_.data(), 0, slices_.count());
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
@@ -55,6 +58,7 @@ class Sample {
 
   std::vector<std::vector<Neighbour>> neighbours_{nodes};
   NeighbourSlices slices_;
+  std::vector<RingUse> uses_;
   std::vector<Order> orders_;
   std::vector<int> unknowns_;
   Vec q_, x_, offset_, f_;

@@ -20,10 +20,26 @@ struct Slice {
 // those of each row do, or some are no unknowns.
 enum class Order { by_slice, by_row, none };
 
+// Keeps what springs of one shift have until their other ends come, so many rows later: the last
+// `mask` + 1 rows' numbers, a power of two, and the first rows' once more behind them.
+struct Ring {
+  std::ptrdiff_t begin;  // in the memory of all rings
+  int mask;
+};
+
+// What a slot of one shift has to do with a ring: nothing, keep its numbers there, or find them
+// there.
+struct RingUse {
+  enum { none, keeps, finds } kind;
+  int ring;
+};
+
 // The springs of a network; see NeighbourSlices and SpringsByNode.
 struct SpringTable {
   const Slice* slices;
   const int *shifts, *gathers;
+  const Ring* rings;
+  const RingUse* ring_uses;  // of the slots of one shift
   const double* laws;
   int law_vectors;
   const int* unknowns;   // D of each row; where a coordinate x is none, -1 - x
@@ -64,9 +80,9 @@ constexpr int kinds_of_roots = 3;
 struct SpringKernels {
   // Puts the rows' coordinates at q where they are looked up.
   void (*place)(const SpringTable&, const double* q, const Positions&, int from, int end);
-  // f = offset + the forces of the rows' springs.
-  void (*force)(const SpringTable&, const Positions&, const double* offset, double* f, int from,
-                int end);
+  // f = offset + the forces of the rows' springs. `rings`: memory for all rings.
+  void (*force)(const SpringTable&, const Positions&, double* rings, const double* offset,
+                double* f, int from, int end);
   // Writes the rows' columns of K.
   void (*stiffness)(const SpringTable&, const Positions&, const StiffnessTable&, TensionPart,
                     double* values, int from, int end);

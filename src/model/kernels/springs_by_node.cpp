@@ -43,6 +43,7 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout)
     neighbours[link.j].push_back({image_of(link.i, link.mirror), link.law});
   }
   slices_ = slice_neighbours(neighbours, static_cast<int>(points_.size() + images_.size()));
+  rings_ = rings_of(slices_);
   kernels_ = spring_kernels(D, can_be_estimated(slices_) ? roots() : Roots::processor);
 
   std::vector<int> place(nodes);
@@ -75,6 +76,8 @@ SpringTable SpringsByNode<D>::table() const {
   return {.slices = slices_.slices.data(),
           .shifts = slices_.shifts.data(),
           .gathers = slices_.gathers.data(),
+          .rings = rings_.rings.data(),
+          .ring_uses = rings_.uses.data(),
           .laws = slices_.laws.data(),
           .law_vectors = slices_.law_vectors,
           .unknowns = unknowns_.data(),
@@ -86,7 +89,9 @@ template <int D>
 void SpringsByNode<D>::sum_forces(const ConstVec& q, const Vec& offset, MutableVec f) const {
   const SpringTable springs = table();
   for_slices(q, [&](const Positions& positions, int from, int end) {
-    kernels_->force(springs, positions, offset.data(), f.data(), from, end);
+    thread_local Vec memory;
+    if (memory.size() < rings_.numbers) memory.resize(rings_.numbers);
+    kernels_->force(springs, positions, memory.data(), offset.data(), f.data(), from, end);
   });
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "qddot/model/kernels/neighbour_slices.hpp"
+#include "qddot/model/kernels/rings.hpp"
 #include "qddot/model/kernels/spring_kernels.hpp"
 #include "qddot/model/layout.hpp"
 #include "qddot/model/mass_spring.hpp"
@@ -12,9 +13,9 @@
 namespace qddot::kernels {
 
 // The springs of a network in D = 1, 2 or 3 dimensions, by the processor's vectors: each node looks
-// at its own springs, several nodes side by side, so that a spring is evaluated twice, once from
-// each end, and a node's sums are its own. What a node is pulled towards
-// is a node, the mirror image of one, or a fixed point.
+// at its own springs, several nodes side by side, so that a spring is seen twice, once from each
+// end, and a node's sums are its own. Its tau/l is computed once where Rings keep it. What a node
+// is pulled towards is a node, the mirror image of one, or a fixed point.
 template <int D>
 class SpringsByNode {
  public:
@@ -57,6 +58,7 @@ class SpringsByNode {
   std::vector<std::array<double, D>> points_;
   std::vector<Image> images_;  // extras are the points, then these
   NeighbourSlices slices_;
+  Rings rings_;
   std::vector<int> unknowns_;  // D of each row
   std::vector<Order> order_;   // of the slices
 };

@@ -62,40 +62,70 @@ template <int D>
   }
 }
 
+// Keeps a vector's rows in a ring.
+[[gnu::always_inline]] inline void keep(const Ring& ring, double* rings, int row, Lanes value) {
+  const int at = row & ring.mask;
+  store(rings + ring.begin + at, value);
+  if (at < slice_rows) store(rings + ring.begin + ring.mask + 1 + at, value);
+}
+// What a ring has kept of the rows from one on.
+[[gnu::always_inline]] inline Lanes find(const Ring& ring, const double* rings, int row) {
+  return load(rings + ring.begin + (row & ring.mask));
+}
+
+// A spring has the same tau/l at both ends: what the first has computed, the second finds.
 template <int D, int law_vectors, Roots chosen>
-void sum_forces(const SpringTable& springs, const Positions& positions, const double* offset,
-                double* f, int from, int end) {
+void sum_forces(const SpringTable& springs, const Positions& positions, double* rings,
+                const double* offset, double* f, int from, int end) {
   constexpr Roots roots = D == 1 || law_vectors == 1 ? Roots::processor : chosen;
   for (int i = from * parts_of_slice; i < end * parts_of_slice; ++i) {
-    const int slice = i / parts_of_slice, part = i % parts_of_slice;
+    const int slice = i / parts_of_slice, part = i % parts_of_slice, row = i * lanes;
     Lanes sum[D];
     by_roots<roots>([&]<Roots in_use>(Range & range) __attribute__((always_inline)) {
       for (int a = 0; a < D; ++a) sum[a] = Lanes{};
-      for_slots<D, law_vectors>(
-          springs, slice, part, positions,
-          [&](int, const Lanes(&d)[D], Lanes l2, const double* law) __attribute__((always_inline)) {
-            if constexpr (D == 1) {
-              sum[0] += force_on_line<law_vectors>(d[0], law);
-            } else {
-              const Lanes ratio = tension_by_length<law_vectors, in_use>(l2, law, range);
-              for (int a = 0; a < D; ++a) sum[a] += ratio * d[a];
-            }
-          });
+      const auto add_ratio = [&](Lanes ratio, const Lanes(&d)[D]) __attribute__((always_inline)) {
+        for (int a = 0; a < D; ++a) sum[a] += ratio * d[a];
+      };
+      const auto add_gather = [&](int, const Lanes(&d)[D], const double* law)
+          __attribute__((always_inline)) {
+        if constexpr (D == 1) {
+          sum[0] += force_on_line<law_vectors>(d[0], law);
+        } else {
+          add_ratio(tension_by_length<law_vectors, in_use>(squared_length<D>(d), law, range), d);
+        }
+      };
+      const auto add_shift = [&](int s, int slot, const Lanes(&d)[D], const double* law)
+          __attribute__((always_inline)) {
+        if constexpr (D == 1 || law_vectors == 1) {
+          add_gather(slot, d, law);
+        } else {
+          const RingUse use = springs.ring_uses[s];
+          const int other = row + springs.shifts[s];
+          if (use.kind == RingUse::finds && other >= from * slice_rows) {
+            return add_ratio(find(springs.rings[use.ring], rings, other), d);
+          }
+          const Lanes ratio =
+              tension_by_length<law_vectors, in_use>(squared_length<D>(d), law, range);
+          if (use.kind == RingUse::keeps) keep(springs.rings[use.ring], rings, row, ratio);
+          add_ratio(ratio, d);
+        }
+      };
+      for_slots<D, law_vectors>(springs, slice, part, positions, add_shift, add_gather);
     });
     put<D>(springs, slice, part, sum, offset, f);
   }
 }
 
 template <int D, Roots roots>
-void force(const SpringTable& springs, const Positions& positions, const double* offset, double* f,
-           int from, int end) {
+void force(const SpringTable& springs, const Positions& positions, double* rings,
+           const double* offset, double* f, int from, int end) {
   switch (springs.law_vectors) {
     case 1:
-      return sum_forces<D, 1, roots>(springs, positions, offset, f, from, end);
+      return sum_forces<D, 1, roots>(springs, positions, rings, offset, f, from, end);
     case 2:
-      return sum_forces<D, 2, roots>(springs, positions, offset, f, from, end);
+      return sum_forces<D, 2, roots>(springs, positions, rings, offset, f, from, end);
     default:
-      return sum_forces<D, 3, roots>(springs, positions, offset, f, from, end);
+      return sum_forces<D, 3, roots>(springs, positions, rings, offset, f, from, end);
   }
 }
 

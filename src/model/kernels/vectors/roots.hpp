@@ -22,15 +22,17 @@
 // two. For a in [1, 4), a - m^2 is an odd multiple of 2^-106, below 28 of which there are only few
 // a: the tests try them all.
 //
-// Quotient. s = 2h and once more s + s (1 - s l) is next to 1/l or the nearest number to it, p = t
-// s next to t/l, and p + (t - p l) s the nearest number to t/l (Markstein, IBM J. Research and
-// Development 34 (1990) 111-119, theorem 1), which needs s to be the nearest to 1/l. Where it is
-// not, it is almost as near as the nearest, for l in [1, 2) off by 2^-54 + 12 2^-107 at most: with
-// m the middle of two quotients, t - m l = k 2^-105 and k odd, the result is wrong only where
-// |k| l < l^2 |s - 1/l| 2^53 + ..., so k = 1 and l the last number below 2; the tests try that,
-// too.
+// Quotient. With s = 2h, s + s (1 - s l) is 1/l to within 12 2^-106; rounded it is u, the number
+// next to 1/l but for few l. Let l and t/l be in [1, 2) and t/l near the middle m of two numbers,
+// t - m l = k 2^-105, k odd. Then p = t u is one of the two, t - p l is exact, and
+// p + (t - p l) u misses t/l by less than 2^-53 l |u - 1/l|, which is less than t/l - m where
+// l^2 |u - 1/l| < 2^-52 |k| (as Markstein found, IBM J. Research and Development 34 (1990)
+// 111-119). Where u is the next number that holds. Where it is not, 1/l is near the middle of two,
+// and u is off by hardly more than half of their distance, 2^-54: that holds, too, but for
+// l = 2 - 2^-52, k = 1 and t a power of two. There 1/l is above the middle, by so little that s + s
+// (1 - s l) must not be too small: so 2^-99 is added to 1 - s l.
 //
-// No number on the way may be too small or too large: see `is_near_one` and SpringsByNode.
+// No number on the way may be too small or too large: see Range, and can_be_estimated of the laws.
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 
@@ -104,8 +106,8 @@ struct Root {
 // t/l, given about 1/(2 l).
 [[gnu::always_inline]] inline Lanes estimated_quotient(Lanes t, Lanes l, Lanes half_inverse) {
   const Lanes near_inverse = half_inverse + half_inverse;
-  const Lanes inverse =
-      add_product(near_inverse, subtract_product(near_inverse, l, 1 + Lanes{}), near_inverse);
+  const Lanes rest = subtract_product(near_inverse, l, 1 + Lanes{}) + 0x1p-99;
+  const Lanes inverse = add_product(near_inverse, rest, near_inverse);
   const Lanes near_quotient = t * inverse;
   return add_product(subtract_product(near_quotient, l, t), inverse, near_quotient);
 }

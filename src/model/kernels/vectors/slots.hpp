@@ -12,32 +12,36 @@ namespace {
 // A vector's rows of a slice: part * lanes and the following.
 constexpr int parts_of_slice = slice_rows / lanes;
 
-// Calls add(slot, d, l2, law) for every slot of a part of a slice, with d = x_j - x_i and l2 =
-// |d|^2 of its rows and what NeighbourSlices::laws has for it; the slots of one shift come first.
-template <int D, int law_vectors, class Add>
+// |d|^2 of a vector's rows.
+template <int D>
+[[gnu::always_inline]] inline Lanes squared_length(const Lanes (&d)[D]) {
+  Lanes l2 = d[0] * d[0];
+  for (int a = 1; a < D; ++a) l2 += d[a] * d[a];
+  return l2;
+}
+
+// Calls add_shift(s, slot, d, law) for every slot s of one shift and then add_gather(slot, d, law)
+// for all others of a part of a slice, with d = x_j - x_i of its rows and what
+// NeighbourSlices::laws has for it; slots are numbered within the slice.
+template <int D, int law_vectors, class AddShift, class AddGather>
 [[gnu::always_inline]] inline void for_slots(const SpringTable& springs, int slice, int part,
-                                             const Positions& positions, const Add& add) {
+                                             const Positions& positions, const AddShift& add_shift,
+                                             const AddGather& add_gather) {
   const int row = slice * slice_rows + part * lanes;
   const Slice begin = springs.slices[slice], end = springs.slices[slice + 1];
   const double* law = springs.laws + begin.law + part * lanes;
   Lanes x[D], d[D];
   for (int a = 0; a < D; ++a) x[a] = load(coordinate(positions, a, row));
   int slot = 0;
-  const auto add_slot = [&]() __attribute__((always_inline)) {
-    Lanes l2 = d[0] * d[0];
-    for (int a = 1; a < D; ++a) l2 += d[a] * d[a];
-    add(slot++, d, l2, law);
-    law += law_vectors * slice_rows;
-  };
-  for (int s = begin.shift; s < end.shift; ++s) {
+  for (int s = begin.shift; s < end.shift; ++s, law += law_vectors * slice_rows) {
     const int shifted = row + springs.shifts[s];
     for (int a = 0; a < D; ++a) d[a] = load(coordinate(positions, a, shifted)) - x[a];
-    add_slot();
+    add_shift(s, slot++, d, law);
   }
-  for (int s = begin.gather; s < end.gather; s += slice_rows) {
+  for (int s = begin.gather; s < end.gather; s += slice_rows, law += law_vectors * slice_rows) {
     gather<D>(positions.points, springs.gathers + s + part * lanes, d);
     for (int a = 0; a < D; ++a) d[a] -= x[a];
-    add_slot();
+    add_gather(slot++, d, law);
   }
 }
 

@@ -103,17 +103,21 @@ void write(const SpringTable& springs, const Positions& positions, const Stiffne
     Lanes own[triangle<D>];
     by_roots<roots>([&]<Roots in_use>(Range & range) __attribute__((always_inline)) {
       for (Lanes& entry : own) entry = Lanes{};
+      const auto add = [&](int slot, const Lanes(&d)[D], const double* law)
+          __attribute__((always_inline)) {
+        Lanes block[triangle<D>];
+        const Lanes l2 = squared_length<D>(d);
+        set_blocks<D>(d, slopes<D, law_vectors, in_use>(l2, law, counted, range), block);
+        for (int e = 0; e < triangle<D>; ++e) own[e] -= block[e];
+        const int at = table.slot_targets[first + slot];
+        if (at < 0) return;
+        put_blocks<D>(block, table.targets + at + part * lanes, columns, values);
+      };
       for_slots<D, law_vectors>(
           springs, slice, part, positions,
-          [&](int slot, const Lanes(&d)[D], Lanes l2, const double* law)
-              __attribute__((always_inline)) {
-                Lanes block[triangle<D>];
-                set_blocks<D>(d, slopes<D, law_vectors, in_use>(l2, law, counted, range), block);
-                for (int e = 0; e < triangle<D>; ++e) own[e] -= block[e];
-                const int at = table.slot_targets[first + slot];
-                if (at < 0) return;
-                put_blocks<D>(block, table.targets + at + part * lanes, columns, values);
-              });
+          [&](int, int slot, const Lanes(&d)[D], const double* law)
+              __attribute__((always_inline)) { add(slot, d, law); },
+          add);
     });
     put_own<D>(own, columns, values);
   }
