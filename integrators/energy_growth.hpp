@@ -16,6 +16,8 @@ class EnergyGrowth {
   explicit EnergyGrowth(const System& system) : system_(system) {}
 
   void start(const State& state);
+  // Whether note() will look at the next state.
+  bool looks_next() const { return until_look_ == 1; }
   // To be called with each accepted state.
   void note(const State& state) {
     if (--until_look_ == 0) look(state);

@@ -152,6 +152,10 @@ class Integrator {
   // Whether the state after a step from the one before can be accepted: reached_end, or else why
   // not (not_finite, diverged, went_slack).
   Outcome check_step(const State& from, const State& to);
+  // Whether that looks at more than the size of the velocities.
+  bool checks_velocities() const { return validity_; }
+  // Whether note() will look at the velocities of the next state.
+  bool looks_next() const { return growth_.looks_next(); }
   // To be called with each state that is accepted.
   void note(const State& state) {
     growth_.note(state);

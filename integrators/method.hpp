@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <complex>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "qddot/integrators/integrator.hpp"
 #include "qddot/integrators/set_of.hpp"
@@ -66,6 +68,9 @@ struct Method {
   // To be declared for explicit methods of fixed steps: on q'' = -w^2 q the motion grows where h w
   // is above it, by theory; 0 where it does so at every h. Others have none (linear_limit below).
   std::optional<double> stability_limit{};
+  // Of methods whose steps depend on more steps before than show in a run: at h w, the roots of the
+  // recurrence that their positions obey on q'' = -w^2 q, the one that decides first.
+  std::vector<std::complex<double>> (*recurrence_roots)(double h_omega) = nullptr;
   SetOf<Trait> traits{};
   SetOf<Need> needs{};
   SetOf<Option> takes{};

@@ -28,6 +28,10 @@
   METHOD(blanes_moan4)             \
   METHOD(blanes_moan6)             \
   METHOD(kahan_li8)                \
+  METHOD(symmetric4)               \
+  METHOD(symmetric6)               \
+  METHOD(symmetric8)               \
+  METHOD(symmetric10)              \
   METHOD(dprkn6)                   \
   METHOD(dprkn8)                   \
   METHOD(dprkn12)                  \

@@ -19,26 +19,28 @@ void FixedStep::begin(const State& state) {
 
 Outcome FixedStep::run_to(State& state, double t_stop) {
   Outcome outcome = Outcome::solver_failed;
-  const auto show_last = [&] {
-    if (now_.t > state.t) state = now_;
+  const auto show_last = [&](bool may_evaluate) {
+    if (now_.t <= state.t) return;
+    complete(now_, may_evaluate);
+    state = now_;
   };
   try {
     outcome = take_steps(t_stop);
     const bool is_there = outcome == Outcome::reached_end && times_->is_after(taken_, t_stop);
     if (is_there) now_.t = t_stop;
     if (is_there || outcome != Outcome::reached_end) {
-      show_last();
+      show_last(outcome == Outcome::reached_end);
       return outcome;
     }
     outcome = step_aside(t_stop);
   } catch (...) {
-    show_last();
+    show_last(false);
     throw;
   }
   if (outcome == Outcome::reached_end) {
     state = next_;
   } else {
-    show_last();
+    show_last(false);
   }
   return outcome;
 }
@@ -52,11 +54,15 @@ Outcome FixedStep::take_steps(double t_stop) {
     const double i = taken_ + 1;
     Outcome outcome = step(now_, times.length(i), next_);
     next_.t = times.after(i);
-    if (outcome == Outcome::reached_end) outcome = check_step(now_, next_);
+    if (outcome == Outcome::reached_end) {
+      if (checks_velocities()) complete(next_, true);
+      outcome = check_step(now_, next_);
+    }
     if (outcome != Outcome::reached_end) return outcome;
     std::swap(now_, next_);
     taken_ = i;
     ++counts().steps;
+    if (looks_next()) complete(now_, true);
     note(now_);
   }
   return Outcome::reached_end;
@@ -69,6 +75,7 @@ Outcome FixedStep::step_aside(double t) {
     aside_.reset(&dynamic_cast<FixedStep&>(*made));
     static_cast<void>(made.release());
   }
+  complete(now_, true);
   aside_->join(*this);
   aside_->resume(*this, now_);
   Outcome outcome = aside_->step(now_, t - now_.t, next_);

@@ -23,8 +23,13 @@ class FixedStep : public Integrator {
 
  private:
   // Computes `next`.q and `next`.v, a step h [s] after `now`; both are sized n. Anything but
-  // reached_end ends the run at `now`.
+  // reached_end ends the run at `now`. Methods that override complete() may leave in `next`.v what
+  // is a velocity near that time only.
   virtual Outcome step(const State& now, double h, State& next) = 0;
+  // Computes the velocity of a state that the last step, or the one before if that was not
+  // accepted, led to: called before anybody looks at it. Without `may_evaluate` forces are not to
+  // be evaluated, for that has failed or the motion has.
+  virtual void complete(State&, [[maybe_unused]] bool may_evaluate) {}
 
   void begin(const State& state) final;
   Outcome run_to(State& state, double t_stop) final;

@@ -61,6 +61,14 @@ void set_combination(std::span<const double* const> z, const double* b, MutableV
                                             static_cast<int>(z.size()), out.data(), out.size());
 }
 
+void step_by_history(const HistoryStep& step, const ConstVec& f, const ConstVec& c,
+                     const ConstVec& q, const ConstVec& d, MutableVec u_0, MutableVec d_next,
+                     MutableVec q_next, MutableVec v) {
+  kernels::vector_kernels().step_by_history(
+      f.data(), c.data(), step.u.data(), step.r, step.b, static_cast<int>(step.u.size()) - 1,
+      step.h, q.data(), d.data(), u_0.data(), d_next.data(), q_next.data(), v.data(), f.size());
+}
+
 double squared_norm(const ConstVec& x) {
   return kernels::vector_kernels().squared_norm(x.data(), x.size());
 }

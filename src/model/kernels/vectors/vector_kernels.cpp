@@ -65,6 +65,60 @@ void add_combination(const double* x, double d, const double* v, double c, const
   }
 }
 
+// The next `width` vectors of step_by_history; likewise.
+template <int width>
+[[gnu::always_inline]] inline void step_some(const double* f, const double* c,
+                                             const double* const* u, const double* r,
+                                             const double* b, int count, double inverse_h,
+                                             const double* q, const double* d, double* u_0,
+                                             double* d_next, double* q_next, double* v,
+                                             std::ptrdiff_t i) {
+  Lanes newest[width], sum[width] = {};
+  unroll<width>([&]<int w>() __attribute__((always_inline)) {
+    newest[w] = load(f + i + w * lanes) * load(c + i + w * lanes);
+  });
+  for (int j = 1; j <= count; ++j) {
+    const double* from = u[j] + i;
+    unroll<width>([&]<int w>() __attribute__((always_inline)) {
+      const Lanes old = load(from + w * lanes);
+      newest[w] -= r[j] * old;
+      sum[w] += b[j] * old;
+    });
+  }
+  unroll<width>([&]<int w>() __attribute__((always_inline)) {
+    const std::ptrdiff_t at = i + w * lanes;
+    store(u_0 + at, newest[w]);
+    const Lanes increment = load(d + at) + (b[0] * newest[w] + sum[w]);
+    store(d_next + at, increment);
+    store(q_next + at, load(q + at) + increment);
+    store(v + at, increment * inverse_h);
+  });
+}
+
+void step_by_history(const double* f, const double* c, const double* const* u, const double* r,
+                     const double* b, int count, double h, const double* q, const double* d,
+                     double* u_0, double* d_next, double* q_next, double* v, std::ptrdiff_t n) {
+  const double inverse_h = 1 / h;
+  std::ptrdiff_t i = 0;
+  for (; i + 2 * lanes <= n; i += 2 * lanes) {
+    step_some<2>(f, c, u, r, b, count, inverse_h, q, d, u_0, d_next, q_next, v, i);
+  }
+  for (; i + lanes <= n; i += lanes) {
+    step_some<1>(f, c, u, r, b, count, inverse_h, q, d, u_0, d_next, q_next, v, i);
+  }
+  for (; i < n; ++i) {
+    double newest = f[i] * c[i], sum = 0;
+    for (int j = 1; j <= count; ++j) {
+      newest -= r[j] * u[j][i];
+      sum += b[j] * u[j][i];
+    }
+    u_0[i] = newest;
+    d_next[i] = d[i] + (b[0] * newest + sum);
+    q_next[i] = q[i] + d_next[i];
+    v[i] = d_next[i] * inverse_h;
+  }
+}
+
 double squared_norm(const double* x, std::ptrdiff_t n) {
   Lanes sums[4] = {};
   std::ptrdiff_t i = 0;
@@ -119,6 +173,7 @@ const VectorKernels vector_kernels = {.add_scaled = add_scaled,
                                       .divide = divide,
                                       .multiply = multiply,
                                       .add_combination = add_combination,
+                                      .step_by_history = step_by_history,
                                       .squared_norm = squared_norm,
                                       .squared_error = squared_error};
 

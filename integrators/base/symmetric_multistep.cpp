@@ -1,0 +1,156 @@
+#include "qddot/integrators/base/symmetric_multistep.hpp"
+
+#include <utility>
+
+#include "qddot/model/vector_updates.hpp"
+
+namespace qddot {
+namespace {
+
+// The weights of g_N, where first = 0, and of u_{N-1}, u_{N-2}, ... in h v_N, for
+// h^2 g_{N-j} = r_0 u_{N-j} + r_1 u_{N-j-1} + ...
+std::vector<double> weights_of_history(int first, int count, const std::vector<double>& r) {
+  const std::vector<double> w = velocity_weights(first, count);
+  std::vector<double> weights(2 * r.size() - 1);
+  if (first == 0) weights[0] = w[0];
+  for (std::size_t i = first == 0 ? 1 : 0; i < w.size(); ++i) {
+    const std::size_t j = i + static_cast<std::size_t>(first);
+    for (std::size_t l = 0; l < r.size(); ++l) weights[j + l] += w[i] * r[l];
+  }
+  return weights;
+}
+
+}  // namespace
+
+SymmetricMultistep::SymmetricMultistep(const Method& method, const System& system,
+                                       const Options& options, const SymmetricFormula& formula)
+    : FixedStep(method, system, options),
+      formula_(formula),
+      r_(formula.cofactor()),
+      b_(formula.all_beta()),
+      with_force_(weights_of_history(0, formula.steps - 1, r_)),
+      without_(weights_of_history(1, formula.steps - 2, r_)),
+      symmetric_start_(symmetric_start(formula)),
+      stages_(formula.starter(), system.size()),
+      d_started_(static_cast<std::size_t>(formula.steps) - 1, Vec(system.size())),
+      h2_g_started_(d_started_),
+      u_(2 * static_cast<std::size_t>(formula.steps) - 3, Vec(system.size())),
+      d_(system.size()),
+      d_next_(system.size()),
+      f_(system.size()),
+      a_(system.size()),
+      v_(system.size()) {
+  past_.reserve(u_.size());
+}
+
+void SymmetricMultistep::start(const State&) {
+  h_ = options().step_size;
+  h2_by_mass_ = h_ * h_ * system().mass().cwiseInverse();
+  begun_ = 0;
+  force_is_known_ = has_history_ = is_pending_ = false;
+}
+
+void SymmetricMultistep::evaluate(const Vec& q) {
+  if (!force_is_known_) force(q, f_);
+  force_is_known_ = true;
+}
+
+void SymmetricMultistep::start_step(const State& now, const Vec& v, double h, Vec& h2_g,
+                                    State& next) {
+  const NystromPair& pair = formula_.starter();
+  const Vec& mass = system().mass();
+  evaluate(now.q);
+  divide(f_, mass, a_);
+  stages_.compute(now.q, v, a_, h, [&](const Vec& stage, MutableVec k) {
+    force(stage, f_);
+    divide(f_, mass, k);
+  });
+  force_is_known_ = false;
+  const Eigen::MatrixXd& k = stages_.k();
+  h2_g = h * h * k.col(0);
+  set_combination(h * h, k, pair.b, d_next_);
+  add_scaled(d_next_, h, v, d_next_);
+  add_scaled(now.q, 1, d_next_, next.q);
+  add_combination(v, h, k, pair.b_prime, next.v);
+}
+
+void SymmetricMultistep::begin_history() {
+  const std::ptrdiff_t m = formula_.steps - 2;
+  const auto& [of_differences, of_forces] = symmetric_start_;
+  const auto at = [](auto& list, std::ptrdiff_t i) -> auto& {
+    return list[static_cast<std::size_t>(i)];
+  };
+  // u_m, ..., u_1 and u_0, ..., u_{1-m} are those of 1, ..., 2m steps ago.
+  newest_ = 0;
+  for (std::ptrdiff_t l = 0; l < m; ++l) {
+    Vec& u_l = u(m + 1 + l);
+    u_l.setZero();
+    for (std::ptrdiff_t n = 0; n < m; ++n) {
+      u_l += of_differences(l, n) * (at(d_started_, n + 1) - at(d_started_, n)) +
+             of_forces(l, n) * at(h2_g_started_, n + 1);
+    }
+  }
+  for (std::ptrdiff_t n = 1; n <= m; ++n) {
+    Vec& u_n = u(m + 1 - n);
+    u_n = at(h2_g_started_, n);
+    for (std::ptrdiff_t i = 1; i <= m; ++i) u_n -= at(r_, i) * u(m + 1 - n + i);
+  }
+  d_ = d_started_.back();
+}
+
+void SymmetricMultistep::accept(double t) {
+  if (has_history_) {
+    newest_ = (newest_ + std::ssize(u_) - 1) % std::ssize(u_);
+    std::swap(d_, d_next_);
+  } else {
+    begin_history();
+    has_history_ = true;
+  }
+  force_is_known_ = is_pending_ = false;
+  history_t_ = t;
+}
+
+void SymmetricMultistep::set_velocity(Vec& v) {
+  const std::vector<double>& weights = force_is_known_ ? with_force_ : without_;
+  past_.clear();
+  for (std::ptrdiff_t ago = 1; ago < std::ssize(weights); ++ago) past_.push_back(u(ago).data());
+  set_combination(past_, weights.data() + 1, v);
+  v += d_;
+  if (force_is_known_) v += weights[0] * h2_by_mass_.cwiseProduct(f_);
+  v /= h_;
+}
+
+void SymmetricMultistep::complete(State& now, bool may_evaluate) {
+  if (is_pending_ && now.t != history_t_) accept(now.t);
+  // Else a step of the starter led here, or this was done before.
+  if (!has_history_ || now.t != history_t_) return;
+  if (may_evaluate) evaluate(now.q);
+  set_velocity(now.v);
+}
+
+Outcome SymmetricMultistep::step(const State& now, double h, State& next) {
+  if (is_pending_) accept(now.t);
+  if (h != h_) {
+    v_ = now.v;
+    evaluate(now.q);
+    if (has_history_) set_velocity(v_);
+    start_step(now, v_, h, a_, next);
+    return Outcome::reached_end;
+  }
+  if (!has_history_) {
+    start_step(now, now.v, h, h2_g_started_[begun_], next);
+    d_started_[begun_++] = d_next_;
+    is_pending_ = begun_ == d_started_.size();
+  } else {
+    evaluate(now.q);
+    past_.clear();
+    for (std::ptrdiff_t ago = 0; ago + 1 < formula_.steps; ++ago) past_.push_back(u(ago).data());
+    step_by_history({past_, r_.data(), b_.data(), h_}, f_, h2_by_mass_, now.q, d_, u(0), d_next_,
+                    next.q, next.v);
+    is_pending_ = true;
+  }
+  history_t_ = now.t;
+  return Outcome::reached_end;
+}
+
+}  // namespace qddot

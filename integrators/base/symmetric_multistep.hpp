@@ -1,0 +1,82 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/symmetric_formula.hpp"
+
+namespace qddot {
+
+// Steps by a symmetric multistep formula, in sums (Henrici, Discrete Variable Methods in Ordinary
+// Differential Equations, section 6.4): with d_n = q_n - q_{n-1} and r_0 = 1,
+//   u_n = h^2 g_n - (r_1 u_{n-1} + ... + r_{k-2} u_{n-k+2}),
+//   d_{n+1} = d_n + beta_{k-1} u_n + beta_{k-2} u_{n-1} + ... + beta_1 u_{n-k+2},
+//   q_{n+1} = q_n + d_{n+1},
+// which rounds d and not q's differences. One force a step. The first k - 1 steps are the
+// starter's, and so are a last one of another length and those to a time between steps. Velocities
+// are computed where they are asked for.
+class SymmetricMultistep final : public FixedStep {
+ public:
+  SymmetricMultistep(const Method& method, const System& system, const Options& options,
+                     const SymmetricFormula& formula);
+
+ private:
+  void start(const State& state) override;
+  Outcome step(const State& now, double h, State& next) override;
+  void complete(State& now, bool may_evaluate) override;
+
+  // A step of the starter from (now.q, v). Its h^2 k_1 is left in h2_g, q_{n+1} - q_n in d_next_.
+  void start_step(const State& now, const Vec& v, double h, Vec& h2_g, State& next);
+  // Begins the history after k - 1 steps of the starter.
+  void begin_history();
+  // Makes the last step, which led to the time t [s], a part of the history.
+  void accept(double t);
+  void evaluate(const Vec& q);
+  // v after the history's last step.
+  void set_velocity(Vec& v);
+  // u of so many steps ago: 1 is that of the last step.
+  Vec& u(std::ptrdiff_t ago) {
+    return u_[static_cast<std::size_t>((newest_ + ago) % std::ssize(u_))];
+  }
+
+  const SymmetricFormula& formula_;
+  std::vector<double> r_, b_;                 // r_0 ... r_{k-2}; beta_{k-1} ... beta_1
+  std::vector<double> with_force_, without_;  // weights of g_N and u_{N-1}, ... in h v_N
+  SymmetricStart symmetric_start_;
+  NystromStages stages_;
+  Vec h2_by_mass_;
+  double h_ = 0;                               // of all steps but a last one [s]
+  std::size_t begun_ = 0;                      // steps since the start, k - 1 at most
+  std::vector<Vec> d_started_, h2_g_started_;  // of the starter's steps
+  std::vector<Vec> u_;                         // a ring, with a place for the next
+  std::ptrdiff_t newest_ = 0;                  // that place
+  Vec d_, d_next_, f_, a_, v_;
+  bool force_is_known_ = false;  // f_ is that of the history's last q
+  bool has_history_ = false;
+  bool is_pending_ = false;  // a step was made, and is not yet known to be accepted
+  double history_t_ = 0;     // the time that the history has come to [s]
+  std::vector<const double*> past_;
+};
+
+// For Method::make.
+template <const SymmetricFormula& (*formula)()>
+std::unique_ptr<Integrator> create_symmetric(const Method& method, const System& system,
+                                             const Options& options) {
+  return std::make_unique<SymmetricMultistep>(method, system, options, formula());
+}
+// For Method::recurrence_roots.
+template <const SymmetricFormula& (*formula)()>
+std::vector<std::complex<double>> symmetric_roots(double h_omega) {
+  return roots_of(formula(), h_omega);
+}
+
+// Those that there are, each in the file of its method.
+namespace registered {
+const SymmetricFormula& symmetric4_formula();
+const SymmetricFormula& symmetric6_formula();
+const SymmetricFormula& symmetric8_formula();
+const SymmetricFormula& symmetric10_formula();
+}  // namespace registered
+
+}  // namespace qddot
