@@ -28,6 +28,7 @@ LOOKS = {
     "SciPy DOP853": (WARM[3], "X"),
     "SciPy Radau": (WARM[4], "o"),
     "SciPy BDF": (WARM[5], "s"),
+    "LAMMPS": (COOL[4], "h"),
     "Bullet soft body": (INK, "D"),
 }
 FORCES = {"plain": "-", "its own": "-", "ours": (0, (4, 1.8))}

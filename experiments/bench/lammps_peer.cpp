@@ -154,8 +154,11 @@ std::string why_no_lammps(const std::string& program) {
   scene.springs = {{{0, 1}, {.stiffness = 1, .rest_length = 1}}};
   const Answer answer = ask(program, scene, {.step_size = 0.1, .steps = 1, .limit = 1});
   if (!answer.end.empty()) return "";
+  const std::string complaint = answer.was_timed_out       ? "it does not end"
+                                : answer.complaint.empty() ? "it says nothing of why"
+                                                           : answer.complaint;
   return fmt::format("LAMMPS is left out, as {} fails on two atoms and a bond: {}", program,
-                     answer.complaint.empty() ? "it says nothing of why" : answer.complaint);
+                     complaint);
 }
 
 std::unique_ptr<Peer> lammps(const std::string& program) {
