@@ -84,7 +84,7 @@ Answer ask(const std::string& program, const Scene& scene, const LammpsWork& wor
   const std::string command = fmt::format(
       "cd {} && OMP_NUM_THREADS=1 timeout {:.0f} {} -in script -log none -nocite "
       "</dev/null 2>&1",
-      shell_word(folder.path("")), 2 * work.limit + lammps_start_limit, shell_word(program));
+      shell_word(folder.path("")), work.limit + lammps_start_limit, shell_word(program));
   const auto [text, status] = output_of(command);
   Answer answer;
   answer.was_timed_out = status == timed_out;
@@ -109,7 +109,8 @@ class Lammps final : public Peer {
 
   Run run(const Problem& problem, ForceKind, double h, double limit) override {
     const Scene& scene = problem.start;
-    LammpsWork work{.step_size = h, .steps = std::llround(problem.until / h), .limit = limit};
+    // Its own limit is one of the clock, on which others may have as much of the processor.
+    LammpsWork work{.step_size = h, .steps = std::llround(problem.until / h), .limit = 2 * limit};
     const double guess = lammps_step_guess(scene);
     if (static_cast<double>(work.steps) * guess < long_loop) {
       work.loops = short_loops;
@@ -122,7 +123,7 @@ class Lammps final : public Peer {
     const Loop& whole = answer.loops.front();
     run.steps = run.force_evaluations = whole.steps;
     run.seconds = whole.seconds;
-    if (whole.steps < work.steps) {
+    if (whole.steps < work.steps || whole.seconds > limit) {
       run.outcome = Outcome::over_budget;
       return run;
     }
