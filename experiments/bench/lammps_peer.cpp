@@ -5,6 +5,8 @@
 // is followed by longer ones, and the time of its steps is that of theirs.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
