@@ -17,7 +17,8 @@ struct SameSteps {
   double step_size = 0;      // [s]
   std::int64_t steps = 0;
   Outcome peer_outcome{}, outcome{};
-  double peer_step = 0, step = 0;  // the least time of a step of several runs [s]
+  // The least time of a step of several runs [s]; ours with what begins a run, some microseconds.
+  double peer_step = 0, step = 0;
   // The largest distance of a node at the end from where the other has it [m], and the error of
   // position (see Errors) that either would have if the other were right.
   double distance = 0, difference = 0;
