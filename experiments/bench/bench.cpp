@@ -14,7 +14,10 @@
 //     of at most the error that this run has. Where the peer was over budget before, the ratio is
 //     at least that of what it had spent, over our fastest of that accuracy. Times are the
 //     processor's.
-//  4. bench.csv holds every point, ratios.csv the ratios with the runs they are of.
+//  4. A peer that takes the same steps as a method of ours, as LAMMPS does those of verlet, is held
+//     beside it at one step size: the time of a step, springs a second, and how far apart they end.
+//  5. bench.csv holds every point, ratios.csv the ratios with the runs they are of, same_steps.csv
+//     what comes of step 4; in their sidecars `left_out` says which peers are missing and why.
 #include <charconv>
 #include <exception>
 #include <filesystem>
@@ -22,8 +25,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/bench/peer_choice.hpp"
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/ratio_table.hpp"
+#include "experiments/bench/same_steps.hpp"
 #include "experiments/command/catalogue.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/entry.hpp"
@@ -44,6 +49,9 @@ using namespace command;
 // What nlohmann::json looks for by this name.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Measured, solver, force, unknowns, knob, value, outcome, error,
                                    seconds, timed, steps, force_evaluations)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SameSteps, solver, method, is_smallest, unknowns, springs,
+                                   step_size, steps, peer_outcome, outcome, peer_step, step,
+                                   distance, difference)
 
 namespace {
 
@@ -73,7 +81,7 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--point-limit", a.pace.limit, "seconds that one run may take")
       .take_last()
       .capture_default_str();
-  line.add_option("--out", a.out, "the folder for bench.csv and ratios.csv");
+  line.add_option("--out", a.out, "the folder for bench.csv, ratios.csv and same_steps.csv");
 }
 
 // A scene and its end time [s].
@@ -103,39 +111,6 @@ std::string force_library() {
   return std::filesystem::exists(FORCE_LIBRARY, error) ? FORCE_LIBRARY : "";
 }
 
-std::vector<std::unique_ptr<Peer>> all_peers() {
-  std::vector<std::unique_ptr<Peer>> peers;
-  peers.push_back(odeint_dopri5());
-  peers.push_back(odeint_mclachlan());
-  peers.push_back(arkode_erk4());
-  for (const char* method : {"arkode_dirk4_klu", "arkode_dirk5_klu", "cvode_bdf_klu"}) {
-    peers.push_back(stock_implicit(method));
-  }
-  if (has_scipy()) {
-    for (const char* method : {"DOP853", "Radau", "BDF"}) {
-      peers.push_back(scipy(method, force_library()));
-    }
-  } else {
-    fmt::print("SciPy is not there: apt-get install python3-scipy\n");
-  }
-  if (auto peer = bullet()) {
-    peers.push_back(std::move(peer));
-  } else {
-    fmt::print("Bullet was not there: apt-get install libbullet-dev, then build again\n");
-  }
-  return peers;
-}
-
-std::vector<std::unique_ptr<Peer>> selected_peers(const std::vector<std::string>& beginnings) {
-  auto peers = all_peers();
-  if (beginnings.empty()) return peers;
-  std::erase_if(peers, [&](const auto& peer) {
-    return std::ranges::none_of(beginnings,
-                                [&](const auto& word) { return peer->name().starts_with(word); });
-  });
-  return peers;
-}
-
 // Points that are pieces of the study.
 Recall recall_by(Study& study, std::string prefix) {
   return [&study, prefix = std::move(prefix)](const std::string& name, const auto& take) {
@@ -146,8 +121,7 @@ Recall recall_by(Study& study, std::string prefix) {
 
 // Adds the sweeps to `sweeps` as they come.
 void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
-                const std::vector<std::unique_ptr<Peer>>& peers, const Arguments& a,
-                std::vector<Sweep>& sweeps) {
+                const std::vector<Peer*>& peers, const Arguments& a, std::vector<Sweep>& sweeps) {
   const auto report = [](const Measured& p) {
     show_progress(fmt::format("{} ({}) {:.1e}: {} {:.1e} in {:.3g} s", p.solver, p.force, p.value,
                               name(p.outcome), p.error, p.seconds));
@@ -174,16 +148,49 @@ void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
   Pace theirs = a.pace;
   theirs.finest_error = accuracies.back();
   const Recall recall = recall_by(study, prefix);
-  for (const auto& peer : peers) {
+  for (Peer* peer : peers) {
     for (const ForceKind force : peer->forces()) {
       sweeps.push_back(sweep(*peer, force, problem, theirs, recall, report));
     }
   }
 }
 
+struct Tables {
+  CsvFile points, ratios, same_steps;
+
+  explicit Tables(const std::string& folder)
+      : points(folder + "/bench.csv", point_columns()),
+        ratios(folder + "/ratios.csv", ratio_columns()),
+        same_steps(folder + "/same_steps.csv", same_steps_columns()) {}
+};
+
+// Peers beside the method of ours that takes the same steps.
+void compare_steps(Study& study, const std::string& prefix, const Entry& entry,
+                   const Problem& problem, const std::vector<Peer*>& peers, const Pace& pace,
+                   CsvFile& table) {
+  for (Peer* peer : peers) {
+    if (peer->twin().empty()) continue;
+    for (const bool smallest : {true, false}) {
+      show_progress(fmt::format("{} beside {} ...", peer->name(), peer->twin()));
+      const std::string piece =
+          fmt::format("{}{} beside {} {}", prefix, peer->name(), peer->twin(), smallest);
+      const auto same = study
+                            .piece(piece,
+                                   [&] {
+                                     return nlohmann::json(same_steps(*peer, smallest, problem,
+                                                                      pace.repeats, pace.limit));
+                                   })
+                            .get<SameSteps>();
+      show_progress("");
+      same_steps_row(table, entry.drawn.name, entry.until, same);
+      print_same_steps(entry.drawn.name, entry.until, same);
+    }
+  }
+}
+
 // Throws Interrupted, once what was measured of the scene is in the tables.
-void compare(Study& study, const Entry& entry, const std::vector<std::unique_ptr<Peer>>& peers,
-             const Arguments& a, const nlohmann::json& origin, CsvFile& points, CsvFile& table) {
+void compare(Study& study, const Entry& entry, const std::vector<Peer*>& peers, const Arguments& a,
+             const nlohmann::json& origin, Tables& tables) {
   const Scene start = started(entry.drawn, entry.choice);
   const std::string folder = fmt::format("{}/{}_{:g}", a.out, entry.drawn.name, entry.until);
   require_folder(folder);
@@ -200,14 +207,15 @@ void compare(Study& study, const Entry& entry, const std::vector<std::unique_ptr
   show_progress("");
   for (const Sweep& sweep : sweeps) {
     for (const Measured& point : sweep.points) {
-      point_row(points, entry.drawn.name, entry.until, sweep, point);
+      point_row(tables.points, entry.drawn.name, entry.until, sweep, point);
     }
   }
   if (end) std::rethrow_exception(end);  // ratios would be of a part of the points
+  compare_steps(study, prefix, entry, problem, peers, a.pace, tables.same_steps);
   for (const bool smallest : {true, false}) {
     const auto all = ratios(sweeps, smallest, accuracies);
     for (const Ratio& ratio : all) {
-      ratio_row(table, entry.drawn.name, entry.until, smallest, ratio);
+      ratio_row(tables.ratios, entry.drawn.name, entry.until, smallest, ratio);
     }
     const Index n = (smallest ? problem.smallest : problem.scene).system().size();
     print_ratios(all, accuracies,
@@ -231,11 +239,11 @@ int bench(const CommandLine& line, const Arguments& a,
   require_folder(a.out);
   nlohmann::json about = nlohmann::json::array();
   for (const Entry& entry : entries) about.push_back({content_hash(entry.drawn), entry.until});
-  Study study(line, a.out, {"bench.csv", "ratios.csv"}, about);
+  Study study(line, a.out, {"bench.csv", "ratios.csv", "same_steps.csv"}, about);
   if (const auto status = study.completed()) return *status;
-  CsvFile points(a.out + "/bench.csv", point_columns());
-  CsvFile table(a.out + "/ratios.csv", ratio_columns());
-  const auto peers = selected_peers(a.peers);
+  Tables tables(a.out);
+  LeftOut left_out;
+  const auto peers = selected_peers(a.peers, force_library(), left_out);
 
   nlohmann::json origin = provenance(command_line, entries.front().drawn);
   origin.erase("scene");
@@ -248,10 +256,11 @@ int bench(const CommandLine& line, const Arguments& a,
     for (const Entry& entry : entries) {
       nlohmann::json own = provenance(command_line, entry.drawn);
       own["until"] = entry.until;
-      compare(study, entry, peers, a, own, points, table);
+      compare(study, entry, fitting(peers, entry.drawn, left_out), a, own, tables);
     }
   });
-  return study.finish({&points, &table}, origin, done);
+  origin["left_out"] = left_out.sentences();
+  return study.finish({&tables.points, &tables.ratios, &tables.same_steps}, origin, done);
 }
 
 }  // namespace

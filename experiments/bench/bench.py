@@ -1,8 +1,8 @@
 """Draws how our explicit methods and other people's solvers compare: time over error, by scene.
 
 Call: bench.py DIR, the folder with bench.csv of the program bench; writes DIR/bench.png and
-DIR/bench.svg, a panel for each scene. Solid lines are peers with the f that their users write,
-dashed ones the same peers with ours; the wide stroke is the fastest of our methods.
+DIR/bench.svg, a panel for each scene. Solid lines are peers with the f that their users write, or
+with their own, dashed ones the same peers with ours; the wide stroke is the fastest of our methods.
 """
 
 import csv
@@ -28,6 +28,7 @@ LOOKS = {
     "SciPy DOP853": (WARM[3], "X"),
     "SciPy Radau": (WARM[4], "o"),
     "SciPy BDF": (WARM[5], "s"),
+    "LAMMPS": (COOL[4], "h"),
     "Bullet soft body": (INK, "D"),
 }
 FORCES = {"plain": "-", "its own": "-", "ours": (0, (4, 1.8))}
@@ -129,7 +130,7 @@ def main(folder):
     sheet.text(
         LEFT,
         0.46,
-        "filled marks: f as a user writes it; open marks, dashed: the same solver with our f",
+        "filled marks: a user's f, or the solver's own; open marks, dashed: the same solver with our f",
         size=10,
         color=FAINT,
         va="top",

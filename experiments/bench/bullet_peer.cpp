@@ -5,6 +5,7 @@
 // l^2)/(l0^2 + l^2) l for l0 - l, which is true to first order in the strain, and floats.
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
+#include "experiments/bench/springs.hpp"
 
 #ifdef QDDOT_BULLET
 
@@ -28,6 +29,9 @@ class Bullet final : public Peer {
   Bullet() : Peer("Bullet soft body", Knob::step_size) {}
 
   std::vector<ForceKind> forces() const override { return {ForceKind::its_own}; }
+  std::string misfit(const Scene& scene) const override {
+    return has_quartic(scene) ? "its links have no quartic stiffness" : "";
+  }
   std::vector<double> values(const Problem& problem) const override {
     return step_sizes(problem, 3, 4);
   }

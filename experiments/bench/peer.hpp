@@ -39,6 +39,10 @@ class Peer {
   virtual std::vector<double> values(const Problem& problem) const = 0;
   // Whose f it can be given.
   virtual std::vector<ForceKind> forces() const { return {ForceKind::plain, ForceKind::ours}; }
+  // Which of our methods takes the same steps, but for rounding; empty where none does.
+  virtual std::string twin() const { return {}; }
+  // What of the scene it cannot do, as a clause; empty where it can do it all.
+  virtual std::string misfit(const Scene&) const { return {}; }
   // Whether it is one of SUNDIALS' implicit methods.
   virtual bool is_stock_implicit() const { return false; }
 

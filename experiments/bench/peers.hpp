@@ -24,5 +24,10 @@ std::unique_ptr<Peer> scipy(const std::string& method, const std::string& force_
 bool has_scipy();
 // Bullet's soft body; nullptr where the program was built without Bullet.
 std::unique_ptr<Peer> bullet();
+// LAMMPS' velocity Verlet over harmonic bonds, run by that program.
+std::unique_ptr<Peer> lammps(const std::string& program = "lmp");
+// Why there is no LAMMPS, in a sentence: the program is not found, or fails on the smallest scene.
+// Empty where it works.
+std::string why_no_lammps(const std::string& program = "lmp");
 
 }  // namespace qddot::bench

@@ -47,6 +47,52 @@ void ratio_row(Csv& csv, const std::string& scene, double until, bool smallest, 
           r.ours ? r.ours->error : nothing);
 }
 
+std::vector<std::string> same_steps_columns() {
+  return {"scene",
+          "until",
+          "peer",
+          "method",
+          "reduced",
+          "unknowns",
+          "springs",
+          "step_size",
+          "steps",
+          "peer_outcome",
+          "outcome",
+          "peer_step_s",
+          "step_s",
+          "peer_springs_per_s",
+          "springs_per_s",
+          "ratio",
+          "position_difference",
+          "distance"};
+}
+
+void same_steps_row(Csv& csv, const std::string& scene, double until, const SameSteps& s) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const auto known = [&](double value) { return s.is_good() ? value : nothing; };
+  const auto springs = static_cast<double>(s.springs);
+  csv.row(scene, until, s.solver, s.method, reduced_name(s.is_smallest), s.unknowns, s.springs,
+          s.step_size, s.steps, name(s.peer_outcome), name(s.outcome), known(s.peer_step),
+          known(s.step), known(springs / s.peer_step), known(springs / s.step),
+          known(s.peer_step / s.step), known(s.difference), known(s.distance));
+}
+
+void print_same_steps(const std::string& scene, double until, const SameSteps& s) {
+  fmt::print("{}, {:g} s, {} steps of {} and of {} ({} unknowns): ", scene, until, s.steps,
+             s.solver, s.method, s.unknowns);
+  if (!s.is_good()) {
+    fmt::print("{} and {}\n", name(s.peer_outcome), name(s.outcome));
+    return;
+  }
+  const auto springs = static_cast<double>(s.springs);
+  fmt::print(
+      "{:.3g} and {:.3g} us a step, {:.3g} and {:.3g} million springs/s, ratio {:.3g}; at the end "
+      "they are {:.1e} m apart, {:.1e} of the motion\n",
+      1e6 * s.peer_step, 1e6 * s.step, 1e-6 * springs / s.peer_step, 1e-6 * springs / s.step,
+      s.peer_step / s.step, s.distance, s.difference);
+}
+
 void print_ratios(const std::vector<Ratio>& ratios, const std::vector<double>& accuracies,
                   const std::string& heading) {
   fmt::print("{}\n{:<20} {:<8}", heading, "peer", "f");

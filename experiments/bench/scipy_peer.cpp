@@ -1,14 +1,9 @@
 // SciPy's solve_ivp, in a Python of its own for each point: scipy_peer.py reads the free nodes and
 // springs from a file, runs and times, and prints where they end.
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/bench/external_program.hpp"
 #include "experiments/bench/peers.hpp"
 #include "qddot/scene/scene_writer.hpp"
 
@@ -21,50 +16,6 @@ namespace {
 constexpr const char* python = "/usr/bin/python3";
 // Python's start and its reading of the problem [s], beyond what solve_ivp may take.
 constexpr double start_limit = 30;
-
-// A fresh folder for what Python reads, gone at its end.
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "qddot_bench_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder can be made");
-    path_ = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string write(const char* name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return (path_ / name).string();
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
-// One word of a shell's command.
-std::string shell_word(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
-// What the command prints, and its exit status.
-std::pair<std::string, int> output_of(const std::string& command) {
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) return {"", -1};
-  std::string text;
-  char piece[65536];
-  while (const std::size_t count = std::fread(piece, 1, sizeof piece, pipe)) {
-    text.append(piece, count);
-  }
-  const int status = pclose(pipe);
-  return {text, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
-}
 
 // Nodes by their places among the free ones; pinned ends are points, numbered after these.
 nlohmann::json as_json(const Problem& problem) {
@@ -137,7 +88,7 @@ class SciPy final : public Peer {
   }
 
   Run run(const Problem& problem, ForceKind force, double rtol, double limit) override {
-    const Folder folder;
+    const ScratchFolder folder;
     std::string command = fmt::format(
         "timeout {:.0f} {} {} {} {} {:.17g} {:.17g}", 2 * limit + start_limit, python,
         shell_word(SCIPY_SCRIPT), shell_word(folder.write("problem.json", as_json(problem).dump())),
@@ -147,7 +98,6 @@ class SciPy final : public Peer {
                              shell_word(folder.write("scene.toml", to_toml(problem.start))));
     }
     const auto [text, status] = output_of(command + " 2>/dev/null");
-    constexpr int timed_out = 124;
     if (status == timed_out) return {.outcome = Outcome::over_budget};
     const auto answer = nlohmann::json::parse(text, nullptr, false);
     return status == 0 && answer.is_object() ? run_of(answer, problem.until) : Run{};
