@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(a_limit_anywhere_is_found_from_both_sides) {
   }
 }
 
-// What a front is worse by than the method: at most the ratio of two rungs, 1.04 r^(1/4) at r times
+// What a front is worse by than the method: at most the ratio of two rungs, 1.04 r^(1/8) at r times
 // the steps of the limit, which rung itself is off by 1/0.98. Whole steps add one.
 BOOST_AUTO_TEST_CASE(the_front_is_hardly_worse_than_the_method) {
   for (const int order : {1, 2, 4, 8}) {
@@ -104,9 +104,9 @@ BOOST_AUTO_TEST_CASE(the_front_is_hardly_worse_than_the_method) {
       const Runs runs = limited(limit, order);
       const auto coarse = coarse_ladder(runs, order, std::floor(limit / 3));
       const auto ladder = refined(coarse, runs);
-      for (double times = 1; times < 4; times *= 1.003) {
+      for (double times = 1; times < 8; times *= 1.003) {
         const double steps = times * limit;
-        const double allowed = 1.04 * std::pow(times, 0.25) / near_enough;
+        const double allowed = 1.04 * std::pow(times, 0.125) / near_enough;
         BOOST_TEST(fewest(ladder, runs(steps)) <= allowed * steps + 1,
                    "order " << order << " at " << times << " times the steps of the limit");
       }
@@ -122,10 +122,10 @@ BOOST_AUTO_TEST_CASE(negative_control_without_more_rungs_a_front_is_worse) {
   BOOST_TEST(fewest(ladder, runs(778)) > 1.3 * 778);
 }
 
-// Halving a ratio of 2 down to 1/0.98 takes 6 runs. Of ratios 1.04 r^(1/4), r = 1 ... 13.7, where 2
-// is allowed, there are 4 log(1 + log(13.7) / (4 log(1.04))) = 11.5, and at most one more for each
-// of the rungs that are there. All together they take a sixth of the steps of a ladder that goes on
-// to 1000 times as many; a quarter is for roundings.
+// Halving a ratio of 2 down to 1/0.98 takes 6 runs. Of ratios 1.04 r^(1/8), r = 1 ... 8, there are
+// 8 log(1 + log(8) / (8 log(1.04))) = 16.3, and at most one more for each of the rungs that are
+// there. All together they take a fifth of the steps of a ladder that goes on to 1000 times as
+// many; a quarter is for roundings.
 BOOST_AUTO_TEST_CASE(few_runs_are_enough_and_most_of_them_short) {
   for (const int order : {2, 4, 8}) {
     for (double limit = 20; limit < 5000; limit *= 1.31) {
@@ -133,11 +133,10 @@ BOOST_AUTO_TEST_CASE(few_runs_are_enough_and_most_of_them_short) {
       const auto coarse = coarse_ladder(runs, order, std::floor(limit / 3));
       const auto ladder = refined(coarse, runs);
       const auto more = ladder.size() - coarse.size();
-      BOOST_TEST(more <= 25u);
+      BOOST_TEST(more <= 30u);
       double spent = 0, before = 0;
       for (const Rung& rung : ladder) spent += rung.steps;
       for (const Rung& rung : coarse) before += rung.steps;
-      BOOST_TEST_MESSAGE("SPENT " << spent / before);
       BOOST_TEST(spent < 1.25 * before, order << ", " << limit << ": " << spent / before);
     }
   }
@@ -170,12 +169,11 @@ BOOST_AUTO_TEST_CASE(without_a_limit_nothing_is_lacking) {
 BOOST_AUTO_TEST_CASE(luck_is_not_taken_for_a_limit_where_steps_are_small) {
   const auto method = limited(100, 2);
   const Runs lucky = [&](double steps) {
-    return method(steps) * (steps > 700 && steps < 900 ? 1e-3 : 1);
+    return method(steps) * (steps > 1500 && steps < 1900 ? 1e-3 : 1);
   };
   const auto ladder = refined(coarse_ladder(lucky, 2, 50), lucky);
-  const auto in_luck = [](const Rung& rung) { return rung.steps > 600 && rung.steps < 1000; };
-  // 1.04 (6)^(1/4) = 1.6: one rung, or two, of those that would be there without luck.
-  BOOST_TEST(std::ranges::count_if(ladder, in_luck) <= 2);
+  const auto in_luck = [](const Rung& rung) { return rung.steps > 1100 && rung.steps < 2500; };
+  BOOST_TEST(std::ranges::count_if(ladder, in_luck) == 1);
 }
 
 namespace {

@@ -9,12 +9,13 @@ namespace {
 // Neighbours of a ladder divide the error by 4 where it falls as the order says, or by 6 where an
 // order of 8 meets ten rungs to the decade. Several times that is no order any more.
 constexpr double steepest_fall = 40;
-// A run that comes to its end beyond a limit by luck is not far beyond it: at twice the limit what
-// grows does so by more than 10 in a step. Farther down nothing is looked for.
-constexpr double farthest = 4;
-// What the cheapest step for some accuracy is missed by is at most the ratio of two rungs: a few
-// percent at the limit, a fifth at half of it.
-constexpr double closest_ratio = 1.04, widening = 0.25;
+// At so many times the steps of the limit a ladder is left as it is. A run that comes to its end
+// beyond a limit by luck is nearer than that: at twice the limit what grows does so by more than 10
+// in a step.
+constexpr double farthest = 8;
+// The cheapest step for some accuracy is missed by at most the ratio of two rungs: by a few percent
+// at the limit, by an eighth at half of it and by a third at an eighth.
+constexpr double closest_ratio = 1.04, widening = 0.125;
 
 // The first of the fewest rungs that leave no ratio between the two larger than `allowed`.
 double first_between(const Rung& coarse, const Rung& fine, double allowed) {
@@ -34,7 +35,7 @@ std::optional<double> lacking_rung(const std::vector<Rung>& ladder) {
     const bool is_limit = !coarse.is_good() || (fine.steps <= farthest * first_good &&
                                                 coarse.error > steepest_fall * fine.error);
     if (is_limit) limit = fine.steps;
-    if (limit == 0) continue;
+    if (limit == 0 || coarse.steps >= farthest * limit) continue;
     const double allowed =
         is_limit ? 1 / nearest_to_limit : closest_ratio * std::pow(coarse.steps / limit, widening);
     if (fine.steps <= allowed * coarse.steps || fine.steps == coarse.steps + 1) continue;
