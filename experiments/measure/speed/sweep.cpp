@@ -78,11 +78,13 @@ bool is_good(const Point& point, const Reference& reference) {
   return point.outcome == Outcome::reached_end && judged_error(point, reference) < 1;
 }
 
-// Whether coarse steps end at a limit of stability. Steps of implicit methods end where they are
-// inaccurate or are not solved, and cost less as they become shorter.
-bool has_limit(const Method& method) {
-  return method.knob == Knob::step_size && method.order > 0 && !method.is(Trait::implicit) &&
-         linear_limit(method) > 0;
+// Whether coarse steps end at a limit of stability: those of explicit methods do, and implicit ones
+// that ran away. Other implicit ones end where they are inaccurate or are not solved.
+bool has_limit(const Method& method, const std::vector<Point>& points) {
+  if (method.knob != Knob::step_size || method.order == 0 || linear_limit(method) == 0)
+    return false;
+  return !method.is(Trait::implicit) ||
+         std::ranges::find(points, Outcome::diverged, &Point::outcome) != points.end();
 }
 
 // The points that a ladder of step sizes may be refined between: down to the first that is enough,
@@ -144,7 +146,7 @@ std::vector<Point> sweep(const Method& method, const ReducedScene& scene, double
     take(*value);
   }
 
-  if (!has_limit(method)) return points;
+  if (!has_limit(method, points)) return points;
   while (const auto steps = lacking_rung(rungs(points, until, reference, is_enough))) {
     const Point point = measure_point(method, until / *steps, scene, until, reference, effort);
     report(point);
