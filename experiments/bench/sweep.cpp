@@ -1,11 +1,13 @@
 #include "experiments/bench/sweep.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/speed/ladder.hpp"
 
 namespace qddot::bench {
 
@@ -59,6 +61,18 @@ Measured measured(Peer& peer, ForceKind force, const Problem& problem, double va
   return point;
 }
 
+// The points of a ladder of step sizes, down to the first that is good enough or over budget.
+std::vector<Rung> rungs(const std::vector<Measured>& points, double until, double finest_error) {
+  std::vector<Rung> ladder;
+  for (const Measured& point : points) {
+    if (point.outcome == Outcome::over_budget) break;
+    ladder.push_back({std::round(until / point.value),
+                      point.is_good() ? point.error : std::numeric_limits<double>::infinity()});
+    if (ladder.back().error <= finest_error) break;
+  }
+  return ladder;
+}
+
 }  // namespace
 
 Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
@@ -66,18 +80,31 @@ Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pac
   Sweep all{.is_stock_implicit = peer.is_stock_implicit()};
   double best = std::numeric_limits<double>::infinity();
   int idle = 0;
-  for (const double value : peer.values(problem)) {
+  const auto take = [&](double value) {
     const std::string name = fmt::format("{} {} {:.17g}", peer.name(), force_name(force), value);
     const Measured point =
         recall(name, [&] { return measured(peer, force, problem, value, pace); });
+    report(point);
+    return point;
+  };
+  for (const double value : peer.values(problem)) {
+    const Measured point = take(value);
     if (point.is_good()) {
       idle = point.error > 0.8 * best ? idle + 1 : 0;
       best = std::min(best, point.error);
     }
     all.points.push_back(point);
-    report(point);
     const bool is_idle = idle >= most_idle && best < converging;
     if (point.outcome == Outcome::over_budget || best <= pace.finest_error || is_idle) break;
+  }
+
+  if (peer.knob() != Knob::step_size) return all;
+  while (const auto steps = lacking_rung(rungs(all.points, problem.until, pace.finest_error))) {
+    const Measured point = take(problem.until / *steps);
+    const auto finer = std::ranges::find_if(
+        all.points, [&](const Measured& other) { return other.value < point.value; });
+    all.points.insert(finer, point);
+    if (point.outcome == Outcome::over_budget) break;  // though a finer one was not
   }
   return all;
 }

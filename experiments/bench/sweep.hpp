@@ -43,7 +43,8 @@ using Recall =
     std::function<Measured(const std::string& name, const std::function<Measured()>& take)>;
 
 // A peer over its values, until its error is small enough or no longer falls, or a run is over
-// budget. `report` sees each point as it comes.
+// budget; steps of a fixed size, ours and theirs, closer near the limit of their stability (see
+// ladder.hpp). `report` sees each point as it comes.
 Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
             const Recall& recall, const std::function<void(const Measured&)>& report);
 

@@ -48,7 +48,7 @@ def span_in_words(values, all_values, symbol):
         return f"{symbol} ≥ {number(lowest)}"
     if lowest == all_values[0]:
         return f"{symbol} ≤ {number(highest)}"
-    if lowest == highest:
+    if number(lowest) == number(highest):
         return f"{symbol} = {number(lowest)}"
     return f"{number(lowest)} ≤ {symbol} ≤ {number(highest)}"
 

@@ -200,6 +200,8 @@ class Words(unittest.TestCase):
         self.assertEqual(span([1e-2, 1e-1], sweep, "h"), "1e-2 ≤ h ≤ 0.1")
         self.assertEqual(span([1e-3, 1e-1], sweep, "h"), "h = 1e-3, 0.1")
         self.assertEqual(span([1e-3], [1e-3], "h"), "h = 1e-3")
+        near_limit = [1e-3, 1.61e-3, 1.62e-3, 1e-2]
+        self.assertEqual(span(near_limit[1:3], near_limit, "h"), "h = 1.6e-3")
 
 
 class Labels(unittest.TestCase):

@@ -143,6 +143,44 @@ BOOST_FIXTURE_TEST_CASE(a_peer_out_of_time_says_so, Given) {
   BOOST_TEST(run.seconds > 0);
 }
 
+// A peer of order 4 whose steps diverge where there are fewer than 41.
+class Limited final : public Peer {
+ public:
+  static constexpr double limit = 41;
+
+  Limited() : Peer("limited", Knob::step_size) {}
+  std::vector<double> values(const Problem& problem) const override {
+    return step_sizes(problem, 10, 2);
+  }
+  Run run(const Problem& problem, ForceKind force, double h, double seconds) override {
+    const double steps = std::round(problem.until / h);
+    Run run = our_method("kahan_li8", false)->run(problem, force, problem.until / 200, seconds);
+    run.end.q[0] += 0.01 * std::pow(limit / steps, 4);
+    if (steps < limit) run.outcome = Outcome::diverged;
+    return run;
+  }
+};
+
+// The limit is between two rungs that are 0.98 of each other, or neighbours; none is finer than the
+// peer's own.
+BOOST_FIXTURE_TEST_CASE(steps_are_closer_near_a_limit_whosever_they_are, Given) {
+  Limited peer;
+  std::vector<double> reported;
+  const Sweep all = sweep(
+      peer, ForceKind::ours, problem, {.repeats = 1},
+      [](const std::string&, const auto& take) { return take(); },
+      [&](const Measured& point) { reported.push_back(point.value); });
+  const auto values = peer.values(problem);
+  BOOST_TEST(reported.size() == all.points.size());
+  BOOST_TEST(all.points.size() > values.size());
+  BOOST_TEST(all.points.back().value == values.back());
+  BOOST_TEST(std::ranges::is_sorted(all.points, std::ranges::greater(), &Measured::value));
+  const auto good = std::ranges::find_if(all.points, &Measured::is_good);
+  BOOST_TEST_REQUIRE((good != all.points.begin() && good != all.points.end()));
+  BOOST_TEST(std::round(until / good->value) == Limited::limit);
+  BOOST_TEST(std::round(until / (good - 1)->value) == Limited::limit - 1);
+}
+
 // Ours is held to the error that the peer's run really has, and a run cut short gives a bound.
 BOOST_AUTO_TEST_CASE(ratios_are_at_equal_or_better_error) {
   const auto point = [](double error, double seconds, Outcome outcome) {

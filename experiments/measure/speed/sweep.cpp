@@ -7,6 +7,7 @@
 
 #include "qddot/measure/motion/resolved_frequency.hpp"
 #include "qddot/measure/speed/judgement.hpp"
+#include "qddot/measure/speed/ladder.hpp"
 
 namespace qddot::measure {
 namespace {
@@ -77,6 +78,31 @@ bool is_good(const Point& point, const Reference& reference) {
   return point.outcome == Outcome::reached_end && judged_error(point, reference) < 1;
 }
 
+// Whether coarse steps end at a limit of stability: those of explicit methods do, and implicit ones
+// that ran away. Other implicit ones end where they are inaccurate or are not solved.
+bool has_limit(const Method& method, const std::vector<Point>& points) {
+  if (method.knob != Knob::step_size || method.order == 0 || linear_limit(method) == 0)
+    return false;
+  return !method.is(Trait::implicit) ||
+         std::ranges::find(points, Outcome::diverged, &Point::outcome) != points.end();
+}
+
+// The points that a ladder of step sizes may be refined between: down to the first that is enough,
+// or to where time is up.
+std::vector<Rung> rungs(const std::vector<Point>& points, double until, const Reference& reference,
+                        const std::function<bool(const Point&)>& is_enough) {
+  std::vector<Rung> ladder;
+  for (const Point& point : points) {
+    if (point.outcome == Outcome::over_budget) break;
+    const bool reached = point.outcome == Outcome::reached_end;
+    ladder.push_back(
+        {std::round(until / point.value),
+         reached ? judged_error(point, reference) : std::numeric_limits<double>::infinity()});
+    if (reached && is_enough(point)) break;
+  }
+  return ladder;
+}
+
 }  // namespace
 
 std::vector<Point> sweep(const Method& method, const ReducedScene& scene, double until,
@@ -84,6 +110,9 @@ std::vector<Point> sweep(const Method& method, const ReducedScene& scene, double
                          const std::function<void(const Point&)>& report,
                          const std::function<bool(const Point&)>& is_last) {
   const KnobValues values(method, scene, until);
+  const auto is_enough = [&](const Point& point) {
+    return judged_error(point, reference) <= certified(reference) || (is_last && is_last(point));
+  };
   std::vector<Point> points;
   const auto take = [&](double value) -> const Point& {
     points.push_back(!points.empty() && takes_too_long(method, points.back(), value, effort)
@@ -105,11 +134,7 @@ std::vector<Point> sweep(const Method& method, const ReducedScene& scene, double
   for (int number = 1; const auto value = values.value(number); ++number) {
     const Point& last = points.back();
     if (last.value == *value) continue;
-    if (last.outcome == Outcome::reached_end &&
-        (judged_error(last, reference) <= certified(reference) || stagnation.after(last) ||
-         (is_last && is_last(last)))) {
-      break;
-    }
+    if (last.outcome == Outcome::reached_end && (is_enough(last) || stagnation.after(last))) break;
     // Where Newton struggles at the coarse end, finer may be faster: two such points are forgiven.
     // Explicit steps only become more.
     unfinished = last.outcome == Outcome::over_budget ? unfinished + 1 : 0;
@@ -119,6 +144,16 @@ std::vector<Point> sweep(const Method& method, const ReducedScene& scene, double
         unfinished > (has_worked || !method.is(Trait::implicit) ? 0 : 2))
       break;
     take(*value);
+  }
+
+  if (!has_limit(method, points)) return points;
+  while (const auto steps = lacking_rung(rungs(points, until, reference, is_enough))) {
+    const Point point = measure_point(method, until / *steps, scene, until, reference, effort);
+    report(point);
+    const auto finer =
+        std::ranges::find_if(points, [&](const Point& other) { return other.value < point.value; });
+    points.insert(finer, point);
+    if (point.outcome == Outcome::over_budget) break;  // though a finer one was not
   }
   return points;
 }

@@ -1,0 +1,48 @@
+#include "qddot/measure/speed/ladder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace qddot::measure {
+namespace {
+
+// Neighbours of a ladder divide the error by 4 where it falls as the order says, or by 6 where an
+// order of 8 meets ten rungs to the decade. Several times that is no order any more.
+constexpr double steepest_fall = 40;
+// At so many times the steps of the limit a ladder is left as it is. A run that comes to its end
+// beyond a limit by luck is nearer than that: at twice the limit what grows does so by more than 10
+// in a step.
+constexpr double farthest = 8;
+// The cheapest step for some accuracy is missed by at most the ratio of two rungs: by a few percent
+// at the limit, by an eighth at half of it and by a third at an eighth.
+constexpr double closest_ratio = 1.04, widening = 0.125;
+
+// The first of the fewest rungs that leave no ratio between the two larger than `allowed`.
+double first_between(const Rung& coarse, const Rung& fine, double allowed) {
+  const double ratio = fine.steps / coarse.steps;
+  const double parts = std::ceil(std::log(ratio) / std::log(allowed));
+  return std::max(coarse.steps + 1, std::round(coarse.steps * std::pow(ratio, 1 / parts)));
+}
+
+}  // namespace
+
+std::optional<double> lacking_rung(const std::vector<Rung>& ladder) {
+  double limit = 0, first_good = 0;  // in steps
+  for (std::size_t i = 1; i < ladder.size(); ++i) {
+    const Rung &coarse = ladder[i - 1], &fine = ladder[i];
+    if (!fine.is_good()) continue;
+    if (first_good == 0) first_good = coarse.is_good() ? coarse.steps : fine.steps;
+    const bool is_limit = !coarse.is_good() || (fine.steps <= farthest * first_good &&
+                                                coarse.error > steepest_fall * fine.error);
+    if (is_limit) limit = fine.steps;
+    if (limit == 0 || coarse.steps >= farthest * limit) continue;
+    const double allowed =
+        is_limit ? 1 / nearest_to_limit : closest_ratio * std::pow(coarse.steps / limit, widening);
+    if (fine.steps <= allowed * coarse.steps || fine.steps == coarse.steps + 1) continue;
+    return is_limit ? std::round(std::sqrt(coarse.steps * fine.steps))
+                    : first_between(coarse, fine, allowed);
+  }
+  return {};
+}
+
+}  // namespace qddot::measure
