@@ -212,9 +212,12 @@ Outcome Integrator::check_solve(SolveOutcome solution) {
 }
 
 Outcome Integrator::check_step(const State& from, const State& to) {
-  const double speed_squared = squared_norm(to.v);
-  if (std::isnan(speed_squared)) return Outcome::not_finite;
-  if (!(speed_squared < largest_speed_squared)) return Outcome::diverged;
+  return check_step(from, to, squared_norm(to.v));
+}
+
+Outcome Integrator::check_step(const State& from, const State& to, double squared_speed) {
+  if (std::isnan(squared_speed)) return Outcome::not_finite;
+  if (!(squared_speed < largest_speed_squared)) return Outcome::diverged;
   if (validity_) {
     if (const auto t = validity_->end_of_validity(from, to)) {
       slack_at_ = *t;

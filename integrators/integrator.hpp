@@ -152,6 +152,8 @@ class Integrator {
   // Whether the state after a step from the one before can be accepted: reached_end, or else why
   // not (not_finite, diverged, went_slack).
   Outcome check_step(const State& from, const State& to);
+  // The same where |v|^2 of `to` is known.
+  Outcome check_step(const State& from, const State& to, double squared_speed);
   // Whether that looks at more than the size of the velocities.
   bool checks_velocities() const { return validity_; }
   // Whether note() will look at the velocities of the next state.

@@ -28,6 +28,7 @@
   METHOD(blanes_moan4)             \
   METHOD(blanes_moan6)             \
   METHOD(kahan_li8)                \
+  METHOD(takahashi_imada4)         \
   METHOD(symmetric4)               \
   METHOD(symmetric6)               \
   METHOD(symmetric8)               \

@@ -38,8 +38,7 @@ SymmetricMultistep::SymmetricMultistep(const Method& method, const System& syste
       d_(system.size()),
       d_next_(system.size()),
       f_(system.size()),
-      a_(system.size()),
-      v_(system.size()) {
+      a_(system.size()) {
   past_.reserve(u_.size());
 }
 
@@ -47,7 +46,7 @@ void SymmetricMultistep::start(const State&) {
   h_ = options().step_size;
   h2_by_mass_ = h_ * h_ * system().mass().cwiseInverse();
   begun_ = 0;
-  force_is_known_ = has_history_ = is_pending_ = false;
+  force_is_known_ = has_history_ = false;
 }
 
 void SymmetricMultistep::evaluate(const Vec& q) {
@@ -55,13 +54,12 @@ void SymmetricMultistep::evaluate(const Vec& q) {
   force_is_known_ = true;
 }
 
-void SymmetricMultistep::start_step(const State& now, const Vec& v, double h, Vec& h2_g,
-                                    State& next) {
+void SymmetricMultistep::start_step(const State& now, double h, Vec& h2_g, State& next) {
   const NystromPair& pair = formula_.starter();
   const Vec& mass = system().mass();
   evaluate(now.q);
   divide(f_, mass, a_);
-  stages_.compute(now.q, v, a_, h, [&](const Vec& stage, MutableVec k) {
+  stages_.compute(now.q, now.v, a_, h, [&](const Vec& stage, MutableVec k) {
     force(stage, f_);
     divide(f_, mass, k);
   });
@@ -69,9 +67,9 @@ void SymmetricMultistep::start_step(const State& now, const Vec& v, double h, Ve
   const Eigen::MatrixXd& k = stages_.k();
   h2_g = h * h * k.col(0);
   set_combination(h * h, k, pair.b, d_next_);
-  add_scaled(d_next_, h, v, d_next_);
+  add_scaled(d_next_, h, now.v, d_next_);
   add_scaled(now.q, 1, d_next_, next.q);
-  add_combination(v, h, k, pair.b_prime, next.v);
+  add_combination(now.v, h, k, pair.b_prime, next.v);
 }
 
 void SymmetricMultistep::begin_history() {
@@ -98,58 +96,42 @@ void SymmetricMultistep::begin_history() {
   d_ = d_started_.back();
 }
 
-void SymmetricMultistep::accept(double t) {
+void SymmetricMultistep::accepted() {
+  force_is_known_ = false;
   if (has_history_) {
     newest_ = (newest_ + std::ssize(u_) - 1) % std::ssize(u_);
     std::swap(d_, d_next_);
-  } else {
+  } else if (++begun_ == d_started_.size()) {
     begin_history();
     has_history_ = true;
   }
-  force_is_known_ = is_pending_ = false;
-  history_t_ = t;
-}
-
-void SymmetricMultistep::set_velocity(Vec& v) {
-  const std::vector<double>& weights = force_is_known_ ? with_force_ : without_;
-  past_.clear();
-  for (std::ptrdiff_t ago = 1; ago < std::ssize(weights); ++ago) past_.push_back(u(ago).data());
-  set_combination(past_, weights.data() + 1, v);
-  v += d_;
-  if (force_is_known_) v += weights[0] * h2_by_mass_.cwiseProduct(f_);
-  v /= h_;
 }
 
 void SymmetricMultistep::complete(State& now, bool may_evaluate) {
-  if (is_pending_ && now.t != history_t_) accept(now.t);
-  // Else a step of the starter led here, or this was done before.
-  if (!has_history_ || now.t != history_t_) return;
   if (may_evaluate) evaluate(now.q);
-  set_velocity(now.v);
+  const std::vector<double>& weights = may_evaluate ? with_force_ : without_;
+  past_.clear();
+  for (std::ptrdiff_t ago = 1; ago < std::ssize(weights); ++ago) past_.push_back(u(ago).data());
+  set_combination(past_, weights.data() + 1, now.v);
+  now.v += d_;
+  if (may_evaluate) now.v += weights[0] * h2_by_mass_.cwiseProduct(f_);
+  now.v /= h_;
 }
 
 Outcome SymmetricMultistep::step(const State& now, double h, State& next) {
-  if (is_pending_) accept(now.t);
   if (h != h_) {
-    v_ = now.v;
-    evaluate(now.q);
-    if (has_history_) set_velocity(v_);
-    start_step(now, v_, h, a_, next);
-    return Outcome::reached_end;
-  }
-  if (!has_history_) {
-    start_step(now, now.v, h, h2_g_started_[begun_], next);
-    d_started_[begun_++] = d_next_;
-    is_pending_ = begun_ == d_started_.size();
+    start_step(now, h, a_, next);
+  } else if (!has_history_) {
+    start_step(now, h, h2_g_started_[begun_], next);
+    d_started_[begun_] = d_next_;
   } else {
     evaluate(now.q);
     past_.clear();
     for (std::ptrdiff_t ago = 0; ago + 1 < formula_.steps; ++ago) past_.push_back(u(ago).data());
     step_by_history({past_, r_.data(), b_.data(), h_}, f_, h2_by_mass_, now.q, d_, u(0), d_next_,
                     next.q, next.v);
-    is_pending_ = true;
+    leave_incomplete();
   }
-  history_t_ = now.t;
   return Outcome::reached_end;
 }
 

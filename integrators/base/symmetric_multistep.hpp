@@ -24,17 +24,14 @@ class SymmetricMultistep final : public FixedStep {
  private:
   void start(const State& state) override;
   Outcome step(const State& now, double h, State& next) override;
+  void accepted() override;
   void complete(State& now, bool may_evaluate) override;
 
-  // A step of the starter from (now.q, v). Its h^2 k_1 is left in h2_g, q_{n+1} - q_n in d_next_.
-  void start_step(const State& now, const Vec& v, double h, Vec& h2_g, State& next);
+  // A step of the starter. Its h^2 k_1 is left in h2_g, q_{n+1} - q_n in d_next_.
+  void start_step(const State& now, double h, Vec& h2_g, State& next);
   // Begins the history after k - 1 steps of the starter.
   void begin_history();
-  // Makes the last step, which led to the time t [s], a part of the history.
-  void accept(double t);
   void evaluate(const Vec& q);
-  // v after the history's last step.
-  void set_velocity(Vec& v);
   // u of so many steps ago: 1 is that of the last step.
   Vec& u(std::ptrdiff_t ago) {
     return u_[static_cast<std::size_t>((newest_ + ago) % std::ssize(u_))];
@@ -51,11 +48,9 @@ class SymmetricMultistep final : public FixedStep {
   std::vector<Vec> d_started_, h2_g_started_;  // of the starter's steps
   std::vector<Vec> u_;                         // a ring, with a place for the next
   std::ptrdiff_t newest_ = 0;                  // that place
-  Vec d_, d_next_, f_, a_, v_;
+  Vec d_, d_next_, f_, a_;
   bool force_is_known_ = false;  // f_ is that of the history's last q
   bool has_history_ = false;
-  bool is_pending_ = false;  // a step was made, and is not yet known to be accepted
-  double history_t_ = 0;     // the time that the history has come to [s]
   std::vector<const double*> past_;
 };
 

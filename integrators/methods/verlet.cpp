@@ -4,6 +4,9 @@
 //   v_{n+1}   = v_{n+1/2} + h/2 M^-1 f(q_{n+1})
 // Order 2, symplectic, time-reversible. The last force of a step is the first of the next: one
 // evaluation a step, and one to begin. Bounded on q'' = -w^2 q for h w < 2, unbounded above.
+//
+// The second kick of a step and the first of the next are done in one pass over the vectors, with
+// the drift: a step ends with v_{n+1/2} until somebody looks.
 #include "qddot/integrators/base/compensated_sum.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"
@@ -23,16 +26,39 @@ class Verlet final : public FixedStep {
   }
 
   Outcome step(const State& now, double h, State& next) override {
-    v_.add_quotient(now.v, h / 2, f_, system().mass(), next.v);
-    q_.add_scaled(now.q, h, next.v, next.q);
-    force(next.q, f_);
-    v_.add_quotient(next.v, h / 2, f_, system().mass(), next.v);
+    const Vec& mass = system().mass();
+    if (options().compensated) {
+      v_.add_quotient(now.v, h / 2, f_, mass, next.v);
+      q_.add_scaled(now.q, h, next.v, next.q);
+      force(next.q, f_);
+      v_.add_quotient(next.v, h / 2, f_, mass, next.v);
+      return Outcome::reached_end;
+    }
+    kick_and_drift({now.q, now.v, f_, mass}, is_complete() ? 0 : half_, h / 2, h, next.q, next.v);
+    force(next.q, f_next_);
+    half_next_ = h / 2;
+    leave_incomplete();
     return Outcome::reached_end;
+  }
+
+  double squared_speed(const State& next) override {
+    return squared_norm_of_kicked(next.v, half_next_, f_next_, system().mass());
+  }
+
+  void accepted() override {
+    if (options().compensated) return;
+    f_.swap(f_next_);
+    half_ = half_next_;
+  }
+
+  void complete(State& now, bool) override {
+    add_quotient(now.v, half_, f_, system().mass(), now.v);
   }
 
   CompensatedSum q_{options().compensated, system().size()};
   CompensatedSum v_{options().compensated, system().size()};
-  Vec f_{system().size()};  // at the present state
+  Vec f_{system().size()}, f_next_{system().size()};  // at the state that a step begins and ends at
+  double half_ = 0, half_next_ = 0;  // the last kick of the step that led there [s]
 };
 
 }  // namespace

@@ -33,6 +33,13 @@ void add_quotient(const ConstVec& x, double c, const ConstVec& f, const ConstVec
   kernels::vector_kernels().add_quotient(x.data(), c, f.data(), m.data(), out.data(), x.size());
 }
 
+void kick_and_drift(const Motion& motion, double c0, double c, double h, MutableVec q_next,
+                    MutableVec w) {
+  const auto& [q, v, f, m] = motion;
+  kernels::vector_kernels().kick_and_drift(q.data(), v.data(), f.data(), m.data(), c0, c, h,
+                                           q_next.data(), w.data(), q.size());
+}
+
 void divide(const ConstVec& f, const ConstVec& m, MutableVec out) {
   kernels::vector_kernels().divide(f.data(), m.data(), out.data(), f.size());
 }
@@ -71,6 +78,11 @@ void step_by_history(const HistoryStep& step, const ConstVec& f, const ConstVec&
 
 double squared_norm(const ConstVec& x) {
   return kernels::vector_kernels().squared_norm(x.data(), x.size());
+}
+
+double squared_norm_of_kicked(const ConstVec& v, double c, const ConstVec& f, const ConstVec& m) {
+  return kernels::vector_kernels().squared_norm_of_kicked(v.data(), c, f.data(), m.data(),
+                                                          v.size());
 }
 
 double squared_error(const ConstVec& x, double rtol, const ConstVec& y, double atol) {

@@ -13,6 +13,12 @@ void add_scaled(const ConstVec& x, double c, const ConstVec& z, MutableVec out);
 // out = x + c f/m, entry by entry.
 void add_quotient(const ConstVec& x, double c, const ConstVec& f, const ConstVec& m,
                   MutableVec out);
+// A kick by c0, another by c and a drift: w = (v + c0 f/m) + c f/m, q' = q + h w.
+struct Motion {
+  const Vec &q, &v, &f, &m;
+};
+void kick_and_drift(const Motion& motion, double c0, double c, double h, MutableVec q_next,
+                    MutableVec w);
 // out = f/m and out = a b, entry by entry.
 void divide(const ConstVec& f, const ConstVec& m, MutableVec out);
 void multiply(const ConstVec& a, const ConstVec& b, MutableVec out);
@@ -39,6 +45,8 @@ void step_by_history(const HistoryStep& step, const ConstVec& f, const ConstVec&
                      MutableVec q_next, MutableVec v);
 // |x|^2
 double squared_norm(const ConstVec& x);
+// |v + c f/m|^2
+double squared_norm_of_kicked(const ConstVec& v, double c, const ConstVec& f, const ConstVec& m);
 // The sum of (x_i/(rtol |y_i| + atol))^2: errors x of y in units of what is tolerated.
 double squared_error(const ConstVec& x, double rtol, const ConstVec& y, double atol);
 

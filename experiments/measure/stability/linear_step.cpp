@@ -134,6 +134,7 @@ LinearStep linear_step(const Method& method, double h_omega, Options options) {
   if (!has_linear_step(method)) {
     throw std::invalid_argument(method.name + " has no step of its own: it chooses its steps");
   }
+  if (method.recurrence_roots) return {h_omega, method.recurrence_roots(h_omega)};
   options.step_size = h_omega;  // w = 1
   return {h_omega, roots_of(respond(method, options), root_rounding)};
 }

@@ -44,7 +44,8 @@ constexpr int steps_observed = 5;
 // infinite.
 std::vector<std::complex<double>> roots_of(const Responses& y, double noise);
 
-// The method's own step at that h w, found by running it. Options but for the step size as given.
+// The method's own step at that h w: what it says itself (Method::recurrence_roots), or found by
+// running it. Options but for the step size as given.
 // Throws std::runtime_error, with the reason, where it does not make the steps, and
 // std::invalid_argument for a method without fixed steps.
 LinearStep linear_step(const Method& method, double h_omega, Options options = {});

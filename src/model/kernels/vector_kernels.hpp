@@ -12,6 +12,10 @@ struct VectorKernels {
   // out = x + c f/m, number by number.
   void (*add_quotient)(const double* x, double c, const double* f, const double* m, double* out,
                        std::ptrdiff_t n);
+  // w = (v + c0 f/m) + c f/m and q' = q + h w, number by number.
+  void (*kick_and_drift)(const double* q, const double* v, const double* f, const double* m,
+                         double c0, double c, double h, double* q_next, double* w,
+                         std::ptrdiff_t n);
   // out = f/m and out = a b, number by number.
   void (*divide)(const double* f, const double* m, double* out, std::ptrdiff_t n);
   void (*multiply)(const double* a, const double* b, double* out, std::ptrdiff_t n);
@@ -28,6 +32,9 @@ struct VectorKernels {
                           double* u_0, double* d_next, double* q_next, double* v, std::ptrdiff_t n);
   // x_0^2 + x_1^2 + ...
   double (*squared_norm)(const double* x, std::ptrdiff_t n);
+  // The same of v + c f/m.
+  double (*squared_norm_of_kicked)(const double* v, double c, const double* f, const double* m,
+                                   std::ptrdiff_t n);
   // The same of x_i/(rtol |y_i| + atol).
   double (*squared_error)(const double* x, double rtol, const double* y, double atol,
                           std::ptrdiff_t n);

@@ -18,6 +18,22 @@ void add_quotient(const double* x, double c, const double* f, const double* m, d
   for (; i < n; ++i) out[i] = x[i] + c * (f[i] / m[i]);
 }
 
+void kick_and_drift(const double* q, const double* v, const double* f, const double* m, double c0,
+                    double c, double h, double* q_next, double* w, std::ptrdiff_t n) {
+  std::ptrdiff_t i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    const Lanes a = load(f + i) / load(m + i);
+    const Lanes kicked = (load(v + i) + c0 * a) + c * a;
+    store(w + i, kicked);
+    store(q_next + i, load(q + i) + h * kicked);
+  }
+  for (; i < n; ++i) {
+    const double a = f[i] / m[i];
+    w[i] = (v[i] + c0 * a) + c * a;
+    q_next[i] = q[i] + h * w[i];
+  }
+}
+
 void divide(const double* f, const double* m, double* out, std::ptrdiff_t n) {
   std::ptrdiff_t i = 0;
   for (; i + lanes <= n; i += lanes) store(out + i, load(f + i) / load(m + i));
@@ -119,20 +135,51 @@ void step_by_history(const double* f, const double* c, const double* const* u, c
   }
 }
 
-double squared_norm(const double* x, std::ptrdiff_t n) {
-  Lanes sums[4] = {};
+// Sums of squares are those of `sums` columns, each of every so many numbers, whatever the width of
+// vectors: so all processors round them alike.
+constexpr int sums = 32, vectors_of_sums = sums / lanes;
+
+// number(i) and lanes_at(i) compute what is squared: one number, and a vector of them.
+template <class LanesAt, class Number>
+[[gnu::always_inline]] inline double sum_of_squares(std::ptrdiff_t n, const LanesAt& lanes_at,
+                                                    const Number& number) {
+  Lanes columns[vectors_of_sums] = {};
   std::ptrdiff_t i = 0;
-  for (; i + 4 * lanes <= n; i += 4 * lanes) {
-    unroll<4>([&]<int w>() __attribute__((always_inline)) {
-      const Lanes some = load(x + i + w * lanes);
-      sums[w] += some * some;
+  for (; i + sums <= n; i += sums) {
+    unroll<vectors_of_sums>([&]<int w>() __attribute__((always_inline)) {
+      const Lanes some = lanes_at(i + w * lanes);
+      columns[w] += some * some;
     });
   }
-  const Lanes sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  // Eighths of 32, then number by number.
+  double eight[8] = {};
+  double column[sums];
+  for (int w = 0; w < vectors_of_sums; ++w) store(column + w * lanes, columns[w]);
+  for (int t = 0; t < 8; ++t) {
+    eight[t] = (column[t] + column[8 + t]) + (column[16 + t] + column[24 + t]);
+  }
   double total = 0;
-  for (int t = 0; t < lanes; ++t) total += sum[t];
-  for (; i < n; ++i) total += x[i] * x[i];
+  for (const double part : eight) total += part;
+  for (; i < n; ++i) {
+    const double some = number(i);
+    total += some * some;
+  }
   return total;
+}
+
+double squared_norm(const double* x, std::ptrdiff_t n) {
+  return sum_of_squares(
+      n, [&](std::ptrdiff_t i) __attribute__((always_inline)) { return load(x + i); },
+      [&](std::ptrdiff_t i) { return x[i]; });
+}
+
+double squared_norm_of_kicked(const double* v, double c, const double* f, const double* m,
+                              std::ptrdiff_t n) {
+  return sum_of_squares(
+      n,
+      [&](std::ptrdiff_t i)
+          __attribute__((always_inline)) { return load(v + i) + c * (load(f + i) / load(m + i)); },
+      [&](std::ptrdiff_t i) { return v[i] + c * (f[i] / m[i]); });
 }
 
 // x/(rtol |y| + atol)
@@ -142,27 +189,12 @@ double squared_norm(const double* x, std::ptrdiff_t n) {
 }
 
 double squared_error(const double* x, double rtol, const double* y, double atol, std::ptrdiff_t n) {
-  Lanes sums[2] = {};
-  std::ptrdiff_t i = 0;
-  for (; i + 2 * lanes <= n; i += 2 * lanes) {
-    unroll<2>([&]<int w>() __attribute__((always_inline)) {
-      const std::ptrdiff_t at = i + w * lanes;
-      const Lanes error = in_tolerances(load(x + at), rtol, load(y + at), atol);
-      sums[w] += error * error;
-    });
-  }
-  Lanes sum = sums[0] + sums[1];
-  for (; i + lanes <= n; i += lanes) {
-    const Lanes error = in_tolerances(load(x + i), rtol, load(y + i), atol);
-    sum += error * error;
-  }
-  double total = 0;
-  for (int t = 0; t < lanes; ++t) total += sum[t];
-  for (; i < n; ++i) {
-    const double error = x[i] / (rtol * __builtin_fabs(y[i]) + atol);
-    total += error * error;
-  }
-  return total;
+  return sum_of_squares(
+      n,
+      [&](std::ptrdiff_t i) __attribute__((always_inline)) {
+        return in_tolerances(load(x + i), rtol, load(y + i), atol);
+      },
+      [&](std::ptrdiff_t i) { return x[i] / (rtol * __builtin_fabs(y[i]) + atol); });
 }
 
 }  // namespace
@@ -170,11 +202,13 @@ double squared_error(const double* x, double rtol, const double* y, double atol,
 extern const VectorKernels vector_kernels;
 const VectorKernels vector_kernels = {.add_scaled = add_scaled,
                                       .add_quotient = add_quotient,
+                                      .kick_and_drift = kick_and_drift,
                                       .divide = divide,
                                       .multiply = multiply,
                                       .add_combination = add_combination,
                                       .step_by_history = step_by_history,
                                       .squared_norm = squared_norm,
+                                      .squared_norm_of_kicked = squared_norm_of_kicked,
                                       .squared_error = squared_error};
 
 }  // namespace qddot::kernels::QDDOT_LEVEL

@@ -1,0 +1,216 @@
+#include <boost/multiprecision/cpp_int.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/integrators/base/symmetric_multistep.hpp"
+#include "tests/integrators/runs.hpp"
+
+BOOST_AUTO_TEST_SUITE(symmetric)
+
+using namespace qddot;
+
+namespace {
+
+using Rational = boost::multiprecision::cpp_rational;
+
+struct Named {
+  const char* name;
+  const SymmetricFormula& formula;
+  std::vector<double> cosines;  // of the spurious roots
+};
+const std::vector<Named> all = {
+    {"symmetric4", registered::symmetric4_formula(), {0.25}},
+    {"symmetric6", registered::symmetric6_formula(), {0, -0.5}},
+    {"symmetric8", registered::symmetric8_formula(), {0.5, 0, -0.5}},
+    {"symmetric10", registered::symmetric10_formula(), {0.6, 0.4, -0.25, -0.5}}};
+
+// The whole of a palindrome of odd length, exactly.
+std::vector<Rational> whole(const std::vector<std::int64_t>& half, std::int64_t denominator) {
+  std::vector<Rational> list;
+  for (const std::int64_t number : half) list.emplace_back(number, denominator);
+  for (std::size_t i = half.size() - 1; i-- > 0;) list.push_back(list[i]);
+  return list;
+}
+
+Rational power(Rational x, int exponent) {
+  Rational result = 1;
+  for (int i = 0; i < exponent; ++i) result *= x;
+  return result;
+}
+
+// By how much q = t^p, with h = 1 and t = 0 in the middle, misses the formula.
+Rational defect(const SymmetricFormula& formula, int p) {
+  const auto rho = whole(formula.rho, formula.rho_denominator),
+             beta = whole(formula.beta, formula.beta_denominator);
+  const int middle = formula.steps / 2;
+  Rational sum = 0;
+  for (int j = 0; j < std::ssize(rho); ++j) {
+    sum += rho[static_cast<std::size_t>(j)] * power(j - middle, p);
+  }
+  for (int j = 0; p >= 2 && j < std::ssize(beta); ++j) {
+    sum -= p * (p - 1) * beta[static_cast<std::size_t>(j)] * power(j + 1 - middle, p - 2);
+  }
+  return sum;
+}
+
+// The positions at the ends of the first `steps` steps of a run.
+std::vector<Vec> positions(const char* method, const System& system, const State& start, double h,
+                           int steps) {
+  std::vector<Vec> list = {start.q};
+  Observer observer;
+  for (int n = 1; n <= steps; ++n) observer.times.push_back(n * h);
+  observer.see = [&](const State& s) { list.push_back(s.q); };
+  const Run r = run(method_named(method), system, start, steps * h, {.step_size = h}, observer);
+  BOOST_REQUIRE(r.summary.message == "");
+  return list;
+}
+
+}  // namespace
+
+// A polynomial of degree p + 1 is stepped exactly by a formula of order p; odd ones by symmetry.
+BOOST_AUTO_TEST_CASE(each_formula_meets_the_conditions_of_its_order_exactly_and_no_more) {
+  for (const auto& [name, formula, cosines] : all) {
+    BOOST_TEST_CONTEXT(name) {
+      const int order = method_named(name).order;
+      BOOST_TEST(order == formula.steps);
+      for (int p = 0; p <= order + 1; ++p) BOOST_TEST(defect(formula, p) == 0);
+      BOOST_TEST(defect(formula, order + 2) != 0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(spurious_roots_are_on_the_unit_circle_where_they_are_said_to_be) {
+  for (const auto& [name, formula, cosines] : all) {
+    std::vector<Rational> product = {1};
+    for (const double c : cosines) {
+      // times z^2 - 2 c z + 1; each cosine is a fraction with a divisor of 20.
+      const Rational twice(std::llround(40 * c), 20);
+      std::vector<Rational> next(product.size() + 2);
+      for (std::size_t i = 0; i < product.size(); ++i) {
+        next[i] += product[i];
+        next[i + 1] -= twice * product[i];
+        next[i + 2] += product[i];
+      }
+      product = next;
+    }
+    const std::vector<double> r = formula.cofactor();
+    BOOST_TEST_REQUIRE(r.size() == product.size());
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      BOOST_TEST(r[i] == static_cast<double>(product[i]), name << " r_" << i);
+    }
+  }
+}
+
+// Without a force every step is as long as the one before; with one, the formula itself.
+BOOST_AUTO_TEST_CASE(runs_obey_the_formula_on_a_nonlinear_network) {
+  const Problem p = hammock(3);
+  const auto system = make_mass_spring(p.network);
+  constexpr double h = 1. / 64;
+  for (const auto& [name, formula, cosines] : all) {
+    const int k = formula.steps;
+    const std::vector<double> rho = formula.all_rho(), beta = formula.all_beta();
+    const std::vector<Vec> q = positions(name, *system, p.initial, h, 4 * k);
+    double worst = 0, smallest_term = 1e300;
+    for (std::size_t n = 0; n + rho.size() <= q.size(); ++n) {
+      Vec left = Vec::Zero(system->size()), right = left;
+      for (std::size_t j = 0; j < rho.size(); ++j) left += rho[j] * q[n + j];
+      for (std::size_t j = 0; j < beta.size(); ++j) {
+        const Vec& at = q[n + j + 1];
+        right += h * h * beta[j] * force_at(*system, at).cwiseQuotient(system->mass());
+      }
+      worst = std::max(worst, (left - right).lpNorm<Eigen::Infinity>());
+      smallest_term = std::min(smallest_term, right.lpNorm<Eigen::Infinity>());
+    }
+    // Positions of some 5 m are rounded, and summed with coefficients of up to 12.
+    BOOST_TEST(worst < 12 * 12 * 5 * 2.2e-16, name << ": " << worst);
+    BOOST_TEST(smallest_term > 1e-6);
+  }
+}
+
+// Weights of m accelerations are exact where these are polynomials of degree m - 1 in time: for
+// q = (-s)^(p+2), g = (p + 2)(p + 1)(-s)^p at the times -s of steps of 1 s, at t = 0.
+BOOST_AUTO_TEST_CASE(velocities_are_exact_for_polynomials) {
+  for (const int first : {0, 1}) {
+    for (int count = 1; count <= 11; ++count) {
+      const std::vector<double> w = velocity_weights(first, count);
+      for (int p = 0; p < count; ++p) {
+        double sum = p % 2 == 0 ? -1 : 1, size = 1;  // q(0) - q(-1); the velocity is zero
+        for (int j = 0; j < count; ++j) {
+          const double term = (p + 2) * (p + 1) * std::pow(-(first + j), p);
+          sum += w[static_cast<std::size_t>(j)] * term;
+          size += std::abs(w[static_cast<std::size_t>(j)] * term);
+        }
+        BOOST_TEST(std::abs(sum) < 1e-15 * size, first << " " << count << " " << p);
+      }
+      // The next power is not.
+      if (first == 0) {
+        double sum = count % 2 == 0 ? -1 : 1;
+        for (int j = 0; j < count; ++j) {
+          sum += w[static_cast<std::size_t>(j)] * (count + 2) * (count + 1) * std::pow(-j, count);
+        }
+        BOOST_TEST(std::abs(sum) > 1e-3);
+      }
+    }
+  }
+}
+
+// On an oscillator a position is a combination of the powers of the recurrence's roots: a product
+// of all factors (E - z) makes zero of it.
+BOOST_AUTO_TEST_CASE(roots_are_those_of_the_recurrence_of_a_run) {
+  const auto system = make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);
+  const State start{0, Vec::Constant(1, 0.3), Vec::Constant(1, 0.7)};
+  for (const auto& [name, formula, cosines] : all) {
+    for (const double hw : {0.1, 0.5, 0.75, 2.5}) {
+      std::vector<std::complex<double>> factor = {1};
+      for (const auto root : roots_of(formula, hw)) {
+        factor.push_back(0);
+        for (std::size_t i = factor.size() - 1; i > 0; --i) factor[i] -= root * factor[i - 1];
+      }
+      const std::vector<Vec> q = positions(name, *system, start, hw, 3 * formula.steps);
+      for (std::size_t n = 0; n + factor.size() <= q.size(); ++n) {
+        std::complex<double> sum = 0;
+        double size = 0;
+        for (std::size_t j = 0; j < factor.size(); ++j) {
+          const double at = q[n + factor.size() - 1 - j][0];
+          sum += factor[j] * at;
+          size = std::max(size, std::abs(factor[j] * at));
+        }
+        // Roots are known to 1e-14 or, where two are near each other, to the root of that.
+        BOOST_TEST(std::abs(sum) < 1e-11 * size, name << " " << hw << ": " << std::abs(sum));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_step_costs_one_force_after_those_of_the_start) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(p.network);
+  for (const auto& [name, formula, cosines] : all) {
+    const auto forces = [&](int steps) {
+      return run(method_named(name), *system, p.initial, steps / 64., {.step_size = 1. / 64})
+          .summary.counts.force_evaluations;
+    };
+    const int k = formula.steps;
+    const auto a_start = std::ssize(formula.starter().b);
+    BOOST_TEST(forces(2 * k) - forces(k) == k);
+    // The last is of where it ends, for the velocity there.
+    BOOST_TEST(forces(k) == (k - 1) * a_start + 1 + 1);
+  }
+}
+
+// Far below the limit errors of a long run stay those of the phase: spurious roots do not grow.
+BOOST_AUTO_TEST_CASE(no_vibration_grows_in_a_hundred_thousand_steps) {
+  const auto system = make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);
+  const State start{0, Vec::Constant(1, 1), Vec::Constant(1, 0)};
+  for (const auto& [name, formula, cosines] : all) {
+    const double h = 0.9 * *method_named(name).stability_limit;
+    double most = 0;
+    Observer observer;
+    for (int n = 1; n <= 1000; ++n) observer.times.push_back(100 * n * h);
+    observer.see = [&](const State& s) { most = std::max(most, std::abs(s.q[0])); };
+    run(method_named(name), *system, start, 100'000 * h, {.step_size = h}, observer);
+    // What the starter's errors put into other roots at steps as long as this is of its own size.
+    BOOST_TEST(std::abs(most - 1) < 0.1, name << " " << most);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
