@@ -22,7 +22,7 @@ Method symmetric10() {
               "derived in the file, after Quinlan and Tremaine, Astronomical Journal 100 (1990) "
               "1694-1700",
           .order = 10,
-          .stability_limit = 0.799786158615044,
+          .stability_limit = 0.7997861586100952,
           .recurrence_roots = symmetric_roots<symmetric10_formula>,
           .make = create_symmetric<symmetric10_formula>};
 }

@@ -23,7 +23,7 @@ Method symmetric6() {
               "derived in the file, after Quinlan and Tremaine, Astronomical Journal 100 (1990) "
               "1694-1700",
           .order = 6,
-          .stability_limit = 1.1298653666936,
+          .stability_limit = 1.1298653657320641,
           .recurrence_roots = symmetric_roots<symmetric6_formula>,
           .make = create_symmetric<symmetric6_formula>};
 }

@@ -23,7 +23,7 @@ Method symmetric8() {
               "derived in the file, after Quinlan and Tremaine, Astronomical Journal 100 (1990) "
               "1694-1700",
           .order = 8,
-          .stability_limit = 0.960152443294372,
+          .stability_limit = 0.9601524432891618,
           .recurrence_roots = symmetric_roots<symmetric8_formula>,
           .make = create_symmetric<symmetric8_formula>};
 }

@@ -35,10 +35,11 @@ Options fine(const Method& method) {
 double allowed(const Method& method) { return method.order == 1 ? 2e-2 : 2e-3; }
 
 const std::set<std::string> never_ask_for_stiffness = {
-    "explicit_euler", "symplectic_euler", "verlet",      "position_verlet", "rk4",
-    "blanes_moan4",   "blanes_moan6",     "kahan_li8",   "dprkn6",          "dprkn8",
-    "dprkn12",        "arkode_erk2",      "arkode_erk3", "arkode_erk4",     "arkode_erk5",
-    "arkode_erk6",    "arkode_erk8",      "cvode_adams"};
+    "explicit_euler",   "symplectic_euler", "verlet",      "position_verlet", "rk4",
+    "blanes_moan4",     "symmetric4",       "symmetric6",  "symmetric8",      "symmetric10",
+    "takahashi_imada4", "blanes_moan6",     "kahan_li8",   "dprkn6",          "dprkn8",
+    "dprkn12",          "arkode_erk2",      "arkode_erk3", "arkode_erk4",     "arkode_erk5",
+    "arkode_erk6",      "arkode_erk8",      "cvode_adams"};
 bool asks_for_laplacian(const Method& method) { return method.name.starts_with("local_global"); }
 bool asks_for_split(const Method& method) {
   return method.name.starts_with("arkode_imex") || method.name.starts_with("arkode_mri");

@@ -22,17 +22,17 @@ const Observer early{{start_time + 0.05}, [](const State&) {}};
 // chooses its steps by where it began and where it stops, as well as its tolerance of 1e-6 lets it,
 // and one whose iterations start from what the last steps were, as well as the tolerances of these
 // let it in 100 steps. A method that interpolates does so to the end of the others, on which it
-// steps alone. BDF2 and the alphas start anew where
-// they go back to.
+// steps alone. BDF2, the alphas and methods that go on by other numbers than q and v start anew
+// where they go back to.
 void check_same(const Method& method, const State& a, const State& b, bool to_the_bit) {
   BOOST_TEST(a.t == b.t);
   const bool remembers =
       method.family == Family::sundials || method.listens_to(Option::solve_tolerance);
-  if (!method.is(Trait::interpolates) && (to_the_bit || !remembers)) {
+  const bool starts_anew = method.name == "bdf2" || method.name == "generalized_alpha" ||
+                           method.name == "hht" || method.recurrence_roots;
+  if (!method.is(Trait::interpolates) && (to_the_bit || !(remembers || starts_anew))) {
     BOOST_TEST(same(a, b));
   } else {
-    const bool starts_anew =
-        method.name == "bdf2" || method.name == "generalized_alpha" || method.name == "hht";
     BOOST_TEST(distance(a, b) < (method.knob == Knob::rtol || starts_anew ? 0.1 : 1e-8));
   }
 }
@@ -107,6 +107,8 @@ BOOST_AUTO_TEST_CASE(a_part_that_goes_slack_ends_the_run_of_all_at_its_last_step
 BOOST_AUTO_TEST_CASE(of_several_parts_that_fail_the_earliest_decides_in_any_order) {
   for (const Method& method : general_methods()) {
     if (method.name == "dprkn12") continue;  // whose steps are longer than failures are apart
+    // It evaluates forces where it does not come to.
+    if (method.name == "takahashi_imada4") continue;
     const std::vector<Part> bad = {string(0.4), giving_up(-0.5, "late"), giving_up(0.2, "early"),
                                    part(hammock(2))};
     const Run first = run(method, bad[2], t_end, options_for(method));

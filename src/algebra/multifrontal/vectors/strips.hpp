@@ -199,16 +199,24 @@ inline void subtract_transposed(const double* a, std::ptrdiff_t stride, const do
         sum[j][v] += load(a + j * height + v * lanes) * load(x + v * lanes);
     }
   }
-  Lanes total[height];
+  // The rows by twos, fours and eights, whatever the width of vectors.
+  Lanes total[vectors][height];
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) {
 #pragma GCC unroll 8
-  for (int j = 0; j < height; ++j) {
-    total[j] = sum[j][0];
-#pragma GCC unroll 4
-    for (int v = 1; v < vectors; ++v) total[j] += sum[j][v];
+    for (int j = 0; j < height; ++j) total[v][j] = sum[j][v];
+    add_lanes<height>(total[v]);
   }
-  add_lanes<height>(total);
+#pragma GCC unroll 2
+  for (int apart = 1; apart < vectors; apart *= 2) {
 #pragma GCC unroll 4
-  for (int v = 0; v < vectors; ++v) store(y + v * lanes, load(y + v * lanes) - total[v]);
+    for (int v = 0; v < vectors; v += 2 * apart) {
+#pragma GCC unroll 4
+      for (int i = 0; i < vectors; ++i) total[v][i] += total[v + apart][i];
+    }
+  }
+#pragma GCC unroll 4
+  for (int v = 0; v < vectors; ++v) store(y + v * lanes, load(y + v * lanes) - total[0][v]);
 }
 
 // x = L^-1 x and x = L'^-1 x for the first k pivots of a block, `l` as in Block; further x are 0.

@@ -2,6 +2,14 @@
 
 #include <utility>
 
+// Whether the level has fused multiply-adds, which come with the wider vectors.
+#if defined __AVX512F__ || (defined __AVX2__ && defined __FMA__)
+#include <immintrin.h>
+#define QDDOT_FUSES 1
+#else
+#define QDDOT_FUSES 0
+#endif
+
 // Sources in folders `vectors` are compiled once for each level, whose name is QDDOT_LEVEL. All
 // that they define has internal linkage, but for a table of functions in a namespace of that name.
 namespace qddot::kernels::QDDOT_LEVEL {
@@ -30,6 +38,34 @@ using LaneNumbers = long __attribute__((vector_size(lanes * sizeof(long))));
 [[gnu::always_inline]] inline Lanes square_root(Lanes x) {
   for (int t = 0; t < lanes; ++t) x[t] = __builtin_sqrt(x[t]);
   return x;
+}
+
+// a b + c and c - a b, rounded once where the level fuses them. The compiler fuses sums of products
+// as well, but where two products are added it is free to choose which.
+[[gnu::always_inline]] inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
+#ifdef __AVX512F__
+  return _mm512_fmadd_pd(a, b, c);
+#elif QDDOT_FUSES
+  return _mm256_fmadd_pd(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+[[gnu::always_inline]] inline Lanes subtract_product(Lanes a, Lanes b, Lanes c) {
+#ifdef __AVX512F__
+  return _mm512_fnmadd_pd(a, b, c);
+#elif QDDOT_FUSES
+  return _mm256_fnmadd_pd(a, b, c);
+#else
+  return c - a * b;
+#endif
+}
+[[gnu::always_inline]] inline double add_product(double a, double b, double c) {
+#if QDDOT_FUSES
+  return __builtin_fma(a, b, c);
+#else
+  return a * b + c;
+#endif
 }
 
 // Calls body<0>(), body<1>(), ..., each with a constant of its own.

@@ -3,13 +3,6 @@
 #include "qddot/model/kernels/spring_kernels.hpp"
 #include "qddot/model/kernels/vectors/lanes.hpp"
 
-#if defined __AVX512F__ || (defined __AVX2__ && defined __FMA__)
-#include <immintrin.h>
-#define QDDOT_ESTIMATES 1
-#else
-#define QDDOT_ESTIMATES 0
-#endif
-
 // The processor's root and division take many times as long as its products. Where it has estimates
 // of 1/sqrt(a) and fused multiply-adds, there is another way to the same bits.
 //
@@ -36,25 +29,9 @@
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 
-constexpr bool has_estimates = QDDOT_ESTIMATES;
+constexpr bool has_estimates = QDDOT_FUSES;
 
-#if QDDOT_ESTIMATES
-
-// a b + c and c - a b, each rounded once.
-[[gnu::always_inline]] inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
-#ifdef __AVX512F__
-  return _mm512_fmadd_pd(a, b, c);
-#else
-  return _mm256_fmadd_pd(a, b, c);
-#endif
-}
-[[gnu::always_inline]] inline Lanes subtract_product(Lanes a, Lanes b, Lanes c) {
-#ifdef __AVX512F__
-  return _mm512_fnmadd_pd(a, b, c);
-#else
-  return _mm256_fnmadd_pd(a, b, c);
-#endif
-}
+#if QDDOT_FUSES
 
 // Whether numbers are in [2^-128, 2^128) or, where estimates are made in single precision,
 // [2^-64, 2^64): asked of many at once, by their exponents.

@@ -23,13 +23,13 @@ void kick_and_drift(const double* q, const double* v, const double* f, const dou
   std::ptrdiff_t i = 0;
   for (; i + lanes <= n; i += lanes) {
     const Lanes a = load(f + i) / load(m + i);
-    const Lanes kicked = (load(v + i) + c0 * a) + c * a;
+    const Lanes kicked = add_product(c + Lanes{}, a, add_product(c0 + Lanes{}, a, load(v + i)));
     store(w + i, kicked);
     store(q_next + i, load(q + i) + h * kicked);
   }
   for (; i < n; ++i) {
     const double a = f[i] / m[i];
-    w[i] = (v[i] + c0 * a) + c * a;
+    w[i] = add_product(c, a, add_product(c0, a, v[i]));
     q_next[i] = q[i] + h * w[i];
   }
 }
@@ -64,7 +64,8 @@ template <int width>
     } else if (!v) {
       store(out + at, load(x + at) + c * sum[w]);
     } else {
-      store(out + at, load(x + at) + d * load(v + at) + c * sum[w]);
+      store(out + at,
+            add_product(c + Lanes{}, sum[w], add_product(d + Lanes{}, load(v + at), load(x + at))));
     }
   }
 }
@@ -77,7 +78,7 @@ void add_combination(const double* x, double d, const double* v, double c, const
   for (; i < n; ++i) {
     double sum = 0;
     for (int j = 0; j < count; ++j) sum += b[j] * z[j][i];
-    out[i] = !x ? c * sum : !v ? x[i] + c * sum : x[i] + d * v[i] + c * sum;
+    out[i] = !x ? c * sum : !v ? x[i] + c * sum : add_product(c, sum, add_product(d, v[i], x[i]));
   }
 }
 
@@ -97,14 +98,14 @@ template <int width>
     const double* from = u[j] + i;
     unroll<width>([&]<int w>() __attribute__((always_inline)) {
       const Lanes old = load(from + w * lanes);
-      newest[w] -= r[j] * old;
-      sum[w] += b[j] * old;
+      newest[w] = subtract_product(r[j] + Lanes{}, old, newest[w]);
+      sum[w] = add_product(b[j] + Lanes{}, old, sum[w]);
     });
   }
   unroll<width>([&]<int w>() __attribute__((always_inline)) {
     const std::ptrdiff_t at = i + w * lanes;
     store(u_0 + at, newest[w]);
-    const Lanes increment = load(d + at) + (b[0] * newest[w] + sum[w]);
+    const Lanes increment = load(d + at) + add_product(b[0] + Lanes{}, newest[w], sum[w]);
     store(d_next + at, increment);
     store(q_next + at, load(q + at) + increment);
     store(v + at, increment * inverse_h);
@@ -125,11 +126,11 @@ void step_by_history(const double* f, const double* c, const double* const* u, c
   for (; i < n; ++i) {
     double newest = f[i] * c[i], sum = 0;
     for (int j = 1; j <= count; ++j) {
-      newest -= r[j] * u[j][i];
-      sum += b[j] * u[j][i];
+      newest = add_product(-r[j], u[j][i], newest);
+      sum = add_product(b[j], u[j][i], sum);
     }
     u_0[i] = newest;
-    d_next[i] = d[i] + (b[0] * newest + sum);
+    d_next[i] = d[i] + add_product(b[0], newest, sum);
     q_next[i] = q[i] + d_next[i];
     v[i] = d_next[i] * inverse_h;
   }
