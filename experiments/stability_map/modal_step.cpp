@@ -38,12 +38,17 @@ int stride_in(double h_omega, bool others_grow) {
   return eighth < least_stride ? 1 : static_cast<int>(std::min(eighth, most_stride));
 }
 
+// A multistep method is looked at after so many steps: its first are another method's, and what
+// grows shows only when it has grown.
+constexpr int steps_of_start = 64;
+int steps_before(const Method& method) { return method.recurrence_roots ? steps_of_start : 0; }
+
 // One run from the scene at rest; `see` takes the state after each stride. How it ended.
 Summary run(const Method& method, const ReducedScene& rest, State state, const Options& options,
             int stride, const std::function<void(const State&)>& see) {
   Observer each{{}, see};
   for (int n = 1; n <= steps_observed; ++n) {
-    each.times.push_back(n * stride * options.step_size);
+    each.times.push_back((steps_before(method) + n * stride) * options.step_size);
   }
   return make_integrator(method, rest.system(), options)->advance(state, each.times.back(), each);
 }
@@ -85,10 +90,11 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
       }
     }
   }
-  if (stride == 1) return {h_omega, roots_of(y, noise)};
-  const Eigen::Matrix2d strides = y[4] * y[1].inverse();  // three of them
-  auto roots = roots_of({Eigen::Matrix2d::Identity(), strides}, noise);
-  for (auto& root : roots) root = std::pow(root, 1. / (3 * stride));
+  if (stride == 1 && steps_before(method) == 0) return {h_omega, roots_of(y, noise)};
+  const std::size_t strides = stride == 1 ? 1 : 3;
+  if (y.size() < strides + 2) return {h_omega, {std::numeric_limits<double>::infinity()}};
+  auto roots = roots_of({Eigen::Matrix2d::Identity(), y[strides + 1] * y[1].inverse()}, noise);
+  for (auto& root : roots) root = std::pow(root, 1. / static_cast<double>(strides * stride));
   return {h_omega, roots};
 }
 

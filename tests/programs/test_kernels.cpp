@@ -40,11 +40,11 @@ BOOST_AUTO_TEST_CASE(runs_are_the_same_to_the_bit_at_every_width_and_with_all_ki
       {"--scene", "cloth", "--method", "symmetric8", "--step-size", "2e-4"},
       {"--scene", "cloth", "--method", "implicit_midpoint", "--step-size", "2e-3"},
       {"--scene", "cloth", "--method", "dprkn8", "--rtol", "1e-5"},
-      {"--scene", "lattice", "--method", "verlet", "--step-size", "1e-4", "--until", "0.02"},
+      {"--scene", "lattice", "--method", "verlet", "--step-size", "2e-5", "--until", "0.02"},
       {"--scene", "lattice", "--method", "linear_midpoint", "--step-size", "1e-3", "--until",
        "0.02"},
       {"--scene", "chain", "--method", "symmetric6", "--step-size", "1e-5", "--until", "0.02"},
-      {"--scene", "framed_cloth", "--method", "linear_midpoint", "--step-size", "2e-3"},
+      {"--scene", "framed_cloth", "--method", "linear_midpoint", "--step-size", "1e-3"},
       {"--scene", "fpu", "--method", "verlet", "--step-size", "1e-2", "--until", "10"}};
   for (const auto& arguments : runs) {
     BOOST_TEST_CONTEXT(fmt::format("{}", fmt::join(arguments, " "))) {

@@ -7,15 +7,17 @@ namespace {
 
 void add_scaled(const double* x, double c, const double* z, double* out, std::ptrdiff_t n) {
   std::ptrdiff_t i = 0;
-  for (; i + lanes <= n; i += lanes) store(out + i, load(x + i) + c * load(z + i));
-  for (; i < n; ++i) out[i] = x[i] + c * z[i];
+  for (; i + lanes <= n; i += lanes)
+    store(out + i, add_product(c + Lanes{}, load(z + i), load(x + i)));
+  for (; i < n; ++i) out[i] = add_product(c, z[i], x[i]);
 }
 
 void add_quotient(const double* x, double c, const double* f, const double* m, double* out,
                   std::ptrdiff_t n) {
   std::ptrdiff_t i = 0;
-  for (; i + lanes <= n; i += lanes) store(out + i, load(x + i) + c * (load(f + i) / load(m + i)));
-  for (; i < n; ++i) out[i] = x[i] + c * (f[i] / m[i]);
+  for (; i + lanes <= n; i += lanes)
+    store(out + i, add_product(c + Lanes{}, load(f + i) / load(m + i), load(x + i)));
+  for (; i < n; ++i) out[i] = add_product(c, f[i] / m[i], x[i]);
 }
 
 void kick_and_drift(const double* q, const double* v, const double* f, const double* m, double c0,
@@ -25,12 +27,12 @@ void kick_and_drift(const double* q, const double* v, const double* f, const dou
     const Lanes a = load(f + i) / load(m + i);
     const Lanes kicked = add_product(c + Lanes{}, a, add_product(c0 + Lanes{}, a, load(v + i)));
     store(w + i, kicked);
-    store(q_next + i, load(q + i) + h * kicked);
+    store(q_next + i, add_product(h + Lanes{}, kicked, load(q + i)));
   }
   for (; i < n; ++i) {
     const double a = f[i] / m[i];
     w[i] = add_product(c, a, add_product(c0, a, v[i]));
-    q_next[i] = q[i] + h * w[i];
+    q_next[i] = add_product(h, w[i], q[i]);
   }
 }
 
@@ -54,15 +56,16 @@ template <int width>
   Lanes sum[width] = {};
   for (int j = 0; j < count; ++j) {
     const double* from = z[j] + i;
-    unroll<width>([&]<int w>()
-                      __attribute__((always_inline)) { sum[w] += b[j] * load(from + w * lanes); });
+    unroll<width>([&]<int w>() __attribute__((always_inline)) {
+      sum[w] = add_product(b[j] + Lanes{}, load(from + w * lanes), sum[w]);
+    });
   }
   for (int w = 0; w < width; ++w) {
     const std::ptrdiff_t at = i + w * lanes;
     if (!x) {
       store(out + at, c * sum[w]);
     } else if (!v) {
-      store(out + at, load(x + at) + c * sum[w]);
+      store(out + at, add_product(c + Lanes{}, sum[w], load(x + at)));
     } else {
       store(out + at,
             add_product(c + Lanes{}, sum[w], add_product(d + Lanes{}, load(v + at), load(x + at))));
@@ -77,8 +80,10 @@ void add_combination(const double* x, double d, const double* v, double c, const
   for (; i + lanes <= n; i += lanes) combine<1>(x, d, v, c, z, b, count, out, i);
   for (; i < n; ++i) {
     double sum = 0;
-    for (int j = 0; j < count; ++j) sum += b[j] * z[j][i];
-    out[i] = !x ? c * sum : !v ? x[i] + c * sum : add_product(c, sum, add_product(d, v[i], x[i]));
+    for (int j = 0; j < count; ++j) sum = add_product(b[j], z[j][i], sum);
+    out[i] = !x   ? c * sum
+             : !v ? add_product(c, sum, x[i])
+                  : add_product(c, sum, add_product(d, v[i], x[i]));
   }
 }
 
@@ -149,7 +154,7 @@ template <class LanesAt, class Number>
   for (; i + sums <= n; i += sums) {
     unroll<vectors_of_sums>([&]<int w>() __attribute__((always_inline)) {
       const Lanes some = lanes_at(i + w * lanes);
-      columns[w] += some * some;
+      columns[w] = add_product(some, some, columns[w]);
     });
   }
   // Eighths of 32, then number by number.
@@ -163,7 +168,7 @@ template <class LanesAt, class Number>
   for (const double part : eight) total += part;
   for (; i < n; ++i) {
     const double some = number(i);
-    total += some * some;
+    total = add_product(some, some, total);
   }
   return total;
 }
@@ -178,15 +183,16 @@ double squared_norm_of_kicked(const double* v, double c, const double* f, const 
                               std::ptrdiff_t n) {
   return sum_of_squares(
       n,
-      [&](std::ptrdiff_t i)
-          __attribute__((always_inline)) { return load(v + i) + c * (load(f + i) / load(m + i)); },
-      [&](std::ptrdiff_t i) { return v[i] + c * (f[i] / m[i]); });
+      [&](std::ptrdiff_t i) __attribute__((always_inline)) {
+        return add_product(c + Lanes{}, load(f + i) / load(m + i), load(v + i));
+      },
+      [&](std::ptrdiff_t i) { return add_product(c, f[i] / m[i], v[i]); });
 }
 
 // x/(rtol |y| + atol)
 [[gnu::always_inline]] inline Lanes in_tolerances(Lanes x, double rtol, Lanes y, double atol) {
   const Lanes size = reinterpret_cast<Lanes>(reinterpret_cast<LaneNumbers>(y) & __LONG_MAX__);
-  return x / (rtol * size + atol);
+  return x / add_product(rtol + Lanes{}, size, atol + Lanes{});
 }
 
 double squared_error(const double* x, double rtol, const double* y, double atol, std::ptrdiff_t n) {
@@ -195,7 +201,7 @@ double squared_error(const double* x, double rtol, const double* y, double atol,
       [&](std::ptrdiff_t i) __attribute__((always_inline)) {
         return in_tolerances(load(x + i), rtol, load(y + i), atol);
       },
-      [&](std::ptrdiff_t i) { return x[i] / (rtol * __builtin_fabs(y[i]) + atol); });
+      [&](std::ptrdiff_t i) { return x[i] / add_product(rtol, __builtin_fabs(y[i]), atol); });
 }
 
 }  // namespace
