@@ -34,10 +34,8 @@
   METHOD(linear_midpoint)          \
   METHOD(linear_midpoint4)         \
   METHOD(multirate_adams2)         \
-  METHOD(multirate_adams3)         \
   METHOD(multirate_adams4)         \
   METHOD(multirate_adams5)         \
-  METHOD(multirate_adams6)         \
   METHOD(exact)                    \
   METHOD(arkode_dirk2)             \
   METHOD(arkode_dirk3)             \

@@ -1,21 +1,30 @@
-// Adams' methods with the stiff springs taken apart: with a = M^-1 f_soft,
-//   q'' = M^-1 f_stiff(q) + p(t)
-// over a step, p the polynomial through a at the last k points of time. Where no stiff spring ends,
-// that is p integrated twice, exactly; the nodes of stiff springs take many short steps of it (see
-// StiffFlow). At its end the soft force is evaluated, once a step, and the velocity gets what the
-// polynomial through that as well would have given it:
-//   v += h w (a_{n+1} - p(t_{n+1})),   w = int_0^1 prod_j (x - x_j)/(1 - x_j) dx,  x_j = (t_j - t_n)/h.
-// Order k + 1; velocity Verlet for k = 1 without stiff springs. What is left out of the step is
-// smooth and small, so that stiff springs are not set swinging as by the impulses of a splitting.
+// Adams' methods with the stiff springs taken apart. With a = M^-1 f_soft, a step follows
+//   q'' = M^-1 f_stiff(q) + p(t),
+// p the polynomial through a at the last k points of time. Where no stiff spring ends, that is p
+// integrated twice, exactly; the nodes of stiff springs take many short steps (see StiffFlow). Then
+// the soft force is evaluated, once a step, and changes the velocity by what the polynomial through
+// this point as well would have given it:
+//   v += h w (a_{n+1} - p(t_{n+1})),
+//   w = int_0^1 prod_j (x - x_j)/(1 - x_j) dx,  x_j = (t_j - t_n)/h of the k points.
+// Order k + 1. Without stiff springs k = 1 is velocity Verlet. (Demirel, Niegemann, Busch and
+// Hochbruck, J. Computational Physics 285 (2015) 133-148, have such steps without that change.)
 //
-// The first step is divided in k - 1, whose accelerations are found together: each iteration moves
-// along the polynomial through the last ones, from a constant on, and gains two orders.
+// What a step changes at once is small, of order h^(k+1), where the impulses of a splitting are of
+// order h and set stiff springs swinging. But soft forces answer vibrations of stiff springs late:
+// those that turn by about an odd multiple of pi in a step grow, slowly. So this is for motions
+// that are to be known accurately, not for long runs.
+//
+// The first step is divided in k - 1, whose forces are found together: each iteration follows the
+// polynomial through the last ones, beginning with a constant, and gains two orders.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
 
+#include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/base/renewed_bound.hpp"
 #include "qddot/integrators/base/stiff_flow.hpp"
@@ -24,209 +33,213 @@
 namespace qddot::registered {
 namespace {
 
-// More of them are taken for none that could be waited for.
-constexpr double most_stiff_steps = 1e7;
+// In a step; more of them than anyone would wait for.
+constexpr double most_short_steps = 1e7;
 
 template <int k>
 class MultirateAdams final : public FixedStep {
-  using Coefficients = Eigen::Matrix<double, k, 1>;
+  using Row = Eigen::Matrix<double, k, 1>;  // a number for each of the k points, the newest first
+
+  static constexpr int stiff_order = k <= 3 ? 2 : 4;
+  using Flow = StiffFlow<stiff_order>;
 
  public:
   MultirateAdams(const Method& method, const System& system, const Options& options)
       : FixedStep(method, system, options),
         split_(*split_of(system)),
         block_(*split_.stiff_block),
-        flow_(block_.mass()),
-        bound_(block_),
-        soft_(Eigen::MatrixXd::Zero(system.size(), k + 1)),
-        push_(block_.size(), k),
+        flow_(block_.mass(), k),
+        stiff_bound_(block_),
+        a_(Eigen::MatrixXd::Zero(system.size(), k + 1)),
         f_(system.size()),
         x_(block_.size()),
-        u_(block_.size()) {}
+        u_(block_.size()),
+        from_{0, Vec(system.size()), Vec(system.size())} {}
 
  private:
   void start(const State& state) override {
-    bound_.start();
+    stiff_bound_.start();
+    soft_bound_ = frequency_bound(*split_.soft, state.q);
     newest_ = 0;
-    known_ = 1;
-    evaluate(state.q, state.t, newest_);
+    is_known_ = k == 1;
+    evaluate(state.q, 0, newest_);
   }
 
   void resume(const FixedStep& run, const State& now) override {
     const auto& other = static_cast<const MultirateAdams&>(run);
-    bound_.start();
-    soft_ = other.soft_;
+    if (!other.is_known_) return start(now);
+    stiff_bound_.start();
+    soft_bound_ = other.soft_bound_;
+    a_ = other.a_;
     at_ = other.at_;
     newest_ = other.newest_;
-    known_ = other.known_;
-    if (known_ < k) start(now);
+    is_known_ = true;
   }
 
   Outcome step(const State& now, double h, State& next) override {
-    if (known_ < k) {
-      if (const Outcome outcome = find_first(now, h, next); outcome != Outcome::reached_end) {
-        return outcome;
-      }
-      return Outcome::reached_end;
-    }
-    if (const Outcome outcome = predict(now, h, next); outcome != Outcome::reached_end) {
+    const Outcome outcome = is_known_ ? step_from_known(now, h, next) : first_step(now, h, next);
+    for (double& t : at_) t -= h;
+    return outcome;
+  }
+
+  Outcome step_from_known(const State& now, double h, State& next) {
+    if (const Outcome outcome = follow(now, 0, h, next); outcome != Outcome::reached_end) {
       return outcome;
     }
     const Index oldest = column(-k);
-    evaluate(next.q, now.t + h, oldest);
-    correct(now.t, h, next);
+    evaluate(next.q, h, oldest);
+    correct(h, oldest, next);
     newest_ = oldest;
     return Outcome::reached_end;
   }
 
-  // All of the first step.
-  Outcome find_first(const State& now, double h, State& next) {
-    known_ = k;
+  Outcome first_step(const State& now, double h, State& next) {
+    const double part = h / (k - 1);
     for (int j = 1; j < k; ++j) {
-      soft_.col(column(j)) = soft_.col(newest_);
-      at_[static_cast<std::size_t>(column(j))] = now.t + j * h / (k - 1);
+      a_.col(column(j)) = a_.col(newest_);
+      time(column(j)) = j * part;
     }
     newest_ = column(k - 1);
-    State from = now;
-    for (int i = 0; i <= (k + 1) / 2; ++i) {
-      from = now;
+    is_known_ = true;
+    for (int iteration = 0; iteration <= (k + 1) / 2; ++iteration) {
+      from_.q = now.q;
+      from_.v = now.v;
       for (int j = 1; j < k; ++j) {
-        const double part = h / (k - 1);
-        from.t = now.t + (j - 1) * part;
-        if (const Outcome outcome = predict(from, part, next); outcome != Outcome::reached_end) {
-          return outcome;
-        }
-        evaluate(next.q, now.t + j * part, column(j - (k - 1)));
-        from.q = next.q;
-        from.v = next.v;
+        const Outcome outcome = follow(from_, (j - 1) * part, part, next);
+        if (outcome != Outcome::reached_end) return outcome;
+        evaluate(next.q, j * part, column(j - (k - 1)));
+        from_.q = next.q;
+        from_.v = next.v;
       }
     }
     return Outcome::reached_end;
   }
 
-  // The accelerations' column of that many points after the newest.
+  // Of a_, so many points after the newest.
   Index column(int after) const { return (newest_ + after + 2 * (k + 1)) % (k + 1); }
+  double& time(Index column) { return at_[static_cast<std::size_t>(column)]; }
 
+  // a at q, t [s] after the step's start.
   void evaluate(const Vec& q, double t, Index column) {
     force(*split_.soft, q, f_);
-    divide(f_, system().mass(), soft_.col(column));
-    at_[static_cast<std::size_t>(column)] = t;
+    divide(f_, system().mass(), a_.col(column));
+    time(column) = t;
   }
 
-  // x_j of the last k points, from the newest on, for a step h from t on.
-  Coefficients points(double t, double h) const {
-    Coefficients x;
-    for (int j = 0; j < k; ++j) x[j] = (at_[static_cast<std::size_t>(column(-j))] - t) / h;
+  // x_j for a step h from t on.
+  Row points(double t, double h) {
+    Row x;
+    for (int j = 0; j < k; ++j) x[j] = (time(column(-j)) - t) / h;
     return x;
   }
 
-  // Column j: the polynomial in x that is 1 at x_j and 0 at the other points, by its coefficients.
-  static Eigen::Matrix<double, k, k> basis(const Coefficients& x) {
+  // Row i, column j: the coefficient of x^i in the polynomial that is 1 at x_j and 0 at the other
+  // points.
+  static Eigen::Matrix<double, k, k> basis(const Row& x) {
     Eigen::Matrix<double, k, k> powers;
     powers.col(0).setOnes();
-    for (int j = 1; j < k; ++j) powers.col(j) = powers.col(j - 1).cwiseProduct(x);
+    for (int i = 1; i < k; ++i) powers.col(i) = powers.col(i - 1).cwiseProduct(x);
     return powers.inverse();
   }
 
-  // In the order of the columns of soft_, from those of the points.
-  std::array<double, k + 1> by_column(const Coefficients& c) const {
+  // In the order of the columns of a_, 0 for the one that is no point.
+  std::array<double, k + 1> by_column(const Row& weights) const {
     std::array<double, k + 1> all{};
-    for (int j = 0; j < k; ++j) all[static_cast<std::size_t>(column(-j))] = c[j];
+    for (int j = 0; j < k; ++j) all[static_cast<std::size_t>(column(-j))] = weights[j];
     return all;
   }
 
-  // `next` a step h after `now`, along the polynomial.
-  Outcome predict(const State& now, double h, State& next) {
-    const auto polynomials = basis(points(now.t, h));
-    Coefficients once, twice;
-    for (int j = 0; j < k; ++j) {
-      once[j] = twice[j] = 0;
-      for (int i = 0; i < k; ++i) {
-        once[j] += polynomials(i, j) / (i + 1);
-        twice[j] += polynomials(i, j) / ((i + 1) * (i + 2));
-      }
-    }
-    add_combination(now.q, h, now.v, h * h, soft_, by_column(twice), next.q);
-    add_combination(now.v, h, soft_, by_column(once), next.v);
-    if (block_.size() == 0) return Outcome::reached_end;
-
-    const double w_max = bound_.at(counts().steps, [&](SymmetricMatrix& stiffness_matrix) {
-      gather(now);
-      stiffness(block_, x_, stiffness_matrix);
-    });
-    const double steps = std::max(1.0, std::ceil(h * w_max / Flow::step_times_frequency));
-    if (!std::isfinite(steps)) return Outcome::not_finite;
-    if (steps > most_stiff_steps) return Outcome::step_too_small;
-    gather(now);
-    const std::vector<Index>& stiff = split_.stiff_unknowns;
+  // `next` is a step h after `now`, which is t after the step's start, along p.
+  Outcome follow(const State& now, double t, double h, State& next) {
+    const Eigen::Matrix<double, k, k> polynomials = basis(points(t, h));
+    Row once = Row::Zero(), twice = Row::Zero();
     for (int i = 0; i < k; ++i) {
-      double* out = push_.col(i).data();
-      for (std::size_t a = 0; a < stiff.size(); ++a) out[a] = 0;
+      once += polynomials.row(i).transpose() / (i + 1);
+      twice += polynomials.row(i).transpose() / ((i + 1) * (i + 2));
+    }
+    add_combination(now.q, h, now.v, h * h, a_, by_column(twice), next.q);
+    add_combination(now.v, h, a_, by_column(once), next.v);
+    return block_.size() > 0 ? follow_stiff(now, polynomials, h, next) : Outcome::reached_end;
+  }
+
+  // The same for the nodes of stiff springs.
+  Outcome follow_stiff(const State& now, const Eigen::Matrix<double, k, k>& polynomials, double h,
+                       State& next) {
+    const std::vector<Index>& stiff = split_.stiff_unknowns;
+    for (Index i = 0; i < x_.size(); ++i) {
+      x_[i] = now.q[stiff[static_cast<std::size_t>(i)]];
+      u_[i] = now.v[stiff[static_cast<std::size_t>(i)]];
+    }
+    const double w_max = stiff_bound_.at(
+        counts().steps, [&](SymmetricMatrix& matrix) { stiffness(block_, x_, matrix); });
+    const double steps = std::max(1.0, std::ceil(h * w_max / short_step(h * soft_bound_)));
+    if (!std::isfinite(steps)) return Outcome::not_finite;
+    if (steps > most_short_steps) return Outcome::step_too_small;
+
+    for (int i = 0; i < k; ++i) {
+      auto c = flow_.coefficient(i);
+      c.setZero();
       for (int j = 0; j < k; ++j) {
-        const double c = polynomials(i, j);
-        const double* in = soft_.col(column(-j)).data();
-        for (std::size_t a = 0; a < stiff.size(); ++a) out[a] += c * in[stiff[a]];
+        const auto a = a_.col(column(-j));
+        for (Index e = 0; e < c.size(); ++e) {
+          c[e] += polynomials(i, j) * a[stiff[static_cast<std::size_t>(e)]];
+        }
       }
+      c.array() *= block_.mass().array();
     }
     flow_.advance(
-        h, steps, push_, [&](const Vec& x, Vec& f) { force(block_, x, f); }, x_, u_);
-    for (std::size_t a = 0; a < stiff.size(); ++a) {
-      next.q[stiff[a]] = x_[static_cast<Index>(a)];
-      next.v[stiff[a]] = u_[static_cast<Index>(a)];
+        h, steps, [&](const Vec& x, MutableVec f) { force(block_, x, f); }, x_, u_);
+    for (Index i = 0; i < x_.size(); ++i) {
+      next.q[stiff[static_cast<std::size_t>(i)]] = x_[i];
+      next.v[stiff[static_cast<std::size_t>(i)]] = u_[i];
     }
     return Outcome::reached_end;
   }
 
-  void gather(const State& now) {
-    const std::vector<Index>& stiff = split_.stiff_unknowns;
-    for (std::size_t a = 0; a < stiff.size(); ++a) {
-      x_[static_cast<Index>(a)] = now.q[stiff[a]];
-      u_[static_cast<Index>(a)] = now.v[stiff[a]];
-    }
+  // The short step times w_max of the stiff forces, where the step times that of the soft ones is
+  // x: as long as it may be, and so short in the end that its error falls as that of the step.
+  static double short_step(double x) {
+    constexpr double resolved = stiff_order == 2 ? 0.5 : 0.25;
+    return Flow::largest_step_times_frequency *
+           std::min(1.0, std::pow(x / resolved, static_cast<double>(k + 1) / stiff_order));
   }
 
-  // v += h w (a_{n+1} - p), with a_{n+1} where the oldest was before.
-  void correct(double t, double h, State& next) {
-    const Coefficients x = points(t, h);
-    Eigen::Matrix<double, k + 1, 1> product;
-    product.setZero();
-    product[0] = 1;
-    double at_end = 1;
+  // v += h w (a_{n+1} - p), a_{n+1} in the column `end`.
+  void correct(double h, Index end, State& next) {
+    const Row x = points(0, h);
+    // prod_j (x - x_j)/(1 - x_j) by its coefficients
+    Eigen::Matrix<double, k + 1, 1> product = Eigen::Matrix<double, k + 1, 1>::Unit(0);
     for (int j = 0; j < k; ++j) {
       for (int i = j + 1; i > 0; --i) product[i] = product[i - 1] - x[j] * product[i];
       product[0] *= -x[j];
-      at_end *= 1 - x[j];
+      product /= 1 - x[j];
     }
     double w = 0;
-    for (int i = 0; i <= k; ++i) w += product[i] / ((i + 1) * at_end);
-    const auto polynomials = basis(x);
-    Coefficients extrapolation;
-    for (int j = 0; j < k; ++j) extrapolation[j] = -polynomials.col(j).sum();
-    auto all = by_column(extrapolation);
-    all[static_cast<std::size_t>(column(-k))] = 1;
-    add_combination(next.v, h * w, soft_, all, next.v);
+    for (int i = 0; i <= k; ++i) w += product[i] / (i + 1);
+    auto weights = by_column(-basis(x).colwise().sum().transpose());
+    weights[static_cast<std::size_t>(end)] = 1;
+    add_combination(next.v, h * w, a_, weights, next.v);
   }
-
-  using Flow = StiffFlow<k == 1 ? 2 : 4>;
 
   const Split& split_;
   const System& block_;
   Flow flow_;
-  RenewedBound bound_;
-  Eigen::MatrixXd soft_;               // accelerations, one column for each point of time
-  std::array<double, k + 1> at_{};     // [s], of the columns
-  Index newest_ = 0;                   // column
-  int known_ = 0;                      // columns
-  Eigen::MatrixXd push_;               // the polynomial over the stiff unknowns
-  Vec f_, x_, u_;
+  RenewedBound stiff_bound_;
+  double soft_bound_ = 0;           // of the largest frequency of soft forces [1/s]
+  Eigen::MatrixXd a_;               // a column for each of the points, and one for the next
+  std::array<double, k + 1> at_{};  // [s], when these are, from where the run is on
+  Index newest_ = 0;                // column
+  bool is_known_ = false;           // a at k points
+  Vec f_, x_, u_;                   // x_, u_: of the stiff block
+  State from_;
 };
 
 template <int k>
-Method multirate() {
+Method multirate_adams() {
   return {.name = fmt::format("multirate_adams{}", k + 1),
-          .summary = fmt::format("Adams' explicit order {} for soft forces, one a step; stiff "
-                                 "springs alone in short steps of order {}",
-                                 k + 1, k == 1 ? 2 : 4),
+          .summary = fmt::format("Adams' method of order {} with one soft force a step; stiff "
+                                 "springs alone take short steps inside",
+                                 k + 1),
           .source =
               "Demirel, Niegemann, Busch and Hochbruck, J. Computational Physics 285 (2015) "
               "133-148",
@@ -237,10 +250,8 @@ Method multirate() {
 
 }  // namespace
 
-Method multirate_adams2() { return multirate<1>(); }
-Method multirate_adams3() { return multirate<2>(); }
-Method multirate_adams4() { return multirate<3>(); }
-Method multirate_adams5() { return multirate<4>(); }
-Method multirate_adams6() { return multirate<5>(); }
+Method multirate_adams2() { return multirate_adams<1>(); }
+Method multirate_adams4() { return multirate_adams<3>(); }
+Method multirate_adams5() { return multirate_adams<4>(); }
 
 }  // namespace qddot::registered
