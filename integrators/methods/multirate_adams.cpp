@@ -24,7 +24,6 @@
 #include <Eigen/LU>
 #include <fmt/format.h>
 
-#include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/base/renewed_bound.hpp"
 #include "qddot/integrators/base/stiff_flow.hpp"
@@ -59,7 +58,6 @@ class MultirateAdams final : public FixedStep {
  private:
   void start(const State& state) override {
     stiff_bound_.start();
-    soft_bound_ = frequency_bound(*split_.soft, state.q);
     newest_ = 0;
     is_known_ = k == 1;
     evaluate(state.q, 0, newest_);
@@ -69,7 +67,6 @@ class MultirateAdams final : public FixedStep {
     const auto& other = static_cast<const MultirateAdams&>(run);
     if (!other.is_known_) return start(now);
     stiff_bound_.start();
-    soft_bound_ = other.soft_bound_;
     a_ = other.a_;
     at_ = other.at_;
     newest_ = other.newest_;
@@ -101,7 +98,7 @@ class MultirateAdams final : public FixedStep {
     }
     newest_ = column(k - 1);
     is_known_ = true;
-    for (int iteration = 0; iteration <= (k + 1) / 2; ++iteration) {
+    for (int iteration = 0; iteration <= k / 2; ++iteration) {
       from_.q = now.q;
       from_.v = now.v;
       for (int j = 1; j < k; ++j) {
@@ -172,7 +169,7 @@ class MultirateAdams final : public FixedStep {
     }
     const double w_max = stiff_bound_.at(
         counts().steps, [&](SymmetricMatrix& matrix) { stiffness(block_, x_, matrix); });
-    const double steps = std::max(1.0, std::ceil(h * w_max / short_step(h * soft_bound_)));
+    const double steps = w_max > 0 ? short_steps(h * w_max) : 1;
     if (!std::isfinite(steps)) return Outcome::not_finite;
     if (steps > most_short_steps) return Outcome::step_too_small;
 
@@ -196,12 +193,11 @@ class MultirateAdams final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // The short step times w_max of the stiff forces, where the step times that of the soft ones is
-  // x: as long as it may be, and so short in the end that its error falls as that of the step.
-  static double short_step(double x) {
-    constexpr double resolved = stiff_order == 2 ? 0.5 : 0.25;
-    return Flow::largest_step_times_frequency *
-           std::min(1.0, std::pow(x / resolved, static_cast<double>(k + 1) / stiff_order));
+  // How many short steps a step needs, where the step times w_max of the stiff forces is x: as few
+  // as are stable, and where that is one, as many as make their error fall as that of the step.
+  static double short_steps(double x) {
+    constexpr double most = Flow::largest_step_times_frequency;
+    return std::ceil(std::max(x / most, std::pow(1 / x, (k + 1.0) / stiff_order - 1)));
   }
 
   // v += h w (a_{n+1} - p), a_{n+1} in the column `end`.
@@ -225,7 +221,6 @@ class MultirateAdams final : public FixedStep {
   const System& block_;
   Flow flow_;
   RenewedBound stiff_bound_;
-  double soft_bound_ = 0;           // of the largest frequency of soft forces [1/s]
   Eigen::MatrixXd a_;               // a column for each of the points, and one for the next
   std::array<double, k + 1> at_{};  // [s], when these are, from where the run is on
   Index newest_ = 0;                // column
