@@ -33,7 +33,7 @@ namespace qddot::registered {
 namespace {
 
 // In a step; more of them than anyone would wait for.
-constexpr double most_short_steps = 1e7;
+constexpr double most_short_steps = 1e6;
 
 template <int k>
 class MultirateAdams final : public FixedStep {
@@ -194,10 +194,12 @@ class MultirateAdams final : public FixedStep {
   }
 
   // How many short steps a step needs, where the step times w_max of the stiff forces is x: as few
-  // as are stable, and where that is one, as many as make their error fall as that of the step.
+  // as are stable, and where that is one, as many as make their error fall as that of the step,
+  // down to where both are rounding.
   static double short_steps(double x) {
-    constexpr double most = Flow::largest_step_times_frequency;
-    return std::ceil(std::max(x / most, std::pow(1 / x, (k + 1.0) / stiff_order - 1)));
+    constexpr double most = Flow::largest_step_times_frequency, most_for_order = 1000;
+    const double for_order = std::pow(1 / x, (k + 1.0) / stiff_order - 1);
+    return std::ceil(std::max(x / most, std::min(for_order, most_for_order)));
   }
 
   // v += h w (a_{n+1} - p), a_{n+1} in the column `end`.
