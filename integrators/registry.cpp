@@ -38,6 +38,9 @@
   METHOD(dprkn12)                  \
   METHOD(linear_midpoint)          \
   METHOD(linear_midpoint4)         \
+  METHOD(multirate_adams2)         \
+  METHOD(multirate_adams4)         \
+  METHOD(multirate_adams5)         \
   METHOD(exact)                    \
   METHOD(arkode_dirk2)             \
   METHOD(arkode_dirk3)             \

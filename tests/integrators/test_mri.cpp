@@ -9,6 +9,10 @@ using namespace qddot;
 
 namespace {
 
+std::vector<Method> mri_methods() {
+  return {method_named("arkode_mri3"), method_named("arkode_mri4")};
+}
+
 // Exact to 1e-12, see the suite `order`.
 State by_kahan_li(const System& system, const State& start, double until) {
   return run(method_named("kahan_li8"), system, start, until, {.step_size = 1. / 512}).state;
@@ -55,7 +59,7 @@ constexpr int coarsest = 40;
 
 void check_orders(const System& system, const State& start) {
   const State end = by_kahan_li(system, start, 1);
-  for (const Method& method : split_methods_of(Knob::step_size)) {
+  for (const Method& method : mri_methods()) {
     const Orders observed = observed_orders(method, system, start, end, coarsest);
     BOOST_TEST_CONTEXT(method.name << " in q " << observed.q << ", in v " << observed.v) {
       BOOST_TEST(is_of_order(method.order, observed));
@@ -93,7 +97,7 @@ BOOST_AUTO_TEST_CASE(a_force_wrong_by_a_thousandth_in_either_half_is_noticed) {
     (in_stiff ? wrong.stiff : wrong.soft)->after_force = [](const ConstVec&, MutableVec f) {
       f *= 1.001;
     };
-    for (const Method& method : split_methods_of(Knob::step_size)) {
+    for (const Method& method : mri_methods()) {
       const Orders observed = observed_orders(method, wrong, p.initial, end, coarsest);
       BOOST_TEST(!is_of_order(method.order, observed), method.name);
     }
@@ -138,7 +142,7 @@ BOOST_AUTO_TEST_CASE(steps_far_beyond_what_the_stiff_springs_let_an_explicit_met
   const auto system = make_mass_spring(p.network);
   const Options options{.step_size = 0.01}, fine{.step_size = 0.0025};
   BOOST_TEST(options.step_size * frequency_bound(*system, p.initial.q) > 10);
-  for (const Method& method : split_methods_of(Knob::step_size)) {
+  for (const Method& method : mri_methods()) {
     const Run coarse = run(method, *system, p.initial, 1, options);
     BOOST_TEST(coarse.summary.message == "");
     // In 1 s the nodes move by metres; the soft forces' time is some 0.1 s, ten of the steps.
@@ -153,7 +157,7 @@ BOOST_AUTO_TEST_CASE(small_steps_below_rounding_are_refused) {
     Problem p = railed_hammock(2, 1e4);  // m = 156
     p.initial.t = t;
     const auto system = make_mass_spring(p.network);
-    for (const Method& method : split_methods_of(Knob::step_size)) {
+    for (const Method& method : mri_methods()) {
       // Times here are 1.2e-7 s apart: h advances them, h/m does not.
       const Run r = run(method, *system, p.initial, t + 1e-3, {.step_size = 1e-5});
       BOOST_TEST(name(r.summary.outcome) == "step_too_small");

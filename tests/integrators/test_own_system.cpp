@@ -42,7 +42,8 @@ const std::set<std::string> never_ask_for_stiffness = {
     "arkode_erk6",      "arkode_erk8",      "cvode_adams"};
 bool asks_for_laplacian(const Method& method) { return method.name.starts_with("local_global"); }
 bool asks_for_split(const Method& method) {
-  return method.name.starts_with("arkode_imex") || method.name.starts_with("arkode_mri");
+  return method.name.starts_with("arkode_imex") || method.name.starts_with("arkode_mri") ||
+         method.name.starts_with("multirate_adams");
 }
 
 // Runs all methods: each ends at the reference, or is refused with what expected(method) says.

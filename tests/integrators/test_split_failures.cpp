@@ -38,7 +38,7 @@ void for_all(const Check& check) {
   for (const Method& method : methods()) {
     if (!method.asks(Need::split_forces)) continue;
     for (const bool in_stiff : {true, false}) {
-      for (const int first_bad : {1, 40}) {
+      for (const int first_bad : {1, 95}) {
         BOOST_TEST_CONTEXT(method.name << ", force " << first_bad << " of the "
                                        << (in_stiff ? "stiff" : "soft") << " half") {
           check(method, in_stiff, first_bad);
@@ -118,7 +118,7 @@ BOOST_AUTO_TEST_CASE(negative_control_unspoiled_it_ends_well) {
     const Spoiled s(in_stiff, std::numeric_limits<int>::max(), break_it);
     BOOST_TEST(run(method, s.relay, s.problem.initial, 1, options_for(method)).summary.message ==
                "");
-    BOOST_TEST(s.calls > 40);
+    BOOST_TEST(s.calls > 95);
   });
 }
 

@@ -44,7 +44,8 @@ BOOST_AUTO_TEST_CASE(runs_are_the_same_to_the_bit_at_every_width_and_with_all_ki
       {"--scene", "lattice", "--method", "linear_midpoint", "--step-size", "1e-3", "--until",
        "0.02"},
       {"--scene", "chain", "--method", "symmetric6", "--step-size", "1e-5", "--until", "0.02"},
-      {"--scene", "framed_cloth", "--method", "linear_midpoint", "--step-size", "1e-3"},
+      {"--scene", "framed_cloth", "--method", "linear_midpoint", "--step-size", "1e-3", "--until",
+       "0.02"},
       {"--scene", "fpu", "--method", "verlet", "--step-size", "1e-2", "--until", "10"}};
   for (const auto& arguments : runs) {
     BOOST_TEST_CONTEXT(fmt::format("{}", fmt::join(arguments, " "))) {
@@ -64,7 +65,7 @@ BOOST_AUTO_TEST_CASE(a_kind_that_is_not_there_is_told_in_a_sentence) {
   const Exit exit =
       run("simulate", {"--scene", "cloth", "--method", "verlet", "--step-size", "1e-4"});
   unsetenv("QDDOT_ROOTS");
-  BOOST_TEST(exit.status == 2);
+  BOOST_TEST(exit.status == 1);
   BOOST_TEST(exit.err == "simulate: this processor has no kernels with QDDOT_ROOTS=square\n");
 }
 
