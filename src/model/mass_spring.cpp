@@ -40,6 +40,13 @@ class MassSpring final : public System,
 
   double potential(const ConstVec& q) const override {
     double v = constant_energy_ - weight_.dot(q);
+    if (by_node_) {
+      v += by_node_->half_sum_energies(q);
+      springs_.for_each_anchor([&](const auto& spring) {
+        v += spring_energy(spring.law, springs_.between(q, spring)) / 2;
+      });
+      return v;
+    }
     springs_.for_each(
         [&](const auto& spring) { v += spring_energy(spring.law, springs_.between(q, spring)); });
     return v;
@@ -54,6 +61,7 @@ class MassSpring final : public System,
   }
 
   void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
+    if (by_node_) return by_node_->sum_mean_forces(a, b, weight_, f);
     f = weight_;
     springs_.add_forces(
         [&](const auto& spring) {

@@ -82,6 +82,13 @@ class SpringLists {
     for (const EdgeAnchor& anchor : edge_anchors_) see(anchor);
   }
 
+  // The same for those to fixed points alone.
+  template <class See>
+  [[gnu::always_inline]] void for_each_anchor(const See& see) const {
+    for (const Anchor& anchor : anchors_) see(anchor);
+    for (const EdgeAnchor& anchor : edge_anchors_) see(anchor);
+  }
+
   // d from a spring's end i to its end j, diag(mirror) x_j - x_i or point - x_i.
   Point between(const ConstVec& q, const Link& link) const {
     return q.segment<D>(link.j) - q.segment<D>(link.i);

@@ -123,6 +123,40 @@ BOOST_AUTO_TEST_CASE(it_is_the_plain_sum_on_grids_in_any_order_of_their_nodes) {
   }
 }
 
+// An energy is rounded in proportion to each spring's, of which it has a few operations, or to
+// eps l^2 k where that is less; a mean force as a force, of twice as many operations.
+BOOST_AUTO_TEST_CASE(energies_and_mean_forces_are_the_plain_sums_as_well) {
+  const auto check = [](const Network& network, const Vec& q) {
+    const auto plain = make_mass_spring(network, Forces::spring_by_spring),
+               fast = make_mass_spring(network, Forces::by_vectors);
+    const double extent = 2 * q.lpNorm<Eigen::Infinity>() + 2;
+    double size = 0, energy = std::abs(network.constant_energy);
+    const auto add = [&](const SpringLaw& law) {
+      size += size_of(law, extent);
+      energy += size_of(law, extent) * (extent + law.rest_length);
+    };
+    for (const auto& link : network.links) add(link.law);
+    for (const auto& link : network.image_links) add(link.law);
+    for (const auto& anchor : network.anchors) add(anchor.law);
+    BOOST_TEST(std::abs(plain->potential(q) - fast->potential(q)) <= 10 * eps * energy);
+    const Vec other = q + 0.1 * Vec::LinSpaced(q.size(), 1, 9).array().sin().matrix();
+    Vec one(q.size()), two(q.size());
+    offered<DiscreteGradient>(*plain).discrete_gradient(q, other, one);
+    offered<DiscreteGradient>(*fast).discrete_gradient(q, other, two);
+    BOOST_TEST((one - two).lpNorm<Eigen::Infinity>() <= 2 * eps * size);
+  };
+  std::mt19937 random(7);
+  for (const int dimension : {1, 2, 3}) {
+    for (const double stretch : {0.7, 1.3}) {
+      for (const int nodes : {1, 2, 7, 8, 9, 40}) {
+        const Problem p = random_network(random, dimension, nodes, stretch);
+        check(p.network, p.initial.q);
+      }
+    }
+  }
+  for_random_images([&](const ImageSample& s) { check(s.network, s.q); });
+}
+
 BOOST_AUTO_TEST_CASE(a_spring_of_no_length_pulls_nowhere) {
   for (const int dimension : {1, 2, 3}) {
     for (const double quartic : {0.0, 10.0}) {

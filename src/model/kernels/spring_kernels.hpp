@@ -83,6 +83,12 @@ struct SpringKernels {
   // f = offset + the forces of the rows' springs. `rings`: memory for all rings.
   void (*force)(const SpringTable&, const Positions&, double* rings, const double* offset,
                 double* f, int from, int end);
+  // Adds the energies of the rows' springs to the sums [slice_rows] of all first rows, of all
+  // second rows, ...: those that join two rows come twice.
+  void (*energy)(const SpringTable&, const Positions&, double* sums, int from, int end);
+  // f = offset + the discrete gradients of the rows' springs between two positions.
+  void (*mean_force)(const SpringTable&, const Positions& before, const Positions& after,
+                     const double* offset, double* f, int from, int end);
   // Writes the rows' columns of K.
   void (*stiffness)(const SpringTable&, const Positions&, const StiffnessTable&, TensionPart,
                     double* values, int from, int end);

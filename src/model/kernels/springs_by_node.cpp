@@ -96,9 +96,34 @@ void SpringsByNode<D>::sum_forces(const ConstVec& q, const Vec& offset, MutableV
 }
 
 template <int D>
-Positions SpringsByNode<D>::memory() const {
+double SpringsByNode<D>::half_sum_energies(const ConstVec& q) const {
+  double sums[slice_rows] = {};
+  kernels_->energy(table(), placed(q), sums, 0, slices_.count());
+  double total = 0;
+  for (const double sum : sums) total += sum;
+  return total / 2;
+}
+
+template <int D>
+void SpringsByNode<D>::sum_mean_forces(const ConstVec& a, const ConstVec& b, const Vec& offset,
+                                       MutableVec f) const {
+  kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset.data(), f.data(), 0,
+                       slices_.count());
+}
+
+template <int D>
+Positions SpringsByNode<D>::placed(const ConstVec& q, int which) const {
+  const Positions positions = memory(which);
+  kernels_->place(table(), q.data(), positions, 0, slices_.count());
+  place_extras(positions);
+  return positions;
+}
+
+template <int D>
+Positions SpringsByNode<D>::memory(int which) const {
   const Index stride = (slices_.places + slice_rows - 1) / slice_rows * slice_rows;
-  thread_local Vec numbers;
+  thread_local std::array<Vec, 2> memories;
+  Vec& numbers = memories[static_cast<std::size_t>(which)];
   const Index size = stride * (D > 1 ? D + point_stride<D> : D);
   if (numbers.size() < size) numbers.resize(size);
   return {numbers.data(), stride, D > 1 ? numbers.data() + stride * D : numbers.data()};

@@ -35,6 +35,11 @@ class SpringsByNode {
   // offset, f: n. May be called from any thread.
   void sum_forces(const ConstVec& q, const Vec& offset, MutableVec f) const;
 
+  // Sums V of all springs [J], but of those to fixed points half; alike at every width of vectors.
+  double half_sum_energies(const ConstVec& q) const;
+  // f = offset + the springs' discrete gradients between a and b (see DiscreteGradient).
+  void sum_mean_forces(const ConstVec& a, const ConstVec& b, const Vec& offset, MutableVec f) const;
+
   // Calls action(positions at q, from, end) for slices [from, end) until all have been, by several
   // threads (OpenMP's) where there are enough springs: what it does must depend on nothing that it
   // does elsewhere.
@@ -49,8 +54,10 @@ class SpringsByNode {
   // Fewer slots than these are done before a second thread has begun.
   static constexpr Index slots_worth_threads = 8000;
 
-  // Memory for all places: this thread's until the next call.
-  Positions memory() const;
+  // Memory for all places: this thread's until the next call. There are two.
+  Positions memory(int which = 0) const;
+  // The same with all of them at q.
+  Positions placed(const ConstVec& q, int which = 0) const;
   // What is no node; after all slices.
   void place_extras(const Positions& positions) const;
 

@@ -45,5 +45,39 @@ template <int D, int law_vectors, class AddShift, class AddGather>
   }
 }
 
+// Calls add(d0, d1, law) for every slot of a part of a slice, with the d of two positions;
+// likewise.
+template <int D, int law_vectors, class Add>
+[[gnu::always_inline]] inline void for_slots_of_two(const SpringTable& springs, int slice, int part,
+                                                    const Positions& before, const Positions& after,
+                                                    const Add& add) {
+  const int row = slice * slice_rows + part * lanes;
+  const Slice begin = springs.slices[slice], end = springs.slices[slice + 1];
+  const double* law = springs.laws + begin.law + part * lanes;
+  Lanes x0[D], x1[D], d0[D], d1[D];
+  for (int a = 0; a < D; ++a) {
+    x0[a] = load(coordinate(before, a, row));
+    x1[a] = load(coordinate(after, a, row));
+  }
+  for (int s = begin.shift; s < end.shift; ++s, law += law_vectors * slice_rows) {
+    const int shifted = row + springs.shifts[s];
+    for (int a = 0; a < D; ++a) {
+      d0[a] = load(coordinate(before, a, shifted)) - x0[a];
+      d1[a] = load(coordinate(after, a, shifted)) - x1[a];
+    }
+    add(d0, d1, law);
+  }
+  for (int s = begin.gather; s < end.gather; s += slice_rows, law += law_vectors * slice_rows) {
+    const int* places = springs.gathers + s + part * lanes;
+    gather<D>(before.points, places, d0);
+    gather<D>(after.points, places, d1);
+    for (int a = 0; a < D; ++a) {
+      d0[a] -= x0[a];
+      d1[a] -= x1[a];
+    }
+    add(d0, d1, law);
+  }
+}
+
 }  // namespace
 }  // namespace qddot::kernels::QDDOT_LEVEL

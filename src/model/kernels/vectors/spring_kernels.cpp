@@ -1,5 +1,6 @@
 #include "qddot/model/kernels/spring_kernels.hpp"
 
+#include "qddot/model/kernels/vectors/energy.hpp"
 #include "qddot/model/kernels/vectors/force.hpp"
 #include "qddot/model/kernels/vectors/place.hpp"
 #include "qddot/model/kernels/vectors/stiffness.hpp"
@@ -10,7 +11,11 @@ namespace {
 template <int D, Roots roots>
 constexpr SpringKernels kernels() {
   if constexpr (roots == Roots::processor || has_estimates) {
-    return {place<D>, force<D, roots>, stiffness<D, roots>};
+    return {.place = place<D>,
+            .force = force<D, roots>,
+            .energy = energy<D, roots>,
+            .mean_force = mean_force<D, roots>,
+            .stiffness = stiffness<D, roots>};
   } else {
     return {};
   }
