@@ -25,7 +25,6 @@ class Sample {
       }
     }
     slices_ = slice_neighbours(neighbours_, 0);
-    uses_.assign(slices_.shifts.size(), {RingUse::none, 0});
     orders_.assign(slices_.count(), Order::by_slice);
     for (int i = 0; i < 3 * slices_.rows(); ++i) unknowns_.push_back(i);
     q_ = Vec::LinSpaced(std::ssize(unknowns_), 0, 100);
@@ -40,7 +39,7 @@ class Sample {
                               .shifts = slices_.shifts.data(),
                               .gathers = slices_.gathers.data(),
                               .rings = nullptr,
-                              .ring_uses = uses_.data(),
+                              .ring_uses = nullptr,
                               .laws = slices_.laws.data(),
                               .law_vectors = slices_.law_vectors,
                               .unknowns = unknowns_.data(),
@@ -58,7 +57,6 @@ class Sample {
 
   std::vector<std::vector<Neighbour>> neighbours_{nodes};
   NeighbourSlices slices_;
-  std::vector<RingUse> uses_;
   std::vector<Order> orders_;
   std::vector<int> unknowns_;
   Vec q_, x_, offset_, f_;

@@ -38,7 +38,7 @@ struct RingUse {
 struct SpringTable {
   const Slice* slices;
   const int *shifts, *gathers;
-  const Ring* rings;
+  const Ring* rings;         // nullptr where there are none
   const RingUse* ring_uses;  // of the slots of one shift
   const double* laws;
   int law_vectors;

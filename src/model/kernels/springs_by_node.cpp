@@ -76,7 +76,7 @@ SpringTable SpringsByNode<D>::table() const {
   return {.slices = slices_.slices.data(),
           .shifts = slices_.shifts.data(),
           .gathers = slices_.gathers.data(),
-          .rings = rings_.rings.data(),
+          .rings = rings_.rings.empty() ? nullptr : rings_.rings.data(),
           .ring_uses = rings_.uses.data(),
           .laws = slices_.laws.data(),
           .law_vectors = slices_.law_vectors,

@@ -74,7 +74,7 @@ template <int D>
 }
 
 // A spring has the same tau/l at both ends: what the first has computed, the second finds.
-template <int D, int law_vectors, Roots chosen>
+template <int D, int law_vectors, Roots chosen, bool has_rings>
 void sum_forces(const SpringTable& springs, const Positions& positions, double* rings,
                 const double* offset, double* f, int from, int end) {
   constexpr Roots roots = D == 1 || law_vectors == 1 ? Roots::processor : chosen;
@@ -113,6 +113,16 @@ void sum_forces(const SpringTable& springs, const Positions& positions, double* 
       for_slots<D, law_vectors>(springs, slice, part, positions, add_shift, add_gather);
     });
     put<D>(springs, slice, part, sum, offset, f);
+  }
+}
+
+template <int D, int law_vectors, Roots roots>
+void sum_forces(const SpringTable& springs, const Positions& positions, double* rings,
+                const double* offset, double* f, int from, int end) {
+  if (springs.rings) {
+    sum_forces<D, law_vectors, roots, true>(springs, positions, rings, offset, f, from, end);
+  } else {
+    sum_forces<D, law_vectors, roots, false>(springs, positions, rings, offset, f, from, end);
   }
 }
 
