@@ -96,7 +96,7 @@ void sum_forces(const SpringTable& springs, const Positions& positions, double* 
       };
       const auto add_shift = [&](int s, int slot, const Lanes(&d)[D], const double* law)
           __attribute__((always_inline)) {
-        if constexpr (D == 1 || law_vectors == 1) {
+        if constexpr (D == 1 || law_vectors == 1 || !has_rings) {
           add_gather(slot, d, law);
         } else {
           const RingUse use = springs.ring_uses[s];
