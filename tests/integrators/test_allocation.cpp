@@ -145,7 +145,9 @@ BOOST_AUTO_TEST_CASE(no_step_of_any_method_and_no_look_at_it_allocates) {
     BOOST_TEST_CONTEXT(c.name) {
       int runs = 0, failed = 0;
       // Forces keep what they need of memory for the next.
-      cost_of(method_named("explicit_euler"), c, 1, false);
+      for (const char* method : {"explicit_euler", "discrete_gradient"}) {
+        cost_of(method_named(method), c, 1, false);
+      }
       for (const Method& method : methods()) {
         if (!applies_to(method, *c.system)) continue;
         for (const bool compensated : {false, true}) {
