@@ -9,7 +9,7 @@
 namespace qddot {
 
 // Steps by a symmetric multistep formula, in sums (Henrici, Discrete Variable Methods in Ordinary
-// Differential Equations, section 6.4): with d_n = q_n - q_{n-1} and r_0 = 1,
+// Differential Equations, 1962, chapter 6): with d_n = q_n - q_{n-1} and r_0 = 1,
 //   u_n = h^2 g_n - (r_1 u_{n-1} + ... + r_{k-2} u_{n-k+2}),
 //   d_{n+1} = d_n + beta_{k-1} u_n + beta_{k-2} u_{n-1} + ... + beta_1 u_{n-k+2},
 //   q_{n+1} = q_n + d_{n+1},

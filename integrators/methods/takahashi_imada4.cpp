@@ -88,8 +88,8 @@ class TakahashiImada4 final : public FixedStep {
     add_quotient(at.v, -s, k_v_, system().mass(), at.v);
   }
 
-  // Solves q + s M^-1 f(q) = kernel.q and v - s M^-1 K(q) v = kernel.v by two iterations each, which
-  // leave errors of order 6.
+  // Solves q + s M^-1 f(q) = kernel.q and v - s M^-1 K(q) v = kernel.v by two iterations each,
+  // which leave errors of order 6.
   void leave(const Kernel& kernel, double h, State& to) {
     const double s = h * h / 24;
     to.q = kernel.q;
@@ -128,8 +128,8 @@ Method takahashi_imada4() {
           .summary = "processed splitting of order 4, two forces a step; for energies of long runs",
           .source =
               "Takahashi and Imada, J. Physical Society of Japan 53 (1984) 3765-3769; Rowlands, J. "
-              "Computational Physics 97 (1991) 235-239; the shifted force: Wisdom, Holman and "
-              "Touma, Fields Institute Communications 10 (1996) 217-244",
+              "Computational Physics 97 (1991) 235-239; the shifted force: Omelyan, Physical "
+              "Review E 74 (2006) 036703",
           .order = 4,
           .stability_limit = std::sqrt(12),
           .recurrence_roots = roots,

@@ -9,6 +9,7 @@
 
 #include "qddot/model/kernels/level.hpp"
 #include "qddot/model/kernels/roots.hpp"
+#include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/vectors/roots_and_quotients.hpp"
 
