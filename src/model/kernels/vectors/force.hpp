@@ -96,7 +96,7 @@ void sum_forces(const SpringTable& springs, const Positions& positions, double* 
       };
       const auto add_shift = [&](int s, int slot, const Lanes(&d)[D], const double* law)
           __attribute__((always_inline)) {
-        if constexpr (D == 1 || law_vectors == 1 || !has_rings) {
+        if constexpr (!has_rings) {
           add_gather(slot, d, law);
         } else {
           const RingUse use = springs.ring_uses[s];
@@ -119,8 +119,9 @@ void sum_forces(const SpringTable& springs, const Positions& positions, double* 
 template <int D, int law_vectors, Roots roots>
 void sum_forces(const SpringTable& springs, const Positions& positions, double* rings,
                 const double* offset, double* f, int from, int end) {
-  if (springs.rings) {
-    sum_forces<D, law_vectors, roots, true>(springs, positions, rings, offset, f, from, end);
+  constexpr bool may_have = D > 1 && law_vectors > 1;
+  if (may_have && springs.rings) {
+    sum_forces<D, law_vectors, roots, may_have>(springs, positions, rings, offset, f, from, end);
   } else {
     sum_forces<D, law_vectors, roots, false>(springs, positions, rings, offset, f, from, end);
   }

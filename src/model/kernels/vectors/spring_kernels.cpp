@@ -11,11 +11,15 @@ namespace {
 template <int D, Roots roots>
 constexpr SpringKernels kernels() {
   if constexpr (roots == Roots::processor || has_estimates) {
+    // On a line there are no roots. All but forces divide by the processor's own: K by a length,
+    // whose estimated inverse is next to the nearest number only, mean forces by a sum of two.
+    constexpr Roots processor = Roots::processor, none_on_line = D == 1 ? processor : roots,
+                    of_lengths = none_on_line == processor ? processor : Roots::estimated_root;
     return {.place = place<D>,
-            .force = force<D, roots>,
-            .energy = energy<D, roots>,
-            .mean_force = mean_force<D, roots>,
-            .stiffness = stiffness<D, roots>};
+            .force = force<D, none_on_line>,
+            .energy = energy<D, of_lengths>,
+            .mean_force = mean_force<D, of_lengths>,
+            .stiffness = stiffness<D, of_lengths>};
   } else {
     return {};
   }

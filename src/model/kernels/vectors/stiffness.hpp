@@ -138,10 +138,9 @@ void write(const SpringTable& springs, const Positions& positions, const Stiffne
 
 // Inverse lengths are the processor's own quotients: the others are next to the nearest number
 // only.
-template <int D, Roots chosen>
+template <int D, Roots roots>
 void stiffness(const SpringTable& springs, const Positions& positions, const StiffnessTable& table,
                TensionPart part, double* values, int from, int end) {
-  constexpr Roots roots = chosen == Roots::processor ? Roots::processor : Roots::estimated_root;
   const auto softened = [part](Lanes across, Lanes) __attribute__((always_inline)) {
     return across < 0 ? across * part.compression : across;
   };
