@@ -68,8 +68,8 @@ struct Method {
   // To be declared for explicit methods of fixed steps: on q'' = -w^2 q the motion grows where h w
   // is above it, by theory; 0 where it does so at every h. Others have none (linear_limit below).
   std::optional<double> stability_limit{};
-  // Of methods whose steps depend on more steps before than show in a run: at h w, the roots of the
-  // recurrence that their positions obey on q'' = -w^2 q, the one that decides first.
+  // The roots, at h w, of the recurrence that positions obey on q'' = -w^2 q, the one that decides
+  // first. For methods whose steps depend on more steps before than show in a run.
   std::vector<std::complex<double>> (*recurrence_roots)(double h_omega) = nullptr;
   SetOf<Trait> traits{};
   SetOf<Need> needs{};

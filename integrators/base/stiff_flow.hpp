@@ -19,10 +19,10 @@ class StiffFlow {
   static_assert(order == 2 || order == 4);
 
  public:
-  // Of a step, with room for what w_max grows by in motion.
+  // What a step times w_max may be, with room for what motion makes of w_max.
   static constexpr double largest_step_times_frequency = order == 2 ? 1.8 : 3.0;
 
-  // Of polynomials of so many coefficients, at most 7.
+  // The soft accelerations are polynomials of so many coefficients, at most 7.
   StiffFlow(const Vec& mass, int coefficients)
       : mass_(mass),
         coefficients_(coefficients),
@@ -71,7 +71,7 @@ class StiffFlow {
   }
 
  private:
-  // Of the columns at t = x h: the powers of x, and 1 of f.
+  // The weights of the columns at t = x h: powers of x, and 1 for f.
   std::span<const double> weights(double x) {
     double power = 1;
     for (int j = 0; j < coefficients_; ++j, power *= x) {

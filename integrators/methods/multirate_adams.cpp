@@ -112,7 +112,7 @@ class MultirateAdams final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // Of a_, so many points after the newest.
+  // The column of a_ that is so many points after the newest.
   Index column(int after) const { return (newest_ + after + 2 * (k + 1)) % (k + 1); }
   double& time(Index column) { return at_[static_cast<std::size_t>(column)]; }
 

@@ -1,9 +1,9 @@
 // The symmetric multistep formula of four steps, order 4, one force a step, whose spurious roots
 // are at the cosine 1/4:
 //   r(z) = z^2 - z/2 + 1.
-// Of all such formulas (Lambert and Watson's has the cosine 0) the limit of h w grows with the
-// cosine and the phase error with it: 1.73 at 0, 1.83 here; beyond, the roots come near the
-// motion's own.
+// The limit of h w grows with the cosine, and the phase error with it: the limit is 1.73 at the
+// cosine 0 (Lambert and Watson's formula) and 1.83 here. Beyond, the roots come near the motion's
+// own.
 #include "qddot/integrators/base/symmetric_multistep.hpp"
 #include "qddot/integrators/registry.hpp"
 
