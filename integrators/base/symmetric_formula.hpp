@@ -24,8 +24,8 @@ struct SymmetricFormula {
   std::int64_t rho_denominator;
   std::vector<std::int64_t> rho;  // rho_k ... rho_{k/2}, half of them
   std::int64_t beta_denominator;
-  std::vector<std::int64_t> beta;   // beta_{k-1} ... beta_{k/2}
-  const NystromPair& (*starter)();  // of the first k - 1 steps, of order k at least
+  std::vector<std::int64_t> beta;       // beta_{k-1} ... beta_{k/2}
+  const NystromPair& (*single_step)();  // of a step of another length, of order k at least
 
   // All of them as numbers, rho_k ... rho_0 and beta_{k-1} ... beta_1.
   std::vector<double> all_rho() const;
@@ -41,7 +41,7 @@ std::vector<double> velocity_weights(int first, int count);
 
 // How the steps of a formula begin. With h^2 g = r(E) u, E the shift by a step, second differences
 // of q are e = beta(E) u; the u before the start are those for which the first k - 2 differences
-// are the starter's:
+// are those of steps that are known:
 //   u_{-l} = sum_n of_differences(l, n) (q_{n+2} - 2 q_{n+1} + q_n) + of_forces(l, n) h^2 g_{n+1},
 // l and n = 0 ... k - 3.
 struct SymmetricStart {

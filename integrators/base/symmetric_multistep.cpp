@@ -31,9 +31,8 @@ SymmetricMultistep::SymmetricMultistep(const Method& method, const System& syste
       with_force_(weights_of_history(0, formula.steps - 1, r_)),
       without_(weights_of_history(1, formula.steps - 2, r_)),
       symmetric_start_(symmetric_start(formula)),
-      stages_(formula.starter(), system.size()),
-      d_started_(static_cast<std::size_t>(formula.steps) - 1, Vec(system.size())),
-      h2_g_started_(d_started_),
+      stages_(formula.single_step(), system.size()),
+      first_(formula.steps - 1, system.size()),
       u_(2 * static_cast<std::size_t>(formula.steps) - 3, Vec(system.size())),
       d_(system.size()),
       d_next_(system.size()),
@@ -54,8 +53,8 @@ void SymmetricMultistep::evaluate(const Vec& q) {
   force_is_known_ = true;
 }
 
-void SymmetricMultistep::start_step(const State& now, double h, Vec& h2_g, State& next) {
-  const NystromPair& pair = formula_.starter();
+void SymmetricMultistep::single_step(const State& now, double h, State& next) {
+  const NystromPair& pair = formula_.single_step();
   const Vec& mass = system().mass();
   evaluate(now.q);
   divide(f_, mass, a_);
@@ -65,35 +64,42 @@ void SymmetricMultistep::start_step(const State& now, double h, Vec& h2_g, State
   });
   force_is_known_ = false;
   const Eigen::MatrixXd& k = stages_.k();
-  h2_g = h * h * k.col(0);
-  set_combination(h * h, k, pair.b, d_next_);
-  add_scaled(d_next_, h, now.v, d_next_);
-  add_scaled(now.q, 1, d_next_, next.q);
+  add_combination(now.q, h, now.v, h * h, k, pair.b, next.q);
   add_combination(now.v, h, k, pair.b_prime, next.v);
+}
+
+void SymmetricMultistep::begin_from(const State& now) {
+  const Vec& mass = system().mass();
+  evaluate(now.q);
+  divide(f_, mass, a_);
+  first_.compute(now.q, now.v, a_, h_, formula_.steps / 2, [&](const Vec& q, MutableVec g) {
+    force(q, f_);
+    divide(f_, mass, g);
+  });
+  force_is_known_ = false;
 }
 
 void SymmetricMultistep::begin_history() {
   const std::ptrdiff_t m = formula_.steps - 2;
   const auto& [of_differences, of_forces] = symmetric_start_;
-  const auto at = [](auto& list, std::ptrdiff_t i) -> auto& {
-    return list[static_cast<std::size_t>(i)];
-  };
   // u_m, ..., u_1 and u_0, ..., u_{1-m} are those of 1, ..., 2m steps ago.
   newest_ = 0;
   for (std::ptrdiff_t l = 0; l < m; ++l) {
     Vec& u_l = u(m + 1 + l);
     u_l.setZero();
     for (std::ptrdiff_t n = 0; n < m; ++n) {
-      u_l += of_differences(l, n) * (at(d_started_, n + 1) - at(d_started_, n)) +
-             of_forces(l, n) * at(h2_g_started_, n + 1);
+      u_l += of_differences(l, n) * (first_.d(n + 1) - first_.d(n)) +
+             of_forces(l, n) * h_ * h_ * first_.g(n + 1);
     }
   }
   for (std::ptrdiff_t n = 1; n <= m; ++n) {
     Vec& u_n = u(m + 1 - n);
-    u_n = at(h2_g_started_, n);
-    for (std::ptrdiff_t i = 1; i <= m; ++i) u_n -= at(r_, i) * u(m + 1 - n + i);
+    u_n = h_ * h_ * first_.g(n);
+    for (std::ptrdiff_t i = 1; i <= m; ++i) {
+      u_n -= r_[static_cast<std::size_t>(i)] * u(m + 1 - n + i);
+    }
   }
-  d_ = d_started_.back();
+  d_ = first_.d(m);
 }
 
 void SymmetricMultistep::accepted() {
@@ -101,9 +107,9 @@ void SymmetricMultistep::accepted() {
   if (has_history_) {
     newest_ = (newest_ + std::ssize(u_) - 1) % std::ssize(u_);
     std::swap(d_, d_next_);
-  } else if (++begun_ == d_started_.size()) {
+  } else if (++begun_ == first_.steps()) {
     begin_history();
-    has_history_ = true;
+    has_history_ = force_is_known_ = true;  // the last of begin_from()
   }
 }
 
@@ -120,10 +126,11 @@ void SymmetricMultistep::complete(State& now, bool may_evaluate) {
 
 Outcome SymmetricMultistep::step(const State& now, double h, State& next) {
   if (h != h_) {
-    start_step(now, h, a_, next);
+    single_step(now, h, next);
   } else if (!has_history_) {
-    start_step(now, h, h2_g_started_[begun_], next);
-    d_started_[begun_] = d_next_;
+    if (begun_ == 0) begin_from(now);
+    next.q = now.q + first_.d(begun_);
+    next.v = first_.v(begun_ + 1);
   } else {
     evaluate(now.q);
     past_.clear();

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "qddot/integrators/base/deferred_correction.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/base/symmetric_formula.hpp"
 
@@ -13,9 +14,10 @@ namespace qddot {
 //   u_n = h^2 g_n - (r_1 u_{n-1} + ... + r_{k-2} u_{n-k+2}),
 //   d_{n+1} = d_n + beta_{k-1} u_n + beta_{k-2} u_{n-1} + ... + beta_1 u_{n-k+2},
 //   q_{n+1} = q_n + d_{n+1},
-// which rounds d and not q's differences. One force a step. The first k - 1 steps are the
-// starter's, and so are a last one of another length and those to a time between steps. Velocities
-// are computed where they are asked for.
+// which rounds d and not q's differences. One force a step. The first k - 1 steps are computed
+// together, by k/2 sweeps of deferred correction: k/2 (k - 1) forces. A last step of another
+// length, and one to a time between steps, is that of a Nystrom pair. Velocities are computed where
+// they are asked for.
 class SymmetricMultistep final : public FixedStep {
  public:
   SymmetricMultistep(const Method& method, const System& system, const Options& options,
@@ -27,9 +29,10 @@ class SymmetricMultistep final : public FixedStep {
   void accepted() override;
   void complete(State& now, bool may_evaluate) override;
 
-  // A step of the starter. Its h^2 k_1 is left in h2_g, q_{n+1} - q_n in d_next_.
-  void start_step(const State& now, double h, Vec& h2_g, State& next);
-  // Begins the history after k - 1 steps of the starter.
+  void single_step(const State& now, double h, State& next);
+  // Computes the first k - 1 steps.
+  void begin_from(const State& now);
+  // Begins the history after them.
   void begin_history();
   void evaluate(const Vec& q);
   // u of so many steps ago: 1 is that of the last step.
@@ -43,11 +46,11 @@ class SymmetricMultistep final : public FixedStep {
   SymmetricStart symmetric_start_;
   NystromStages stages_;
   Vec h2_by_mass_;
-  double h_ = 0;                               // of all steps but a last one [s]
-  std::size_t begun_ = 0;                      // steps since the start, k - 1 at most
-  std::vector<Vec> d_started_, h2_g_started_;  // of the starter's steps
-  std::vector<Vec> u_;                         // a ring, with a place for the next
-  std::ptrdiff_t newest_ = 0;                  // that place
+  double h_ = 0;  // of all steps but a last one [s]
+  DeferredCorrection first_;
+  Index begun_ = 0;            // steps since the start, k - 1 at most
+  std::vector<Vec> u_;         // a ring, with a place for the next
+  std::ptrdiff_t newest_ = 0;  // that place
   Vec d_, d_next_, f_, a_;
   bool force_is_known_ = false;  // f_ is that of the history's last q
   bool has_history_ = false;

@@ -11,7 +11,7 @@ const SymmetricFormula& symmetric10_formula() {
                                         .rho = {50, -125, 223, -324, 399, -446},
                                         .beta_denominator = 42000,
                                         .beta = {65257, -142340, 435940, -629852, 844390},
-                                        .starter = dprkn12_pair};
+                                        .single_step = dprkn12_pair};
   return formula;
 }
 

@@ -15,7 +15,7 @@ const SymmetricFormula& symmetric4_formula() {
                                         .rho = {2, -5, 6},
                                         .beta_denominator = 8,
                                         .beta = {9, -6},
-                                        .starter = dprkn6_pair};
+                                        .single_step = dprkn6_pair};
   return formula;
 }
 

@@ -12,7 +12,7 @@ const SymmetricFormula& symmetric6_formula() {
                                         .rho = {1, -1, 1, -2},
                                         .beta_denominator = 120,
                                         .beta = {167, -8, 402},
-                                        .starter = dprkn6_pair};
+                                        .single_step = dprkn6_pair};
   return formula;
 }
 

@@ -12,7 +12,7 @@ const SymmetricFormula& symmetric8_formula() {
                                         .rho = {1, -2, 3, -4, 4},
                                         .beta_denominator = 10080,
                                         .beta = {14689, -18666, 58383, -48332},
-                                        .starter = dprkn8_pair};
+                                        .single_step = dprkn8_pair};
   return formula;
 }
 

@@ -66,8 +66,8 @@ struct Orders {
 };
 
 // How many steps are tried, one number after the other. The first order needs the most steps to be
-// where its higher terms (h w / 2 of it) do not matter. Multistep methods need more than those of
-// their starters; their errors soon are so small that halvings would leave too few.
+// where its higher terms (h w / 2 of it) do not matter. Multistep methods need more than those
+// that they begin with; their errors soon are so small that halvings would leave too few.
 std::vector<int> step_counts(const Method& method) {
   const bool is_multistep = method.name.starts_with("symmetric");
   std::vector<int> list;

@@ -84,8 +84,12 @@ BOOST_AUTO_TEST_CASE(a_part_that_diverges_ends_the_run_of_all_at_its_last_step) 
     if (method.is(Trait::implicit)) continue;
     // In steps of 1/100 s; explicit Euler has no limit and grows fourfold a step at h w = 4. The
     // splitting of order 6 is stable in places far beyond its limit, but nowhere above h w = 9.4.
+    // Multistep methods compute their first steps together, which are not to diverge already.
     const double beyond = method.name == "blanes_moan6" ? 3.2 : 2;
-    const double omega = 100 * beyond * std::max(2.0, method.stability_limit.value_or(2));
+    const double limit = method.recurrence_roots
+                             ? *method.stability_limit
+                             : std::max(2.0, method.stability_limit.value_or(2));
+    const double omega = 100 * beyond * limit;
     check_failure(method, part(Oscillator{.mass = 1, .stiffness = omega * omega}.problem()),
                   Outcome::diverged);
   }

@@ -183,7 +183,7 @@ BOOST_AUTO_TEST_CASE(exactly_the_implicit_methods_factorise_and_those_that_need_
 
 BOOST_AUTO_TEST_CASE(one_step_keeps_the_symplectic_form_exactly_where_the_registry_says_so) {
   for (const Method& method : methods_of(Knob::step_size)) {
-    // The first step of a multistep method is its starter's.
+    // The first steps of a multistep method are of another kind.
     if (method.name.starts_with("symmetric")) continue;
     BOOST_TEST_CONTEXT(method.name) {
       const double defect = symplectic_defect(method);
