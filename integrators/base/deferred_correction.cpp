@@ -1,6 +1,9 @@
 #include "qddot/integrators/base/deferred_correction.hpp"
 
+#include <span>
 #include <vector>
+
+#include "qddot/model/vector_updates.hpp"
 
 namespace qddot {
 
@@ -35,36 +38,42 @@ StepIntegrals step_integrals(Index steps) {
 }
 
 DeferredCorrection::DeferredCorrection(Index steps, Index n)
-    : integrals_(step_integrals(steps)),
-      d_(n, steps),
-      v_(n, steps + 1),
-      g_(n, steps + 1),
-      of_v_(n, steps),
-      of_q_(n, steps),
-      q_(n),
-      g_new_(n),
-      change_(n),
-      change_before_(n) {}
+    : d_(n, steps), e_(n, steps), v_(n, steps + 1), g_(n, steps + 1), k_(n, steps + 1), q_(n) {
+  const auto [once, twice] = step_integrals(steps);
+  for (Index j = 0; j < steps; ++j) {
+    Eigen::RowVectorXd row = twice.row(j);
+    if (j > 0) row += once.row(j - 1) - twice.row(j - 1);
+    row[j] -= j > 0 ? 1 : 0.5;
+    of_e_.emplace_back(row.begin(), row.end());
+    row = once.row(j);
+    of_v_.emplace_back(row.begin(), row.end());
+  }
+}
 
 void DeferredCorrection::compute(const Vec& q, const Vec& v, const Vec& g0, double h, int sweeps,
                                  const Acceleration& acceleration) {
-  g_.setZero();
-  v_.col(0) = v;
+  g_.col(0) = k_.col(0) = g0;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    of_q_.noalias() = g_ * integrals_.twice.transpose();
-    of_v_.noalias() = g_ * integrals_.once.transpose();
+    if (sweep > 0) g_.swap(k_);
     q_ = q;
-    change_before_ = g0 - g_.col(0);
-    g_.col(0) = g0;
     for (Index j = 0; j < steps(); ++j) {
-      d_.col(j) = h * (v_.col(j) + h * (0.5 * change_before_ + of_q_.col(j)));
-      q_ += d_.col(j);
-      acceleration(q_, g_new_);
-      change_ = g_new_ - g_.col(j + 1);
-      g_.col(j + 1) = g_new_;
-      v_.col(j + 1) = v_.col(j) + h * (0.5 * (change_before_ + change_) + of_v_.col(j));
-      change_before_.swap(change_);
+      const std::vector<double>& all = of_e_[static_cast<std::size_t>(j)];
+      const std::span<const double> of_k(all.data(), sweep > 0 ? all.size() : 0);
+      if (j == 0) {
+        d_.col(0) = h * v;
+        add_combination(d_.col(0), 0.5 * h * h, g0, h * h, k_, of_k, d_.col(0));
+      } else {
+        set_combination(h * h, k_, of_k, e_.col(j));
+        add_scaled(e_.col(j), h * h, g_.col(j), e_.col(j));
+        add_scaled(d_.col(j - 1), 1, e_.col(j), d_.col(j));
+      }
+      add_scaled(q_, 1, d_.col(j), q_);
+      acceleration(q_, g_.col(j + 1));
     }
+  }
+  v_.col(0) = v;
+  for (Index j = 0; j < steps(); ++j) {
+    add_combination(v_.col(j), h, g_, of_v_[static_cast<std::size_t>(j)], v_.col(j + 1));
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "qddot/model/system.hpp"
 
@@ -16,13 +17,14 @@ struct StepIntegrals {
 StepIntegrals step_integrals(Index steps);
 
 // N equal steps of q'' = g(q) computed together, by deferred correction (Dutt, Greengard and
-// Rokhlin, BIT 40 (2000) 241-266) with Verlet's steps (Winkel, Speck and Ruprecht, J. Comput. Phys.
-// 295 (2015) 456-474): each sweep goes through all of them with the accelerations k of the sweep
-// before,
-//   q_{j+1} = q_j + h v_j + h^2 ((g_j - k_j)/2 + sum_l twice(j, l) k_l),
-//   v_{j+1} = v_j + h ((g_j - k_j + g_{j+1} - k_{j+1})/2 + sum_l once(j, l) k_l).
+// Rokhlin, BIT 40 (2000) 241-266) with Verlet's method (Winkel, Speck and Ruprecht, J. Comput.
+// Phys. 295 (2015) 456-474), here in differences d_j = q_{j+1} - q_j, e_j = d_j - d_{j-1}. Each
+// sweep goes through all steps with the accelerations k of the sweep before, whose polynomial is
+// integrated exactly:
+//   d_0 = h v_0 + h^2 ((g_0 - k_0)/2 + int_0^1 (1 - t) k(t) dt),
+//   e_j = h^2 (g_j - k_j + int_{j-1}^{j+1} (1 - |t - j|) k(t) dt).
 // The first one, with k = 0, is Verlet's method itself. Each sweep adds two to the order, up to
-// N + 1.
+// N + 1. Velocities are v_{j+1} = v_j + h int_j^{j+1} g(t) dt at the end.
 class DeferredCorrection {
  public:
   DeferredCorrection(Index steps, Index n);
@@ -33,15 +35,15 @@ class DeferredCorrection {
                const Acceleration& acceleration);
 
   Index steps() const { return d_.cols(); }
-  auto d(Index j) const { return d_.col(j); }  // q_{j+1} - q_j, j = 0 ... N - 1
+  auto d(Index j) const { return d_.col(j); }  // j = 0 ... N - 1
+  auto e(Index j) const { return e_.col(j); }  // j = 1 ... N - 1
   auto v(Index j) const { return v_.col(j); }  // j = 0 ... N
   auto g(Index j) const { return g_.col(j); }  // j = 0 ... N
 
  private:
-  StepIntegrals integrals_;
-  Eigen::MatrixXd d_, v_, g_;    // n x N, n x (N + 1), n x (N + 1)
-  Eigen::MatrixXd of_v_, of_q_;  // n x N: the integrals of a sweep
-  Vec q_, g_new_, change_, change_before_;
+  std::vector<std::vector<double>> of_e_, of_v_;  // what multiplies each of k in e_j, of g in v_j+1
+  Eigen::MatrixXd d_, e_, v_, g_, k_;             // n x N twice, n x (N + 1)
+  Vec q_;
 };
 
 }  // namespace qddot

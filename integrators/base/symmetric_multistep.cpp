@@ -39,6 +39,7 @@ SymmetricMultistep::SymmetricMultistep(const Method& method, const System& syste
       f_(system.size()),
       a_(system.size()) {
   past_.reserve(u_.size());
+  weights_.reserve(u_.size());
 }
 
 void SymmetricMultistep::start(const State&) {
@@ -84,20 +85,27 @@ void SymmetricMultistep::begin_history() {
   const auto& [of_differences, of_forces] = symmetric_start_;
   // u_m, ..., u_1 and u_0, ..., u_{1-m} are those of 1, ..., 2m steps ago.
   newest_ = 0;
+  const auto begin_sum = [&] {
+    past_.clear();
+    weights_.clear();
+  };
+  const auto add = [&](double weight, const double* x) {
+    past_.push_back(x);
+    weights_.push_back(weight);
+  };
   for (std::ptrdiff_t l = 0; l < m; ++l) {
-    Vec& u_l = u(m + 1 + l);
-    u_l.setZero();
-    for (std::ptrdiff_t n = 0; n < m; ++n) {
-      u_l += of_differences(l, n) * (first_.d(n + 1) - first_.d(n)) +
-             of_forces(l, n) * h_ * h_ * first_.g(n + 1);
-    }
+    begin_sum();
+    for (std::ptrdiff_t n = 0; n < m; ++n) add(of_differences(l, n), first_.e(n + 1).data());
+    for (std::ptrdiff_t n = 0; n < m; ++n) add(of_forces(l, n) * h_ * h_, first_.g(n + 1).data());
+    set_combination(past_, weights_.data(), u(m + 1 + l));
   }
   for (std::ptrdiff_t n = 1; n <= m; ++n) {
-    Vec& u_n = u(m + 1 - n);
-    u_n = h_ * h_ * first_.g(n);
+    begin_sum();
+    add(h_ * h_, first_.g(n).data());
     for (std::ptrdiff_t i = 1; i <= m; ++i) {
-      u_n -= r_[static_cast<std::size_t>(i)] * u(m + 1 - n + i);
+      add(-r_[static_cast<std::size_t>(i)], u(m + 1 - n + i).data());
     }
+    set_combination(past_, weights_.data(), u(m + 1 - n));
   }
   d_ = first_.d(m);
 }

@@ -55,6 +55,7 @@ class SymmetricMultistep final : public FixedStep {
   bool force_is_known_ = false;  // f_ is that of the history's last q
   bool has_history_ = false;
   std::vector<const double*> past_;
+  std::vector<double> weights_;
 };
 
 // For Method::make.

@@ -81,7 +81,6 @@ BOOST_AUTO_TEST_CASE(the_first_sweep_is_verlets_method) {
     v += h / 2 * pull(q);
     // Some ten operations are rounded in another order.
     BOOST_TEST(distance(first.d(j), q - before) < 1e-14);
-    BOOST_TEST(distance(first.v(j + 1), v) < 1e-14);
     BOOST_TEST(distance(first.g(j + 1), pull(q)) < 1e-14);
   }
 }
