@@ -79,7 +79,7 @@ Outcome FixedStep::take_steps(double t_stop) {
     is_complete_ = next_is_complete_;
     taken_ = i;
     ++counts().steps;
-    if (looks_next() && !completes_at_a_cost()) complete_now(true);
+    if (looks_next()) complete_now(true);
     note(now_);
   }
   return Outcome::reached_end;

@@ -41,8 +41,6 @@ class FixedStep : public Integrator {
   // `may_evaluate` forces must not be evaluated, for that, or the motion, has failed; then it is to
   // be as near as they let it.
   virtual void complete(State&, [[maybe_unused]] bool may_evaluate) {}
-  // Whether that takes a force more than the next step needs.
-  virtual bool completes_at_a_cost() const { return false; }
   // |v|^2 at the incomplete end of the last step, accepted or not.
   virtual double squared_speed(const State& next) { return squared_norm(next.v); }
 

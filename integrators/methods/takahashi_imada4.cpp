@@ -7,8 +7,13 @@
 // a step. On q'' = -w^2 q with z = h^2 w^2 a step turns by the angle of cosine 1 - z/2 + z^2/24: no
 // vibration grows for h w < sqrt(12).
 //
-// K v is the central difference of f along v, over a thousandth of a step to either side: the
-// change of coordinates takes three forces, its inverse four.
+// The inverse asks for no forces of its own. The steps before and after a state (q, v) have their
+// forces at q - h/2 v and q + h/2 v: F- and F+, and the shifted G- and G+. So
+//   f = (F- + F+)/2,   K v = (F+ - F-)/h,   2 s K M^-1 f = (G- - F- + G+ - F+)/2,
+// exactly where f is linear and but for terms of h^2 elsewhere. The inverse's series begins with
+//   q - s M^-1 f + s^2 M^-1 K M^-1 f = q - s/4 M^-1 (3 (F- + F+) - (G- + G+)),
+//   v + s M^-1 K v = v + s/h M^-1 (F+ - F-).
+// Its next term for v makes energies no better.
 #include <cmath>
 
 #include "qddot/integrators/base/fixed_step.hpp"
@@ -17,8 +22,6 @@
 
 namespace qddot::registered {
 namespace {
-
-constexpr double part_of_step = 1e-3;
 
 class TakahashiImada4 final : public FixedStep {
  public:
@@ -29,81 +32,95 @@ class TakahashiImada4 final : public FixedStep {
   struct Kernel {
     Vec q, v;
   };
+  // The forces of a step, at its middle and shifted.
+  struct Kick {
+    Vec f, shifted;
+  };
 
-  void start(const State&) override { has_begun_ = false; }
+  void start(const State&) override { has_begun_ = ahead_is_known_ = false; }
 
   Outcome step(const State& now, double h, State& next) override {
     if (h != options().step_size) {  // the last, or to a time between steps
-      next_ = {now.q, now.v};
-      enter(next_, h);
-      advance(next_, h);
-      leave(next_, h, next);
+      enter(now, h, now_);
+      has_begun_ = ahead_is_known_ = false;
+      advance(h);
+      std::swap(now_, next_);
+      std::swap(behind_, ahead_);
+      ahead_is_known_ = false;
+      leave(h, next);
       return Outcome::reached_end;
     }
-    if (!has_begun_) {
-      now_ = {now.q, now.v};
-      enter(now_, h);
-      has_begun_ = true;
-    }
-    next_ = now_;
-    advance(next_, h);
+    if (!has_begun_) enter(now, h, now_);
+    has_begun_ = true;
+    advance(h);
     next.q = next_.q;
     next.v = next_.v;
     leave_incomplete();
     return Outcome::reached_end;
   }
 
-  void accepted() override { std::swap(now_, next_); }
-  bool completes_at_a_cost() const override { return true; }
+  void accepted() override {
+    std::swap(now_, next_);
+    std::swap(behind_, ahead_);
+    ahead_is_known_ = false;
+  }
 
   void complete(State& now, bool may_evaluate) override {
-    if (may_evaluate) leave(now_, options().step_size, now);
+    if (may_evaluate) leave(options().step_size, now);
   }
 
-  void advance(Kernel& kernel, double h) {
+  // The forces of the step h from now_; the position of the first is left in next_.q.
+  void look_ahead(double h) {
+    add_scaled(now_.q, h / 2, now_.v, next_.q);
+    if (ahead_is_known_) return;
+    force(next_.q, ahead_.f);
+    add_quotient(next_.q, h * h / 12, ahead_.f, system().mass(), x_);
+    force(x_, ahead_.shifted);
+    ahead_is_known_ = true;
+  }
+
+  // From now_ to next_.
+  void advance(double h) {
+    look_ahead(h);
+    add_quotient(now_.v, h, ahead_.shifted, system().mass(), next_.v);
+    add_scaled(next_.q, h / 2, next_.v, next_.q);
+  }
+
+  // K v is the central difference of f along v, over a thousandth of a step to either side.
+  void enter(const State& from, double h, Kernel& to) {
+    const double s = h * h / 24, e = 1e-3 * h;
     const Vec& mass = system().mass();
-    add_scaled(kernel.q, h / 2, kernel.v, kernel.q);
-    force(kernel.q, f_);
-    add_quotient(kernel.q, h * h / 12, f_, mass, x_);
-    force(x_, f_);
-    add_quotient(kernel.v, h, f_, mass, kernel.v);
-    add_scaled(kernel.q, h / 2, kernel.v, kernel.q);
+    add_scaled(from.q, e, from.v, x_);
+    force(x_, ahead_.f);
+    add_scaled(from.q, -e, from.v, x_);
+    force(x_, behind_.f);
+    add_quotient(from.v, -s / (2 * e), ahead_.f, mass, to.v);
+    add_quotient(to.v, s / (2 * e), behind_.f, mass, to.v);
+    force(from.q, ahead_.f);
+    add_quotient(from.q, s, ahead_.f, mass, to.q);
   }
 
-  // (f(q + e v) - f(q - e v))/(2 e) = K v + O(e^2)
-  void set_stiffness_times(const Vec& q, const Vec& v, double e, Vec& k_v) {
-    add_scaled(q, e, v, x_);
-    force(x_, k_v);
-    add_scaled(q, -e, v, x_);
-    force(x_, f_);
-    add_scaled(k_v, -1, f_, k_v);
-    k_v /= 2 * e;
-  }
-
-  void enter(Kernel& at, double h) {
+  // now_, which a step h has come to, in the motion's own coordinates.
+  void leave(double h, State& to) {
+    look_ahead(h);
     const double s = h * h / 24;
-    set_stiffness_times(at.q, at.v, part_of_step * h, k_v_);
-    force(at.q, f_);
-    add_quotient(at.q, s, f_, system().mass(), at.q);
-    add_quotient(at.v, -s, k_v_, system().mass(), at.v);
+    const Vec& mass = system().mass();
+    x_ = 3 * (behind_.f + ahead_.f) - (behind_.shifted + ahead_.shifted);
+    add_quotient(now_.q, -s / 4, x_, mass, to.q);
+    add_quotient(now_.v, s / h, ahead_.f, mass, to.v);
+    add_quotient(to.v, -s / h, behind_.f, mass, to.v);
   }
 
-  // Solves q + s M^-1 f(q) = kernel.q by two iterations and v - s M^-1 K(q) v = kernel.v by one,
-  // which leave errors of order 6 and 4. A second one for v makes energies no better.
-  void leave(const Kernel& kernel, double h, State& to) {
-    const double s = h * h / 24;
-    to.q = kernel.q;
-    for (int i = 0; i < 2; ++i) {
-      force(to.q, f_);
-      add_quotient(kernel.q, -s, f_, system().mass(), to.q);
-    }
-    set_stiffness_times(to.q, kernel.v, part_of_step * h, k_v_);
-    add_quotient(kernel.v, s, k_v_, system().mass(), to.v);
-  }
-
-  Kernel now_, next_;
+  Kernel now_ = two_vectors<Kernel>(), next_ = two_vectors<Kernel>();
+  Kick behind_ = two_vectors<Kick>(), ahead_ = two_vectors<Kick>();
   bool has_begun_ = false;
-  Vec f_{system().size()}, x_{system().size()}, k_v_{system().size()};
+  bool ahead_is_known_ = false;  // ahead_ is that of now_
+  Vec x_{system().size()};
+
+  template <class T>
+  T two_vectors() const {
+    return {Vec(system().size()), Vec(system().size())};
+  }
 };
 
 std::vector<std::complex<double>> roots(double h_omega) {

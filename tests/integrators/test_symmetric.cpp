@@ -185,8 +185,8 @@ BOOST_AUTO_TEST_CASE(a_step_costs_one_force_after_those_of_the_start) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(p.network);
   for (const auto& [name, formula, cosines] : all) {
-    const auto forces = [&](int steps) {
-      return run(method_named(name), *system, p.initial, steps / 64., {.step_size = 1. / 64})
+    const auto forces = [&, method = method_named(name)](int steps) {
+      return run(method, *system, p.initial, steps / 64., {.step_size = 1. / 64})
           .summary.counts.force_evaluations;
     };
     const int k = formula.steps;
