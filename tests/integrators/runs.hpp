@@ -33,6 +33,11 @@ inline Run run(const Method& method, const System& system, State state, double t
   }
 }
 
+// Orders of convergence seen in positions and in velocities.
+struct Orders {
+  double q, v;
+};
+
 // What `method` takes of the two.
 inline Options options_of(const Method& method, double step_size, double rtol) {
   return method.knob == Knob::step_size ? Options{.step_size = step_size} : Options{.rtol = rtol};
@@ -43,6 +48,11 @@ inline const Method& method_named(std::string_view name) {
   const Method* found = find_method(name);
   if (!found) throw std::invalid_argument("no method is named " + std::string(name));
   return *found;
+}
+
+// The state of the tests' networks after `until` seconds, exact to 1e-12 (see the suite `order`).
+inline State by_kahan_li(const System& system, const State& start, double until) {
+  return run(method_named("kahan_li8"), system, start, until, {.step_size = 1. / 512}).state;
 }
 
 // The methods that take any system; others have tests of their own.

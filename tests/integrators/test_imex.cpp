@@ -15,11 +15,6 @@ namespace {
 // the errors of order 5 come to 330 times the tolerance; else to 150 times.
 constexpr double largest_factor = 500;
 
-// Exact to 1e-12, see the suite `order`.
-State by_kahan_li(const System& system, const State& start, double until) {
-  return run(method_named("kahan_li8"), system, start, until, {.step_size = 1. / 512}).state;
-}
-
 // The largest error at rtol = 1e-3, 1e-5, 1e-7, 1e-9 as a multiple of rtol; infinite where a finer
 // tolerance does not lower the error, unless the steps of the coarser one were held to the
 // stability limit, so that it is as low as may be.

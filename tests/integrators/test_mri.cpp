@@ -13,11 +13,6 @@ std::vector<Method> mri_methods() {
   return {method_named("arkode_mri3"), method_named("arkode_mri4")};
 }
 
-// Exact to 1e-12, see the suite `order`.
-State by_kahan_li(const System& system, const State& start, double until) {
-  return run(method_named("kahan_li8"), system, start, until, {.step_size = 1. / 512}).state;
-}
-
 // The hammock let go from rest, its springs along the row `ratio` times stiffer, of the length that
 // they are drawn with, and named stiff; braces and anchors are soft.
 Problem railed_hammock(int dimension, double ratio) {
@@ -32,10 +27,6 @@ Problem railed_hammock(int dimension, double ratio) {
   p.network.offers_split = true;
   return p;
 }
-
-struct Orders {
-  double q, v;
-};
 
 // The orders seen in q and v over four halvings of a step of 1/`steps` s.
 Orders observed_orders(const Method& method, const System& system, const State& start,

@@ -14,15 +14,6 @@ std::vector<Method> multirate_methods() {
           method_named("multirate_adams5")};
 }
 
-// Exact to 1e-12, see the suite `order`.
-State by_kahan_li(const System& system, const State& start, double until) {
-  return run(method_named("kahan_li8"), system, start, until, {.step_size = 1. / 512}).state;
-}
-
-struct Orders {
-  double q, v;
-};
-
 // Over the last four halvings of a step of 1/20 s before rounding and the reference show.
 Orders observed_orders(const Method& method, const System& system, const State& start,
                        const State& end) {

@@ -61,10 +61,6 @@ State by_fehlberg(const Case& c) {
   return {c.end.t, Eigen::Map<Vec>(y.data(), n), Eigen::Map<Vec>(y.data() + n, n)};
 }
 
-struct Orders {
-  double q, v;
-};
-
 // How many steps are tried, one number after the other. The first order needs the most steps to be
 // where its higher terms (h w / 2 of it) do not matter. Multistep methods need more than those
 // that they begin with; their errors soon are so small that halvings would leave too few.
