@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include "qddot/algebra/dense_pairs.hpp"
+#include "qddot/integrators/base/palindrome_roots.hpp"
 
 namespace qddot {
 namespace {
@@ -20,23 +20,6 @@ std::vector<double> palindrome(const std::vector<std::int64_t>& half, std::int64
   for (const std::int64_t number : half) all.push_back(static_cast<double>(number) / divisor);
   for (std::size_t i = half.size() - 1; i-- > 0;) all.push_back(all[i]);
   return all;
-}
-
-// The roots of sum c_i T_i(x), T_i Chebyshev's polynomials, c.back() not zero: the values of the
-// matrix that multiplies by x in their basis (Good, Quarterly J. Mathematics 12 (1961) 61-68).
-std::vector<Complex> chebyshev_roots(const std::vector<double>& c) {
-  const Eigen::Index degree = std::ssize(c) - 1;
-  Eigen::MatrixXd colleague = Eigen::MatrixXd::Zero(degree, degree);
-  for (Eigen::Index i = 0; i < degree; ++i) {
-    if (i + 1 < degree) colleague(i, i + 1) = i == 0 ? 1 : 0.5;
-    if (i > 0) colleague(i, i - 1) = 0.5;
-  }
-  const double scale = (degree == 1 ? 1 : 0.5) / c.back();
-  for (Eigen::Index j = 0; j < degree; ++j) {
-    colleague(degree - 1, j) -= scale * c[static_cast<std::size_t>(j)];
-  }
-  const Eigen::VectorXcd values = general_values(colleague);
-  return {values.begin(), values.end()};
 }
 
 }  // namespace
@@ -113,16 +96,11 @@ SymmetricStart symmetric_start(const SymmetricFormula& formula) {
 }
 
 std::vector<Complex> roots_of(const SymmetricFormula& formula, double h_omega) {
-  const std::vector<double> rho = formula.all_rho(), beta = formula.all_beta();
-  const std::size_t half = static_cast<std::size_t>(formula.steps) / 2;
-  std::vector<double> c(half + 1);
-  for (std::size_t i = 0; i <= half; ++i) {
-    c[i] = rho[half - i];
-    if (i < half) c[i] += h_omega * h_omega * beta[half - 1 - i];
-    if (i > 0) c[i] *= 2;
-  }
+  std::vector<double> sum = formula.all_rho();
+  const std::vector<double> beta = formula.all_beta();
+  for (std::size_t j = 0; j < beta.size(); ++j) sum[j + 1] += h_omega * h_omega * beta[j];
   std::vector<Complex> roots;
-  for (const Complex x : chebyshev_roots(c)) {
+  for (const Complex x : cosines_of_roots(sum)) {
     if (x.imag() == 0 && std::abs(x.real()) <= 1) {
       const double angle = std::acos(x.real());
       roots.push_back(std::polar(1.0, angle));

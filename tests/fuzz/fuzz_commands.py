@@ -45,6 +45,7 @@ PROGRAMS = {
     "solvers": 2,
     "scaling": 0.5,
     "verdicts": 0.5,
+    "symmetric_roots": 2,
     "bench": 0.5,
     "advise": 3,
     "sweep": 2,

@@ -46,6 +46,7 @@ COMMANDS = {
     " --out results",
     "solvers": "--scene steady.toml --repeats 1 --out results",
     "verdicts": "--seeds 1 --cells 64 --out results",
+    "symmetric_roots": "--samples 10 --out results",
 }
 SCENES = {
     "medium.toml": MEDIUM,

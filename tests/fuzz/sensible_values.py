@@ -55,8 +55,10 @@ SENSIBLE = {
     "--peers": ["odeint", "none"],
     "--solvers": ["multifrontal", "cholmod", "multifrontal,conjugate_gradients"],
     "--accuracy": (1e-6, 1e-1),
+    "--samples": ["1", "5"],
 }
 OF_A_PROGRAM = {
+    ("symmetric_roots", "--at"): (0.1, 1),
     ("crossover", "--nodes"): ["9", "10"],
     ("exchange", "--until"): (0.1, 1),
     ("energy_drift", "--step-size"): (1e-6, 2e-5),
@@ -82,6 +84,7 @@ NEEDED = {
     "--ratios",
     "--seeds",
     "--cells",
+    "--samples",
     "--columns",
     "--amplitudes",
     "--sizes",

@@ -27,6 +27,7 @@ STUDIES = {
     " --repeats 1 --until 0.01",
     "solvers": "--scene steady.toml --repeats 2",
     "modes": "--scene steady.toml",
+    "symmetric_roots": "--samples 30",
     "verdicts": "--seeds 1 --cells 64",
     "bench": "steady.toml@0.01 --methods verlet --repeats 1 --point-limit 100 --peers odeint",
 }

@@ -28,6 +28,7 @@ PICTURES = {
     "scaling": (("scaling",), "scaling.csv"),
     "crossover": (("crossover",), None),
     "modes": (("modes",), None),
+    "symmetric_roots": (("symmetric_roots",), "roots.csv"),
     "bench": (("bench",), None),
 }
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "qddot/integrators/base/symmetric_formula.hpp"
+
+namespace qddot::spurious_roots {
+
+// The coefficients of a symmetric formula of k steps as numbers, as SymmetricFormula has them as
+// fractions: rho_k ... rho_0 and beta_{k-1} ... beta_1.
+struct Coefficients {
+  std::vector<double> rho, beta;
+
+  int steps() const { return static_cast<int>(rho.size()) - 1; }
+};
+
+Coefficients coefficients_of(const SymmetricFormula& formula);
+
+// The formula of k = 2 n + 2 steps and order k whose n pairs of spurious roots exp(+-i phi) have
+// these n cosines of phi, each from -1 to 1 and none twice; n at least 1.
+Coefficients formula_of_cosines(const std::vector<double>& cosines);
+
+}  // namespace qddot::spurious_roots
