@@ -19,9 +19,9 @@ struct Named {
 };
 const std::vector<Named> all = {
     {"symmetric4", registered::symmetric4_formula(), {0.25}},
-    {"symmetric6", registered::symmetric6_formula(), {0, -0.5}},
+    {"symmetric6", registered::symmetric6_formula(), {0.05, -0.5}},
     {"symmetric8", registered::symmetric8_formula(), {0.5, 0, -0.5}},
-    {"symmetric10", registered::symmetric10_formula(), {0.6, 0.4, -0.25, -0.5}}};
+    {"symmetric10", registered::symmetric10_formula(), {0.65, 0.4, -0.2, -0.5}}};
 
 // The whole of a palindrome of odd length, exactly.
 std::vector<Rational> whole(const std::vector<std::int64_t>& half, std::int64_t denominator) {
