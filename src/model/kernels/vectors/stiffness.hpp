@@ -102,7 +102,8 @@ void write(const SpringTable& springs, const Positions& positions, const Stiffne
     const int* columns = table.columns + D * (slice * slice_rows + part * lanes);
     Lanes own[triangle<D>];
     by_roots<roots>([&]<Roots in_use>(Range & range) __attribute__((always_inline)) {
-      for (Lanes& entry : own) entry = Lanes{};
+      // A range-for would forget that vectors may lie anywhere.
+      for (int e = 0; e < triangle<D>; ++e) own[e] = Lanes{};
       const auto add = [&](int slot, const Lanes(&d)[D], const double* law)
           __attribute__((always_inline)) {
         Lanes block[triangle<D>];
