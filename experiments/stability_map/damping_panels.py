@@ -226,7 +226,14 @@ class DampingSheet:
         self.sheet.text(LIMIT_AT, TOP - 0.15, "theory", **style)
         self.sheet.text(DIFFERENCE_AT, TOP - 0.15, "measured", **style)
         top = TOP + 0.08
-        for curve in self.curves:
+        room = LIMIT_AT - 0.6 - TABLE - 0.35
+        names = [
+            self.sheet.wrapped(short_names(curve.methods), room, size=SIZE) for curve in self.curves
+        ]
+        # As close as it takes to end above what comes below.
+        lines = sum(len(words) + 0.35 for words in names)
+        pitch = min(LINE, (PANEL_HEIGHT + DOWN - 0.6) / lines)
+        for curve, words_of_curve in zip(self.curves, names):
             line = Line2D(
                 [(TABLE + part) / WIDTH for part in (0, 0.14, 0.28)],
                 [1 - top / self.sheet.height] * 3,
@@ -242,12 +249,11 @@ class DampingSheet:
             words = words or ("unknown" if math.isnan(predicted) else f"{predicted:.6f}")
             self.sheet.text(LIMIT_AT, top, words, ha="right", **style)
             self.sheet.text(DIFFERENCE_AT, top, difference(curve), ha="right", **style)
-            room = LIMIT_AT - 0.6 - TABLE - 0.35
-            for words in self.sheet.wrapped(short_names(curve.methods), room, size=SIZE):
+            for words in words_of_curve:
                 color = curve.look.text_color
                 self.sheet.text(TABLE + 0.36, top, words, color=color, **style)
-                top += LINE
-            top += 0.35 * LINE
+                top += pitch
+            top += 0.35 * pitch
 
     def draw_modes(self, top):
         """Damping over the frequencies of the scene: lines predicted, marks measured."""
@@ -284,7 +290,7 @@ class DampingSheet:
         self.heading(LEFT, top, words, note)
         label_curves(axes, named, all_marks)
         if unmeasured:
-            words = f"not measured: {', '.join(unmeasured)}"
+            words = f"not measured in all modes: {', '.join(unmeasured)}"
             axes.text(0.01, 0.02, words, transform=axes.transAxes, size=SIZE, color=FAINT)
 
     def predicted(self, curve, rows, h):

@@ -38,19 +38,43 @@ int stride_in(double h_omega, bool others_grow) {
   return eighth < least_stride ? 1 : static_cast<int>(std::min(eighth, most_stride));
 }
 
+// When the responses to a start are looked at: after each stride of `steps`, after steps `before`.
+struct Looks {
+  int before, strides, steps;
+};
 // A multistep method is looked at after so many steps: its first are another method's, and what
 // grows shows only when it has grown.
 constexpr int steps_of_start = 64;
-int steps_before(const Method& method) { return method.recurrence_roots ? steps_of_start : 0; }
+// What its first steps leave in its spurious roots vibrates too, and averages out over so many.
+constexpr int steps_of_average = 64;
+Looks looks_at(const Method& method, int stride) {
+  if (!method.recurrence_roots) return {0, steps_observed, stride};
+  return {steps_of_start, stride == 1 ? steps_of_average : steps_observed, stride};
+}
 
-// One run from the scene at rest; `see` takes the state after each stride. How it ended.
+// One run from the scene at rest; `see` takes the state at each look. How it ended.
 Summary run(const Method& method, const ReducedScene& rest, State state, const Options& options,
-            int stride, const std::function<void(const State&)>& see) {
+            const Looks& looks, const std::function<void(const State&)>& see) {
   Observer each{{}, see};
-  for (int n = 1; n <= steps_observed; ++n) {
-    each.times.push_back((steps_before(method) + n * stride) * options.step_size);
+  for (int n = 1; n <= looks.strides; ++n) {
+    each.times.push_back((looks.before + n * looks.steps) * options.step_size);
   }
   return make_integrator(method, rest.system(), options)->advance(state, each.times.back(), each);
+}
+
+// Of the recurrence Y_{n+1} = a Y_n + b Y_{n-1} that is nearest to all responses after the first.
+std::vector<std::complex<double>> mean_roots(const Responses& y) {
+  Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d sums = Eigen::Vector2d::Zero();
+  for (std::size_t n = 2; n + 1 < y.size(); ++n) {
+    const double mixed = y[n].cwiseProduct(y[n - 1]).sum();
+    products += Eigen::Matrix2d{{y[n].squaredNorm(), mixed}, {mixed, y[n - 1].squaredNorm()}};
+    sums +=
+        Eigen::Vector2d{y[n + 1].cwiseProduct(y[n]).sum(), y[n + 1].cwiseProduct(y[n - 1]).sum()};
+  }
+  const Eigen::Vector2d ab = products.inverse() * sums;
+  const std::complex<double> half = ab[0] / 2, root = std::sqrt(half * half + ab[1]);
+  return {half + root, half - root};
 }
 
 }  // namespace
@@ -60,13 +84,18 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
   options = with_tolerance_scales(options, rest);
   options.solve_tolerance = solved;
   const double h_omega = options.step_size * mode.omega;
-  const bool others_grow =
-      linear_step(method, h_omega / mode.part).spectral_radius() > 1 + growth_noise;
-  const int stride = stride_in(h_omega, others_grow);
+  const double fastest = linear_step(method, h_omega / mode.part).spectral_radius();
+  const bool others_grow = fastest > 1 + growth_noise;
+  const Looks looks = looks_at(method, stride_in(h_omega, others_grow));
+  if (others_grow && looks.before > 0 && linear_step(method, h_omega).spectral_radius() < fastest) {
+    throw std::runtime_error(
+        fmt::format("{} in mode {}: faster modes grow, and drown it in {} steps", method.name,
+                    mode.rank, looks.before));
+  }
   const Vec& q = rest.initial().q;
   const Vec weights = rest.system().mass().cwiseProduct(mode.shape);
   const double size = displacement_in(mode) * options.length / mode.shape.lpNorm<Eigen::Infinity>();
-  Responses y(steps_observed + 1, Eigen::Matrix2d::Identity());
+  Responses y(static_cast<std::size_t>(looks.strides) + 1, Eigen::Matrix2d::Identity());
   for (std::size_t n = 1; n < y.size(); ++n) y[n].setZero();
   for (const int start : {0, 1}) {
     for (const double side : {1.0, -1.0}) {
@@ -74,7 +103,7 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
       if (start == 0) state.q += side * size * mode.shape;
       if (start == 1) state.v += side * size * mode.omega * mode.shape;
       std::size_t n = 0;
-      const Summary summary = run(method, rest, state, options, stride, [&](const State& seen) {
+      const Summary summary = run(method, rest, state, options, looks, [&](const State& seen) {
         y[++n].col(start) +=
             side / (2 * size) *
             Eigen::Vector2d(weights.dot(seen.q - q), weights.dot(seen.v) / mode.omega);
@@ -90,11 +119,12 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
       }
     }
   }
-  if (stride == 1 && steps_before(method) == 0) return {h_omega, roots_of(y, noise)};
-  const std::size_t strides = stride == 1 ? 1 : 3;
+  if (looks.steps == 1 && looks.before == 0) return {h_omega, roots_of(y, noise)};
+  constexpr std::size_t strides = 3;
   if (y.size() < strides + 2) return {h_omega, {std::numeric_limits<double>::infinity()}};
+  if (looks.steps == 1) return {h_omega, mean_roots(y)};
   auto roots = roots_of({Eigen::Matrix2d::Identity(), y[strides + 1] * y[1].inverse()}, noise);
-  for (auto& root : roots) root = std::pow(root, 1. / static_cast<double>(strides * stride));
+  for (auto& root : roots) root = std::pow(root, 1. / static_cast<double>(strides * looks.steps));
   return {h_omega, roots};
 }
 
