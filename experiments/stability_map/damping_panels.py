@@ -290,7 +290,7 @@ class DampingSheet:
         self.heading(LEFT, top, words, note)
         label_curves(axes, named, all_marks)
         if unmeasured:
-            words = f"not measured in all modes: {', '.join(unmeasured)}"
+            words = f"{len(unmeasured)} methods are not measured in all modes (modal.csv says why)"
             axes.text(0.01, 0.02, words, transform=axes.transAxes, size=SIZE, color=FAINT)
 
     def predicted(self, curve, rows, h):

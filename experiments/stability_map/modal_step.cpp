@@ -42,11 +42,10 @@ int stride_in(double h_omega, bool others_grow) {
 struct Looks {
   int before, strides, steps;
 };
-// A multistep method is looked at after so many steps: its first are another method's, and what
-// grows shows only when it has grown.
+// A multistep method is looked at after so many steps, for its first are another method's.
 constexpr int steps_of_start = 64;
 // What its first steps leave in its spurious roots vibrates too, and averages out over so many.
-constexpr int steps_of_average = 64;
+constexpr int steps_of_average = 512;
 Looks looks_at(const Method& method, int stride) {
   if (!method.recurrence_roots) return {0, steps_observed, stride};
   return {steps_of_start, stride == 1 ? steps_of_average : steps_observed, stride};
@@ -62,19 +61,27 @@ Summary run(const Method& method, const ReducedScene& rest, State state, const O
   return make_integrator(method, rest.system(), options)->advance(state, each.times.back(), each);
 }
 
-// Of the recurrence Y_{n+1} = a Y_n + b Y_{n-1} that is nearest to all responses after the first.
-std::vector<std::complex<double>> mean_roots(const Responses& y) {
-  Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d sums = Eigen::Vector2d::Zero();
-  for (std::size_t n = 2; n + 1 < y.size(); ++n) {
-    const double mixed = y[n].cwiseProduct(y[n - 1]).sum();
-    products += Eigen::Matrix2d{{y[n].squaredNorm(), mixed}, {mixed, y[n - 1].squaredNorm()}};
-    sums +=
-        Eigen::Vector2d{y[n + 1].cwiseProduct(y[n]).sum(), y[n + 1].cwiseProduct(y[n - 1]).sum()};
-  }
-  const Eigen::Vector2d ab = products.inverse() * sums;
-  const std::complex<double> half = ab[0] / 2, root = std::sqrt(half * half + ab[1]);
-  return {half + root, half - root};
+// By what the responses to a displacement grow and turn in a step on average. w_n = q - i v/w turns
+// by the root's angle; the sums of two windows, turned back by about that, differ by the root's
+// power. Windows that begin and end smoothly leave little of what turns by other angles.
+std::complex<double> mean_root(const Responses& y) {
+  const std::size_t width = (y.size() - 1) / 2;
+  const auto w = [&](std::size_t n) { return std::complex<double>(y[n](0, 0), -y[n](1, 0)); };
+  std::complex<double> turn = 0;
+  for (std::size_t n = 1; n + 1 < y.size(); ++n) turn += w(n + 1) * std::conj(w(n));
+  const double angle = std::arg(turn);
+  const auto window = [&](std::size_t from) {
+    std::complex<double> sum = 0;
+    for (std::size_t n = 0; n < width; ++n) {
+      const auto at = static_cast<double>(n);
+      const double rise = std::sin(M_PI * (at + 0.5) / static_cast<double>(width));
+      sum += rise * rise * w(from + n) * std::polar(1.0, -angle * at);
+    }
+    return sum;
+  };
+  const auto steps = static_cast<double>(width);
+  const auto power = window(1 + width) / window(1) * std::polar(1.0, -angle * steps);
+  return std::polar(1.0, angle) * std::pow(power, 1 / steps);
 }
 
 }  // namespace
@@ -84,13 +91,13 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
   options = with_tolerance_scales(options, rest);
   options.solve_tolerance = solved;
   const double h_omega = options.step_size * mode.omega;
-  const double fastest = linear_step(method, h_omega / mode.part).spectral_radius();
-  const bool others_grow = fastest > 1 + growth_noise;
+  const bool others_grow =
+      linear_step(method, h_omega / mode.part).spectral_radius() > 1 + growth_noise;
   const Looks looks = looks_at(method, stride_in(h_omega, others_grow));
-  if (others_grow && looks.before > 0 && linear_step(method, h_omega).spectral_radius() < fastest) {
+  if (others_grow && looks.before > 0) {
     throw std::runtime_error(
-        fmt::format("{} in mode {}: faster modes grow, and drown it in {} steps", method.name,
-                    mode.rank, looks.before));
+        fmt::format("{} in mode {}: vibrations grow at this step size, and drown it in {} steps",
+                    method.name, mode.rank, looks.before));
   }
   const Vec& q = rest.initial().q;
   const Vec weights = rest.system().mass().cwiseProduct(mode.shape);
@@ -120,9 +127,12 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
     }
   }
   if (looks.steps == 1 && looks.before == 0) return {h_omega, roots_of(y, noise)};
-  constexpr std::size_t strides = 3;
+  if (looks.strides == steps_of_average && y.size() > steps_of_average) {
+    const std::complex<double> root = mean_root(y);
+    return {h_omega, {root, std::conj(root)}};
+  }
+  const std::size_t strides = looks.steps == 1 ? 1 : 3;
   if (y.size() < strides + 2) return {h_omega, {std::numeric_limits<double>::infinity()}};
-  if (looks.steps == 1) return {h_omega, mean_roots(y)};
   auto roots = roots_of({Eigen::Matrix2d::Identity(), y[strides + 1] * y[1].inverse()}, noise);
   for (auto& root : roots) root = std::pow(root, 1. / static_cast<double>(strides * looks.steps));
   return {h_omega, roots};
