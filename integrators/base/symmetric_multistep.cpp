@@ -132,6 +132,8 @@ void SymmetricMultistep::complete(State& now, bool may_evaluate) {
   now.v /= h_;
 }
 
+double SymmetricMultistep::squared_speed(const State&) { return squared_norm(d_next_) / (h_ * h_); }
+
 Outcome SymmetricMultistep::step(const State& now, double h, State& next) {
   if (h != h_) {
     single_step(now, h, next);
@@ -143,8 +145,8 @@ Outcome SymmetricMultistep::step(const State& now, double h, State& next) {
     evaluate(now.q);
     past_.clear();
     for (std::ptrdiff_t ago = 0; ago + 1 < formula_.steps; ++ago) past_.push_back(u(ago).data());
-    step_by_history({past_, r_.data(), b_.data(), h_}, f_, h2_by_mass_, now.q, d_, u(0), d_next_,
-                    next.q, next.v);
+    step_by_history({past_, r_.data(), b_.data()}, f_, h2_by_mass_, now.q, d_, u(0), d_next_,
+                    next.q);
     leave_incomplete();
   }
   return Outcome::reached_end;

@@ -28,6 +28,7 @@ class SymmetricMultistep final : public FixedStep {
   Outcome step(const State& now, double h, State& next) override;
   void accepted() override;
   void complete(State& now, bool may_evaluate) override;
+  double squared_speed(const State& next) override;
 
   void single_step(const State& now, double h, State& next);
   // Computes the first k - 1 steps.

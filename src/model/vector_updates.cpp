@@ -70,10 +70,10 @@ void set_combination(std::span<const double* const> z, const double* b, MutableV
 
 void step_by_history(const HistoryStep& step, const ConstVec& f, const ConstVec& c,
                      const ConstVec& q, const ConstVec& d, MutableVec u_0, MutableVec d_next,
-                     MutableVec q_next, MutableVec v) {
-  kernels::vector_kernels().step_by_history(
-      f.data(), c.data(), step.u.data(), step.r, step.b, static_cast<int>(step.u.size()) - 1,
-      step.h, q.data(), d.data(), u_0.data(), d_next.data(), q_next.data(), v.data(), f.size());
+                     MutableVec q_next) {
+  kernels::vector_kernels().step_by_history(f.data(), c.data(), step.u.data(), step.r, step.b,
+                                            static_cast<int>(step.u.size()) - 1, q.data(), d.data(),
+                                            u_0.data(), d_next.data(), q_next.data(), f.size());
 }
 
 double squared_norm(const ConstVec& x) {

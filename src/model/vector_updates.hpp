@@ -34,15 +34,14 @@ void set_combination(double c, const Eigen::MatrixXd& k, std::span<const double>
 void set_combination(std::span<const double* const> z, const double* b, MutableVec out);
 // A step of a multistep method, from the u_1, u_2, ... of the steps before, u[1] and following:
 //   u_0 = c f - (r_1 u_1 + r_2 u_2 + ...),   d' = d + b_0 u_0 + b_1 u_1 + ...,
-//   q' = q + d',   v = d'/h,   c f entry by entry.
+//   q' = q + d',   c f entry by entry.
 struct HistoryStep {
   std::span<const double* const> u;
   const double *r, *b;
-  double h;
 };
 void step_by_history(const HistoryStep& step, const ConstVec& f, const ConstVec& c,
                      const ConstVec& q, const ConstVec& d, MutableVec u_0, MutableVec d_next,
-                     MutableVec q_next, MutableVec v);
+                     MutableVec q_next);
 // |x|^2
 double squared_norm(const ConstVec& x);
 // |v + c f/m|^2

@@ -26,10 +26,10 @@ struct VectorKernels {
                           std::ptrdiff_t n);
   // A step of a multistep method, from the u_1 ... u_count of the steps before:
   //   u_0 = c f - (r_1 u_1 + r_2 u_2 + ...),   d' = d + b_0 u_0 + b_1 u_1 + ...,
-  //   q' = q + d',   v = d'/h.
+  //   q' = q + d'.
   void (*step_by_history)(const double* f, const double* c, const double* const* u, const double* r,
-                          const double* b, int count, double h, const double* q, const double* d,
-                          double* u_0, double* d_next, double* q_next, double* v, std::ptrdiff_t n);
+                          const double* b, int count, const double* q, const double* d, double* u_0,
+                          double* d_next, double* q_next, std::ptrdiff_t n);
   // x_0^2 + x_1^2 + ...
   double (*squared_norm)(const double* x, std::ptrdiff_t n);
   // The same of v + c f/m.

@@ -91,10 +91,9 @@ void add_combination(const double* x, double d, const double* v, double c, const
 template <int width>
 [[gnu::always_inline]] inline void step_some(const double* f, const double* c,
                                              const double* const* u, const double* r,
-                                             const double* b, int count, double inverse_h,
-                                             const double* q, const double* d, double* u_0,
-                                             double* d_next, double* q_next, double* v,
-                                             std::ptrdiff_t i) {
+                                             const double* b, int count, const double* q,
+                                             const double* d, double* u_0, double* d_next,
+                                             double* q_next, std::ptrdiff_t i) {
   Lanes newest[width], sum[width] = {};
   unroll<width>([&]<int w>() __attribute__((always_inline)) {
     newest[w] = load(f + i + w * lanes) * load(c + i + w * lanes);
@@ -113,20 +112,18 @@ template <int width>
     const Lanes increment = load(d + at) + add_product(b[0] + Lanes{}, newest[w], sum[w]);
     store(d_next + at, increment);
     store(q_next + at, load(q + at) + increment);
-    store(v + at, increment * inverse_h);
   });
 }
 
 void step_by_history(const double* f, const double* c, const double* const* u, const double* r,
-                     const double* b, int count, double h, const double* q, const double* d,
-                     double* u_0, double* d_next, double* q_next, double* v, std::ptrdiff_t n) {
-  const double inverse_h = 1 / h;
+                     const double* b, int count, const double* q, const double* d, double* u_0,
+                     double* d_next, double* q_next, std::ptrdiff_t n) {
   std::ptrdiff_t i = 0;
-  for (; i + 2 * lanes <= n; i += 2 * lanes) {
-    step_some<2>(f, c, u, r, b, count, inverse_h, q, d, u_0, d_next, q_next, v, i);
+  for (; i + 4 * lanes <= n; i += 4 * lanes) {
+    step_some<4>(f, c, u, r, b, count, q, d, u_0, d_next, q_next, i);
   }
   for (; i + lanes <= n; i += lanes) {
-    step_some<1>(f, c, u, r, b, count, inverse_h, q, d, u_0, d_next, q_next, v, i);
+    step_some<1>(f, c, u, r, b, count, q, d, u_0, d_next, q_next, i);
   }
   for (; i < n; ++i) {
     double newest = f[i] * c[i], sum = 0;
@@ -137,7 +134,6 @@ void step_by_history(const double* f, const double* c, const double* const* u, c
     u_0[i] = newest;
     d_next[i] = d[i] + add_product(b[0], newest, sum);
     q_next[i] = q[i] + d_next[i];
-    v[i] = d_next[i] * inverse_h;
   }
 }
 
