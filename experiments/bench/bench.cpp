@@ -18,9 +18,11 @@
 //     beside it at one step size: the time of a step, springs a second, and how far apart they end.
 //  5. bench.csv holds every point, ratios.csv the ratios with the runs they are of, same_steps.csv
 //     what comes of step 4; in their sidecars `left_out` says which peers are missing and why.
+#include <algorithm>
 #include <charconv>
 #include <exception>
 #include <filesystem>
+#include <functional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -57,10 +59,25 @@ namespace {
 
 const std::vector<double> accuracies = {1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
 
+// The names of our explicit methods that any scene can have, those of high order first.
+std::vector<std::string> explicit_methods() {
+  std::vector<const Method*> list;
+  for (const Method& method : methods()) {
+    const bool is_ours = method.family == Family::hand_written && !method.is(Trait::implicit);
+    const bool asks_for_more = method.asks(Need::stiffness) ||
+                               method.asks(Need::constant_stiffness) ||
+                               method.asks(Need::split_forces);
+    if (is_ours && !asks_for_more && method.order > 1) list.push_back(&method);
+  }
+  std::ranges::stable_sort(list, std::greater(), &Method::order);
+  std::vector<std::string> names;
+  for (const Method* method : list) names.push_back(method->name);
+  return names;
+}
+
 struct Arguments {
   std::vector<std::string> scenes = {"cloth@0.1", "cloth@0.5", "chain", "lattice"};
-  std::vector<std::string> methods = {"dprkn12",      "dprkn8",       "dprkn6", "kahan_li8",
-                                      "blanes_moan6", "blanes_moan4", "verlet"};
+  std::vector<std::string> methods = explicit_methods();
   std::vector<std::string> peers;
   std::string out;
   Pace pace;
