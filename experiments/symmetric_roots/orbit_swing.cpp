@@ -8,7 +8,7 @@ namespace {
 
 constexpr double radius = 1.2, speed = 0.3;  // at t = 0; speed across the spring
 constexpr int sizes = 8;
-// Of the classical Runge-Kutta method in a step: at h w = 0.4 it errs by less than 1e-12.
+// The classical Runge-Kutta method's in a step: at h w = 0.4 it errs by less than 1e-12.
 constexpr int substeps = 400;
 
 double energy(double x, double y, double kinetic) {

@@ -25,7 +25,7 @@ WIDTH = LEFT + 3 * PANEL_WIDTH + 2 * ACROSS + SIDE
 HEIGHT = TOP + PANEL_HEIGHT + BELOW
 FONT_SIZE = 9.5
 COLORS = {4: COOL[0], 6: WARM[2], 8: COOL[1], 10: WARM[0], 12: WARM[3]}
-# Of dots whose roots come near each other, and of the others.
+# How opaque dots are whose roots come near each other, and the others.
 NEAR, APART = 0.13, 0.5
 # All gaps below it are as good as none.
 LEAST_GAP = 0.01

@@ -44,7 +44,8 @@ BOOST_AUTO_TEST_CASE(integrals_are_exact_for_polynomials_up_to_the_number_of_ste
     const auto [once, twice] = step_integrals(steps);
     for (Index j = 0; j < steps; ++j) {
       for (Index p = 0; p <= steps + 1; ++p) {
-        // Of (t - j)^p, from 0 to 1: 1/(p + 1), and with the factor 1 - (t - j) 1/((p + 1)(p + 2)).
+        // The integrals of (t - j)^p from 0 to 1: 1/(p + 1), and with the factor 1 - (t - j)
+        // 1/((p + 1)(p + 2)).
         const auto n = static_cast<double>(p + 1);
         double of_once = -1 / n, of_twice = -1 / (n * (n + 1)), size = 1;
         for (Index l = 0; l <= steps; ++l) {

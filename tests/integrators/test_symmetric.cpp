@@ -1,8 +1,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/base/symmetric_multistep.hpp"
 #include "tests/integrators/runs.hpp"
+#include "tests/symmetric_formulas.hpp"
 
 BOOST_AUTO_TEST_SUITE(symmetric)
 
@@ -11,17 +11,6 @@ using namespace qddot;
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
-
-struct Named {
-  const char* name;
-  const SymmetricFormula& formula;
-  std::vector<double> cosines;  // of the spurious roots
-};
-const std::vector<Named> all = {
-    {"symmetric4", registered::symmetric4_formula(), {0.25}},
-    {"symmetric6", registered::symmetric6_formula(), {0.05, -0.5}},
-    {"symmetric8", registered::symmetric8_formula(), {0.5, 0, -0.5}},
-    {"symmetric10", registered::symmetric10_formula(), {0.65, 0.4, -0.2, -0.5}}};
 
 // The whole of a palindrome of odd length, exactly.
 std::vector<Rational> whole(const std::vector<std::int64_t>& half, std::int64_t denominator) {
@@ -68,7 +57,7 @@ std::vector<Vec> positions(const char* method, const System& system, const State
 
 // A polynomial of degree p + 1 is stepped exactly by a formula of order p; odd ones by symmetry.
 BOOST_AUTO_TEST_CASE(each_formula_meets_the_conditions_of_its_order_exactly_and_no_more) {
-  for (const auto& [name, formula, cosines] : all) {
+  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     BOOST_TEST_CONTEXT(name) {
       const int order = method_named(name).order;
       BOOST_TEST(order == formula.steps);
@@ -79,7 +68,7 @@ BOOST_AUTO_TEST_CASE(each_formula_meets_the_conditions_of_its_order_exactly_and_
 }
 
 BOOST_AUTO_TEST_CASE(spurious_roots_are_on_the_unit_circle_where_they_are_said_to_be) {
-  for (const auto& [name, formula, cosines] : all) {
+  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     std::vector<Rational> product = {1};
     for (const double c : cosines) {
       // times z^2 - 2 c z + 1; each cosine is a fraction with a divisor of 20.
@@ -105,7 +94,7 @@ BOOST_AUTO_TEST_CASE(runs_obey_the_formula_on_a_nonlinear_network) {
   const Problem p = hammock(3);
   const auto system = make_mass_spring(p.network);
   constexpr double h = 1. / 64;
-  for (const auto& [name, formula, cosines] : all) {
+  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     const int k = formula.steps;
     const std::vector<double> rho = formula.all_rho(), beta = formula.all_beta();
     const std::vector<Vec> q = positions(name, *system, p.initial, h, 4 * k);
@@ -158,7 +147,7 @@ BOOST_AUTO_TEST_CASE(velocities_are_exact_for_polynomials) {
 BOOST_AUTO_TEST_CASE(roots_are_those_of_the_recurrence_of_a_run) {
   const auto system = make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);
   const State start{0, Vec::Constant(1, 0.3), Vec::Constant(1, 0.7)};
-  for (const auto& [name, formula, cosines] : all) {
+  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     for (const double hw : {0.1, 0.5, 0.75, 2.0}) {
       std::vector<std::complex<double>> factor = {1};
       for (const auto root : roots_of(formula, hw)) {
@@ -184,7 +173,7 @@ BOOST_AUTO_TEST_CASE(roots_are_those_of_the_recurrence_of_a_run) {
 BOOST_AUTO_TEST_CASE(a_step_costs_one_force_after_those_of_the_start) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(p.network);
-  for (const auto& [name, formula, cosines] : all) {
+  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     const auto forces = [&, method = method_named(name)](int steps) {
       return run(method, *system, p.initial, steps / 64., {.step_size = 1. / 64})
           .summary.counts.force_evaluations;
@@ -201,7 +190,7 @@ BOOST_AUTO_TEST_CASE(a_step_costs_one_force_after_those_of_the_start) {
 BOOST_AUTO_TEST_CASE(no_vibration_grows_in_a_hundred_thousand_steps) {
   const auto system = make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);
   const State start{0, Vec::Constant(1, 1), Vec::Constant(1, 0)};
-  for (const auto& [name, formula, cosines] : all) {
+  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     const double h = 0.9 * *method_named(name).stability_limit;
     double first = 0, second = 0;  // the largest of each half
     Observer observer;

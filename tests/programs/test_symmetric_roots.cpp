@@ -9,11 +9,11 @@
 #include "experiments/symmetric_roots/recurrence.hpp"
 #include "experiments/symmetric_roots/sampled_cosines.hpp"
 #include "qddot/integrators/base/palindrome_roots.hpp"
-#include "qddot/integrators/base/symmetric_multistep.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "qddot/scene/scene_file.hpp"
 #include "tests/programs/process.hpp"
+#include "tests/symmetric_formulas.hpp"
 
 BOOST_AUTO_TEST_SUITE(symmetric_roots)
 
@@ -21,17 +21,6 @@ using namespace qddot;
 using namespace qddot::spurious_roots;
 
 namespace {
-
-struct Named {
-  const char* name;
-  const SymmetricFormula& formula;
-  std::vector<double> cosines;  // of the spurious roots
-};
-const std::vector<Named> all = {
-    {"symmetric4", registered::symmetric4_formula(), {0.25}},
-    {"symmetric6", registered::symmetric6_formula(), {0.05, -0.5}},
-    {"symmetric8", registered::symmetric8_formula(), {0.5, 0, -0.5}},
-    {"symmetric10", registered::symmetric10_formula(), {0.65, 0.4, -0.2, -0.5}}};
 
 // The largest difference of two lists of equal lengths.
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -81,7 +70,7 @@ Exit run_it(const Folder& folder, std::vector<std::string> words) {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(cosines_make_the_coefficients_of_the_registry) {
-  for (const auto& [name, formula, cosines] : all) {
+  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     const Coefficients made = formula_of_cosines(cosines), exact = coefficients_of(formula);
     BOOST_TEST(made.steps() == formula.steps);
     // Cosines such as 0.6 are rounded by 1e-16, and coefficients are up to 20 and depend on them as
@@ -121,7 +110,7 @@ BOOST_AUTO_TEST_CASE(spurious_roots_have_the_cosines_they_are_made_of) {
 }
 
 BOOST_AUTO_TEST_CASE(limits_are_those_that_the_registry_declares) {
-  for (const auto& [name, formula, cosines] : all) {
+  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     const double declared = find_method(name)->stability_limit.value();
     // An extremum moves by the square of what its place is off by, so that rounding is all.
     BOOST_TEST(std::abs(stability_limit(coefficients_of(formula)) - declared) < 1e-13, name);
@@ -165,7 +154,7 @@ BOOST_AUTO_TEST_CASE(the_orbit_does_what_it_does_in_runs_of_the_methods) {
   const OrbitSwing orbit(at, steps, 12);
   // All of the energy is kinetic where the spring is as long as at rest.
   const double energy = scene.energy(scene.initial());
-  for (const auto& [name, formula, cosines] : all) {
+  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     double worst = 0;
     for (int i = 1; i <= 8; ++i) {
       const double h = at / 2 * (1 + i / 8.) / omega;
@@ -220,7 +209,8 @@ BOOST_AUTO_TEST_CASE(a_table_has_the_registrys_formulas_and_the_sampled_ones) {
     std::vector<double> cosines;
     for (double cosine = 0; words >> cosine;) cosines.push_back(cosine);
     BOOST_TEST(std::ssize(cosines) == steps / 2 - 1);
-    BOOST_TEST(table.text(i, "method") == (i < all.size() ? all[i].name : ""));
+    BOOST_TEST(table.text(i, "method") ==
+               (i < symmetric_formulas().size() ? symmetric_formulas()[i].name : ""));
     const Coefficients formula = formula_of_cosines(cosines);
     // Cosines of the registry's are computed from its coefficients and known to 1e-14.
     BOOST_TEST(std::abs(table.value(i, "limit") - stability_limit(formula)) < 1e-12);
