@@ -82,8 +82,7 @@ Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pac
   int idle = 0;
   const auto take = [&](double value) {
     const std::string name = fmt::format("{} {} {:.17g}", peer.name(), force_name(force), value);
-    const Measured point =
-        recall(name, [&] { return measured(peer, force, problem, value, pace); });
+    Measured point = recall(name, [&] { return measured(peer, force, problem, value, pace); });
     report(point);
     return point;
   };
