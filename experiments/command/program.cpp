@@ -15,6 +15,7 @@
 #include "experiments/command/overwriting.hpp"
 #include "experiments/command/whole_file.hpp"
 #include "qddot/measure/reference/no_reference.hpp"
+#include "qddot/model/kernels/level.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::command {
@@ -80,6 +81,8 @@ int run_program(CommandLine& line, int argc, char** argv, const std::function<in
   } catch (const CannotWrite& error) {
     return complain(line, error.what(), end_not_reached);
   } catch (const InvalidInput& error) {
+    return complain(line, error.what(), bad_input);
+  } catch (const kernels::NoSuchKernels& error) {
     return complain(line, error.what(), bad_input);
   } catch (const NoReference& error) {
     return complain(line, error.what(), end_not_reached);

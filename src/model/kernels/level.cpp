@@ -30,16 +30,16 @@ bool is_run([[maybe_unused]] std::string_view name) {
 int chosen() {
   const char* wanted = std::getenv("QDDOT_KERNELS");
   int widest = -1;
-  std::string known;
+  std::string run;
   for (int i = 0; i < static_cast<int>(std::size(names)); ++i) {
-    if (is_run(names[i]) && (!wanted || names[i] == wanted)) widest = i;
-    known += known.empty() ? "" : ", ";
-    known += names[i];
+    if (!is_run(names[i])) continue;
+    if (!wanted || names[i] == wanted) widest = i;
+    run += (run.empty() ? "" : ", ") + std::string(names[i]);
   }
   if (widest >= 0) return widest;
-  throw std::runtime_error("this processor does not run kernels compiled for " +
-                           (wanted ? "QDDOT_KERNELS=" + std::string(wanted) : "any") + " of " +
-                           known);
+  if (run.empty()) throw std::runtime_error("this processor runs no version of the kernels");
+  throw NoSuchKernels("QDDOT_KERNELS=" + std::string(wanted) +
+                      ": this processor does not run such kernels; allowed are " + run);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <stdexcept>
 #include <string_view>
 
 // Kernels are compiled in several versions, each in a namespace of its own: for x86-64's levels
@@ -13,8 +14,16 @@
 
 namespace qddot::kernels {
 
+// The environment asks for kernels that this processor does not run. what() is one sentence with
+// the variable, its value and what is allowed.
+class NoSuchKernels : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // Numbers the version in use: the processor's widest or, where the environment's QDDOT_KERNELS
-// names one, that. Throws std::runtime_error where the processor does not run it.
+// names one, that. Throws NoSuchKernels where the processor does not run it, and std::runtime_error
+// where it runs none.
 int level();
 
 // Lists the names of all versions.

@@ -6,8 +6,9 @@
 #include <cstdlib>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <string>
+
+#include "qddot/model/kernels/level.hpp"
 
 namespace qddot::kernels {
 namespace {
@@ -87,7 +88,13 @@ Roots chosen_roots() {
   const auto found = std::ranges::find(root_names, wanted);
   const auto roots = static_cast<Roots>(found - root_names.begin());
   if (found != root_names.end() && spring_kernels(3, roots)) return roots;
-  throw std::runtime_error("this processor has no kernels with QDDOT_ROOTS=" + std::string(wanted));
+  std::string allowed;
+  for (int i = 0; i < kinds_of_roots; ++i) {
+    if (!spring_kernels(3, static_cast<Roots>(i))) continue;
+    allowed += (allowed.empty() ? "" : ", ") + std::string(root_names[i]);
+  }
+  throw NoSuchKernels("QDDOT_ROOTS=" + std::string(wanted) +
+                      ": this processor has no such roots; allowed are " + allowed);
 }
 
 // A power of two on either side of which lie the stiffnesses of springs that can be estimated: the

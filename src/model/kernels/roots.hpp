@@ -9,7 +9,7 @@ namespace qddot::kernels {
 
 // Names the roots in use: those that the environment's QDDOT_ROOTS names or, without, the
 // processor's own unless others are clearly faster here, timed for about a millisecond when this is
-// first called. Throws std::runtime_error where there are none of that name.
+// first called. Throws NoSuchKernels where this processor has none of that name.
 Roots roots();
 
 // Lists the names of all kinds, in the order of Roots.
