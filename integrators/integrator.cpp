@@ -21,6 +21,8 @@ constexpr double shortest_squared = 1e-290;
 // How far below zero an eigenvalue of the balance of massless nodes must be to count, beside the
 // relative tolerance of adaptive methods, which leave their places as uncertain.
 constexpr double balance_tolerance = 1e-6;
+// What an implicit step's solve leaves of what it predicted wrongly, unless the options allow more.
+constexpr double solve_tolerance = 1e-4;
 
 // Throws std::invalid_argument unless a run can be asked for so. Numbers that are not finite are
 // the run's own failure.
@@ -224,7 +226,9 @@ Outcome Integrator::check_step(const State& from, const State& to, double square
       return Outcome::went_slack;
     }
   }
-  if (balance_ && !balance_->is_stable([&](SymmetricMatrix& k) { stiffness(to.q, k); })) {
+  const auto force_at = [&](const Vec& q, Vec& f) { force(q, f); };
+  const auto stiffness_at = [&](const Vec& q, SymmetricMatrix& k) { stiffness(q, k); };
+  if (balance_ && !balance_->holds(from, to, force_at, stiffness_at)) {
     slack_at_ = to.t;
     return Outcome::went_slack;
   }
@@ -258,8 +262,9 @@ void Integrator::set_out(const State& state) {
   if (blocks_of(system_).empty()) {  // else each block looks after itself
     growth_.start(state);
     if (system_.has_massless() && system_.has_stiffness()) {
-      balance_ =
-          std::make_unique<MasslessBalance>(system_, std::max(balance_tolerance, options_.rtol));
+      balance_ = std::make_unique<MasslessBalance>(
+          system_, state.q, std::max(balance_tolerance, options_.rtol),
+          std::max(solve_tolerance, options_.solve_tolerance));
     }
   }
   begin(state);
