@@ -239,6 +239,12 @@ std::string Integrator::words_on(Outcome outcome) const {
   if (outcome == Outcome::went_slack && message_.empty()) {
     return fmt::format("at t = {:.6g} s {}", slack_at_, advice(outcome));
   }
+  if (outcome == Outcome::newton_failed && balance_) {
+    return fmt::format(
+        "{}; where that does not help, the springs at a massless node no longer hold it anywhere: "
+        "give the node a mass",
+        message_.empty() ? advice(outcome) : std::string_view(message_));
+  }
   return message_.empty() ? std::string(advice(outcome)) : message_;
 }
 
