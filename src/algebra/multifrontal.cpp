@@ -24,7 +24,7 @@ constexpr int height = strip_height;
 struct Workspace {
   // For a tile's rows of L D or, where a team shares them, all.
   Workspace(const Fronts::Sizes& sizes, int tile_strips, bool for_team)
-      : updates(sizes.updates + height),  // kernels read a column's last vector whole
+      : updates(sizes.updates),
         columns(sizes.pivot_columns + height),
         scaled(Index{panel} *
                (for_team ? sizes.height + height * tile_strips : height * tile_strips)) {}

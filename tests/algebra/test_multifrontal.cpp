@@ -10,6 +10,7 @@
 #include "qddot/algebra/cholmod_factors.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/algebra/multifrontal.hpp"
+#include "qddot/algebra/multifrontal/fronts.hpp"
 #include "qddot/algebra/symbolic_factorization.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
@@ -20,6 +21,8 @@
 BOOST_AUTO_TEST_SUITE(multifrontal)
 
 using namespace qddot;
+using qddot::multifrontal::Branch, qddot::multifrontal::Front, qddot::multifrontal::Fronts,
+    qddot::multifrontal::strip_height;
 
 namespace {
 
@@ -200,6 +203,31 @@ BOOST_AUTO_TEST_CASE(any_number_of_threads_makes_the_same_factors) {
   }
   BOOST_TEST(indefinite >= 4);
   BOOST_TEST(given_up >= 4);
+}
+
+// Kernels write the last vector of an update's last column whole, up to a strip's height beyond it.
+// Branches make their updates at the same time: no two may come so close.
+BOOST_AUTO_TEST_CASE(branches_never_write_to_the_same_place) {
+  std::size_t neighbours = 0;
+  for (const Matrix& m : large_cases()) {
+    BOOST_TEST_CONTEXT(m.name << " of " << m.diagonal.size() << " unknowns") {
+      const Fronts fronts(m.k, analyse(m.k));
+      std::vector<std::pair<Index, Index>> written;
+      for (const Branch& branch : fronts.branches()) {
+        for (int i = branch.start; i < branch.end; ++i) {
+          const Front& f = fronts.all()[i];
+          const Index size = Index{f.below_height()} * f.below_height();
+          if (f.kept) written.emplace_back(f.update, f.update + size + strip_height);
+        }
+      }
+      std::ranges::sort(written);
+      for (std::size_t i = 1; i < written.size(); ++i, ++neighbours) {
+        BOOST_TEST(written[i].first >= written[i - 1].second);
+      }
+      for (const auto& [from, end] : written) BOOST_TEST(end <= fronts.top_sizes.updates);
+    }
+  }
+  BOOST_TEST(neighbours >= 10);
 }
 
 // The last pivot of all fails, in a front that the threads have divided among themselves: whoever

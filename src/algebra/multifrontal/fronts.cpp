@@ -141,14 +141,18 @@ void Fronts::divide(const std::vector<int>& parents) {
 
 // Updates are made and used up as on a stack, but a front's own begins to grow before those of its
 // children are used up. Two stacks in turn, one for even and one for odd depths of the tree, leave
-// each update where it is made. Those that branches keep come first, as all are alive at once.
+// each update where it is made. Those that branches keep come first, as all are alive at once. A
+// strip's height is free after each update: kernels write the last vector of its last column whole,
+// while another thread may write the next update.
 void Fronts::place_updates(const std::vector<int>& parents) {
   const int count = static_cast<int>(all_.size());
   std::vector<int> depth(count);
   for (int s = count; s-- > 0;) {
     if (parents[s] >= 0) depth[s] = depth[parents[s]] + 1;
   }
-  const auto size = [&](int s) { return Index{all_[s].below_height()} * all_[s].below_height(); };
+  const auto size = [&](int s) {
+    return Index{all_[s].below_height()} * all_[s].below_height() + strip_height;
+  };
   using Stacks = std::array<Index, 2>;
   std::vector<int> first_child(count, -1);
   const auto stack = [&](int s, Stacks& top, Stacks& most) {
