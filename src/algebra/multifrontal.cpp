@@ -25,7 +25,7 @@ struct Workspace {
   // For a tile's rows of L D or, where a team shares them, all.
   Workspace(const Fronts::Sizes& sizes, int tile_strips, bool for_team)
       : updates(sizes.updates),
-        columns(sizes.pivot_columns + height),
+        columns(sizes.pivot_columns + height),  // kernels write a column's last vector whole
         scaled(Index{panel} *
                (for_team ? sizes.height + height * tile_strips : height * tile_strips)) {}
 
