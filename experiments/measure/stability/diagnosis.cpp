@@ -22,7 +22,7 @@ namespace qddot::measure {
 namespace {
 
 // Looks at the energy in a run; step sizes from h/2 to h/4096 that are tried for one that holds.
-constexpr int looks = 32, most_halvings = 12;
+constexpr int most_looks_back = 32, most_halvings = 12;
 constexpr std::size_t most_named = 3;
 // A motion is still what it was while its energy has changed by less than this part of the largest
 // kinetic energy so far.
@@ -40,7 +40,7 @@ bool has_own_step(const Method& method) { return has_linear_step(method) && meth
 Summary run(const Method& method, const Options& options, const ReducedScene& scene, double until,
             double seconds, const std::function<void(const State&)>& see) {
   const double steps = std::max(1.0, std::floor(until / options.step_size));
-  const double stride = std::max(1.0, std::floor(steps / looks));
+  const double stride = std::max(1.0, std::floor(steps / most_looks_back));
   Observer some{{}, see};
   for (double n = stride; n * options.step_size < until; n += stride) {
     some.times.push_back(n * options.step_size);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "qddot/measure/speed/measurement.hpp"
+
+namespace qddot::advice_study {
+
+using namespace measure;
+
+// The fastest run of any method to an accuracy, found by trying them all.
+struct Hindsight {
+  std::vector<Point> points;  // all that were taken
+  Point best;                 // not reached_end where no run came so far
+};
+
+// Sweeps every method that fits the scene until its runs take longer than the fastest one so far
+// that is known to be within `accuracy` of the reference. The best few are timed `repeats` times.
+Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
+                    const Reference& reference, int repeats);
+
+}  // namespace qddot::advice_study

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "qddot/measure/advice/own_frequencies.hpp"
+#include "qddot/measure/advice/trial.hpp"
+
+namespace qddot::measure {
+
+// A run that might be made: what it is expected to miss by and to take.
+struct Candidate {
+  const Method* method = nullptr;
+  double value = 0;    // of the knob: h [s] or rtol
+  double error = 0;    // expected
+  double seconds = 0;  // expected
+};
+
+// Says of runs that were not made what they will miss by and take, from what is known of a motion:
+//   error = sensitivity * frequency_error(method, h w_p),   seconds = steps * seconds of a step,
+// with w_p the motion's own frequency of the method's order p. The sensitivity is at first that of
+// a motion in which errors add up, |q'| t / |q - q(0)|; with each run whose error was seen, it is
+// corrected for the methods of that order, and of the orders next to it.
+class Forecast {
+ public:
+  // `w_start`, `w_motion`: the largest frequency [rad/s] at the start and over the motion; infinite
+  // or zero where explicit methods have no limit to be told. `step_seconds`: of Verlet's method.
+  Forecast(const Stage& stage, const OwnFrequencies& own, double w_motion, double step_seconds);
+
+  double error(const Method& method, double h) const;
+  double seconds(const Method& method, double h) const;
+  // The runs that are expected to come to that error, one a method, the fastest first. Only methods
+  // of fixed steps, and `exact`.
+  std::vector<Candidate> candidates(double error) const;
+
+  // Takes in that a run missed by so much, and what it took.
+  void learn_error(const Trial& trial, double error);
+  void learn_seconds(const Trial& trial);
+  // Takes in that a run of fixed steps did not hold: none of the method is expected to that is as
+  // coarse.
+  void learn_failure(const Trial& trial);
+
+  double w_motion() const { return w_motion_; }
+  const OwnFrequencies& own() const { return own_; }
+
+ private:
+  double sensitivity(const Method& method) const;
+  double largest_step(const Method& method) const;
+
+  const Stage& stage_;
+  OwnFrequencies own_;
+  double w_motion_, step_seconds_, sensitivity_;
+  std::map<int, double> by_order_;                   // of explicit methods: seen over expected
+  std::map<const Method*, double> by_method_;        // of implicit ones
+  std::map<const Method*, double> seconds_a_step_;   // as timed [s]
+  std::map<const Method*, double> failed_;           // the least step that did not hold [s]
+};
+
+}  // namespace qddot::measure

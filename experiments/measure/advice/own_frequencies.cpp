@@ -1,0 +1,58 @@
+#include "qddot/measure/advice/own_frequencies.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "qddot/integrators/registry.hpp"
+
+namespace qddot::measure {
+namespace {
+
+constexpr int burst_steps = OwnFrequencies::highest_order + 2;
+constexpr double burst_h_omega = 0.5;
+
+// Positions at the start and after each step of a burst; fewer where it failed.
+std::vector<Vec> burst(const ReducedScene& model, const State& from, double h) {
+  const auto integrator = make_integrator(*find_method("verlet"), model.system(), {.step_size = h});
+  State state{0, from.q, from.v};
+  std::vector<Vec> q{state.q};
+  Observer each{{}, [&](const State& seen) { q.push_back(seen.q); }};
+  for (int i = 1; i <= burst_steps; ++i) each.times.push_back(i * h);
+  integrator->advance(state, each.times.back(), each);
+  return q;
+}
+
+}  // namespace
+
+double OwnFrequencies::at(int order) const {
+  const int even = order + order % 2;
+  return of_order[static_cast<std::size_t>(std::clamp(even, 1, highest_order))];
+}
+
+OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<State>& path,
+                               double w_max, int bursts) {
+  const double h = burst_h_omega / w_max;
+  const Vec& start = model.initial().q;
+  std::array<double, OwnFrequencies::highest_order + 2> squares{};  // of the k-th differences
+  double farthest = 0;
+  for (const State& state : path) farthest = std::max(farthest, (state.q - start).norm());
+  int taken = 0;
+  for (int i = 0; i < bursts; ++i) {
+    const auto place = static_cast<std::size_t>(i) * path.size() / static_cast<std::size_t>(bursts);
+    std::vector<Vec> q = burst(model, place == 0 ? model.initial() : path[place - 1], h);
+    if (q.size() < burst_steps + 1) continue;
+    ++taken;
+    for (std::size_t k = 1; k < squares.size(); ++k) {
+      for (std::size_t j = 0; j + k < q.size(); ++j) q[j] = q[j + 1] - q[j];
+      squares[k] += q[0].squaredNorm();
+    }
+  }
+  OwnFrequencies own;
+  if (taken == 0 || farthest == 0 || squares[1] == 0) return own;
+  own.speed = std::sqrt(squares[1] / taken) / h / farthest;
+  for (std::size_t p = 1; p < own.of_order.size(); ++p)
+    own.of_order[p] = std::pow(squares[p + 1] / squares[1], 0.5 / static_cast<double>(p)) / h;
+  return own;
+}
+
+}  // namespace qddot::measure

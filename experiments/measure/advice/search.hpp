@@ -1,0 +1,63 @@
+#pragma once
+
+#include <deque>
+#include <limits>
+#include <optional>
+
+#include "qddot/measure/advice/forecast.hpp"
+
+namespace qddot::measure {
+
+// Looks for the run that comes to an accuracy in the least time, and for a bound of its error.
+//
+//  1. A first run by Verlet's method near its limit, seen on its way, and short bursts from there
+//     say what the motion's own frequencies are, how w_max changes, and what a force takes.
+//  2. A Forecast names the run that comes to half of the accuracy in the least time. It is made,
+//     unless one that was made already is expected to be good enough.
+//  3. Another, which is expected to miss by a quarter of that, checks it: their distance is the
+//     error of the first but for that of the second. Both teach the forecast. Where the bound is
+//     above the accuracy, 2. again, from what is known now.
+// An error that was not seen against a run that is expected to be three times as accurate is none.
+class Search {
+ public:
+  // Borrows the model. `seconds`: after which nothing more is begun.
+  Search(const ReducedScene& model, double until, AccuracyOf of, double seconds);
+
+  // The first run and what it tells. False where no method came to the end.
+  bool survey();
+  // Refines until a run is known to be within `accuracy`; nullptr where none came there.
+  const Trial* find(double accuracy);
+  // Makes other runs that are expected to be faster than `answer` to the accuracy, for so many
+  // seconds in all; the fastest one that is known to be.
+  const Trial* race(const Trial* answer, double accuracy, double seconds);
+
+  // A bound of the trial's error, from how far it is from a more accurate one; nothing where there
+  // is none.
+  std::optional<double> bound(const Trial& trial) const;
+  // What is known of the trial's error, or else expected.
+  double error(const Trial& trial) const;
+
+  const Stage& stage() const { return stage_; }
+  const Forecast& forecast() const { return *forecast_; }
+  const std::deque<Trial>& trials() const { return trials_; }
+  double w_start() const { return w_start_; }
+
+ private:
+  double seconds_left() const;
+  double expected(const Trial& trial) const;
+  const Trial* checker(const Trial& trial) const;
+  Trial& run(const Method& method, double value, double seconds);
+  void learn();
+  double lost_distance(const Trial& trial, const Trial& better) const;
+  bool was_tried(const Candidate& candidate) const;
+
+  AccuracyOf of_;
+  double limit_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double w_start_ = 0;
+  Stage stage_;
+  std::optional<Forecast> forecast_;
+  std::deque<Trial> trials_;
+};
+
+}  // namespace qddot::measure

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "qddot/integrators/method.hpp"
+
+namespace qddot::measure {
+
+// What a step of the method takes on a system of so many unknowns, in steps of Verlet's method: as
+// measured on other scenes (see step_cost.cpp), for what has not been timed on this one. Infinite
+// where it was never measured.
+double usual_step_cost(const Method& method, Index unknowns);
+
+// Forces that the method evaluates before its first step, beside those of its steps.
+double forces_to_begin(const Method& method);
+
+}  // namespace qddot::measure

@@ -1,0 +1,67 @@
+#include "qddot/measure/advice/trial.hpp"
+
+#include <algorithm>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+
+namespace qddot::measure {
+namespace {
+
+// Shorter runs [s] are timed again: the first one is cold.
+constexpr double short_run = 1e-3;
+constexpr int repeats_of_short = 3;
+
+}  // namespace
+
+Stage::Stage(const ReducedScene& model, double until, int looks) : model_(model), until_(until) {
+  for (int i = 1; i < looks; ++i) times_.push_back(until * i / looks);
+  times_.push_back(until);
+}
+
+Trial Stage::run(const Method& method, double value, double seconds) {
+  Trial trial{.method = &method, .value = value};
+  const auto integrator =
+      make_integrator(method, model_.system(), options_for(method, value, model_));
+  State state = model_.initial();
+  const Deadline deadline(seconds);
+  const Observer each{times_, [&](const State& seen) { trial.path.push_back(seen); }};
+  trial.seconds =
+      seconds_of([&] { trial.summary = integrator->advance(state, until_, each, deadline.token()); });
+  stop_if_interrupted();
+  if (!trial.reached_end()) return trial;
+  for (int i = 0; i < repeats_of_short && trial.seconds < short_run; ++i) {
+    state = model_.initial();
+    trial.seconds =
+        std::min(trial.seconds, seconds_of([&] { integrator->advance(state, until_); }));
+  }
+  if (scales_.parts.empty()) {
+    extend(scales_, model_, model_.initial());
+    for (const State& seen : trial.path) extend(scales_, model_, seen);
+  }
+  const double energy = model_.energy(model_.initial());
+  trial.energy_error = 0;
+  for (const State& seen : trial.path) {
+    const double error = std::abs(model_.energy(seen) - energy);
+    trial.energy_error =
+        std::max(trial.energy_error, scales_.kinetic > 0 ? error / scales_.kinetic : error);
+  }
+  return trial;
+}
+
+double Stage::distance_at(const Trial& one, const Trial& other, std::size_t look) const {
+  return errors_between(model_, one.path[look], other.path[look], 0, scales_).position;
+}
+
+double Stage::distance(const Trial& one, const Trial& other, AccuracyOf of) const {
+  double largest = distance_at(one, other, times_.size() - 1);
+  if (of == AccuracyOf::path) {
+    for (std::size_t i = 0; i + 1 < times_.size(); ++i)
+      largest = std::max(largest, distance_at(one, other, i));
+  }
+  return largest;
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "qddot/integrators/method.hpp"
+#include "qddot/measure/motion/error.hpp"
+
+namespace qddot::measure {
+
+// What the accuracy of a run is judged by: the relative error of positions at its end, the largest
+// on the way, or the largest error of the energy on the way over the largest kinetic energy.
+enum class AccuracyOf { positions, path, energy };
+
+// A whole run of a method, seen at the times of its stage.
+struct Trial {
+  const Method* method = nullptr;
+  double value = 0;  // of its knob: h [s] or rtol
+  Summary summary{};
+  double seconds = 0;         // wall time of the run
+  std::vector<State> path{};  // at the times, the end last; as far as it came
+  double energy_error = std::numeric_limits<double>::infinity();  // largest on the way, relative
+
+  bool reached_end() const { return summary.outcome == Outcome::reached_end; }
+};
+
+// One motion, which trials are runs of: a model up to a time, seen at `looks` equal parts of that.
+class Stage {
+ public:
+  // Borrows the model.
+  Stage(const ReducedScene& model, double until, int looks);
+
+  // Runs the method to the end, for so many seconds at most. Where it comes there in less than a
+  // millisecond, its time is the least of several. The first one that comes to its end sets the
+  // scales of errors.
+  Trial run(const Method& method, double value, double seconds);
+
+  // How far two trials that came to the end are apart, relative to the motion: at the end, on the
+  // way at each of the times, and as `of` says (of positions or the path).
+  double distance(const Trial& one, const Trial& other, AccuracyOf of) const;
+  double distance_at(const Trial& one, const Trial& other, std::size_t look) const;
+
+  const ReducedScene& model() const { return model_; }
+  double until() const { return until_; }
+  const std::vector<double>& times() const { return times_; }
+  const Scales& scales() const { return scales_; }
+
+ private:
+  const ReducedScene& model_;
+  double until_;
+  std::vector<double> times_;
+  Scales scales_;
+};
+
+}  // namespace qddot::measure
