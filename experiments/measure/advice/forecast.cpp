@@ -46,6 +46,16 @@ Forecast::Forecast(const Stage& stage, const OwnFrequencies& own, double w_motio
       step_seconds_(step_seconds),
       sensitivity_(own.speed * stage.until()) {}
 
+bool Forecast::has_learned(const Method& method) const {
+  return method.is(Trait::implicit) ? by_method_.contains(&method)
+                                    : by_order_.contains(method.order);
+}
+
+double Forecast::doubt(const Method& one, const Method& other) const {
+  if (&one == &other) return 1;
+  return has_learned(one) && has_learned(other) ? 1.5 : 4;
+}
+
 double Forecast::sensitivity(const Method& method) const {
   if (method.is(Trait::implicit)) {
     const auto own = by_method_.find(&method);

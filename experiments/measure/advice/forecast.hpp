@@ -30,6 +30,8 @@ class Forecast {
 
   double error(const Method& method, double h) const;
   double seconds(const Method& method, double h) const;
+  // By what factor the ratio of the errors of two methods may be another than is expected.
+  double doubt(const Method& one, const Method& other) const;
   // The runs that are expected to come to that error, one a method, the fastest first. Only methods
   // of fixed steps, and `exact`.
   std::vector<Candidate> candidates(double error) const;
@@ -45,6 +47,7 @@ class Forecast {
   const OwnFrequencies& own() const { return own_; }
 
  private:
+  bool has_learned(const Method& method) const;
   double sensitivity(const Method& method) const;
   double largest_step(const Method& method) const;
 

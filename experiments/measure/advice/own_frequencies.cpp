@@ -35,7 +35,7 @@ OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<Stat
   const Vec& start = model.initial().q;
   std::array<double, OwnFrequencies::highest_order + 2> squares{};  // of the k-th differences
   double farthest = 0;
-  for (const State& state : path) farthest = std::max(farthest, (state.q - start).norm());
+  for (const State& state : path) farthest = std::max(farthest, (state.q - start).lpNorm<Eigen::Infinity>());
   int taken = 0;
   for (int i = 0; i < bursts; ++i) {
     const auto place = static_cast<std::size_t>(i) * path.size() / static_cast<std::size_t>(bursts);
@@ -44,7 +44,7 @@ OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<Stat
     ++taken;
     for (std::size_t k = 1; k < squares.size(); ++k) {
       for (std::size_t j = 0; j + k < q.size(); ++j) q[j] = q[j + 1] - q[j];
-      squares[k] += q[0].squaredNorm();
+      squares[k] += std::pow(q[0].lpNorm<Eigen::Infinity>(), 2);
     }
   }
   OwnFrequencies own;

@@ -15,14 +15,14 @@ namespace qddot::measure {
 namespace {
 
 // Of the accuracy, what a run is chosen to miss by: it is known to a factor of two or so before.
-constexpr double aim = 0.5;
+constexpr double aim = 0.45;
 // What is expected to be good enough without a new run, of the accuracy.
-constexpr double good_enough = 0.7;
+constexpr double good_enough = 0.6;
 // How many times as accurate a run must be to check another, and is chosen to be.
-constexpr double checks = 3, chosen_to_check = 5;
+constexpr double checks = 3, chosen_to_check = 3.5;
 // Above the distance from a check: what the check itself may be off, and what looks at some times
 // leave out.
-constexpr double margin = 1.3;
+constexpr double margin = 1.4;
 constexpr int most_rounds = 12;
 // Two runs that far apart have nothing to do with each other: nothing follows for the errors.
 constexpr double lost = 0.1, follows = 0.03;
@@ -55,6 +55,7 @@ double Search::seconds_left() const {
 Trial& Search::run(const Method& method, double value, double seconds) {
   trials_.push_back(stage_.run(method, value, std::min(seconds, seconds_left())));
   Trial& trial = trials_.back();
+  if (forecast_) trial.expected = forecast_->error(method, value);
   if (forecast_) {
     if (trial.reached_end()) forecast_->learn_seconds(trial);
     if (!trial.reached_end() && trial.summary.outcome != Outcome::over_budget)
@@ -97,36 +98,45 @@ bool Search::survey() {
   const double step_seconds = first->seconds / steps;
   forecast_.emplace(stage_, own_frequencies(model, first->path, w, bursts), w, step_seconds);
   forecast_->learn_seconds(*first);
+  first->expected = expected(*first);
+  learn();
   return true;
 }
 
 double Search::expected(const Trial& trial) const {
-  if (of_ == AccuracyOf::energy) return trial.energy_error;
-  if (has_linear_step(*trial.method) || trial.method->order == 0)
-    return forecast_->error(*trial.method, trial.value);
-  return trial.value;
+  if (of_ == AccuracyOf::energy) return stage_.energy_error(trial);
+  return forecast_->error(*trial.method, trial.value);
+}
+
+// What the error of `other` is of that of `trial`, at most.
+double Search::ratio(const Trial& other, const Trial& trial) const {
+  return expected(other) / expected(trial) * forecast_->doubt(*other.method, *trial.method);
 }
 
 const Trial* Search::checker(const Trial& trial) const {
   const Trial* best = nullptr;
   for (const Trial& other : trials_) {
-    if (other.reached_end() && (!best || expected(other) < expected(*best))) best = &other;
+    if (&other != &trial && other.reached_end() && ratio(other, trial) * checks <= 1 &&
+        (!best || ratio(other, trial) < ratio(*best, trial)))
+      best = &other;
   }
-  return best && checks * expected(*best) <= expected(trial) ? best : nullptr;
+  return best;
 }
 
 std::optional<double> Search::bound(const Trial& trial) const {
   if (!trial.reached_end()) return {};
-  if (of_ == AccuracyOf::energy) return margin * trial.energy_error;
+  if (of_ == AccuracyOf::energy) return margin * stage_.energy_error(trial);
   if (trial.method->order == 0) return expected(trial);
-  if (const Trial* better = checker(trial))
-    return margin * stage_.distance(trial, *better, of_) + 4 * machine_epsilon;
+  if (const Trial* better = checker(trial)) {
+    return margin * stage_.distance(trial, *better, of_) / (1 - ratio(*better, trial)) +
+           4 * machine_epsilon;
+  }
   return {};
 }
 
 double Search::error(const Trial& trial) const {
-  if (const Trial* better = checker(trial); better && of_ != AccuracyOf::energy)
-    return stage_.distance(trial, *better, of_);
+  if (of_ == AccuracyOf::energy) return stage_.energy_error(trial);
+  if (const Trial* better = checker(trial)) return stage_.distance(trial, *better, of_);
   return expected(trial);
 }
 
@@ -148,10 +158,16 @@ double Search::lost_distance(const Trial& trial, const Trial& better) const {
 }
 
 void Search::learn() {
+  const Trial* best = nullptr;
+  for (const Trial& trial : trials_) {
+    if (trial.reached_end() && (!best || expected(trial) < expected(*best))) best = &trial;
+  }
+  if (best && best != measured_by_) stage_.measure_by(*best);
+  measured_by_ = best;
   for (const Trial& trial : trials_) {
     if (!trial.reached_end()) continue;
     if (of_ == AccuracyOf::energy) {
-      forecast_->learn_error(trial, trial.energy_error);
+      forecast_->learn_error(trial, stage_.energy_error(trial));
     } else if (const Trial* better = checker(trial)) {
       forecast_->learn_error(trial, lost_distance(trial, *better));
     }
@@ -162,6 +178,44 @@ bool Search::was_tried(const Candidate& candidate) const {
   return std::ranges::any_of(trials_, [&](const Trial& trial) {
     return trial.method == candidate.method && std::abs(trial.value / candidate.value - 1) < 0.01;
   });
+}
+
+// The cheapest run that is expected to be accurate enough to check the trial.
+std::optional<Candidate> Search::check_of(const Trial& trial) const {
+  const double error = expected(trial);
+  std::optional<Candidate> best;
+  for (const double doubt : {1.0, 1.5, 4.0}) {
+    for (const Candidate& c : forecast_->candidates(error / (chosen_to_check * doubt))) {
+      if (forecast_->doubt(*c.method, *trial.method) > doubt || was_tried(c) ||
+          c.method->is(Trait::implicit) != trial.method->is(Trait::implicit))
+        continue;
+      if (!best || c.seconds < best->seconds) best = c;
+      break;
+    }
+  }
+  return best;
+}
+
+// The run that is expected to come to the accuracy in the least time. Implicit ones only where they
+// promise much: what a step of theirs takes is known badly before, and they are stopped where they
+// do not keep it.
+std::optional<Candidate> Search::fresh(double accuracy) const {
+  constexpr double much = 0.2;
+  std::optional<Candidate> best;
+  double own = std::numeric_limits<double>::infinity();
+  const auto all = forecast_->candidates(accuracy);
+  for (const Candidate& c : all) {
+    if (was_tried(c)) continue;
+    if (!c.method->is(Trait::implicit)) own = std::min(own, c.seconds);
+  }
+  for (const Trial& trial : trials_) {
+    if (trial.reached_end() && expected(trial) <= accuracy) own = std::min(own, trial.seconds);
+  }
+  for (const Candidate& c : all) {
+    if (was_tried(c)) continue;
+    if (!c.method->is(Trait::implicit) || c.seconds < much * own) return c;
+  }
+  return {};
 }
 
 const Trial* Search::find(double accuracy) {
@@ -176,22 +230,10 @@ const Trial* Search::find(double accuracy) {
         promising = &trial;
     }
     if (known) return known;
-    const auto next = forecast_->candidates(aim * accuracy);
-    const auto fresh =
-        std::ranges::find_if(next, [&](const Candidate& c) { return !was_tried(c); });
-    constexpr double rather_checked = 1.5;
-    if (promising && (fresh == next.end() || promising->seconds < rather_checked * fresh->seconds)) {
-      const double needed = expected(*promising) / chosen_to_check;
-      const auto checkers = forecast_->candidates(needed);
-      const auto check =
-          std::ranges::find_if(checkers, [&](const Candidate& c) { return !was_tried(c); });
-      if (check == checkers.end()) return nullptr;
-      run(*check->method, check->value, limit_);
-    } else if (fresh != next.end()) {
-      run(*fresh->method, fresh->value, limit_);
-    } else {
-      return nullptr;
-    }
+    std::optional<Candidate> next = promising ? check_of(*promising) : std::nullopt;
+    if (!next) next = fresh(aim * accuracy);
+    if (!next) return nullptr;
+    run(*next->method, next->value, limit_);
   }
   return nullptr;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -45,7 +46,10 @@ class Search {
  private:
   double seconds_left() const;
   double expected(const Trial& trial) const;
+  double ratio(const Trial& other, const Trial& trial) const;
   const Trial* checker(const Trial& trial) const;
+  std::optional<Candidate> check_of(const Trial& trial) const;
+  std::optional<Candidate> fresh(double accuracy) const;
   Trial& run(const Method& method, double value, double seconds);
   void learn();
   double lost_distance(const Trial& trial, const Trial& better) const;
@@ -58,6 +62,7 @@ class Search {
   Stage stage_;
   std::optional<Forecast> forecast_;
   std::deque<Trial> trials_;
+  const Trial* measured_by_ = nullptr;
 };
 
 }  // namespace qddot::measure

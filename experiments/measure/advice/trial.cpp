@@ -37,18 +37,21 @@ Trial Stage::run(const Method& method, double value, double seconds) {
     trial.seconds =
         std::min(trial.seconds, seconds_of([&] { integrator->advance(state, until_); }));
   }
-  if (scales_.parts.empty()) {
-    extend(scales_, model_, model_.initial());
-    for (const State& seen : trial.path) extend(scales_, model_, seen);
-  }
-  const double energy = model_.energy(model_.initial());
-  trial.energy_error = 0;
-  for (const State& seen : trial.path) {
-    const double error = std::abs(model_.energy(seen) - energy);
-    trial.energy_error =
-        std::max(trial.energy_error, scales_.kinetic > 0 ? error / scales_.kinetic : error);
-  }
   return trial;
+}
+
+void Stage::measure_by(const Trial& trial) {
+  scales_ = {};
+  extend(scales_, model_, model_.initial());
+  for (const State& seen : trial.path) extend(scales_, model_, seen);
+}
+
+double Stage::energy_error(const Trial& trial) const {
+  const double energy = model_.energy(model_.initial());
+  double largest = 0;
+  for (const State& seen : trial.path)
+    largest = std::max(largest, errors_between(model_, seen, seen, energy, scales_).energy);
+  return largest;
 }
 
 double Stage::distance_at(const Trial& one, const Trial& other, std::size_t look) const {

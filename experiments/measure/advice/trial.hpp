@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "qddot/integrators/method.hpp"
@@ -19,7 +18,8 @@ struct Trial {
   Summary summary{};
   double seconds = 0;         // wall time of the run
   std::vector<State> path{};  // at the times, the end last; as far as it came
-  double energy_error = std::numeric_limits<double>::infinity();  // largest on the way, relative
+
+  double expected = 0;  // error, before it was made
 
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
 };
@@ -31,14 +31,20 @@ class Stage {
   Stage(const ReducedScene& model, double until, int looks);
 
   // Runs the method to the end, for so many seconds at most. Where it comes there in less than a
-  // millisecond, its time is the least of several. The first one that comes to its end sets the
-  // scales of errors.
+  // millisecond, its time is the least of several.
   Trial run(const Method& method, double value, double seconds);
+
+  // Measures the motion by that trial, which came to the end: what errors are divided by from now
+  // on. None are known before.
+  void measure_by(const Trial& trial);
 
   // How far two trials that came to the end are apart, relative to the motion: at the end, on the
   // way at each of the times, and as `of` says (of positions or the path).
   double distance(const Trial& one, const Trial& other, AccuracyOf of) const;
   double distance_at(const Trial& one, const Trial& other, std::size_t look) const;
+
+  // The largest error of the energy at the times of a trial that came to the end.
+  double energy_error(const Trial& trial) const;
 
   const ReducedScene& model() const { return model_; }
   double until() const { return until_; }
