@@ -58,6 +58,9 @@ int main(int argc, char** argv) {
                t ? t->seconds : 0, t ? search.error(*t) : 0, te, t ? *search.bound(*t) : 0, cert, mt / bt,
                total / bt, ts / bt, search.trials().size());
     if (verbose) {
+      double sum = 0;
+      for (const Trial& x : search.trials()) sum += x.seconds;
+      fmt::print("   total {:.4g} in runs {:.4g} survey beside its run {:.4g}\n", total, sum, ts - search.trials().front().seconds);
       if (search.trials().size() && search.trials().front().reached_end()) {
       const auto& own = search.forecast().own();
       fmt::print("   w {:.4g} -> {:.4g}; own/w", search.w_start(), search.forecast().w_motion());

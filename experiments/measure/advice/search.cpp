@@ -27,10 +27,10 @@ constexpr int most_rounds = 12;
 // Two runs that far apart have nothing to do with each other: nothing follows for the errors.
 constexpr double lost = 0.1, follows = 0.03;
 
-// Looks at a run of so many steps cost little beside it.
+// Each look costs as much as some forces.
 int number_of_looks(double steps, AccuracyOf of) {
-  const double least = of == AccuracyOf::positions ? 4 : 20, most = of == AccuracyOf::positions ? 40 : 100;
-  return static_cast<int>(std::clamp(steps / 20, least, most));
+  const bool at_end = of == AccuracyOf::positions;
+  return static_cast<int>(at_end ? std::clamp(steps / 60, 4.0, 24.0) : std::clamp(steps / 20, 20.0, 100.0));
 }
 
 double steps_of_verlet(const ReducedScene& model, double until) {
@@ -69,11 +69,16 @@ bool Search::survey() {
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
   const double bound = frequency_bound(system, model.initial().q);
-  // To search for w_max costs about a hundred forces and a half.
-  constexpr double worth_searching = 2000;
+  // An exact search is for small systems; thirty products come within some percent from below, and
+  // cost as much as about a hundred forces.
+  constexpr Index small = 300;
+  constexpr double worth_searching = 600, from_below = 1.02;
   w_start_ = bound;
-  if (stage_.until() * bound > worth_searching || system.size() < 100)
-    w_start_ = quick_frequency(system, model.initial().q);
+  if (system.size() <= small) {
+    w_start_ = largest_frequency(system, model.initial().q);
+  } else if (stage_.until() * bound > 2 * worth_searching) {
+    w_start_ = std::min(bound, from_below * frequency_at_least(system, model.initial().q));
+  }
   constexpr double first_step = 0.9, shorter = 0.75;
   double looks = static_cast<double>(stage_.times().size());
   double steps = std::max(8.0, std::ceil(stage_.until() * w_start_ / (2 * first_step)));
@@ -162,8 +167,13 @@ void Search::learn() {
   for (const Trial& trial : trials_) {
     if (trial.reached_end() && (!best || expected(trial) < expected(*best))) best = &trial;
   }
-  if (best && best != measured_by_) stage_.measure_by(*best);
-  measured_by_ = best;
+  // A run that misses by a hundredth measures the motion well enough.
+  constexpr double well_enough = 0.01;
+  if (best && best != measured_by_ && !(measured_within_ < well_enough)) {
+    stage_.measure_by(*best);
+    measured_by_ = best;
+    measured_within_ = expected(*best);
+  }
   for (const Trial& trial : trials_) {
     if (!trial.reached_end()) continue;
     if (of_ == AccuracyOf::energy) {

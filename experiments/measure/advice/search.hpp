@@ -62,7 +62,8 @@ class Search {
   Stage stage_;
   std::optional<Forecast> forecast_;
   std::deque<Trial> trials_;
-  const Trial* measured_by_ = nullptr;
+  const Trial* measured_by_ = nullptr;  // the motion, by a run that is expected to miss by
+  double measured_within_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace qddot::measure
