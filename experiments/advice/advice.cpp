@@ -61,14 +61,14 @@ int main(int argc, char** argv) {
       double sum = 0;
       for (const Trial& x : search.trials()) sum += x.seconds;
       fmt::print("   total {:.4g} in runs {:.4g} survey beside its run {:.4g}\n", total, sum, ts - search.trials().front().seconds);
-      if (search.trials().size() && search.trials().front().reached_end()) {
-      const auto& own = search.forecast().own();
-      fmt::print("   w {:.4g} -> {:.4g}; own/w", search.w_start(), search.forecast().w_motion());
+      if (search.trials().size() && search.trials().front().reached_end() && search.forecast()) {
+      const auto& own = search.forecast()->own();
+      fmt::print("   w {:.4g} -> {:.4g}; own/w", search.w_start(), search.forecast()->w_motion());
       for (int p = 2; p <= 10; p += 2) fmt::print(" {:.3g}", own.at(p) / search.w_start());
       fmt::print(" speed*T {:.3g}\n", own.speed * c.until); }
       for (const Trial& x : search.trials()) {
         fmt::print("   {} {:.4g} N={:.0f} {} {:.3g}s", x.method->name, x.value, c.until / x.value, name(x.summary.outcome), x.seconds);
-        if (x.reached_end()) fmt::print(" expected {:.2e} error {:.2e}", search.forecast().error(*x.method, x.value), search.error(x)), fmt::print(" surprise {} {:.2f}", x.method->order, std::log10(search.error(x) / std::max(x.expected,1e-16)));
+        if (x.reached_end()) fmt::print(" expected {:.2e} error {:.2e}", (search.forecast()?search.forecast()->error(*x.method, x.value):0.), search.error(x)), fmt::print(" surprise {} {:.2f}", x.method->order, std::log10(search.error(x) / std::max(x.expected,1e-16)));
         fmt::print("\n");
       }
     }

@@ -24,19 +24,28 @@ constexpr double implicit_share = 0.3;
 // Seconds of a dense eigenproblem of n unknowns are about this times n^3.
 constexpr double seconds_of_eigenproblem = 1.3e-9;
 constexpr double largest_exact = 2000;  // as method `exact` has it
-// What is left of digits where vibrations are followed for a phase w t.
-double rounding(double phase) { return 4 * machine_epsilon * (1 + phase); }
+// From a run that was seen nothing follows for much finer and coarser ones.
+constexpr double farthest = 100;
 
-double cube_of_unknowns(const ReducedScene& model) {
-  double sum = 0;
-  for (const Index n : model.unknowns_by_part()) {
-    if (static_cast<double>(n) > largest_exact) return without_end;
-    sum += std::pow(static_cast<double>(n), 3);
-  }
-  return sum;
+bool is_told_by_frequency(const Method& method) {
+  return method.order > 0 && has_linear_step(method);
 }
 
+// How the error goes with the knob.
+double power(const Method& method) { return method.knob == Knob::rtol ? 1 : method.order; }
+
 }  // namespace
+
+double seconds_of_exact(const ReducedScene& model) {
+  constexpr double least = 1e-6;
+  if (!model.system().stiffness_is_constant()) return without_end;
+  double cubes = 0;
+  for (const Index n : model.unknowns_by_part()) {
+    if (static_cast<double>(n) > largest_exact) return without_end;
+    cubes += std::pow(static_cast<double>(n), 3);
+  }
+  return least + seconds_of_eigenproblem * cubes;
+}
 
 Forecast::Forecast(const Stage& stage, const OwnFrequencies& own, double w_motion,
                    double step_seconds)
@@ -47,13 +56,14 @@ Forecast::Forecast(const Stage& stage, const OwnFrequencies& own, double w_motio
       sensitivity_(own.speed * stage.until()) {}
 
 bool Forecast::has_learned(const Method& method) const {
+  if (!is_told_by_frequency(method)) return seen_.contains(&method);
   return method.is(Trait::implicit) ? by_method_.contains(&method)
                                     : by_order_.contains(method.order);
 }
 
 double Forecast::doubt(const Method& one, const Method& other) const {
-  if (&one == &other) return 1;
-  return has_learned(one) && has_learned(other) ? 1.5 : 4;
+  if (&one == &other) return doubts[0];
+  return has_learned(one) && has_learned(other) ? doubts[1] : doubts[2];
 }
 
 double Forecast::sensitivity(const Method& method) const {
@@ -68,15 +78,25 @@ double Forecast::sensitivity(const Method& method) const {
   return sensitivity_ * nearest->second;
 }
 
-double Forecast::error(const Method& method, double h) const {
-  if (method.order == 0) return rounding(w_motion_ * stage_.until());
-  return sensitivity(method) * frequency_error(method, h * own_.at(method.order)) +
-         2 * machine_epsilon;
+double Forecast::error(const Method& method, double value) const {
+  if (is_told_by_frequency(method)) {
+    return sensitivity(method) * frequency_error(method, value * own_.at(method.order)) +
+           2 * machine_epsilon;
+  }
+  const auto seen = seen_.find(&method);
+  if (seen == seen_.end()) return method.order == 0 ? machine_epsilon : without_end;
+  return seen->second.error * std::pow(value / seen->second.value, power(method));
 }
 
-double Forecast::seconds(const Method& method, double h) const {
-  if (method.order == 0) return 2e-6 + seconds_of_eigenproblem * cube_of_unknowns(stage_.model());
-  const double steps = std::max(1.0, std::round(stage_.until() / h));
+double Forecast::seconds(const Method& method, double value) const {
+  if (method.order == 0) return seconds_of_exact(stage_.model());
+  const auto seen = seen_.find(&method);
+  if (seen != seen_.end()) {
+    const double finer = seen->second.value / value;
+    return seen->second.seconds *
+           (method.knob == Knob::rtol ? std::pow(finer, 1.0 / method.order) : finer);
+  }
+  const double steps = std::max(1.0, std::round(stage_.until() / value));
   const auto timed = seconds_a_step_.find(&method);
   const double step = timed != seconds_a_step_.end()
                           ? timed->second
@@ -93,32 +113,50 @@ double Forecast::largest_step(const Method& method) const {
   return h;
 }
 
+std::optional<Candidate> Forecast::from_steps(const Method& method, double error) const {
+  const double until = stage_.until(), w = own_.at(method.order);
+  double h = largest_step(method);
+  if (w > 0 && sensitivity_ > 0)
+    h = std::min(h, largest_h_omega(method, error / sensitivity(method)) / w);
+  if (!(h > 0)) return {};
+  // A whole number of steps from one look to the next.
+  const double looks = static_cast<double>(stage_.times().size());
+  double steps = std::ceil(until / h * (1 - 1e-9));
+  if (steps > 4 * looks) steps = looks * std::ceil(steps / looks);
+  if (method.recurrence_roots && steps < 2 * method.order) return {};
+  h = until / steps;
+  return Candidate{&method, h, this->error(method, h), seconds(method, h)};
+}
+
+std::optional<Candidate> Forecast::from_seen(const Method& method, double error) const {
+  const auto found = seen_.find(&method);
+  if (found == seen_.end()) return {};
+  const Seen& seen = found->second;
+  const double finer = std::pow(seen.error / error, 1 / power(method));
+  if (!(finer < farthest && finer > 1 / farthest)) return {};
+  double value = seen.value / finer;
+  if (method.knob == Knob::rtol) value = std::clamp(value, 1e-14, 0.1);
+  if (method.knob == Knob::step_size) {
+    value = stage_.until() / std::ceil(stage_.until() / std::min(value, largest_step(method)));
+  }
+  return Candidate{&method, value, this->error(method, value), seconds(method, value)};
+}
+
 std::vector<Candidate> Forecast::candidates(double error) const {
   std::vector<Candidate> all;
   const System& system = stage_.model().system();
   for (const Method& method : methods()) {
     if (!applies_to(method, system) || !method.stock_of.empty()) continue;
-    if (system.has_massless() && !method.is(Trait::accepts_massless)) continue;
+    std::optional<Candidate> own;
     if (method.order == 0) {
-      if (this->error(method, stage_.until()) <= error && std::isfinite(seconds(method, 1)))
-        all.push_back({&method, stage_.until(), this->error(method, stage_.until()),
-                       seconds(method, stage_.until())});
-      continue;
+      const double h = stage_.until();
+      own = Candidate{&method, h, machine_epsilon, seconds(method, h)};
+    } else if (!is_told_by_frequency(method)) {
+      own = from_seen(method, error);
+    } else if (method.order > 1) {
+      own = from_steps(method, error);
     }
-    if (method.order == 1 || !has_linear_step(method)) continue;
-    if (!std::isfinite(usual_step_cost(method, system.size()))) continue;
-    const double w = own_.at(method.order);
-    double h = largest_step(method);
-    if (w > 0 && sensitivity_ > 0)
-      h = std::min(h, largest_h_omega(method, error / sensitivity(method)) / w);
-    if (!(h > 0)) continue;
-    // A whole number of steps from one look to the next.
-    const double looks = static_cast<double>(stage_.times().size());
-    double steps = std::ceil(stage_.until() / h * (1 - 1e-9));
-    if (steps > 4 * looks) steps = looks * std::ceil(steps / looks);
-    if (method.recurrence_roots && steps < 2 * method.order) continue;
-    h = stage_.until() / steps;
-    all.push_back({&method, h, this->error(method, h), seconds(method, h)});
+    if (own && std::isfinite(own->seconds)) all.push_back(*own);
   }
   std::ranges::sort(all, {}, &Candidate::seconds);
   return all;
@@ -126,10 +164,14 @@ std::vector<Candidate> Forecast::candidates(double error) const {
 
 void Forecast::learn_error(const Trial& trial, double error) {
   const Method& method = *trial.method;
-  if (!has_linear_step(method) || method.order == 0 || sensitivity_ == 0) return;
+  if (method.order == 0 || error == 0) return;
+  if (!is_told_by_frequency(method)) {
+    seen_[&method] = {trial.value, error, trial.seconds};
+    return;
+  }
   const double expected =
       sensitivity_ * frequency_error(method, trial.value * own_.at(method.order));
-  if (!std::isfinite(expected) || expected == 0 || error == 0) return;
+  if (!std::isfinite(expected) || expected == 0) return;
   if (method.is(Trait::implicit)) {
     by_method_[&method] = error / expected;
   } else {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <vector>
@@ -17,23 +18,30 @@ struct Candidate {
   double seconds = 0;  // expected
 };
 
+// What the method `exact` takes on the model [s], about; infinite where it does not run it.
+double seconds_of_exact(const ReducedScene& model);
+
 // Says of runs that were not made what they will miss by and take, from what is known of a motion:
 //   error = sensitivity * frequency_error(method, h w_p),   seconds = steps * seconds of a step,
 // with w_p the motion's own frequency of the method's order p. The sensitivity is at first that of
 // a motion in which errors add up, |q'| t / |q - q(0)|; with each run whose error was seen, it is
-// corrected for the methods of that order, and of the orders next to it.
+// corrected for the methods of that order, and of the orders next to it. Of methods that choose
+// their steps, or take stiff forces apart, nothing is expected before one run was seen; from there
+// on the error goes as h^order or as rtol.
 class Forecast {
  public:
   // `w_start`, `w_motion`: the largest frequency [rad/s] at the start and over the motion; infinite
   // or zero where explicit methods have no limit to be told. `step_seconds`: of Verlet's method.
   Forecast(const Stage& stage, const OwnFrequencies& own, double w_motion, double step_seconds);
 
-  double error(const Method& method, double h) const;
-  double seconds(const Method& method, double h) const;
-  // By what factor the ratio of the errors of two methods may be another than is expected.
+  // `value`: of the knob, h [s] or rtol. Infinite where nothing is known.
+  double error(const Method& method, double value) const;
+  double seconds(const Method& method, double value) const;
+  // By what factor the ratio of the errors of two methods may be another than is expected, one of
+  // `doubts`: none for two runs of one method, little where runs of both were seen.
+  static constexpr std::array doubts = {1.0, 1.5, 4.0};
   double doubt(const Method& one, const Method& other) const;
-  // The runs that are expected to come to that error, one a method, the fastest first. Only methods
-  // of fixed steps, and `exact`.
+  // The runs that are expected to come to that error, one a method, the fastest first.
   std::vector<Candidate> candidates(double error) const;
 
   // Takes in that a run missed by so much, and what it took.
@@ -47,6 +55,13 @@ class Forecast {
   const OwnFrequencies& own() const { return own_; }
 
  private:
+  // A run of a method that only runs tell something of.
+  struct Seen {
+    double value, error, seconds;
+  };
+
+  std::optional<Candidate> from_steps(const Method& method, double error) const;
+  std::optional<Candidate> from_seen(const Method& method, double error) const;
   bool has_learned(const Method& method) const;
   double sensitivity(const Method& method) const;
   double largest_step(const Method& method) const;
@@ -56,6 +71,7 @@ class Forecast {
   double w_motion_, step_seconds_, sensitivity_;
   std::map<int, double> by_order_;                   // of explicit methods: seen over expected
   std::map<const Method*, double> by_method_;        // of implicit ones
+  std::map<const Method*, Seen> seen_;
   std::map<const Method*, double> seconds_a_step_;   // as timed [s]
   std::map<const Method*, double> failed_;           // the least step that did not hold [s]
 };

@@ -1,12 +1,14 @@
 #include "qddot/measure/advice/search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/resolved_frequency.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
 #include "qddot/model/machine_epsilon.hpp"
@@ -14,38 +16,69 @@
 namespace qddot::measure {
 namespace {
 
-// Of the accuracy, what a run is chosen to miss by: it is known to a factor of two or so before.
+// Fraction of the accuracy that a run is chosen to miss by, as it is known to a factor of about two
+// before.
 constexpr double aim = 0.45;
-// What is expected to be good enough without a new run, of the accuracy.
+// Fraction of it that an earlier run may be expected to miss by and be taken for good enough.
 constexpr double good_enough = 0.6;
 // How many times as accurate a run must be to check another, and is chosen to be.
 constexpr double checks = 3, chosen_to_check = 3.5;
-// Above the distance from a check: what the check itself may be off, and what looks at some times
-// leave out.
+// Above the distance from a check: that this is not quite as accurate as is expected.
 constexpr double margin = 1.4;
-constexpr int most_rounds = 12;
-// Two runs that far apart have nothing to do with each other: nothing follows for the errors.
-constexpr double lost = 0.1, follows = 0.03;
+constexpr int most_rounds = 14;
+// Two runs that are `lost` apart have nothing to do with each other; up to `free` their distance
+// grows by itself.
+constexpr double lost = 0.1, free = 0.03;
 
 // Each look costs as much as some forces.
 int number_of_looks(double steps, AccuracyOf of) {
-  const bool at_end = of == AccuracyOf::positions;
-  return static_cast<int>(at_end ? std::clamp(steps / 60, 4.0, 24.0) : std::clamp(steps / 20, 20.0, 100.0));
+  return static_cast<int>(of == AccuracyOf::positions ? std::clamp(steps / 60, 4.0, 24.0)
+                                                      : std::clamp(steps / 20, 20.0, 100.0));
 }
 
 double steps_of_verlet(const ReducedScene& model, double until) {
+  const double w = frequency_bound(model.system(), model.initial().q);
+  return std::isfinite(w) ? std::max(1.0, until * w / 2) : 1;
+}
+
+double seconds_of_force(const ReducedScene& model) {
+  Vec f(model.system().size());
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    least = std::min(least,
+                     seconds_of([&] { model.system().force(model.initial().q, f); }));
+  }
+  return least;
+}
+
+// w_max at the start, to some percent for no more than the run is worth.
+double frequency_at_start(const ReducedScene& model, double until, double bound) {
   const System& system = model.system();
-  if (system.size() == 0 || !system.has_stiffness()) return 1;
-  const double w = frequency_bound(system, model.initial().q);
-  return std::isfinite(w) ? until * w / 2 : 1;
+  const Vec& q = model.initial().q;
+  constexpr Index small = 300;
+  // Thirty products with K cost as much as about a hundred forces, and come within some percent
+  // from below.
+  constexpr double worth_searching = 600, from_below = 1.02;
+  if (system.size() <= small) return largest_frequency(system, q);
+  if (until * bound < 2 * worth_searching) return bound;
+  return std::min(bound, from_below * frequency_at_least(system, q));
+}
+
+// By what factor w_max grows over the path, as its bound does.
+double growth_of_frequency(const ReducedScene& model, const std::vector<State>& path, double bound,
+                           double steps) {
+  if (model.system().stiffness_is_constant() || bound == 0) return 1;
+  const auto seen = static_cast<std::size_t>(std::clamp(steps / 100, 1.0, 12.0));
+  double most = bound;
+  for (std::size_t i = 1; i <= seen; ++i)
+    most = std::max(most, frequency_bound(model.system(), path[i * path.size() / seen - 1].q));
+  return most / bound;
 }
 
 }  // namespace
 
 Search::Search(const ReducedScene& model, double until, AccuracyOf of, double seconds)
-    : of_(of),
-      limit_(seconds),
-      stage_(model, until, number_of_looks(steps_of_verlet(model, until), of)) {}
+    : of_(of), limit_(seconds), stage_(model, until, number_of_looks(steps_of_verlet(model, until), of)) {}
 
 double Search::seconds_left() const {
   stop_if_interrupted();
@@ -53,69 +86,80 @@ double Search::seconds_left() const {
 }
 
 Trial& Search::run(const Method& method, double value, double seconds) {
+  const double expected = forecast_ ? forecast_->error(method, value) : 0;
   trials_.push_back(stage_.run(method, value, std::min(seconds, seconds_left())));
   Trial& trial = trials_.back();
-  if (forecast_) trial.expected = forecast_->error(method, value);
-  if (forecast_) {
-    if (trial.reached_end()) forecast_->learn_seconds(trial);
-    if (!trial.reached_end() && trial.summary.outcome != Outcome::over_budget)
-      forecast_->learn_failure(trial);
-    learn();
+  trial.expected = expected;
+  if (!forecast_) return trial;
+  if (trial.reached_end()) {
+    forecast_->learn_seconds(trial);
+  } else {
+    forecast_->learn_failure(trial);
   }
+  learn();
   return trial;
 }
 
 bool Search::survey() {
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
-  const double bound = frequency_bound(system, model.initial().q);
-  // An exact search is for small systems; thirty products come within some percent from below, and
-  // cost as much as about a hundred forces.
-  constexpr Index small = 300;
-  constexpr double worth_searching = 600, from_below = 1.02;
-  w_start_ = bound;
-  if (system.size() <= small) {
-    w_start_ = largest_frequency(system, model.initial().q);
-  } else if (stage_.until() * bound > 2 * worth_searching) {
-    w_start_ = std::min(bound, from_below * frequency_at_least(system, model.initial().q));
+  const double until = stage_.until(), bound = frequency_bound(system, model.initial().q);
+  if (system.has_massless()) return true;
+  w_start_ = frequency_at_start(model, until, bound);
+  // An eigenproblem of a few unknowns takes no time.
+  constexpr double not_worth_a_search = 1e-4;
+  const double exactly = seconds_of_exact(model);
+  if (exactly < std::max(not_worth_a_search,
+                         1.5 * steps_of_verlet(model, until) * seconds_of_force(model))) {
+    Trial& exact = run(*find_method("exact"), until, limit_);
+    if (exact.reached_end()) stage_.measure_by(exact);
+    return exact.reached_end();
   }
-  constexpr double first_step = 0.9, shorter = 0.75;
-  double looks = static_cast<double>(stage_.times().size());
-  double steps = std::max(8.0, std::ceil(stage_.until() * w_start_ / (2 * first_step)));
+  constexpr double below_limit = 0.9, shorter = 0.75;
+  constexpr int most_attempts = 6;
+  const double looks = static_cast<double>(stage_.times().size());
+  double steps = std::max(8.0, std::ceil(until * w_start_ / (2 * below_limit)));
   Trial* first = nullptr;
-  for (int attempt = 0; attempt < 4; ++attempt, steps = std::ceil(steps / shorter)) {
+  for (int attempt = 0; attempt < most_attempts; ++attempt, steps = steps / shorter) {
     steps = looks * std::ceil(steps / looks);
-    first = &run(*find_method("verlet"), stage_.until() / steps, limit_);
-    if (first->reached_end() && first->summary.energy_growth < 10) break;
+    first = &run(*find_method("verlet"), until / steps, limit_);
+    constexpr double grows = 10;
+    const Outcome outcome = first->summary.outcome;
+    if (outcome == Outcome::over_budget || outcome == Outcome::went_slack) return false;
+    if (first->reached_end() && first->summary.energy_growth < grows) break;
   }
   if (!first->reached_end()) return false;
-  double w = w_start_;
-  if (!system.stiffness_is_constant()) {
-    const std::size_t seen = std::clamp<std::size_t>(static_cast<std::size_t>(steps / 100), 1, 12);
-    double most = bound;
-    for (std::size_t i = 1; i <= seen; ++i) {
-      const State& at = first->path[i * first->path.size() / seen - 1];
-      most = std::max(most, frequency_bound(system, at.q));
-    }
-    w *= most / bound;
-  }
+  const double w = w_start_ * growth_of_frequency(model, first->path, bound, steps);
   const int bursts = static_cast<int>(std::clamp(steps / 80, 2.0, 16.0));
-  const double step_seconds = first->seconds / steps;
-  forecast_.emplace(stage_, own_frequencies(model, first->path, w, bursts), w, step_seconds);
+  forecast_.emplace(stage_, own_frequencies(model, first->path, w, bursts), w,
+                    first->seconds / steps);
   forecast_->learn_seconds(*first);
-  first->expected = expected(*first);
+  first->expected = forecast_->error(*first->method, first->value);
   learn();
   return true;
 }
 
+// What rounding leaves of a motion that is computed mode by mode: w_max^2 is known to its last
+// digit, so that a slower frequency w is off by w_max^2 / (2 w) of that, for a time t.
+double Search::rounding() const {
+  const Scales& scales = stage_.scales();
+  const double slow = scales.displacement > 0 ? scales.speed / scales.displacement : 0;
+  const double phase =
+      w_start_ * stage_.until() * (slow > 0 ? std::max(1.0, w_start_ / slow) : 1);
+  return 4 * machine_epsilon * (1 + phase);
+}
+
 double Search::expected(const Trial& trial) const {
   if (of_ == AccuracyOf::energy) return stage_.energy_error(trial);
-  return forecast_->error(*trial.method, trial.value);
+  if (trial.method->order == 0) return rounding();
+  return forecast_ ? forecast_->error(*trial.method, trial.value) : trial.value;
 }
 
 // What the error of `other` is of that of `trial`, at most.
 double Search::ratio(const Trial& other, const Trial& trial) const {
-  return expected(other) / expected(trial) * forecast_->doubt(*other.method, *trial.method);
+  const double doubt = forecast_ ? forecast_->doubt(*other.method, *trial.method) : 1;
+  const double own = expected(trial), others = expected(other);
+  return std::isfinite(others) ? others / own * doubt : std::numeric_limits<double>::infinity();
 }
 
 const Trial* Search::checker(const Trial& trial) const {
@@ -128,9 +172,17 @@ const Trial* Search::checker(const Trial& trial) const {
   return best;
 }
 
+const Trial* Search::most_accurate() const {
+  const Trial* best = nullptr;
+  for (const Trial& trial : trials_) {
+    if (trial.reached_end() && (!best || expected(trial) < expected(*best))) best = &trial;
+  }
+  return best;
+}
+
 std::optional<double> Search::bound(const Trial& trial) const {
   if (!trial.reached_end()) return {};
-  if (of_ == AccuracyOf::energy) return margin * stage_.energy_error(trial);
+  if (of_ == AccuracyOf::energy) return margin * stage_.energy_error(trial) + 4 * machine_epsilon;
   if (trial.method->order == 0) return expected(trial);
   if (const Trial* better = checker(trial)) {
     return margin * stage_.distance(trial, *better, of_) / (1 - ratio(*better, trial)) +
@@ -145,7 +197,7 @@ double Search::error(const Trial& trial) const {
   return expected(trial);
 }
 
-// Where two runs have parted, the distance that they would have come to had it gone on growing.
+// How far apart two runs are or, where they are lost, would be had their distance gone on growing.
 double Search::lost_distance(const Trial& trial, const Trial& better) const {
   const double end = stage_.distance(trial, better, of_);
   if (end < lost) return end;
@@ -154,21 +206,20 @@ double Search::lost_distance(const Trial& trial, const Trial& better) const {
   std::vector<double> distances;
   for (std::size_t i = 0; i < times.size(); ++i) {
     distances.push_back(stage_.distance_at(trial, better, i));
-    if (distances.back() < follows) last = i;
+    if (distances.back() < free) last = i;
   }
-  if (last < 2 || distances[last / 2] == 0) return std::max(end, 1.0);
-  const double rate =
-      std::log(distances[last] / distances[last / 2]) / (times[last] - times[last / 2]);
-  return std::max(end, distances[last] * std::exp(std::min(rate * (times.back() - times[last]), 80.0)));
+  const double before = distances[last / 2];
+  if (last < 2 || before == 0) return std::max(end, 1.0);
+  constexpr double largest_exponent = 80;
+  const double rate = std::log(distances[last] / before) / (times[last] - times[last / 2]);
+  const double exponent = std::min(rate * (times.back() - times[last]), largest_exponent);
+  return std::max(end, distances[last] * std::exp(exponent));
 }
 
 void Search::learn() {
-  const Trial* best = nullptr;
-  for (const Trial& trial : trials_) {
-    if (trial.reached_end() && (!best || expected(trial) < expected(*best))) best = &trial;
-  }
   // A run that misses by a hundredth measures the motion well enough.
   constexpr double well_enough = 0.01;
+  const Trial* best = most_accurate();
   if (best && best != measured_by_ && !(measured_within_ < well_enough)) {
     stage_.measure_by(*best);
     measured_by_ = best;
@@ -185,20 +236,21 @@ void Search::learn() {
 }
 
 bool Search::was_tried(const Candidate& candidate) const {
+  constexpr double same = 0.01;
   return std::ranges::any_of(trials_, [&](const Trial& trial) {
-    return trial.method == candidate.method && std::abs(trial.value / candidate.value - 1) < 0.01;
+    return trial.method == candidate.method &&
+           std::abs(trial.value / candidate.value - 1) < same;
   });
 }
 
 // The cheapest run that is expected to be accurate enough to check the trial.
 std::optional<Candidate> Search::check_of(const Trial& trial) const {
-  const double error = expected(trial);
   std::optional<Candidate> best;
-  for (const double doubt : {1.0, 1.5, 4.0}) {
-    for (const Candidate& c : forecast_->candidates(error / (chosen_to_check * doubt))) {
-      if (forecast_->doubt(*c.method, *trial.method) > doubt || was_tried(c) ||
-          c.method->is(Trait::implicit) != trial.method->is(Trait::implicit))
-        continue;
+  for (const double doubt : Forecast::doubts) {
+    for (const Candidate& c : forecast_->candidates(expected(trial) / (chosen_to_check * doubt))) {
+      if (c.method->order == 0 || was_tried(c)) continue;
+      if (forecast_->doubt(*c.method, *trial.method) > doubt) continue;
+      if (c.method->is(Trait::implicit) && c.method != trial.method) continue;
       if (!best || c.seconds < best->seconds) best = c;
       break;
     }
@@ -207,29 +259,24 @@ std::optional<Candidate> Search::check_of(const Trial& trial) const {
 }
 
 // The run that is expected to come to the accuracy in the least time. Implicit ones only where they
-// promise much: what a step of theirs takes is known badly before, and they are stopped where they
-// do not keep it.
+// promise much: what a step of theirs takes is known badly before.
 std::optional<Candidate> Search::fresh(double accuracy) const {
   constexpr double much = 0.2;
-  std::optional<Candidate> best;
-  double own = std::numeric_limits<double>::infinity();
   const auto all = forecast_->candidates(accuracy);
+  double least = std::numeric_limits<double>::infinity();
   for (const Candidate& c : all) {
-    if (was_tried(c)) continue;
-    if (!c.method->is(Trait::implicit)) own = std::min(own, c.seconds);
-  }
-  for (const Trial& trial : trials_) {
-    if (trial.reached_end() && expected(trial) <= accuracy) own = std::min(own, trial.seconds);
+    if (!c.method->is(Trait::implicit)) least = std::min(least, c.seconds);
   }
   for (const Candidate& c : all) {
-    if (was_tried(c)) continue;
-    if (!c.method->is(Trait::implicit) || c.seconds < much * own) return c;
+    if (c.error > 2 * accuracy || was_tried(c)) continue;
+    if (!c.method->is(Trait::implicit) || c.seconds < much * least) return c;
   }
   return {};
 }
 
 const Trial* Search::find(double accuracy) {
-  for (int round = 0; round < most_rounds && seconds_left() > 0; ++round) {
+  if (stage_.model().system().has_massless()) return by_tolerance(accuracy);
+  for (int round = 0; round < most_rounds; ++round) {
     const Trial *known = nullptr, *promising = nullptr;
     for (const Trial& trial : trials_) {
       if (!trial.reached_end()) continue;
@@ -240,6 +287,7 @@ const Trial* Search::find(double accuracy) {
         promising = &trial;
     }
     if (known) return known;
+    if (!forecast_ || seconds_left() <= 0) return nullptr;
     std::optional<Candidate> next = promising ? check_of(*promising) : std::nullopt;
     if (!next) next = fresh(aim * accuracy);
     if (!next) return nullptr;
@@ -248,20 +296,66 @@ const Trial* Search::find(double accuracy) {
   return nullptr;
 }
 
+// A method of which nothing is known yet and that may be faster than the answer, with a knob to
+// begin with: adaptive ones of high order for few unknowns, those that take stiff forces apart
+// where some are named, and implicit ones where few of their steps take no time beside it.
+std::optional<Candidate> Search::unknown(double accuracy, const Trial& answer) const {
+  constexpr Index few = 60;
+  constexpr double few_steps = 8, no_time = 0.05;
+  const ReducedScene& model = stage_.model();
+  const System& system = model.system();
+  for (const Method& method : methods()) {
+    if (!applies_to(method, system) || !method.stock_of.empty() || method.order < 2) continue;
+    if (std::ranges::find(trials_, &method, &Trial::method) != trials_.end()) continue;
+    if (method.family == Family::sundials) continue;
+    if (method.knob == Knob::rtol) {
+      if (system.size() <= few && !method.is(Trait::implicit))
+        return Candidate{&method, std::clamp(accuracy, 1e-13, 1e-2), 0, 0};
+    } else if (method.asks(Need::split_forces)) {
+      const double w = resolved_frequency(method, system, model.initial().q);
+      const double steps = std::max(few_steps, std::ceil(stage_.until() * w));
+      return Candidate{&method, stage_.until() / steps, 0, 0};
+    } else if (method.is(Trait::implicit)) {
+      const double h = stage_.until() / few_steps;
+      if (forecast_->seconds(method, h) < no_time * answer.seconds)
+        return Candidate{&method, h, 0, 0};
+    }
+  }
+  return {};
+}
+
 const Trial* Search::race(const Trial* answer, double accuracy, double seconds) {
-  constexpr double clearly_faster = 0.9;
-  const double until = seconds_since(begin_) + seconds;
-  while (answer && seconds_since(begin_) < until && seconds_left() > 0) {
-    const auto next = forecast_->candidates(good_enough * accuracy);
-    const auto faster = std::ranges::find_if(next, [&](const Candidate& c) {
-      return !was_tried(c) && c.seconds < clearly_faster * answer->seconds;
-    });
-    if (faster == next.end() || seconds_since(begin_) + faster->seconds > until) break;
-    const Trial& trial = run(*faster->method, faster->value, 2 * answer->seconds);
+  constexpr double clearly_faster = 0.92;
+  const double end = seconds_since(begin_) + seconds;
+  while (answer && forecast_ && answer->method->order > 0 && seconds_left() > 0) {
+    const double left = end - seconds_since(begin_);
+    std::optional<Candidate> next = unknown(accuracy, *answer);
+    for (const Candidate& c : forecast_->candidates(good_enough * accuracy)) {
+      if (was_tried(c) || c.seconds > clearly_faster * answer->seconds) continue;
+      if (next && next->seconds == 0 && left < 2 * answer->seconds) next.reset();
+      if (!next) next = c;
+      break;
+    }
+    if (!next || left < next->seconds || left <= 0) break;
+    const Trial& trial =
+        run(*next->method, next->value, std::min(left, clearly_faster * answer->seconds + 1e-5));
     const auto most = bound(trial);
     if (most && *most <= accuracy && trial.seconds < answer->seconds) answer = &trial;
   }
   return answer;
+}
+
+const Trial* Search::by_tolerance(double accuracy) {
+  const Trial* before = nullptr;
+  for (double rtol = std::min(0.1 * accuracy, 1e-3); rtol >= least_rtol && seconds_left() > 0;
+       rtol /= 10) {
+    const Trial& trial = run(*find_method("ida"), rtol, limit_);
+    if (!trial.reached_end()) return nullptr;
+    stage_.measure_by(trial);
+    if (before && *bound(*before) <= accuracy) return before;
+    before = &trial;
+  }
+  return nullptr;
 }
 
 }  // namespace qddot::measure

@@ -12,24 +12,26 @@ namespace qddot::measure {
 // Looks for the run that comes to an accuracy in the least time, and for a bound of its error.
 //
 //  1. A first run by Verlet's method near its limit, seen on its way, and short bursts from there
-//     say what the motion's own frequencies are, how w_max changes, and what a force takes.
+//     say what the motion's own frequencies are, how w_max changes, and what a force takes. Where K
+//     is constant and all modes are found sooner than that, there is nothing to search.
 //  2. A Forecast names the run that comes to half of the accuracy in the least time. It is made,
 //     unless one that was made already is expected to be good enough.
-//  3. Another, which is expected to miss by a quarter of that, checks it: their distance is the
-//     error of the first but for that of the second. Both teach the forecast. Where the bound is
-//     above the accuracy, 2. again, from what is known now.
-// An error that was not seen against a run that is expected to be three times as accurate is none.
+//  3. Another, which is expected to miss by a third of that, checks it: their distance is the error
+//     of the first but for that of the second. Both teach the forecast. Where the bound is above
+//     the accuracy, 2. again, from what is known now.
+// Systems with massless nodes have no Verlet steps: IDA is refined until its runs agree.
 class Search {
  public:
-  // Borrows the model. `seconds`: after which nothing more is begun.
+  // Borrows the model, which must have unknowns and K. `seconds`: after which nothing more is
+  // begun.
   Search(const ReducedScene& model, double until, AccuracyOf of, double seconds);
 
-  // The first run and what it tells. False where no method came to the end.
+  // The first run and what it tells. False where it did not come to the end; trials() says why.
   bool survey();
   // Refines until a run is known to be within `accuracy`; nullptr where none came there.
   const Trial* find(double accuracy);
-  // Makes other runs that are expected to be faster than `answer` to the accuracy, for so many
-  // seconds in all; the fastest one that is known to be.
+  // Makes runs that may be faster than `answer` to the accuracy, for so many seconds in all, first
+  // those of which nothing is known; returns the fastest one that is known to be so accurate.
   const Trial* race(const Trial* answer, double accuracy, double seconds);
 
   // A bound of the trial's error, from how far it is from a more accurate one; nothing where there
@@ -37,23 +39,31 @@ class Search {
   std::optional<double> bound(const Trial& trial) const;
   // What is known of the trial's error, or else expected.
   double error(const Trial& trial) const;
+  // The trial that bounds the error of this one; nullptr where there is none.
+  const Trial* checker(const Trial& trial) const;
+  // The trial that is expected to be the most accurate; nullptr where none came to the end.
+  const Trial* most_accurate() const;
 
+  Stage& stage() { return stage_; }
   const Stage& stage() const { return stage_; }
-  const Forecast& forecast() const { return *forecast_; }
+  // After survey(); nothing where all was clear without.
+  const std::optional<Forecast>& forecast() const { return forecast_; }
   const std::deque<Trial>& trials() const { return trials_; }
   double w_start() const { return w_start_; }
+  double seconds_left() const;
 
  private:
-  double seconds_left() const;
   double expected(const Trial& trial) const;
+  double rounding() const;
   double ratio(const Trial& other, const Trial& trial) const;
-  const Trial* checker(const Trial& trial) const;
-  std::optional<Candidate> check_of(const Trial& trial) const;
-  std::optional<Candidate> fresh(double accuracy) const;
-  Trial& run(const Method& method, double value, double seconds);
-  void learn();
   double lost_distance(const Trial& trial, const Trial& better) const;
   bool was_tried(const Candidate& candidate) const;
+  std::optional<Candidate> check_of(const Trial& trial) const;
+  std::optional<Candidate> fresh(double accuracy) const;
+  std::optional<Candidate> unknown(double accuracy, const Trial& answer) const;
+  const Trial* by_tolerance(double accuracy);
+  Trial& run(const Method& method, double value, double seconds);
+  void learn();
 
   AccuracyOf of_;
   double limit_;
