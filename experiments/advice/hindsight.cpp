@@ -17,15 +17,17 @@ constexpr double close_race = 1.3;
 // the others.
 std::vector<const Method*> in_order_of_promise(const System& system) {
   std::vector<const Method*> order;
-  for (const char* first :
-       {"exact", "symmetric6", "symmetric4", "symmetric8", "verlet", "symmetric10", "dprkn8", "dprkn12"}) {
+  for (const char* first : {"exact", "symmetric6", "symmetric4", "symmetric8", "verlet",
+                            "symmetric10", "dprkn8", "dprkn12"}) {
     order.push_back(find_method(first));
   }
   for (const Method& method : methods()) {
     if (std::ranges::find(order, &method) == order.end()) order.push_back(&method);
   }
   std::erase_if(order, [&](const Method* method) {
-    return !applies_to(*method, system) || method->order == 1 || !method->stock_of.empty() || method->name.starts_with("arkode_erk") || method->name.starts_with("arkode_mri") || method->name == "cvode_adams";
+    return !applies_to(*method, system) || method->order == 1 || !method->stock_of.empty() ||
+           method->name.starts_with("arkode_erk") || method->name.starts_with("arkode_mri") ||
+           method->name == "cvode_adams";
   });
   return order;
 }
@@ -59,8 +61,7 @@ Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
   }
   effort = {.seconds = 4 * longest_run, .repeats = repeats};
   for (const Point& point : near) {
-    const Point timed =
-        measure_point(*point.method, point.value, scene, until, reference, effort);
+    const Point timed = measure_point(*point.method, point.value, scene, until, reference, effort);
     if (timed.outcome == Outcome::reached_end &&
         (timed.time_min <= found.best.time_min || found.best.timed_runs < repeats))
       found.best = timed;

@@ -7,6 +7,8 @@
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/natural_modes.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/advise.hpp"
+#include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/samples.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
@@ -24,7 +26,12 @@
 
 namespace qddot {
 
+using measure::AccuracyOf;
+using measure::Advice;
+using measure::Advices;
+using measure::advise;
 using measure::agreed_reference;
+using measure::Answer;
 using measure::diagnosis;
 using measure::energy_trend;
 using measure::linear_step;
@@ -34,7 +41,9 @@ using measure::NoReference;
 using measure::Point;
 using measure::Reference;
 using measure::samples;
+using measure::solve;
 using measure::trend_of;
+using measure::Wanted;
 using measure::work_precision;
 using measure::WorkPrecision;
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/command/accuracy_choice.hpp"
 #include "experiments/command/allowed_options.hpp"
 #include "experiments/command/catalogue.hpp"
 #include "experiments/command/csv.hpp"
@@ -20,6 +21,10 @@ namespace qddot::simulate {
 void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
   line.add_option("--method", a.method, "a method's name (--list-methods)");
+  line.add_option("--accuracy", a.accuracy,
+                  "a relative error that the motion may have, in place of a method: the fastest "
+                  "one for it is found and run, and its error is bounded by another run");
+  add_accuracy_of_option(line, a.accuracy_of);
   line.add_option("--step-size", a.step_size, "h in s, for methods of fixed step");
   line.add_option("--rtol", a.rtol, "relative tolerance, for adaptive methods");
   line.add_option("--atol", a.atol,
@@ -106,8 +111,8 @@ void require_distinct_outputs(const CommandLine& line, const Arguments& a) {
 
 bool only_writes_scene(const CommandLine& line) {
   const auto given = [&](const char* option) { return line.has(option); };
-  constexpr std::array of_a_run = {"--method", "--step-size",  "--rtol",   "--atol", "--until",
-                                   "--final",  "--trajectory", "--energy", "--every"};
+  constexpr std::array of_a_run = {"--method", "--accuracy", "--step-size",  "--rtol",   "--atol",
+                                   "--until",  "--final",    "--trajectory", "--energy", "--every"};
   return given("--write-scene") && std::ranges::none_of(of_a_run, given);
 }
 

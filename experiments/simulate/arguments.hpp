@@ -14,8 +14,9 @@ using namespace command;
 // What simulate takes on its command line.
 struct Arguments {
   SceneChoice scene;
-  std::string method, final_path, trajectory_path, energy_path, written_scene_path;
-  double step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0, energy_every = 0;
+  std::string method, accuracy_of, final_path, trajectory_path, energy_path, written_scene_path;
+  double accuracy = 0, step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0,
+         energy_every = 0;
   Options options;
   std::vector<double> every;
   bool list_methods = false, list_scenes = false, csv = false, explain = false;

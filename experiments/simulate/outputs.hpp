@@ -24,6 +24,8 @@ class Outputs {
   // Takes the state at time 0, before the run, or one that the observer asked for.
   void see(const State& state);
 
+  // Whether anything is asked for that is seen on the way.
+  bool looks_on_the_way() const { return trajectory_ || energy_; }
   bool is_asked_for() const { return final_ || trajectory_ || energy_; }
   // Lets all files appear. `state`: the end; `origin`: how it was made (see provenance.hpp).
   void finish(const State& state, const nlohmann::json& origin);

@@ -5,27 +5,21 @@
 
 #include <fmt/format.h>
 
+#include "experiments/command/accuracy_choice.hpp"
 #include "qddot/measure/reference/reference_words.hpp"
 #include "qddot/measure/speed/judgement.hpp"
 
 namespace qddot::work_precision {
 
 using namespace measure;
+using command::time_in_words;
 namespace {
 
 // A step that is nearer to its limit is warned of.
 constexpr double small_margin = 0.15;
 
-std::string time_in_words(double seconds) {
-  if (seconds < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
-  if (seconds < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
-  if (seconds < 1) return fmt::format("{:.3g} ms", seconds * 1e3);
-  return fmt::format("{:.3g} s", seconds);
-}
-
 std::string knob_in_words(const Point& point) {
-  return point.method->knob == Knob::step_size ? fmt::format("h = {:.3g} s", point.value)
-                                               : fmt::format("rtol = {:.0e}", point.value);
+  return command::knob_in_words(*point.method, point.value);
 }
 
 const char* why_empty(const FrontRow& row, const Reference& reference) {

@@ -19,8 +19,9 @@ MOTION = BASE | SCENE | {"experiments/measure/motion"}
 REFERENCE = MOTION | {"experiments/measure/reference"}
 STABILITY = MOTION | {"experiments/measure/stability"}
 SPEED = REFERENCE | STABILITY | {"experiments/measure/speed"}
+ADVICE = SPEED | {"experiments/measure/advice"}
 TREND = SPEED | {"experiments/measure/trend"}
-COMMAND = TREND | {"experiments/command"}
+COMMAND = TREND | ADVICE | {"experiments/command"}
 VECTORS = "src/model/kernels/vectors"
 
 MAY_SEE = {
@@ -37,6 +38,7 @@ MAY_SEE = {
     "experiments/measure/stability": STABILITY,
     "experiments/measure/speed": SPEED,
     "experiments/measure/trend": TREND,
+    "experiments/measure/advice": ADVICE,
     "experiments/command": COMMAND,
     # Compiled for more than one processor: seen by each other only, and see what is plain data.
     VECTORS: {"src/model/kernels"},

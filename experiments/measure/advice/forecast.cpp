@@ -14,12 +14,13 @@ namespace qddot::measure {
 namespace {
 
 constexpr double without_end = std::numeric_limits<double>::infinity();
-// Steps are that far below the limit of stability over the motion, which is seen at some times only.
+// Steps are that far below the limit of stability over the motion, which is seen at some times
+// only.
 constexpr double below_limit = 0.95;
 // After a step that did not hold.
 constexpr double below_failure = 0.8;
-// Errors of implicit methods come from slower vibrations than w_p says, for they leave the fast ones
-// out: by this much in the median of the training cases.
+// Errors of implicit methods come from slower vibrations than w_p says, for they leave the fast
+// ones out: by this much in the median of the training cases.
 constexpr double implicit_share = 0.3;
 // Seconds of a dense eigenproblem of n unknowns are about this times n^3.
 constexpr double seconds_of_eigenproblem = 1.3e-9;
@@ -72,9 +73,8 @@ double Forecast::sensitivity(const Method& method) const {
     return sensitivity_ * (own == by_method_.end() ? implicit_share : own->second);
   }
   if (by_order_.empty()) return sensitivity_;
-  const auto nearest = std::ranges::min_element(by_order_, {}, [&](const auto& known) {
-    return std::abs(known.first - method.order);
-  });
+  const auto nearest = std::ranges::min_element(
+      by_order_, {}, [&](const auto& known) { return std::abs(known.first - method.order); });
   return sensitivity_ * nearest->second;
 }
 

@@ -69,11 +69,11 @@ class Forecast {
   const Stage& stage_;
   OwnFrequencies own_;
   double w_motion_, step_seconds_, sensitivity_;
-  std::map<int, double> by_order_;                   // of explicit methods: seen over expected
-  std::map<const Method*, double> by_method_;        // of implicit ones
+  std::map<int, double> by_order_;             // of explicit methods: seen over expected
+  std::map<const Method*, double> by_method_;  // of implicit ones
   std::map<const Method*, Seen> seen_;
-  std::map<const Method*, double> seconds_a_step_;   // as timed [s]
-  std::map<const Method*, double> failed_;           // the least step that did not hold [s]
+  std::map<const Method*, double> seconds_a_step_;  // as timed [s]
+  std::map<const Method*, double> failed_;          // the least step that did not hold [s]
 };
 
 }  // namespace qddot::measure

@@ -4,7 +4,8 @@
 
 namespace qddot::measure {
 
-// How far a method of fixed steps misses the frequency of q'' = -w^2 q at h w = `h_omega`, relative:
+// How far a method of fixed steps misses the frequency of q'' = -w^2 q at h w = `h_omega`,
+// relative:
 //   |log(r) / (i h w) - 1|,
 // r the root of its step (see LinearStep) next to exp(i h w). The real part is the error of the
 // phase, the imaginary one the damping: over a time t, a vibration of amplitude a is off by about

@@ -35,7 +35,8 @@ OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<Stat
   const Vec& start = model.initial().q;
   std::array<double, OwnFrequencies::highest_order + 2> squares{};  // of the k-th differences
   double farthest = 0;
-  for (const State& state : path) farthest = std::max(farthest, (state.q - start).lpNorm<Eigen::Infinity>());
+  for (const State& state : path)
+    farthest = std::max(farthest, (state.q - start).lpNorm<Eigen::Infinity>());
   int taken = 0;
   for (int i = 0; i < bursts; ++i) {
     const auto place = static_cast<std::size_t>(i) * path.size() / static_cast<std::size_t>(bursts);

@@ -45,8 +45,7 @@ double seconds_of_force(const ReducedScene& model) {
   Vec f(model.system().size());
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
-    least = std::min(least,
-                     seconds_of([&] { model.system().force(model.initial().q, f); }));
+    least = std::min(least, seconds_of([&] { model.system().force(model.initial().q, f); }));
   }
   return least;
 }
@@ -78,7 +77,9 @@ double growth_of_frequency(const ReducedScene& model, const std::vector<State>& 
 }  // namespace
 
 Search::Search(const ReducedScene& model, double until, AccuracyOf of, double seconds)
-    : of_(of), limit_(seconds), stage_(model, until, number_of_looks(steps_of_verlet(model, until), of)) {}
+    : of_(of),
+      limit_(seconds),
+      stage_(model, until, number_of_looks(steps_of_verlet(model, until), of)) {}
 
 double Search::seconds_left() const {
   stop_if_interrupted();
@@ -109,8 +110,8 @@ bool Search::survey() {
   // An eigenproblem of a few unknowns takes no time.
   constexpr double not_worth_a_search = 1e-4;
   const double exactly = seconds_of_exact(model);
-  if (exactly < std::max(not_worth_a_search,
-                         1.5 * steps_of_verlet(model, until) * seconds_of_force(model))) {
+  if (exactly <
+      std::max(not_worth_a_search, 1.5 * steps_of_verlet(model, until) * seconds_of_force(model))) {
     Trial& exact = run(*find_method("exact"), until, limit_);
     if (exact.reached_end()) stage_.measure_by(exact);
     return exact.reached_end();
@@ -144,8 +145,7 @@ bool Search::survey() {
 double Search::rounding() const {
   const Scales& scales = stage_.scales();
   const double slow = scales.displacement > 0 ? scales.speed / scales.displacement : 0;
-  const double phase =
-      w_start_ * stage_.until() * (slow > 0 ? std::max(1.0, w_start_ / slow) : 1);
+  const double phase = w_start_ * stage_.until() * (slow > 0 ? std::max(1.0, w_start_ / slow) : 1);
   return 4 * machine_epsilon * (1 + phase);
 }
 
@@ -238,8 +238,7 @@ void Search::learn() {
 bool Search::was_tried(const Candidate& candidate) const {
   constexpr double same = 0.01;
   return std::ranges::any_of(trials_, [&](const Trial& trial) {
-    return trial.method == candidate.method &&
-           std::abs(trial.value / candidate.value - 1) < same;
+    return trial.method == candidate.method && std::abs(trial.value / candidate.value - 1) < same;
   });
 }
 
@@ -343,6 +342,10 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
     if (most && *most <= accuracy && trial.seconds < answer->seconds) answer = &trial;
   }
   return answer;
+}
+
+void Search::try_once(const Candidate& candidate) {
+  if (!was_tried(candidate)) run(*candidate.method, candidate.value, limit_);
 }
 
 const Trial* Search::by_tolerance(double accuracy) {

@@ -34,6 +34,9 @@ class Search {
   // those of which nothing is known; returns the fastest one that is known to be so accurate.
   const Trial* race(const Trial* answer, double accuracy, double seconds);
 
+  // Makes that run, unless it was made.
+  void try_once(const Candidate& candidate);
+
   // A bound of the trial's error, from how far it is from a more accurate one; nothing where there
   // is none.
   std::optional<double> bound(const Trial& trial) const;

@@ -13,6 +13,8 @@ namespace {
 // Shorter runs [s] are timed again: the first one is cold.
 constexpr double short_run = 1e-3;
 constexpr int repeats_of_short = 3;
+// A clock's duration has an end [s].
+constexpr double longest_wait = 1e8;
 
 }  // namespace
 
@@ -21,19 +23,27 @@ Stage::Stage(const ReducedScene& model, double until, int looks) : model_(model)
   times_.push_back(until);
 }
 
-Trial Stage::run(const Method& method, double value, double seconds) {
+Trial Stage::run_from(const State& start, const Method& method, double value,
+                      double seconds) const {
   Trial trial{.method = &method, .value = value};
   const auto integrator =
       make_integrator(method, model_.system(), options_for(method, value, model_));
-  State state = model_.initial();
-  const Deadline deadline(seconds);
+  State state = start;
+  const Deadline deadline(std::min(seconds, longest_wait));
   const Observer each{times_, [&](const State& seen) { trial.path.push_back(seen); }};
-  trial.seconds =
-      seconds_of([&] { trial.summary = integrator->advance(state, until_, each, deadline.token()); });
-  stop_if_interrupted();
-  if (!trial.reached_end()) return trial;
-  for (int i = 0; i < repeats_of_short && trial.seconds < short_run; ++i) {
-    state = model_.initial();
+  trial.seconds = seconds_of(
+      [&] { trial.summary = integrator->advance(state, until_, each, deadline.token()); });
+  if (!trial.reached_end()) stop_if_interrupted();
+  return trial;
+}
+
+Trial Stage::run(const Method& method, double value, double seconds) {
+  Trial trial = run_from(model_.initial(), method, value, seconds);
+  if (!trial.reached_end() || trial.seconds >= short_run) return trial;
+  const auto integrator =
+      make_integrator(method, model_.system(), options_for(method, value, model_));
+  for (int i = 0; i < repeats_of_short; ++i) {
+    State state = model_.initial();
     trial.seconds =
         std::min(trial.seconds, seconds_of([&] { integrator->advance(state, until_); }));
   }

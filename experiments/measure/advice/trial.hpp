@@ -33,6 +33,8 @@ class Stage {
   // Runs the method to the end, for so many seconds at most. Where it comes there in less than a
   // millisecond, its time is the least of several.
   Trial run(const Method& method, double value, double seconds);
+  // The same, once, from another start.
+  Trial run_from(const State& start, const Method& method, double value, double seconds) const;
 
   // Measures the motion by that trial, which came to the end: what errors are divided by from now
   // on. None are known before.

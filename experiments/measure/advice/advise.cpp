@@ -1,0 +1,194 @@
+#include "qddot/measure/advice/advise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/search.hpp"
+#include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/reference/divergence.hpp"
+#include "qddot/model/machine_epsilon.hpp"
+#include "qddot/scene/settle.hpp"
+
+namespace qddot::measure {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// What advice may take [s], whatever is advised, and of the run that is.
+constexpr double always_allowed = 0.4, of_the_run = 1.8;
+// Fraction of an accuracy that a run is expected to miss by, as in solve().
+constexpr double expected_to_miss = 0.45;
+
+Candidate as_candidate(const Search& search, const Trial& trial) {
+  return {trial.method, trial.value, search.bound(trial).value_or(search.error(trial)),
+          trial.seconds};
+}
+
+void keep_faster(std::optional<Candidate>& fastest, const Candidate& candidate) {
+  if (!fastest || candidate.seconds < fastest->seconds) fastest = candidate;
+}
+
+// The runs that are expected or known to come to the accuracy, one a method, the fastest first.
+std::vector<Candidate> contenders(const Search& search, double accuracy) {
+  std::vector<Candidate> all;
+  if (search.forecast()) all = search.forecast()->candidates(expected_to_miss * accuracy);
+  std::erase_if(all, [&](const Candidate& c) { return !(c.error <= accuracy); });
+  for (const Trial& trial : search.trials()) {
+    const auto bound = search.bound(trial);
+    if (!bound || *bound > accuracy) continue;
+    const auto same = std::ranges::find(all, trial.method, &Candidate::method);
+    if (same == all.end()) {
+      all.push_back(as_candidate(search, trial));
+    } else if (trial.seconds < same->seconds) {
+      *same = as_candidate(search, trial);
+    }
+  }
+  std::ranges::sort(all, {}, &Candidate::seconds);
+  return all;
+}
+
+// Implicit steps that were never timed on the scene are guesses: they are not advised.
+bool is_trusted(const Search& search, const Candidate& candidate) {
+  if (!candidate.method->is(Trait::implicit)) return true;
+  return std::ranges::any_of(search.trials(), [&](const Trial& trial) {
+    return trial.method == candidate.method && trial.reached_end();
+  });
+}
+
+Advice advice_for(const Search& search, double accuracy) {
+  Advice advice{.accuracy = accuracy};
+  for (const Candidate& c : contenders(search, accuracy)) {
+    const bool is_implicit = c.method->is(Trait::implicit);
+    if (c.method->family == Family::sundials) {
+      keep_faster(advice.sundials, c);
+    } else {
+      keep_faster(is_implicit ? advice.own_implicit : advice.own_explicit, c);
+    }
+    if (!is_trusted(search, c)) continue;
+    if (!advice.take) {
+      advice.take = c;
+    } else if (!advice.runner_up) {
+      advice.runner_up = c;
+    }
+  }
+  if (!advice.take) {
+    advice.why = search.most_accurate()    ? "no method is expected to come so far"
+                 : search.trials().empty() ? "no run was made"
+                                           : fmt::format("no run came to the end: {}",
+                                                         search.trials().back().summary.message);
+    return advice;
+  }
+  for (const Trial& trial : search.trials()) {
+    if (trial.method == advice.take->method && trial.value == advice.take->value)
+      advice.is_seen = search.bound(trial).has_value();
+  }
+  return advice;
+}
+
+// Makes the runs that are advised, from the least accurate on, so long as that pays: each teaches
+// the forecast for the next.
+void try_out(Search& search, const std::vector<double>& accuracies,
+             std::chrono::steady_clock::time_point begin) {
+  std::vector<double> coarse_first = accuracies;
+  std::ranges::sort(coarse_first, std::ranges::greater());
+  double longest = 0;
+  for (const double accuracy : coarse_first) {
+    const Advice advice = advice_for(search, accuracy);
+    if (advice.take) longest = std::max(longest, advice.take->seconds);
+  }
+  const double allowed = std::max(always_allowed, of_the_run * longest);
+  for (const double accuracy : coarse_first) {
+    const double left = allowed - seconds_since(begin);
+    const Advice advice = advice_for(search, accuracy);
+    if (!advice.take || advice.is_seen) continue;
+    // The run, its check, and what may be faster.
+    constexpr double with_its_check = 3;
+    if (with_its_check * advice.take->seconds < left) {
+      const double share = left / static_cast<double>(accuracies.size());
+      search.race(search.find(accuracy), accuracy, share);
+    } else if (advice.take->seconds < left) {
+      search.try_once(*advice.take);
+    }
+  }
+}
+
+// How two of the runs part, which may be apart by more than a rounding at the start.
+Divergence parting(const Search& search) {
+  const Trial* best = search.most_accurate();
+  Divergence parted{infinity, 0};
+  if (!best) return parted;
+  for (const Trial& trial : search.trials()) {
+    if (&trial == best || !trial.reached_end()) continue;
+    std::vector<double> times{0}, distances{machine_epsilon};
+    for (std::size_t i = 0; i < search.stage().times().size(); ++i) {
+      times.push_back(search.stage().times()[i]);
+      distances.push_back(search.stage().distance_at(*best, trial, i));
+    }
+    const Divergence own = divergence(times, distances);
+    if (search.error(trial) < apart && own.horizon < parted.horizon) parted = own;
+  }
+  return parted;
+}
+
+Advices of_nothing(const ReducedScene& model, double until, const std::vector<double>& accuracies) {
+  Advices all{.largest_stable_step = infinity, .horizon = infinity};
+  const Answer rest = solve(model, until, {});
+  for (const double accuracy : accuracies) {
+    all.for_each.push_back({.accuracy = accuracy,
+                            .take = Candidate{rest.method, rest.value, rest.error_estimate, 0},
+                            .is_seen = true});
+  }
+  return all;
+}
+
+}  // namespace
+
+double Advice::margin() const {
+  return take && runner_up && take->seconds > 0 ? runner_up->seconds / take->seconds : infinity;
+}
+
+Advices advise(const ReducedScene& model, double until, const std::vector<double>& accuracies,
+               AccuracyOf of) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (const double accuracy : accuracies) require_accuracy(accuracy);
+  if (!(until > 0) || !std::isfinite(until))
+    throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
+  if (model.system().size() == 0) return of_nothing(model, until, accuracies);
+  if (!model.system().has_stiffness())
+    throw std::invalid_argument("advise: the system has no stiffness, which says how fast it is");
+  Search search(model, until, of, infinity);
+  if (search.survey()) {
+    if (model.system().has_massless()) {
+      for (const double accuracy : accuracies) search.find(accuracy);
+    } else {
+      try_out(search, accuracies, begin);
+    }
+  }
+  Advices all;
+  for (const double accuracy : accuracies) all.for_each.push_back(advice_for(search, accuracy));
+  all.w_start = all.w_motion = search.w_start();
+  if (search.forecast()) {
+    all.w_motion = search.forecast()->w_motion();
+    all.own_frequency = search.forecast()->own().at(2);
+  }
+  all.largest_stable_step = all.w_motion > 0 ? 2 / all.w_motion : infinity;
+  const Divergence parted = parting(search);
+  all.horizon = parted.horizon;
+  all.lyapunov = parted.lyapunov;
+  all.runs = static_cast<int>(search.trials().size());
+  all.seconds = seconds_since(begin);
+  return all;
+}
+
+Advices advise(const Scene& scene, double until, const std::vector<double>& accuracies,
+               AccuracyOf of) {
+  const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
+  return advise(ReducedScene(start), until, accuracies, of);
+}
+
+}  // namespace qddot::measure

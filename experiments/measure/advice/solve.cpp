@@ -1,0 +1,215 @@
+#include "qddot/measure/advice/solve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/search.hpp"
+#include "qddot/measure/motion/duration.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/reference/divergence.hpp"
+#include "qddot/measure/reference/reference_rounding.hpp"
+#include "qddot/model/machine_epsilon.hpp"
+#include "qddot/scene/settle.hpp"
+
+namespace qddot::measure {
+namespace {
+
+// What may be spent on runs that are only perhaps faster than the answer.
+double seconds_of_race(const Trial& answer) { return std::max(0.01, 0.2 * answer.seconds); }
+
+void fill(Answer& answer, const Search& search, const Trial& trial, const ReducedScene& model) {
+  answer.method = trial.method;
+  answer.value = trial.value;
+  answer.summary = trial.summary;
+  answer.end = trial.path.empty() ? model.initial() : trial.path.back();
+  answer.nodes = model.expand(answer.end);
+  answer.seconds.run = trial.seconds;
+  if (const Trial* check = search.checker(trial)) answer.seconds.check = check->seconds;
+}
+
+EstimateKind kind_of(const Trial& trial, AccuracyOf of) {
+  if (of == AccuracyOf::energy) return EstimateKind::conserved;
+  return trial.method->order == 0 ? EstimateKind::rounding : EstimateKind::compared;
+}
+
+// A run that was made and one more from a start that is one rounding away.
+std::optional<Divergence> parting(Search& search, const Trial& trial) {
+  Stage& stage = search.stage();
+  const State pushed = displaced_start(stage.model(), stage.scales(), machine_epsilon);
+  const Trial twin = stage.run_from(pushed, *trial.method, trial.value, search.seconds_left());
+  if (!twin.reached_end()) return {};
+  std::vector<double> times{0}, distances{machine_epsilon};
+  for (std::size_t i = 0; i < stage.times().size(); ++i) {
+    times.push_back(stage.times()[i]);
+    distances.push_back(stage.distance_at(trial, twin, i));
+  }
+  return divergence(times, distances);
+}
+
+// The last time up to which the two most accurate runs agree to the accuracy.
+double agreed_until(const Search& search, const Trial& one, double accuracy) {
+  const Trial* other = nullptr;
+  for (const Trial& trial : search.trials()) {
+    if (&trial == &one || !trial.reached_end()) continue;
+    if (!other || search.error(trial) < search.error(*other)) other = &trial;
+  }
+  double until = 0;
+  if (!other) return until;
+  for (std::size_t i = 0; i < search.stage().times().size(); ++i) {
+    if (2 * search.stage().distance_at(one, *other, i) > accuracy) break;
+    until = search.stage().times()[i];
+  }
+  return until;
+}
+
+// Says why no run is known to be accurate enough, and what can be had. `stopped_by`: what ended the
+// search early, empty where nothing did.
+void explain_failure(Answer& answer, Search& search, const Wanted& wanted, double until,
+                     const std::string& stopped_by) {
+  const Trial* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Trial& trial : search.trials()) {
+    const auto bound = search.bound(trial);
+    if (bound && *bound < least) {
+      least = *bound;
+      best = &trial;
+    }
+  }
+  if (!best) best = search.most_accurate();
+  if (!best) {
+    const Trial* last = search.trials().empty() ? nullptr : &search.trials().back();
+    if (last) fill(answer, search, *last, search.stage().model());
+    answer.why =
+        last ? fmt::format("no run came to the end; {} at {:g}: {}", last->method->name,
+                           last->value, stopped_by.empty() ? last->summary.message : stopped_by)
+             : stopped_by;
+    return;
+  }
+  fill(answer, search, *best, search.stage().model());
+  answer.error_estimate = least;
+  answer.error_estimate_kind =
+      std::isfinite(least) ? kind_of(*best, wanted.of) : EstimateKind::none;
+  const std::string reached = std::isfinite(least)
+                                  ? fmt::format("the best that is known is {:.1e}", least)
+                                  : "no error is known";
+  if (!stopped_by.empty()) {
+    answer.why = fmt::format("{}; {}", stopped_by, reached);
+    return;
+  }
+  if (wanted.of != AccuracyOf::energy) {
+    if (const auto parted = parting(search, *best)) {
+      answer.horizon = parted->horizon;
+      answer.lyapunov = parted->lyapunov;
+    }
+  }
+  const double agreed = agreed_until(search, *best, wanted.accuracy);
+  const std::string instead =
+      agreed > 0 ? fmt::format("; to t = {:.3g} s it can be had", agreed) : "";
+  if (answer.horizon <= until) {
+    answer.why = fmt::format(
+        "the motion is chaotic: from t = {:.3g} s on nobody knows its positions (errors grow by a "
+        "factor of e in {}); {}{}; ask for an earlier end, or for --accuracy-of energy",
+        answer.horizon, duration_in_words(1 / answer.lyapunov), reached, instead);
+  } else if (answer.lyapunov > 0) {
+    answer.why =
+        fmt::format("the motion is chaotic: its rounding has grown beyond that by t = {:g} s; {}{}",
+                    until, reached, instead);
+  } else {
+    answer.why = fmt::format("no method is known to come so far; {}{}", reached, instead);
+  }
+}
+
+// What rests, or moves in closed form, has no error.
+Answer of_nothing(const ReducedScene& model, double until) {
+  Answer answer;
+  answer.is_reached = true;
+  const Method* exact = find_method("exact");
+  answer.method = applies_to(*exact, model.system()) ? exact : find_method("verlet");
+  answer.value = until;
+  answer.error_estimate = 4 * machine_epsilon;
+  answer.error_estimate_kind = EstimateKind::rounding;
+  answer.advised_by = "modes";
+  answer.end = model.initial();
+  answer.end.t = until;
+  answer.summary.outcome = Outcome::reached_end;
+  answer.summary.t_reached = until;
+  answer.summary.message.clear();
+  answer.nodes = model.expand(answer.end);
+  return answer;
+}
+
+}  // namespace
+
+const char* name(EstimateKind kind) {
+  switch (kind) {
+    case EstimateKind::compared:
+      return "compared";
+    case EstimateKind::conserved:
+      return "conserved";
+    case EstimateKind::rounding:
+      return "rounding";
+    case EstimateKind::none:
+      break;
+  }
+  return "none";
+}
+
+void require_accuracy(double accuracy) {
+  if (accuracy >= least_accuracy && accuracy < 1) return;
+  throw std::invalid_argument(fmt::format(
+      "accuracy = {:g} is not allowed; it is a relative error, from 1e-14, where rounding decides, "
+      "to below 1, where nothing is known",
+      accuracy));
+}
+
+Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
+  const auto begin = std::chrono::steady_clock::now();
+  require_accuracy(wanted.accuracy);
+  if (!(until > 0) || !std::isfinite(until))
+    throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
+  if (model.system().size() == 0) return of_nothing(model, until);
+  if (!model.system().has_stiffness())
+    throw std::invalid_argument("solve: the system has no stiffness, which says how fast it is");
+  Search search(model, until, wanted.of, wanted.seconds);
+  Answer answer;
+  const Trial* found = nullptr;
+  std::string stopped_by;
+  try {
+    if (search.survey()) found = search.find(wanted.accuracy);
+    if (found) found = search.race(found, wanted.accuracy, seconds_of_race(*found));
+    if (search.seconds_left() <= 0) stopped_by = "time was up";
+  } catch (const Interrupted& interrupted) {
+    stopped_by = interrupted.what();
+  }
+  answer.advised_by = search.forecast()               ? "forecast"
+                      : model.system().has_massless() ? "tolerance"
+                                                      : "modes";
+  if (found) {
+    fill(answer, search, *found, model);
+    answer.is_reached = true;
+    answer.error_estimate = *search.bound(*found);
+    answer.error_estimate_kind = kind_of(*found, wanted.of);
+  } else {
+    explain_failure(answer, search, wanted, until, stopped_by);
+  }
+  answer.runs = static_cast<int>(search.trials().size());
+  answer.seconds.pilots = seconds_since(begin) - answer.seconds.run - answer.seconds.check;
+  return answer;
+}
+
+Answer solve(const Scene& scene, double until, const Wanted& wanted) {
+  const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
+  return solve(ReducedScene(start), until, wanted);
+}
+
+Answer solve(const Scene& scene, double until, double accuracy) {
+  return solve(scene, until, Wanted{.accuracy = accuracy});
+}
+
+}  // namespace qddot::measure

@@ -1,0 +1,139 @@
+#include "experiments/simulate/answer.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/accuracy_choice.hpp"
+#include "experiments/command/interruptible.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/simulate/outputs.hpp"
+#include "experiments/simulate/written_scene.hpp"
+#include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::simulate {
+
+using namespace measure;
+namespace {
+
+// An interruption waits so long [s] for what was found until then.
+constexpr double patience = 60;
+
+nlohmann::json finite_or_null(double x) {
+  return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr);
+}
+
+void refuse_choices(const CommandLine& line) {
+  for (const char* option :
+       {"--method", "--step-size", "--rtol", "--atol", "--max-order", "--stability-detection",
+        "--iterations", "--solve-tolerance", "--spectral-radius", "--solver"}) {
+    if (line.has(option)) {
+      throw InvalidInput(fmt::format(
+          "{} is not for --accuracy, which chooses the method and its knob: leave out one of both",
+          option));
+    }
+  }
+}
+
+// The method's run once more, for what is to be seen on its way; its end.
+State seen(const Answer& answer, const ReducedScene& scene, double until, Outputs& output) {
+  State state = scene.initial();
+  const auto integrator = make_integrator(*answer.method, scene.system(),
+                                          options_for(*answer.method, answer.value, scene));
+  integrator->advance(state, until, output.observer(), interruption());
+  return state;
+}
+
+nlohmann::json about(const Answer& answer, const Arguments& a) {
+  return {{"accuracy", a.accuracy},
+          {"accuracy_of", a.accuracy_of.empty() ? "positions" : a.accuracy_of},
+          {"is_reached", answer.is_reached},
+          {"why", answer.why},
+          {"method", answer.method->name},
+          {"knob", knob_name(answer.method->knob)},
+          {"value", answer.value},
+          {"error_estimate", finite_or_null(answer.error_estimate)},
+          {"error_estimate_kind", name(answer.error_estimate_kind)},
+          {"horizon", finite_or_null(answer.horizon)},
+          {"lyapunov", answer.lyapunov},
+          {"advised_by", answer.advised_by},
+          {"runs", answer.runs},
+          {"seconds", answer.seconds.total()},
+          {"seconds_by_phase",
+           {{"pilots", answer.seconds.pilots},
+            {"run", answer.seconds.run},
+            {"check", answer.seconds.check}}}};
+}
+
+std::string estimate_in_words(const Answer& answer) {
+  switch (answer.error_estimate_kind) {
+    case EstimateKind::compared:
+      return fmt::format("error at most {:.1e}, as a more accurate run says",
+                         answer.error_estimate);
+    case EstimateKind::conserved:
+      return fmt::format("energy error at most {:.1e}, as seen on the way", answer.error_estimate);
+    case EstimateKind::rounding:
+      return fmt::format("error at most {:.1e}, which is rounding", answer.error_estimate);
+    case EstimateKind::none:
+      break;
+  }
+  return "error unknown";
+}
+
+}  // namespace
+
+int answer(const CommandLine& line, Arguments& a, const std::vector<std::string>& command_line) {
+  refuse_choices(line);
+  require_allowed_accuracy(a.accuracy);
+  const AccuracyOf of = accuracy_of(a.accuracy_of);
+  assign_every(line, a);
+  require_distinct_outputs(line, a);
+  const Scene drawn = load(a.scene);
+  const double until = end_time(a.until, line.has("--until"), drawn);
+  const Scene start = started(drawn, a.scene);
+  const ReducedScene scene(start, reductions_of(a.scene));
+
+  WrittenScene written_scene(a.written_scene_path);
+  Outputs output(a, scene, until);
+  written_scene.commit(drawn);
+  wait_for_answer(patience);
+  const Answer answer = solve(scene, until, {.accuracy = a.accuracy, .of = of});
+  const auto why = answer.is_reached ? std::nullopt : interrupted();
+  if (!answer.method) {  // no run was begun
+    fmt::print(stderr, "simulate: {}\n", answer.why);
+    return why ? why->status : end_not_reached;
+  }
+  if (output.is_asked_for()) {
+    State end = answer.end;
+    if (output.looks_on_the_way()) {
+      output.see(scene.initial());
+      end = seen(answer, scene, until, output);
+    }
+    nlohmann::json origin = provenance(command_line, drawn, start, scene);
+    origin["outcome"] = name(answer.summary.outcome);
+    origin["t_reached"] = end.t;
+    origin["energy_growth"] = answer.summary.energy_growth;
+    origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
+    origin.update(about(answer, a));
+    output.finish(end, origin);
+  }
+  fmt::print(
+      "{} to t = {:g} s: {} at {}; {}; {} for the run, {} for its check and {} for {} to "
+      "find it\n",
+      in_one_line(drawn.name), until, answer.method->name,
+      knob_in_words(*answer.method, answer.value), estimate_in_words(answer),
+      time_in_words(answer.seconds.run), time_in_words(answer.seconds.check),
+      time_in_words(answer.seconds.pilots),
+      answer.runs == 1 ? "1 run" : fmt::format("{} runs", answer.runs));
+  if (answer.is_reached) return done;
+  fmt::print(stderr, "simulate: --accuracy {:g} was not reached: {}\n", a.accuracy, answer.why);
+  return why ? why->status : end_not_reached;
+}
+
+}  // namespace qddot::simulate
