@@ -1,89 +1,102 @@
-#include <cstdlib>
-#include <fstream>
-#include <iostream>
-#include <map>
-#include <sstream>
-
+// What is an answer worth that was asked for by its accuracy alone? Scenes, horizons and accuracies
+// are drawn; each motion is asked for, its error measured against a certified reference, and its
+// time compared with the fastest run of all methods, known in hindsight.
+//
+//   advice --out results/advice
+//   advice --cases 40 --first 2000000 --out results/other
+//
+//  1. Cases are drawn by their number (see drawn_case.hpp). Those below 1000000 are what the
+//  constants
+//     of the search were chosen on; the study takes others.
+//  2. cases.csv: of each, the answer (method, knob, error estimate), its error, the best run in
+//     hindsight, and the seconds of all of these. Cases without a reference are left out and say
+//     so.
+//  3. worth.csv: how often claims and error bars hold, how wide the bars are, how near the choice
+//  is
+//     to the best, what everything takes.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "experiments/advice/drawn_case.hpp"
-#include "qddot/integrators/registry.hpp"
-#include "qddot/measure/advice/search.hpp"
-#include "qddot/measure/motion/timing.hpp"
-#include "qddot/measure/reference/reference.hpp"
-#include "qddot/measure/speed/measurement.hpp"
+#include "experiments/advice/case_result.hpp"
+#include "experiments/advice/worth.hpp"
+#include "experiments/command/command_line.hpp"
+#include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/study.hpp"
+
+namespace qddot::advice_study {
+
+using namespace measure;
+namespace {
+
+constexpr int most_cases = 100000, first_unseen = 1000000, last = 2000000000;
+
+struct Arguments {
+  std::string out;
+  int cases = 200, first = first_unseen, repeats = 3;
+  double reference_seconds = 5;
+};
+
+void declare(CommandLine& line, Arguments& a) {
+  line.add_option("--cases", a.cases, "how many").capture_default_str();
+  line.add_option("--first", a.first,
+                  "the number of the first; below 1000000 are cases that the "
+                  "search was tuned on")
+      .capture_default_str();
+  line.add_option("--repeats", a.repeats, "timed runs of the best and of the chosen run")
+      .capture_default_str();
+  line.add_option("--reference-seconds", a.reference_seconds,
+                  "seconds that a reference may take, about")
+      .capture_default_str();
+  line.add_option("--out", a.out, "the folder for cases.csv and worth.csv");
+}
+
+int advice(const CommandLine& line, const Arguments& a,
+           const std::vector<std::string>& command_line) {
+  require_given(a.out, "--out", "the folder for the results");
+  require_within(a.cases, 1, most_cases, "--cases");
+  require_within(a.first, 0, last, "--first");
+  require_repeats(a.repeats);
+  require_positive(a.reference_seconds, "--reference-seconds", "the seconds of a reference");
+  require_folder(a.out);
+  Study study(line, a.out, {"cases.csv", "worth.csv"}, {{"code", code_hash()}});
+  if (const auto status = study.completed()) return *status;
+  CsvFile cases_csv(a.out + "/cases.csv", case_columns().header());
+  CsvFile worth_csv(a.out + "/worth.csv", {"figure", "value", "cases", "meaning"});
+
+  std::vector<CaseResult> results;
+  study.measure([&] {
+    for (int i = 0; i < a.cases; ++i) {
+      const auto number = static_cast<std::uint64_t>(a.first + i);
+      show_progress(fmt::format("case {} of {} ...", i + 1, a.cases));
+      results.push_back(result_from(study.piece(fmt::format("case {}", number), [&] {
+        return record_of(result_of(drawn_case(number), a.reference_seconds, a.repeats));
+      })));
+    }
+  });
+  show_progress("");
+  for (const CaseResult& result : results) case_columns().write_row(cases_csv, result);
+  fmt::print("{:<24} {:>8} {:>6}  {}\n", "figure", "value", "cases", "of what");
+  for (const Figure& figure : worth_of(results)) {
+    worth_csv.row(figure.name, figure.value, figure.cases, figure.meaning);
+    fmt::print("{:<24} {:>8.3g} {:>6}  {}\n", figure.name, figure.value, figure.cases,
+               figure.meaning);
+  }
+  return study.finish({&cases_csv, &worth_csv}, provenance(command_line), done);
+}
+
+}  // namespace
+}  // namespace qddot::advice_study
+
 int main(int argc, char** argv) {
-  using namespace qddot;
-  using namespace qddot::measure;
-  const bool verbose = argc > 2 && std::string(argv[2]) == "v";
-  std::ifstream in(argv[1]);
-  std::string l;
-  std::map<int, std::vector<std::string>> best;
-  while (std::getline(in, l)) {
-    std::vector<std::string> f;
-    std::stringstream s(l);
-    std::string x;
-    while (std::getline(s, x, ',')) f.push_back(x);
-    if (!f.empty() && f[0] == "B" && f.size() > 14) best[std::stoi(f[1])] = f;
-  }
-  for (auto& [seed, f] : best) {
-    if (argc > 3 && seed != std::atoi(argv[3])) continue;
-    const auto c = advice_study::drawn_case(seed);
-    const ReducedScene model(c.scene);
-    const double A = c.accuracy, bt0 = std::stod(f[7]);
-    double bt = bt0;
-    if (f[5] != "reached_end" || model.system().size() == 0) continue;
-    const auto begin = std::chrono::steady_clock::now();
-    Search search(model, c.until, AccuracyOf::positions, 100);
-    const Trial* t = nullptr;
-    double ts = 0;
-    if (search.survey()) {
-      ts = seconds_since(begin);
-      t = search.find(A);
-      t = search.race(t, A, std::max(0.01, 0.2 * (t ? t->seconds : 0)));
-    }
-    const double total = seconds_since(begin);
-    double te = -1, cert = 0, mt = 0;
-    if (t) {
-      try {
-        const Reference r = make_reference(model, c.until, 3);
-        te = errors_between(model, t->path.back(), r.end, r.energy, r.scales).position;
-        cert = r.certified.position;
-        mt = measure_point(*t->method, t->value, model, c.until, r, {.repeats = 3}).time_min;
-        bt = measure_point(*find_method(f[3]), std::stod(f[4]), model, c.until, r, {.repeats = 3})
-                 .time_min;
-      } catch (const std::exception&) {
-      }
-    }
-    fmt::print(
-        "{} {} n={} A={:.1e} best {} {:.3g}s steps {} | {} {:.3g}s e={:.2e} true={:.2e} bar={:.2e} "
-        "cert={:.0e} | choice {:.2f} total {:.2f} survey {:.2f} runs {}\n",
-        seed, c.kind, model.system().size(), A, f[3], bt, f[9], t ? t->method->name : "NONE",
-        t ? t->seconds : 0, t ? search.error(*t) : 0, te, t ? *search.bound(*t) : 0, cert, mt / bt,
-        total / bt, ts / bt, search.trials().size());
-    if (verbose) {
-      double sum = 0;
-      for (const Trial& x : search.trials()) sum += x.seconds;
-      fmt::print("   total {:.4g} in runs {:.4g} survey beside its run {:.4g}\n", total, sum,
-                 ts - search.trials().front().seconds);
-      if (search.trials().size() && search.trials().front().reached_end() && search.forecast()) {
-        const auto& own = search.forecast()->own();
-        fmt::print("   w {:.4g} -> {:.4g}; own/w", search.w_start(), search.forecast()->w_motion());
-        for (int p = 2; p <= 10; p += 2) fmt::print(" {:.3g}", own.at(p) / search.w_start());
-        fmt::print(" speed*T {:.3g}\n", own.speed * c.until);
-      }
-      for (const Trial& x : search.trials()) {
-        fmt::print("   {} {:.4g} N={:.0f} {} {:.3g}s", x.method->name, x.value, c.until / x.value,
-                   name(x.summary.outcome), x.seconds);
-        if (x.reached_end())
-          fmt::print(" expected {:.2e} error {:.2e}",
-                     (search.forecast() ? search.forecast()->error(*x.method, x.value) : 0.),
-                     search.error(x)),
-              fmt::print(" surprise {} {:.2f}", x.method->order,
-                         std::log10(search.error(x) / std::max(x.expected, 1e-16)));
-        fmt::print("\n");
-      }
-    }
-    std::fflush(stdout);
-  }
+  using namespace qddot::advice_study;
+  return qddot::command::enter<Arguments>(
+      {.name = "advice",
+       .summary = "Measures what answers are worth that were asked for by their accuracy.",
+       .has_threads = true,
+       .has_resume = true},
+      declare, advice, argc, argv);
 }

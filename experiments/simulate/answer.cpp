@@ -124,13 +124,12 @@ int answer(const CommandLine& line, Arguments& a, const std::vector<std::string>
     output.finish(end, origin);
   }
   fmt::print(
-      "{} to t = {:g} s: {} at {}; {}; {} for the run, {} for its check and {} for {} to "
-      "find it\n",
+      "{} to t = {:g} s: {} at {}; {}; {} for the run, {} for its check, {} to find them "
+      "({} run{} in all)\n",
       in_one_line(drawn.name), until, answer.method->name,
       knob_in_words(*answer.method, answer.value), estimate_in_words(answer),
       time_in_words(answer.seconds.run), time_in_words(answer.seconds.check),
-      time_in_words(answer.seconds.pilots),
-      answer.runs == 1 ? "1 run" : fmt::format("{} runs", answer.runs));
+      time_in_words(answer.seconds.pilots), answer.runs, answer.runs == 1 ? "" : "s");
   if (answer.is_reached) return done;
   fmt::print(stderr, "simulate: --accuracy {:g} was not reached: {}\n", a.accuracy, answer.why);
   return why ? why->status : end_not_reached;

@@ -48,6 +48,7 @@ PROGRAMS = {
     "symmetric_roots": 2,
     "bench": 0.5,
     "advise": 3,
+    "advice": 0.5,
     "sweep": 2,
 }
 

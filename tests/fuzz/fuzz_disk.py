@@ -34,6 +34,7 @@ SIMULATE = (
 COMMANDS = {name: words + " --out results" for name, words in STUDIES.items()} | {
     "simulate": SIMULATE,
     "equilibrium": "--scene steady.toml --final results/rest.csv",
+    "advise": "--scene steady.toml --accuracy 1e-3 --out results",
 }
 
 

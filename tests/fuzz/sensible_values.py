@@ -55,6 +55,10 @@ SENSIBLE = {
     "--peers": ["odeint", "none"],
     "--solvers": ["multifrontal", "cholmod", "multifrontal,conjugate_gradients"],
     "--accuracy": (1e-6, 1e-1),
+    "--accuracy-of": ["positions", "path", "energy"],
+    "--cases": ["1", "2"],
+    "--first": ["3000000", "3000002"],
+    "--reference-seconds": ["0.2", "0.5"],
     "--samples": ["1", "5"],
 }
 OF_A_PROGRAM = {
@@ -83,6 +87,8 @@ NEEDED = {
     "--least-nodes",
     "--ratios",
     "--seeds",
+    "--cases",
+    "--reference-seconds",
     "--cells",
     "--samples",
     "--columns",

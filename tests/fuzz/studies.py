@@ -29,6 +29,7 @@ STUDIES = {
     "modes": "--scene steady.toml",
     "symmetric_roots": "--samples 30",
     "verdicts": "--seeds 1 --cells 64",
+    "advice": "--cases 2 --first 3000000 --repeats 1 --reference-seconds 0.3",
     "bench": "steady.toml@0.01 --methods verlet --repeats 1 --point-limit 100 --peers odeint",
 }
 
@@ -59,12 +60,13 @@ LONG_STUDIES = {
     " --point-limit 1000",
     "solvers": "--scene lattice --repeats 3",
     "verdicts": "--seeds 3 --cells 256",
+    "advice": "--cases 6 --first 3000000 --repeats 2 --reference-seconds 1",
     "bench": "larger.toml@0.02 --methods verlet,dprkn6 --repeats 1 --point-limit 1000"
     " --peers odeint",
 }
 
 # Studies that make their references by whatever is the fastest, and so not the same twice.
-REFERENCES_BY_THE_CLOCK = {"crossover"}
+REFERENCES_BY_THE_CLOCK = {"crossover", "advice"}
 
 
 def write_scenes(folder):

@@ -29,6 +29,7 @@ PICTURES = {
     "crossover": (("crossover",), None),
     "modes": (("modes",), None),
     "symmetric_roots": (("symmetric_roots",), "roots.csv"),
+    "advice": (("advice",), None),
     "bench": (("bench",), None),
 }
 

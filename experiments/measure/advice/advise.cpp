@@ -10,8 +10,8 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/advice/twin.hpp"
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/measure/reference/divergence.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/settle.hpp"
 
@@ -33,22 +33,39 @@ void keep_faster(std::optional<Candidate>& fastest, const Candidate& candidate) 
   if (!fastest || candidate.seconds < fastest->seconds) fastest = candidate;
 }
 
+// A run, and whether it was made and checked.
+struct Contender {
+  Candidate run;
+  bool is_seen = false;
+
+  // What it takes, with something on top for what is not known.
+  double handicapped() const {
+    constexpr double unseen = 1.3;
+    return is_seen ? run.seconds : unseen * run.seconds;
+  }
+};
+
 // The runs that are expected or known to come to the accuracy, one a method, the fastest first.
-std::vector<Candidate> contenders(const Search& search, double accuracy) {
-  std::vector<Candidate> all;
-  if (search.forecast()) all = search.forecast()->candidates(expected_to_miss * accuracy);
-  std::erase_if(all, [&](const Candidate& c) { return !(c.error <= accuracy); });
+std::vector<Contender> contenders(const Search& search, double accuracy) {
+  std::vector<Contender> all;
+  if (search.forecast()) {
+    for (const Candidate& c : search.forecast()->candidates(expected_to_miss * accuracy)) {
+      if (c.error <= accuracy) all.push_back({c});
+    }
+  }
   for (const Trial& trial : search.trials()) {
     const auto bound = search.bound(trial);
     if (!bound || *bound > accuracy) continue;
-    const auto same = std::ranges::find(all, trial.method, &Candidate::method);
+    const Contender seen{as_candidate(search, trial), true};
+    const auto same = std::ranges::find(all, trial.method,
+                                        [](const Contender& other) { return other.run.method; });
     if (same == all.end()) {
-      all.push_back(as_candidate(search, trial));
-    } else if (trial.seconds < same->seconds) {
-      *same = as_candidate(search, trial);
+      all.push_back(seen);
+    } else if (seen.handicapped() < same->handicapped()) {
+      *same = seen;
     }
   }
-  std::ranges::sort(all, {}, &Candidate::seconds);
+  std::ranges::sort(all, {}, &Contender::handicapped);
   return all;
 }
 
@@ -62,7 +79,7 @@ bool is_trusted(const Search& search, const Candidate& candidate) {
 
 Advice advice_for(const Search& search, double accuracy) {
   Advice advice{.accuracy = accuracy};
-  for (const Candidate& c : contenders(search, accuracy)) {
+  for (const auto& [c, is_seen] : contenders(search, accuracy)) {
     const bool is_implicit = c.method->is(Trait::implicit);
     if (c.method->family == Family::sundials) {
       keep_faster(advice.sundials, c);
@@ -72,6 +89,7 @@ Advice advice_for(const Search& search, double accuracy) {
     if (!is_trusted(search, c)) continue;
     if (!advice.take) {
       advice.take = c;
+      advice.is_seen = is_seen;
     } else if (!advice.runner_up) {
       advice.runner_up = c;
     }
@@ -82,10 +100,6 @@ Advice advice_for(const Search& search, double accuracy) {
                                            : fmt::format("no run came to the end: {}",
                                                          search.trials().back().summary.message);
     return advice;
-  }
-  for (const Trial& trial : search.trials()) {
-    if (trial.method == advice.take->method && trial.value == advice.take->value)
-      advice.is_seen = search.bound(trial).has_value();
   }
   return advice;
 }
@@ -103,36 +117,20 @@ void try_out(Search& search, const std::vector<double>& accuracies,
   }
   const double allowed = std::max(always_allowed, of_the_run * longest);
   for (const double accuracy : coarse_first) {
-    const double left = allowed - seconds_since(begin);
-    const Advice advice = advice_for(search, accuracy);
-    if (!advice.take || advice.is_seen) continue;
-    // The run, its check, and what may be faster.
+    // The run, its check, and what may be faster; then once more, where all that says otherwise.
     constexpr double with_its_check = 3;
-    if (with_its_check * advice.take->seconds < left) {
-      const double share = left / static_cast<double>(accuracies.size());
-      search.race(search.find(accuracy), accuracy, share);
-    } else if (advice.take->seconds < left) {
-      search.try_once(*advice.take);
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      const double left = allowed - seconds_since(begin);
+      const Advice advice = advice_for(search, accuracy);
+      if (!advice.take || advice.is_seen || advice.take->seconds > left) break;
+      if (attempt == 0 && with_its_check * advice.take->seconds < left) {
+        const double share = left / static_cast<double>(2 * accuracies.size());
+        search.race(search.find(accuracy), accuracy, share);
+      } else {
+        search.try_once(*advice.take);
+      }
     }
   }
-}
-
-// How two of the runs part, which may be apart by more than a rounding at the start.
-Divergence parting(const Search& search) {
-  const Trial* best = search.most_accurate();
-  Divergence parted{infinity, 0};
-  if (!best) return parted;
-  for (const Trial& trial : search.trials()) {
-    if (&trial == best || !trial.reached_end()) continue;
-    std::vector<double> times{0}, distances{machine_epsilon};
-    for (std::size_t i = 0; i < search.stage().times().size(); ++i) {
-      times.push_back(search.stage().times()[i]);
-      distances.push_back(search.stage().distance_at(*best, trial, i));
-    }
-    const Divergence own = divergence(times, distances);
-    if (search.error(trial) < apart && own.horizon < parted.horizon) parted = own;
-  }
-  return parted;
 }
 
 Advices of_nothing(const ReducedScene& model, double until, const std::vector<double>& accuracies) {
@@ -149,27 +147,29 @@ Advices of_nothing(const ReducedScene& model, double until, const std::vector<do
 }  // namespace
 
 double Advice::margin() const {
-  return take && runner_up && take->seconds > 0 ? runner_up->seconds / take->seconds : infinity;
+  if (!take || !runner_up || !(take->seconds > 0)) return infinity;
+  return std::max(1.0, runner_up->seconds / take->seconds);
 }
 
 Advices advise(const ReducedScene& model, double until, const std::vector<double>& accuracies,
                AccuracyOf of) {
   const auto begin = std::chrono::steady_clock::now();
   for (const double accuracy : accuracies) require_accuracy(accuracy);
+  if (accuracies.empty()) throw std::invalid_argument("advise: no accuracy is given");
   if (!(until > 0) || !std::isfinite(until))
     throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
   if (model.system().size() == 0) return of_nothing(model, until, accuracies);
   if (!model.system().has_stiffness())
     throw std::invalid_argument("advise: the system has no stiffness, which says how fast it is");
   Search search(model, until, of, infinity);
-  if (search.survey()) {
-    if (model.system().has_massless()) {
-      for (const double accuracy : accuracies) search.find(accuracy);
-    } else {
+  if (search.survey(std::ranges::min(accuracies))) {
+    if (search.forecast()) {
       try_out(search, accuracies, begin);
+    } else {
+      for (const double accuracy : accuracies) search.find(accuracy);
     }
   }
-  Advices all;
+  Advices all{.horizon = infinity};
   for (const double accuracy : accuracies) all.for_each.push_back(advice_for(search, accuracy));
   all.w_start = all.w_motion = search.w_start();
   if (search.forecast()) {
@@ -177,9 +177,14 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
     all.own_frequency = search.forecast()->own().at(2);
   }
   all.largest_stable_step = all.w_motion > 0 ? 2 / all.w_motion : infinity;
-  const Divergence parted = parting(search);
-  all.horizon = parted.horizon;
-  all.lyapunov = parted.lyapunov;
+  // A twin is one more run.
+  const Trial* best = search.most_accurate();
+  if (best && search.forecast() && seconds_since(begin) + best->seconds < always_allowed) {
+    if (const auto parted = parting_of_twins(search.stage(), *best, always_allowed)) {
+      all.horizon = parted->horizon;
+      all.lyapunov = parted->lyapunov;
+    }
+  }
   all.runs = static_cast<int>(search.trials().size());
   all.seconds = seconds_since(begin);
   return all;

@@ -32,10 +32,9 @@ bool is_told_by_frequency(const Method& method) {
   return method.order > 0 && has_linear_step(method);
 }
 
-// How the error goes with the knob.
-double power(const Method& method) { return method.knob == Knob::rtol ? 1 : method.order; }
-
 }  // namespace
+
+double power_of_error(const Method& method) { return method.knob == Knob::rtol ? 1 : method.order; }
 
 double seconds_of_exact(const ReducedScene& model) {
   constexpr double least = 1e-6;
@@ -85,7 +84,9 @@ double Forecast::error(const Method& method, double value) const {
   }
   const auto seen = seen_.find(&method);
   if (seen == seen_.end()) return method.order == 0 ? machine_epsilon : without_end;
-  return seen->second.error * std::pow(value / seen->second.value, power(method));
+  const double least = method.asks(Need::split_forces) ? least_of_split : 0;
+  return std::max(
+      least, seen->second.error * std::pow(value / seen->second.value, power_of_error(method)));
 }
 
 double Forecast::seconds(const Method& method, double value) const {
@@ -132,7 +133,7 @@ std::optional<Candidate> Forecast::from_seen(const Method& method, double error)
   const auto found = seen_.find(&method);
   if (found == seen_.end()) return {};
   const Seen& seen = found->second;
-  const double finer = std::pow(seen.error / error, 1 / power(method));
+  const double finer = std::pow(seen.error / error, 1 / power_of_error(method));
   if (!(finer < farthest && finer > 1 / farthest)) return {};
   double value = seen.value / finer;
   if (method.knob == Knob::rtol) value = std::clamp(value, 1e-14, 0.1);

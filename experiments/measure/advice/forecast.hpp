@@ -18,6 +18,13 @@ struct Candidate {
   double seconds = 0;  // expected
 };
 
+// The power of the knob that the error goes with.
+double power_of_error(const Method& method);
+
+// Methods that take stiff forces apart have steps within their steps, which finer steps refine no
+// further: two runs may agree to less than this, and both be off by as much.
+constexpr double least_of_split = 3e-8;
+
 // What the method `exact` takes on the model [s], about; infinite where it does not run it.
 double seconds_of_exact(const ReducedScene& model);
 
@@ -44,6 +51,8 @@ class Forecast {
   // The runs that are expected to come to that error, one a method, the fastest first.
   std::vector<Candidate> candidates(double error) const;
 
+  // Whether the error of a run of the method, or of an explicit one of its order, was seen.
+  bool has_learned(const Method& method) const;
   // Takes in that a run missed by so much, and what it took.
   void learn_error(const Trial& trial, double error);
   void learn_seconds(const Trial& trial);
@@ -62,7 +71,6 @@ class Forecast {
 
   std::optional<Candidate> from_steps(const Method& method, double error) const;
   std::optional<Candidate> from_seen(const Method& method, double error) const;
-  bool has_learned(const Method& method) const;
   double sensitivity(const Method& method) const;
   double largest_step(const Method& method) const;
 

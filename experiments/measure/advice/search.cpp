@@ -7,6 +7,7 @@
 #include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/step_cost.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/resolved_frequency.hpp"
 #include "qddot/measure/motion/timing.hpp"
@@ -63,6 +64,9 @@ double frequency_at_start(const ReducedScene& model, double until, double bound)
   return std::min(bound, from_below * frequency_at_least(system, q));
 }
 
+// Steps that implicit methods begin with: what is not to be accurate may be a motion of some steps.
+double few_steps(double accuracy) { return accuracy > 1e-3 ? 2 : 8; }
+
 // By what factor w_max grows over the path, as its bound does.
 double growth_of_frequency(const ReducedScene& model, const std::vector<State>& path, double bound,
                            double steps) {
@@ -101,12 +105,11 @@ Trial& Search::run(const Method& method, double value, double seconds) {
   return trial;
 }
 
-bool Search::survey() {
+bool Search::survey(double accuracy) {
   const ReducedScene& model = stage_.model();
-  const System& system = model.system();
-  const double until = stage_.until(), bound = frequency_bound(system, model.initial().q);
-  if (system.has_massless()) return true;
-  w_start_ = frequency_at_start(model, until, bound);
+  const double until = stage_.until();
+  if (model.system().has_massless()) return true;
+  w_start_ = frequency_at_start(model, until, frequency_bound(model.system(), model.initial().q));
   // An eigenproblem of a few unknowns takes no time.
   constexpr double not_worth_a_search = 1e-4;
   const double exactly = seconds_of_exact(model);
@@ -116,6 +119,13 @@ bool Search::survey() {
     if (exact.reached_end()) stage_.measure_by(exact);
     return exact.reached_end();
   }
+  return by_refinement(accuracy) || survey_by_verlet();
+}
+
+bool Search::survey_by_verlet() {
+  const ReducedScene& model = stage_.model();
+  const System& system = model.system();
+  const double until = stage_.until(), bound = frequency_bound(system, model.initial().q);
   constexpr double below_limit = 0.9, shorter = 0.75;
   constexpr int most_attempts = 6;
   const double looks = static_cast<double>(stage_.times().size());
@@ -134,6 +144,7 @@ bool Search::survey() {
   const int bursts = static_cast<int>(std::clamp(steps / 80, 2.0, 16.0));
   forecast_.emplace(stage_, own_frequencies(model, first->path, w, bursts), w,
                     first->seconds / steps);
+  first_seconds_ = first->seconds;
   forecast_->learn_seconds(*first);
   first->expected = forecast_->error(*first->method, first->value);
   learn();
@@ -152,11 +163,13 @@ double Search::rounding() const {
 double Search::expected(const Trial& trial) const {
   if (of_ == AccuracyOf::energy) return stage_.energy_error(trial);
   if (trial.method->order == 0) return rounding();
-  return forecast_ ? forecast_->error(*trial.method, trial.value) : trial.value;
+  return forecast_ ? forecast_->error(*trial.method, trial.value)
+                   : std::pow(trial.value, power_of_error(*trial.method));
 }
 
 // What the error of `other` is of that of `trial`, at most.
 double Search::ratio(const Trial& other, const Trial& trial) const {
+  if (!forecast_ && other.method != trial.method) return std::numeric_limits<double>::infinity();
   const double doubt = forecast_ ? forecast_->doubt(*other.method, *trial.method) : 1;
   const double own = expected(trial), others = expected(other);
   return std::isfinite(others) ? others / own * doubt : std::numeric_limits<double>::infinity();
@@ -184,11 +197,15 @@ std::optional<double> Search::bound(const Trial& trial) const {
   if (!trial.reached_end()) return {};
   if (of_ == AccuracyOf::energy) return margin * stage_.energy_error(trial) + 4 * machine_epsilon;
   if (trial.method->order == 0) return expected(trial);
-  if (const Trial* better = checker(trial)) {
-    return margin * stage_.distance(trial, *better, of_) / (1 - ratio(*better, trial)) +
-           4 * machine_epsilon;
-  }
-  return {};
+  const Trial* better = checker(trial);
+  if (!better) return {};
+  const double distance = stage_.distance(trial, *better, of_);
+  // A distance far below what is expected may be so by chance: errors change their sign. It is
+  // believed half of the way.
+  const double likely =
+      forecast_ ? std::max(distance, std::sqrt(distance * std::min(expected(trial), 1.0)))
+                : distance;
+  return margin * likely / (1 - ratio(*better, trial)) + 4 * machine_epsilon;
 }
 
 double Search::error(const Trial& trial) const {
@@ -266,15 +283,27 @@ std::optional<Candidate> Search::fresh(double accuracy) const {
   for (const Candidate& c : all) {
     if (!c.method->is(Trait::implicit)) least = std::min(least, c.seconds);
   }
+  // Of two that promise about the same, the one that was seen.
+  constexpr double unseen = 1.2;
+  std::optional<Candidate> best;
+  double shortest = std::numeric_limits<double>::infinity();
   for (const Candidate& c : all) {
     if (c.error > 2 * accuracy || was_tried(c)) continue;
-    if (!c.method->is(Trait::implicit) || c.seconds < much * least) return c;
+    if (c.method->is(Trait::implicit) && c.seconds > much * least) continue;
+    const double seconds = c.seconds * (forecast_->has_learned(*c.method) ? 1 : unseen);
+    if (seconds >= shortest) continue;
+    shortest = seconds;
+    best = c;
   }
-  return {};
+  return best;
 }
 
 const Trial* Search::find(double accuracy) {
   if (stage_.model().system().has_massless()) return by_tolerance(accuracy);
+  // Where so much did not do, more hardly will: chaos and rounding are not refined away.
+  constexpr double always_allowed = 1, of_the_first = 60;
+  const double most_seconds =
+      seconds_since(begin_) + std::max(always_allowed, of_the_first * first_seconds_);
   for (int round = 0; round < most_rounds; ++round) {
     const Trial *known = nullptr, *promising = nullptr;
     for (const Trial& trial : trials_) {
@@ -286,37 +315,37 @@ const Trial* Search::find(double accuracy) {
         promising = &trial;
     }
     if (known) return known;
-    if (!forecast_ || seconds_left() <= 0) return nullptr;
+    if (!forecast_ || seconds_left() <= 0 || seconds_since(begin_) > most_seconds) return nullptr;
     std::optional<Candidate> next = promising ? check_of(*promising) : std::nullopt;
     if (!next) next = fresh(aim * accuracy);
     if (!next) return nullptr;
-    run(*next->method, next->value, limit_);
+    run(*next->method, next->value, most_seconds - seconds_since(begin_));
   }
   return nullptr;
 }
 
 // A method of which nothing is known yet and that may be faster than the answer, with a knob to
 // begin with: adaptive ones of high order for few unknowns, those that take stiff forces apart
-// where some are named, and implicit ones where few of their steps take no time beside it.
+// where some are named, and implicit ones where few of their steps take little beside it.
 std::optional<Candidate> Search::unknown(double accuracy, const Trial& answer) const {
   constexpr Index few = 60;
-  constexpr double few_steps = 8, no_time = 0.05;
+  constexpr double little = 0.1;
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
-  for (const Method& method : methods()) {
-    if (!applies_to(method, system) || !method.stock_of.empty() || method.order < 2) continue;
+  for (const char* name : {"linear_midpoint", "bdf2", "multirate_adams4", "multirate_adams2",
+                           "multirate_adams5", "dprkn12", "dprkn8", "dprkn6"}) {
+    const Method& method = *find_method(name);
+    if (!applies_to(method, system)) continue;
     if (std::ranges::find(trials_, &method, &Trial::method) != trials_.end()) continue;
-    if (method.family == Family::sundials) continue;
     if (method.knob == Knob::rtol) {
-      if (system.size() <= few && !method.is(Trait::implicit))
-        return Candidate{&method, std::clamp(accuracy, 1e-13, 1e-2), 0, 0};
+      if (system.size() <= few) return Candidate{&method, std::clamp(accuracy, 1e-13, 1e-2), 0, 0};
     } else if (method.asks(Need::split_forces)) {
       const double w = resolved_frequency(method, system, model.initial().q);
-      const double steps = std::max(few_steps, std::ceil(stage_.until() * w));
+      const double steps = std::max(8.0, std::ceil(stage_.until() * w));
       return Candidate{&method, stage_.until() / steps, 0, 0};
-    } else if (method.is(Trait::implicit)) {
-      const double h = stage_.until() / few_steps;
-      if (forecast_->seconds(method, h) < no_time * answer.seconds)
+    } else {
+      const double h = stage_.until() / few_steps(accuracy);
+      if (forecast_->seconds(method, h) < little * answer.seconds)
         return Candidate{&method, h, 0, 0};
     }
   }
@@ -346,6 +375,61 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
 
 void Search::try_once(const Candidate& candidate) {
   if (!was_tried(candidate)) run(*candidate.method, candidate.value, limit_);
+}
+
+// Doubles the number of steps until the error of all but the finest run is known to be at most the
+// accuracy, which that of the finest is then as well: it falls as the order says. Ends early where
+// it does not, or where that would take more seconds. Steps without damping that do not resolve a
+// vibration turn it by another angle with each number of steps, so that runs that agree have
+// missed none.
+bool Search::refine(const Method& method, double steps, double accuracy, double seconds) {
+  const double fall = std::pow(2, method.order), end = seconds_since(begin_) + seconds;
+  const Trial *before = nullptr, *last = nullptr;
+  for (double finest = 0; seconds_since(begin_) < end; steps *= 2) {
+    Trial& trial = run(method, stage_.until() / steps, end - seconds_since(begin_));
+    if (!trial.reached_end()) return false;
+    stage_.measure_by(trial);
+    if (last) {
+      const double distance = stage_.distance(*last, trial, of_);
+      // Far within the accuracy, the order does not matter.
+      constexpr double far_within = 0.1;
+      const bool is_asymptotic = (before && finest < 2 * fall * distance && finest > distance) ||
+                                 distance < far_within * accuracy;
+      if (is_asymptotic && *bound(*last) <= accuracy) return true;
+      // Two more runs are to come, if it goes on as it should.
+      const double needed =
+          std::sqrt(std::max(1.0, std::pow(distance / accuracy, 2.0 / method.order)));
+      if (last && trial.seconds * needed * 2 > end - seconds_since(begin_)) return false;
+      finest = distance;
+      before = last;
+    }
+    last = &trial;
+  }
+  return false;
+}
+
+bool Search::by_refinement(double accuracy) {
+  if (of_ == AccuracyOf::energy) return false;
+  const ReducedScene& model = stage_.model();
+  const System& system = model.system();
+  const double explicitly = steps_of_verlet(model, stage_.until()) * seconds_of_force(model);
+  constexpr double much_softer = 0.05, share = 0.4, no_time = 0.05;
+  for (const char* name : {"multirate_adams4", "multirate_adams2", "linear_midpoint"}) {
+    const Method& method = *find_method(name);
+    if (!applies_to(method, system)) continue;
+    double steps = few_steps(accuracy);
+    if (method.asks(Need::split_forces)) {
+      const double soft = resolved_frequency(method, system, model.initial().q);
+      // What such a method does within a step is not refined with it.
+      if (soft > much_softer * w_start_ || accuracy < least_of_split) continue;
+      steps = std::max(steps, std::ceil(stage_.until() * soft / 2));
+    } else if (steps * usual_step_cost(method, system.size()) >
+               no_time * steps_of_verlet(model, stage_.until())) {
+      continue;
+    }
+    if (refine(method, steps, accuracy, share * explicitly)) return true;
+  }
+  return false;
 }
 
 const Trial* Search::by_tolerance(double accuracy) {

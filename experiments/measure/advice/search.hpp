@@ -19,15 +19,19 @@ namespace qddot::measure {
 //  3. Another, which is expected to miss by a third of that, checks it: their distance is the error
 //     of the first but for that of the second. Both teach the forecast. Where the bound is above
 //     the accuracy, 2. again, from what is known now.
-// Systems with massless nodes have no Verlet steps: IDA is refined until its runs agree.
+// Where the first run would take a thousand times what a few implicit steps do, or stiff springs
+// are named, a method that need not resolve them is refined before, until its runs agree: in a
+// small part of the first run's time, or it is left. Systems with massless nodes have no Verlet
+// steps: IDA is refined.
 class Search {
  public:
   // Borrows the model, which must have unknowns and K. `seconds`: after which nothing more is
   // begun.
   Search(const ReducedScene& model, double until, AccuracyOf of, double seconds);
 
-  // The first run and what it tells. False where it did not come to the end; trials() says why.
-  bool survey();
+  // The first run and what it tells, for an accuracy that find() is going to be asked for. False
+  // where it did not come to the end; trials() says why.
+  bool survey(double accuracy);
   // Refines until a run is known to be within `accuracy`; nullptr where none came there.
   const Trial* find(double accuracy);
   // Makes runs that may be faster than `answer` to the accuracy, for so many seconds in all, first
@@ -64,14 +68,17 @@ class Search {
   std::optional<Candidate> check_of(const Trial& trial) const;
   std::optional<Candidate> fresh(double accuracy) const;
   std::optional<Candidate> unknown(double accuracy, const Trial& answer) const;
+  bool survey_by_verlet();
   const Trial* by_tolerance(double accuracy);
+  bool refine(const Method& method, double steps, double accuracy, double seconds);
+  bool by_refinement(double accuracy);
   Trial& run(const Method& method, double value, double seconds);
   void learn();
 
   AccuracyOf of_;
   double limit_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double w_start_ = 0;
+  double w_start_ = 0, first_seconds_ = 0;
   Stage stage_;
   std::optional<Forecast> forecast_;
   std::deque<Trial> trials_;

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
+#include "qddot/measure/advice/twin.hpp"
 #include "qddot/measure/motion/duration.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/measure/reference/divergence.hpp"
-#include "qddot/measure/reference/reference_rounding.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/settle.hpp"
 
@@ -38,18 +38,27 @@ EstimateKind kind_of(const Trial& trial, AccuracyOf of) {
   return trial.method->order == 0 ? EstimateKind::rounding : EstimateKind::compared;
 }
 
-// A run that was made and one more from a start that is one rounding away.
-std::optional<Divergence> parting(Search& search, const Trial& trial) {
-  Stage& stage = search.stage();
-  const State pushed = displaced_start(stage.model(), stage.scales(), machine_epsilon);
-  const Trial twin = stage.run_from(pushed, *trial.method, trial.value, search.seconds_left());
-  if (!twin.reached_end()) return {};
-  std::vector<double> times{0}, distances{machine_epsilon};
-  for (std::size_t i = 0; i < stage.times().size(); ++i) {
-    times.push_back(stage.times()[i]);
-    distances.push_back(stage.distance_at(trial, twin, i));
+// The run of which the least error is known, and a bound of that: or else, of two runs that should
+// miss by about as much, twice how far they are apart.
+std::pair<const Trial*, double> nearest(const Search& search, AccuracyOf of) {
+  const Trial* best = search.most_accurate();
+  double least = std::numeric_limits<double>::infinity();
+  for (const Trial& trial : search.trials()) {
+    const auto bound = search.bound(trial);
+    if (!bound || *bound >= least) continue;
+    least = *bound;
+    best = &trial;
   }
-  return divergence(times, distances);
+  if (of == AccuracyOf::energy) return {best, least};
+  const Trial* finest = search.most_accurate();
+  for (const Trial& trial : search.trials()) {
+    if (&trial == finest || !trial.reached_end()) continue;
+    const double apart = 2 * search.stage().distance(trial, *finest, of);
+    if (apart >= least) continue;
+    least = apart;
+    best = finest;
+  }
+  return {best, least};
 }
 
 // The last time up to which the two most accurate runs agree to the accuracy.
@@ -72,16 +81,7 @@ double agreed_until(const Search& search, const Trial& one, double accuracy) {
 // search early, empty where nothing did.
 void explain_failure(Answer& answer, Search& search, const Wanted& wanted, double until,
                      const std::string& stopped_by) {
-  const Trial* best = nullptr;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Trial& trial : search.trials()) {
-    const auto bound = search.bound(trial);
-    if (bound && *bound < least) {
-      least = *bound;
-      best = &trial;
-    }
-  }
-  if (!best) best = search.most_accurate();
+  const auto [best, least] = nearest(search, wanted.of);
   if (!best) {
     const Trial* last = search.trials().empty() ? nullptr : &search.trials().back();
     if (last) fill(answer, search, *last, search.stage().model());
@@ -103,7 +103,7 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
     return;
   }
   if (wanted.of != AccuracyOf::energy) {
-    if (const auto parted = parting(search, *best)) {
+    if (const auto parted = parting_of_twins(search.stage(), *best, search.seconds_left())) {
       answer.horizon = parted->horizon;
       answer.lyapunov = parted->lyapunov;
     }
@@ -181,8 +181,10 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
   const Trial* found = nullptr;
   std::string stopped_by;
   try {
-    if (search.survey()) found = search.find(wanted.accuracy);
+    if (search.survey(wanted.accuracy)) found = search.find(wanted.accuracy);
     if (found) found = search.race(found, wanted.accuracy, seconds_of_race(*found));
+    // What the race taught may be that the bound is another.
+    if (found && *search.bound(*found) > wanted.accuracy) found = search.find(wanted.accuracy);
     if (search.seconds_left() <= 0) stopped_by = "time was up";
   } catch (const Interrupted& interrupted) {
     stopped_by = interrupted.what();

@@ -1,0 +1,199 @@
+"""Draws what answers are worth that were asked for by their accuracy alone.
+
+Call: advice.py DIR. Reads cases.csv and cases.json in DIR and writes advice.png and advice.svg
+there.
+
+Three panels over the cases: the error bar over the error that was measured, the time of the chosen
+run over that of the best in hindsight, and the time of everything over that of the best.
+"""
+
+import json
+import math
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from matplotlib.ticker import FixedLocator, NullFormatter
+
+from measurements import parse, read_rows
+from sheet import Sheet
+from style import FAINT, GRID, INK, use_style
+
+WIDTH, HEIGHT = 14.0, 5.6
+SIDE, TOP, BOTTOM, GAP = 0.75, 1.3, 0.75, 0.85
+PANELS = 3
+# A case by what its fastest method does.
+KINDS = {"explicit": "#D55E00", "other": "#0072B2"}
+EXPLICIT = (
+    "verlet",
+    "position_verlet",
+    "symmetric",
+    "takahashi",
+    "blanes",
+    "dprkn",
+    "rk4",
+    "kahan",
+)
+WORTH_COUNTING = 0.02
+
+
+@dataclass(frozen=True)
+class Case:
+    """An answer and the best in hindsight; times in seconds."""
+
+    accuracy: float
+    error: float
+    certified: float
+    bar: float
+    best_method: str
+    best: float
+    run: float
+    total: float
+
+    @property
+    def color(self):
+        """The colour of what was the best."""
+        is_explicit = self.best_method.startswith(EXPLICIT)
+        return KINDS["explicit" if is_explicit else "other"]
+
+
+def read_cases(path):
+    """The cases that were answered and judged."""
+    columns = ("accuracy", "error", "certified", "error_estimate")
+    times = ("best_time_s", "run_time_s", "total_time_s")
+    texts = ("is_claimed", "left_out", "best_method")
+    cases = []
+    for line, row in read_rows(path, columns + times + texts):
+        if row["is_claimed"] != "1" or row["left_out"] or not row["best_method"]:
+            continue
+        numbers = [parse(path, line, row, name, True) for name in columns]
+        seconds = [parse(path, line, row, name, True) for name in times]
+        cases.append(Case(*numbers, row["best_method"], *seconds))
+    return cases
+
+
+def quantile(values, part):
+    """The value that this part of them does not exceed."""
+    ordered = sorted(values)
+    return ordered[min(len(ordered), max(1, math.ceil(part * len(ordered)))) - 1]
+
+
+def new_axes(sheet, place, title, across, up):
+    """The axes of one panel, both logarithmic."""
+    width = (WIDTH - 2 * SIDE - (PANELS - 1) * GAP) / PANELS
+    left = SIDE + place * (width + GAP)
+    axes = sheet.axes(left, TOP, width, HEIGHT - TOP - BOTTOM)
+    axes.set_title(title, loc="left", size=11, weight="bold", color=INK)
+    axes.set_xlabel(across)
+    axes.set_ylabel(up)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.grid(True)
+    return axes
+
+
+def dots(axes, cases, across, up):
+    """A dot a case."""
+    for case in cases:
+        style = {"s": 22, "color": case.color, "alpha": 0.65, "linewidths": 0, "zorder": 3}
+        axes.scatter([across(case)], [up(case)], **style)
+
+
+def lines(axes, values):
+    """Where the median and nine tenths of the values end."""
+    for part, dashes in ((0.5, (6, 2)), (0.9, (2, 2))):
+        axes.axhline(quantile(values, part), color=INK, linewidth=1, dashes=dashes, zorder=2)
+
+
+def in_words(values):
+    """The median and where nine tenths end."""
+    return f"median {quantile(values, 0.5):.3g}, nine in ten below {quantile(values, 0.9):.3g}"
+
+
+def draw_bars(sheet, cases):
+    """The error bar over the error."""
+    seen = [c for c in cases if c.error > 0 and c.certified <= 0.1 * c.error]
+    axes = new_axes(sheet, 0, "How wide is the error bar?", "error", "error bar / error")
+    if not seen:
+        return
+    dots(axes, seen, lambda c: c.error, lambda c: c.bar / c.error)
+    axes.axhspan(1e-3, 1, facecolor=GRID, alpha=0.7, zorder=0.5)
+    ratios = [c.bar / c.error for c in seen]
+    lines(axes, ratios)
+    axes.set_ylim(min(0.3, 0.8 * min(ratios)), max(10, 1.5 * max(ratios)))
+    axes.text(0.02, 0.97, in_words(ratios), transform=axes.transAxes, va="top", size=9, color=INK)
+
+
+def set_factors(axes, values):
+    """Ticks of a few factors."""
+    low, high = min(0.5, min(values)), max(10, max(values))
+    axes.set_ylim(0.8 * low, 1.3 * high)
+    factors = [f for f in (0.5, 1, 2, 3, 5, 10, 30, 100, 1000, 10000) if f <= 1.3 * high]
+    axes.yaxis.set_major_locator(FixedLocator(factors))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
+
+
+def draw_choice(sheet, cases):
+    """The chosen run over the best."""
+    axes = new_axes(
+        sheet, 1, "How near is the chosen run to the best?", "accuracy asked for", "time / best"
+    )
+    if not cases:
+        return
+    dots(axes, cases, lambda c: c.accuracy, lambda c: c.run / c.best)
+    ratios = [c.run / c.best for c in cases]
+    lines(axes, ratios)
+    set_factors(axes, ratios)
+    axes.text(0.02, 0.97, in_words(ratios), transform=axes.transAxes, va="top", size=9, color=INK)
+
+
+def draw_total(sheet, cases):
+    """Everything over the best."""
+    axes = new_axes(
+        sheet, 2, "What does the whole answer take?", "time of the best run in s", "time / best"
+    )
+    if not cases:
+        return
+    dots(axes, cases, lambda c: c.best, lambda c: c.total / c.best)
+    ratios = [c.total / c.best for c in cases]
+    set_factors(axes, ratios)
+    counted = [c.total / c.best for c in cases if c.best >= WORTH_COUNTING]
+    axes.axvline(WORTH_COUNTING, color=FAINT, linewidth=1, zorder=1)
+    if counted:
+        lines(axes, counted)
+        words = f"from 20 ms on: {in_words(counted)}"
+        axes.text(0.98, 0.97, words, transform=axes.transAxes, va="top", ha="right", size=9)
+
+
+def main(folder):
+    """Draws the picture."""
+    use_style()
+    folder = Path(folder)
+    origin = json.loads((folder / "cases.json").read_text(encoding="utf-8"))
+    cases = read_cases(folder / "cases.csv")
+    sheet = Sheet(WIDTH, HEIGHT)
+    title = "A motion asked for by its accuracy: what the answer is worth"
+    sheet.text(SIDE, 0.32, title, size=15, weight="bold", va="center", color=INK)
+    words = (
+        f"{len(cases)} drawn cases, {origin.get('cpu', 'unknown processor')}; dashed: median, "
+        "dotted: nine in ten; grey: error bars that did not hold"
+    )
+    sheet.text(SIDE, 0.64, words, size=10, color=FAINT, va="center")
+    place = SIDE
+    for name, color in KINDS.items():
+        label = sheet.text(
+            place, 0.92, f"● {name} method was the best", size=10, color=color, va="center"
+        )
+        place += sheet.text_width(label) + 0.4
+    draw_bars(sheet, cases)
+    draw_choice(sheet, cases)
+    draw_total(sheet, cases)
+    for extension in ("png", "svg"):
+        sheet.save(str(folder / f"advice.{extension}"))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("Usage: advice.py DIR")
+    main(sys.argv[1])

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "experiments/advice/drawn_case.hpp"
+#include "experiments/command/columns.hpp"
+#include "qddot/measure/advice/solve.hpp"
+
+namespace qddot::advice_study {
+
+using namespace command;
+
+// What an answer was worth on one case.
+struct CaseResult {
+  std::string name{}, kind{};
+  double unknowns = 0, springs = 0, until = 0, accuracy = 0;
+  // Why nothing can be said of the case: it has no reference that is good enough. Empty otherwise.
+  std::string left_out{};
+  bool is_claimed = false;  // solve() says that the accuracy was reached
+  std::string method{}, kind_of_estimate{}, why{};
+  double value = 0, error_estimate = 0, error = 0, certified = 0;
+  std::string best_method{};  // in hindsight; empty where no run reached the accuracy
+  double best_value = 0, best_seconds = 0;
+  double run_seconds = 0;    // of the run that was chosen, timed as the best is
+  double total_seconds = 0;  // of solve(), everything included
+  double runs = 0;
+  std::string advised{};  // by advise()
+  double advised_error = 0, advised_seconds = 0, advice_seconds = 0;
+
+  // Whether an error was measured, and told from zero.
+  bool is_judged() const { return left_out.empty() && is_claimed; }
+  bool has_error() const { return is_judged() && certified <= 0.1 * error; }
+  bool has_best() const { return left_out.empty() && !best_method.empty(); }
+};
+
+// Asks for the motion of the case and for advice, and then measures what both were worth: the error
+// against a reference of some `reference_seconds`, the time against the fastest run of all methods,
+// each the median of `repeats`.
+CaseResult result_of(const Case& drawn, double reference_seconds, int repeats);
+
+// As a journal keeps it, and back.
+nlohmann::json record_of(const CaseResult& result);
+CaseResult result_from(const nlohmann::json& record);
+
+// The columns of cases.csv.
+const Columns<CaseResult>& case_columns();
+
+}  // namespace qddot::advice_study

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/advice/case_result.hpp"
+
+namespace qddot::advice_study {
+
+// A number that says what advice is worth, over so many cases.
+struct Figure {
+  std::string name, meaning;
+  double value = 0;
+  int cases = 0;
+};
+
+// How often what is claimed holds, how wide error bars are, how near the choice is to the best in
+// hindsight, and what it costs.
+std::vector<Figure> worth_of(const std::vector<CaseResult>& results);
+
+}  // namespace qddot::advice_study

@@ -1,0 +1,224 @@
+#include <cmath>
+#include <limits>
+
+#include <boost/test/unit_test.hpp>
+
+#include "experiments/advice/drawn_case.hpp"
+#include "qddot/measure/advice/advise.hpp"
+#include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/reference/reference.hpp"
+#include "qddot/scene/generators.hpp"
+#include "tests/fragments.hpp"
+
+BOOST_AUTO_TEST_SUITE(solve)
+
+using namespace qddot;
+using namespace qddot::measure;
+
+namespace {
+
+constexpr double reference_seconds = 100;
+
+Scene drawn(const char* generator, const GeneratorValues& values) {
+  return generate(*find_generator(generator), values, generator);
+}
+
+// A chain that is chaotic after some swings.
+Scene swinging_chain() { return drawn("chain", {{"nodes", 4}, {"stiffness", 1000}}); }
+
+double error_of(const Answer& answer, const ReducedScene& model, const Reference& reference) {
+  return errors_between(model, answer.end, reference.end, reference.energy, reference.scales)
+      .position;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(what_it_claims_holds_on_drawn_scenes) {
+  // Of 24 cases, which are no part of those that the search was tuned on, one may miss its error
+  // bar: that is to hold in 95 of 100.
+  int claimed = 0, beyond_bar = 0, beyond_accuracy = 0;
+  for (std::uint64_t seed = 5000000; claimed < 24; ++seed) {
+    const advice_study::Case c = advice_study::drawn_case(seed);
+    const ReducedScene model(c.scene);
+    if (model.system().size() == 0 || c.scene.nodes.size() > 200) continue;
+    Reference reference;
+    try {
+      reference = make_reference(model, c.until, 1);
+    } catch (const NoReference&) {
+      continue;
+    }
+    if (reference.certified.position > 0.1 * c.accuracy) continue;
+    const Answer answer = measure::solve(model, c.until, {.accuracy = c.accuracy});
+    if (!answer.is_reached) continue;
+    ++claimed;
+    BOOST_TEST_CONTEXT(c.scene.name << " to " << c.accuracy << " by " << answer.method->name) {
+      const double error = error_of(answer, model, reference) - reference.certified.position;
+      beyond_bar += error > answer.error_estimate;
+      beyond_accuracy += error > c.accuracy;
+      BOOST_TEST(answer.error_estimate <= c.accuracy);
+      BOOST_TEST(answer.end.t == c.until);
+      BOOST_TEST(answer.nodes.size() == c.scene.nodes.size());
+    }
+  }
+  BOOST_TEST(beyond_bar <= 1);
+  BOOST_TEST(beyond_accuracy <= 1);
+}
+
+BOOST_AUTO_TEST_CASE(its_run_is_the_run_of_that_method_and_knob) {
+  const Scene scene = drawn("cloth", {{"nodes", 10}});
+  const Answer answer = measure::solve(scene, 0.1, 1e-5);
+  BOOST_TEST_REQUIRE(answer.is_reached);
+  BOOST_TEST_REQUIRE((answer.method->knob == Knob::step_size));
+  Simulation run(scene, *answer.method, {.step_size = answer.value});
+  run.advance(0.1);
+  // To the last bit: looks between steps change none of fixed size.
+  BOOST_TEST((run.state().q == answer.end.q));
+}
+
+BOOST_AUTO_TEST_CASE(linear_motion_is_exact_at_once) {
+  const Answer answer = measure::solve(drawn("oscillator", {}), 10, 1e-10);
+  BOOST_TEST_REQUIRE(answer.is_reached);
+  BOOST_TEST(answer.method->name == "exact");
+  BOOST_TEST(answer.runs == 1);
+  BOOST_TEST((answer.error_estimate_kind == EstimateKind::rounding));
+}
+
+BOOST_AUTO_TEST_CASE(beyond_the_horizon_nothing_is_claimed) {
+  const ReducedScene model(swinging_chain());
+  const Answer late = measure::solve(model, 12, {.accuracy = 1e-3});
+  BOOST_TEST(!late.is_reached);
+  BOOST_TEST(contains(late.why, {"chaotic", "energy"}));
+  const Reference reference = make_reference(model, 12, reference_seconds);
+  BOOST_TEST_REQUIRE(reference.is_beyond_horizon());
+  // Seen at two dozen times; another run's rounding parts somewhere else.
+  BOOST_TEST(std::abs(late.horizon / reference.horizon - 1) < 0.25);
+  // Its energy can be had all the same, and so can positions before.
+  BOOST_TEST(measure::solve(model, 12, {.accuracy = 1e-3, .of = AccuracyOf::energy}).is_reached);
+  BOOST_TEST(measure::solve(model, reference.horizon / 3, {.accuracy = 1e-3}).is_reached);
+}
+
+BOOST_AUTO_TEST_CASE(below_rounding_nothing_is_claimed) {
+  const Answer answer = measure::solve(drawn("orbit", {}), 1000, 1e-14);
+  BOOST_TEST(!answer.is_reached);
+  // What is left is rounding, far below what one looks for.
+  BOOST_TEST(answer.error_estimate > 1e-14);
+  BOOST_TEST(answer.error_estimate < 1e-6);
+  BOOST_TEST(contains(answer.why, {"the best that is known"}));
+}
+
+BOOST_AUTO_TEST_CASE(the_path_and_the_energy_are_within_what_was_asked_for) {
+  const ReducedScene model(drawn("cloth", {{"nodes", 10}}));
+  const double until = 0.3, accuracy = 1e-4;
+  for (const AccuracyOf of : {AccuracyOf::path, AccuracyOf::energy}) {
+    const Answer answer = measure::solve(model, until, {.accuracy = accuracy, .of = of});
+    BOOST_TEST_REQUIRE(answer.is_reached);
+    // At three times as many times as it looked at, on a run that is much finer.
+    Observer each;
+    const auto seen = [&](const Method& method, double h) {
+      std::vector<State> path;
+      each.see = [&](const State& state) { path.push_back(state); };
+      const auto integrator = make_integrator(method, model.system(), {.step_size = h});
+      State state = model.initial();
+      integrator->advance(state, until, each);
+      return path;
+    };
+    for (int i = 1; i <= 300; ++i) each.times.push_back(until * i / 300);
+    BOOST_TEST_REQUIRE((answer.method->knob == Knob::step_size));
+    const auto path = seen(*answer.method, answer.value), fine = seen(method("kahan_li8"), 1e-4);
+    Scales scales;
+    for (const State& state : fine) extend(scales, model, state);
+    Errors largest;
+    for (std::size_t i = 0; i < path.size(); ++i)
+      largest = larger(
+          largest, errors_between(model, path[i], fine[i], model.energy(model.initial()), scales));
+    BOOST_TEST((of == AccuracyOf::path ? largest.position : largest.energy) <= accuracy);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(nodes_without_mass_are_taken_by_tolerance) {
+  Scene scene = drawn("chain", {{"nodes", 4}, {"stiffness", 1000}});
+  // A massless joint of three springs, which no reduction takes out.
+  scene.nodes[2].mass = 0;
+  scene.springs.push_back({{0, 2}, {.stiffness = 300, .rest_length = 0.1}});
+  const ReducedScene model(scene);
+  BOOST_TEST_REQUIRE(model.system().has_massless());
+  const Answer answer = measure::solve(model, 0.05, {.accuracy = 1e-4});
+  BOOST_TEST_REQUIRE(answer.is_reached, answer.why);
+  BOOST_TEST(answer.method->is(Trait::accepts_massless));
+  // Against another method, with steps whose own error is far below: order 2, h / T = 1e-5.
+  Simulation fine(scene, method("bdf2"), {.step_size = 5e-7});
+  fine.advance(0.05);
+  double apart = 0, moved = 0;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    apart = std::max(apart, (fine.nodes()[i].position - answer.nodes[i].position).norm());
+    moved = std::max(moved, (fine.nodes()[i].position - scene.nodes[i].position).norm());
+  }
+  BOOST_TEST(apart <= 1e-4 * moved);
+}
+
+BOOST_AUTO_TEST_CASE(what_rests_needs_no_run) {
+  Scene scene{.name = "rest", .dimension = 2};
+  scene.nodes.resize(2);
+  scene.nodes[0].pinned = scene.nodes[1].pinned = true;
+  scene.nodes[1].position = {1, 0, 0};
+  scene.springs.push_back({{0, 1}, {.stiffness = 1, .rest_length = 1}});
+  const Answer answer = measure::solve(scene, 1, 1e-6);
+  BOOST_TEST(answer.is_reached);
+  BOOST_TEST(answer.nodes.size() == 2u);
+  BOOST_TEST(advise(scene, 1, {1e-6}).for_each[0].take.has_value());
+}
+
+BOOST_AUTO_TEST_CASE(what_makes_no_sense_is_refused) {
+  const Scene scene = drawn("orbit", {});
+  for (const double accuracy : {0.0, -1.0, 1e-40, 1.0, 10.0, std::nan("")}) {
+    BOOST_CHECK_THROW(measure::solve(scene, 1, accuracy), std::invalid_argument);
+    BOOST_CHECK_THROW(advise(scene, 1, {1e-3, accuracy}), std::invalid_argument);
+  }
+  for (const double until : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
+    BOOST_CHECK_THROW(measure::solve(scene, until, 1e-3), std::invalid_argument);
+  BOOST_CHECK_THROW(advise(scene, 1, {}), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_CASE(it_stops_when_its_time_is_up) {
+  const Answer answer = measure::solve(ReducedScene(drawn("cloth", {{"nodes", 20}})), 1.0,
+                                       {.accuracy = 1e-9, .seconds = 1e-9});
+  BOOST_TEST(!answer.is_reached);
+  BOOST_TEST(!answer.why.empty());
+}
+
+BOOST_AUTO_TEST_CASE(advice_holds_when_it_is_followed) {
+  for (const auto& [scene, until] :
+       {std::pair(drawn("cloth", {{"nodes", 12}}), 0.1), std::pair(drawn("orbit", {}), 20.0),
+        std::pair(drawn("lattice", {}), 0.02), std::pair(drawn("pendulum", {}), 5.0),
+        std::pair(drawn("framed_cloth", {{"nodes", 8}}), 0.05)}) {
+    const ReducedScene model(scene);
+    const Reference reference = make_reference(model, until, 1);
+    const Advices advices = advise(scene, until, {1e-6, 1e-2, 1e-4});
+    BOOST_TEST_REQUIRE(advices.for_each.size() == 3u);
+    double last = 0;
+    for (const std::size_t i : {1u, 2u, 0u}) {  // from coarse to fine
+      const Advice& advice = advices.for_each[i];
+      BOOST_TEST_CONTEXT(scene.name << " to " << advice.accuracy) {
+        BOOST_TEST_REQUIRE(advice.take.has_value());
+        BOOST_TEST(advice.margin() >= 1);
+        BOOST_TEST(advice.take->error <= advice.accuracy);
+        Simulation run(scene, *advice.take->method,
+                       advice.take->method->knob == Knob::step_size
+                           ? Options{.step_size = advice.take->value}
+                           : Options{.rtol = advice.take->value});
+        BOOST_TEST_REQUIRE((run.advance(until).outcome == Outcome::reached_end));
+        const double error = errors_between(run.model(), run.state(), reference.end,
+                                            reference.energy, reference.scales)
+                                 .position;
+        BOOST_TEST(error <= advice.accuracy);
+        // More accuracy takes no less time, but for what one timing is off.
+        BOOST_TEST(advice.take->seconds >= last / 3);
+        last = advice.take->seconds;
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
