@@ -69,14 +69,6 @@ std::vector<Contender> contenders(const Search& search, double accuracy) {
   return all;
 }
 
-// Implicit steps that were never timed on the scene are guesses: they are not advised.
-bool is_trusted(const Search& search, const Candidate& candidate) {
-  if (!candidate.method->is(Trait::implicit)) return true;
-  return std::ranges::any_of(search.trials(), [&](const Trial& trial) {
-    return trial.method == candidate.method && trial.reached_end();
-  });
-}
-
 Advice advice_for(const Search& search, double accuracy) {
   Advice advice{.accuracy = accuracy};
   for (const auto& [c, is_seen] : contenders(search, accuracy)) {
@@ -86,7 +78,8 @@ Advice advice_for(const Search& search, double accuracy) {
     } else {
       keep_faster(is_implicit ? advice.own_implicit : advice.own_explicit, c);
     }
-    if (!is_trusted(search, c)) continue;
+    // Of implicit steps, neither what they take nor what they miss by is known well before.
+    if (is_implicit && !is_seen) continue;
     if (!advice.take) {
       advice.take = c;
       advice.is_seen = is_seen;
@@ -178,7 +171,7 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
   }
   all.largest_stable_step = all.w_motion > 0 ? 2 / all.w_motion : infinity;
   // A twin is one more run.
-  const Trial* best = search.most_accurate();
+  const Trial* best = search.most_accurate(true);
   if (best && search.forecast() && seconds_since(begin) + best->seconds < always_allowed) {
     if (const auto parted = parting_of_twins(search.stage(), *best, always_allowed)) {
       all.horizon = parted->horizon;

@@ -83,7 +83,7 @@ double growth_of_frequency(const ReducedScene& model, const std::vector<State>& 
 Search::Search(const ReducedScene& model, double until, AccuracyOf of, double seconds)
     : of_(of),
       limit_(seconds),
-      stage_(model, until, number_of_looks(steps_of_verlet(model, until), of)) {}
+      stage_(model, until, of, number_of_looks(steps_of_verlet(model, until), of)) {}
 
 double Search::seconds_left() const {
   stop_if_interrupted();
@@ -185,10 +185,12 @@ const Trial* Search::checker(const Trial& trial) const {
   return best;
 }
 
-const Trial* Search::most_accurate() const {
+const Trial* Search::most_accurate(bool seen_on_its_way) const {
   const Trial* best = nullptr;
   for (const Trial& trial : trials_) {
-    if (trial.reached_end() && (!best || expected(trial) < expected(*best))) best = &trial;
+    if (!trial.reached_end()) continue;
+    if (seen_on_its_way && trial.path.size() < stage_.times().size()) continue;
+    if (!best || expected(trial) < expected(*best)) best = &trial;
   }
   return best;
 }
@@ -199,7 +201,7 @@ std::optional<double> Search::bound(const Trial& trial) const {
   if (trial.method->order == 0) return expected(trial);
   const Trial* better = checker(trial);
   if (!better) return {};
-  const double distance = stage_.distance(trial, *better, of_);
+  const double distance = stage_.distance(trial, *better);
   // A distance far below what is expected may be so by chance: errors change their sign. It is
   // believed half of the way.
   const double likely =
@@ -210,23 +212,23 @@ std::optional<double> Search::bound(const Trial& trial) const {
 
 double Search::error(const Trial& trial) const {
   if (of_ == AccuracyOf::energy) return stage_.energy_error(trial);
-  if (const Trial* better = checker(trial)) return stage_.distance(trial, *better, of_);
+  if (const Trial* better = checker(trial)) return stage_.distance(trial, *better);
   return expected(trial);
 }
 
 // How far apart two runs are or, where they are lost, would be had their distance gone on growing.
 double Search::lost_distance(const Trial& trial, const Trial& better) const {
-  const double end = stage_.distance(trial, better, of_);
+  const double end = stage_.distance(trial, better);
   if (end < lost) return end;
   const auto& times = stage_.times();
+  const std::vector<double> distances = stage_.distances(trial, better);
   std::size_t last = 0;
-  std::vector<double> distances;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    distances.push_back(stage_.distance_at(trial, better, i));
-    if (distances.back() < free) last = i;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (distances[i] < free) last = i;
   }
+  if (last < 2) return std::max(end, 1.0);
   const double before = distances[last / 2];
-  if (last < 2 || before == 0) return std::max(end, 1.0);
+  if (before == 0) return std::max(end, 1.0);
   constexpr double largest_exponent = 80;
   const double rate = std::log(distances[last] / before) / (times[last] - times[last / 2]);
   const double exponent = std::min(rate * (times.back() - times[last]), largest_exponent);
@@ -247,7 +249,9 @@ void Search::learn() {
     if (of_ == AccuracyOf::energy) {
       forecast_->learn_error(trial, stage_.energy_error(trial));
     } else if (const Trial* better = checker(trial)) {
-      forecast_->learn_error(trial, lost_distance(trial, *better));
+      const double error = lost_distance(trial, *better);
+      // Steps that are far too long say nothing of those that are not.
+      if (error < lost || !trial.method->is(Trait::implicit)) forecast_->learn_error(trial, error);
     }
   }
 }
@@ -390,7 +394,7 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
     if (!trial.reached_end()) return false;
     stage_.measure_by(trial);
     if (last) {
-      const double distance = stage_.distance(*last, trial, of_);
+      const double distance = stage_.distance(*last, trial);
       // Far within the accuracy, the order does not matter.
       constexpr double far_within = 0.1;
       const bool is_asymptotic = (before && finest < 2 * fall * distance && finest > distance) ||
@@ -414,7 +418,10 @@ bool Search::by_refinement(double accuracy) {
   const System& system = model.system();
   const double explicitly = steps_of_verlet(model, stage_.until()) * seconds_of_force(model);
   constexpr double much_softer = 0.05, share = 0.4, no_time = 0.05;
-  for (const char* name : {"multirate_adams4", "multirate_adams2", "linear_midpoint"}) {
+  // Where little accuracy is asked for, a few implicit steps may do.
+  std::vector<const char*> names = {"multirate_adams4", "multirate_adams2", "linear_midpoint"};
+  if (few_steps(accuracy) == 2) std::ranges::reverse(names);
+  for (const char* name : names) {
     const Method& method = *find_method(name);
     if (!applies_to(method, system)) continue;
     double steps = few_steps(accuracy);

@@ -48,8 +48,9 @@ class Search {
   double error(const Trial& trial) const;
   // The trial that bounds the error of this one; nullptr where there is none.
   const Trial* checker(const Trial& trial) const;
-  // The trial that is expected to be the most accurate; nullptr where none came to the end.
-  const Trial* most_accurate() const;
+  // The trial that is expected to be the most accurate, of all or of those that were seen on their
+  // way; nullptr where none came to the end.
+  const Trial* most_accurate(bool seen_on_its_way = false) const;
 
   Stage& stage() { return stage_; }
   const Stage& stage() const { return stage_; }

@@ -53,7 +53,7 @@ std::pair<const Trial*, double> nearest(const Search& search, AccuracyOf of) {
   const Trial* finest = search.most_accurate();
   for (const Trial& trial : search.trials()) {
     if (&trial == finest || !trial.reached_end()) continue;
-    const double apart = 2 * search.stage().distance(trial, *finest, of);
+    const double apart = 2 * search.stage().distance(trial, *finest);
     if (apart >= least) continue;
     least = apart;
     best = finest;
@@ -70,10 +70,9 @@ double agreed_until(const Search& search, const Trial& one, double accuracy) {
   }
   double until = 0;
   if (!other) return until;
-  for (std::size_t i = 0; i < search.stage().times().size(); ++i) {
-    if (2 * search.stage().distance_at(one, *other, i) > accuracy) break;
+  const std::vector<double> distances = search.stage().distances(one, *other);
+  for (std::size_t i = 0; i < distances.size() && 2 * distances[i] <= accuracy; ++i)
     until = search.stage().times()[i];
-  }
   return until;
 }
 
@@ -103,7 +102,10 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
     return;
   }
   if (wanted.of != AccuracyOf::energy) {
-    if (const auto parted = parting_of_twins(search.stage(), *best, search.seconds_left())) {
+    const Trial* seen = search.most_accurate(true);
+    const auto parted =
+        seen ? parting_of_twins(search.stage(), *seen, search.seconds_left()) : std::nullopt;
+    if (parted) {
       answer.horizon = parted->horizon;
       answer.lyapunov = parted->lyapunov;
     }

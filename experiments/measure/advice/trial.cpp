@@ -18,7 +18,8 @@ constexpr double longest_wait = 1e8;
 
 }  // namespace
 
-Stage::Stage(const ReducedScene& model, double until, int looks) : model_(model), until_(until) {
+Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, int looks)
+    : model_(model), until_(until), of_(of) {
   for (int i = 1; i < looks; ++i) times_.push_back(until * i / looks);
   times_.push_back(until);
 }
@@ -30,7 +31,10 @@ Trial Stage::run_from(const State& start, const Method& method, double value,
       make_integrator(method, model_.system(), options_for(method, value, model_));
   State state = start;
   const Deadline deadline(std::min(seconds, longest_wait));
-  const Observer each{times_, [&](const State& seen) { trial.path.push_back(seen); }};
+  const bool only_the_end =
+      of_ == AccuracyOf::positions && method.is(Trait::implicit) && method.knob == Knob::step_size;
+  const Observer each{only_the_end ? std::vector{until_} : times_,
+                      [&](const State& seen) { trial.path.push_back(seen); }};
   trial.seconds = seconds_of(
       [&] { trial.summary = integrator->advance(state, until_, each, deadline.token()); });
   if (!trial.reached_end()) stop_if_interrupted();
@@ -64,17 +68,17 @@ double Stage::energy_error(const Trial& trial) const {
   return largest;
 }
 
-double Stage::distance_at(const Trial& one, const Trial& other, std::size_t look) const {
-  return errors_between(model_, one.path[look], other.path[look], 0, scales_).position;
+double Stage::distance(const Trial& one, const Trial& other) const {
+  if (of_ == AccuracyOf::path) return std::ranges::max(distances(one, other));
+  return errors_between(model_, one.path.back(), other.path.back(), 0, scales_).position;
 }
 
-double Stage::distance(const Trial& one, const Trial& other, AccuracyOf of) const {
-  double largest = distance_at(one, other, times_.size() - 1);
-  if (of == AccuracyOf::path) {
-    for (std::size_t i = 0; i + 1 < times_.size(); ++i)
-      largest = std::max(largest, distance_at(one, other, i));
-  }
-  return largest;
+std::vector<double> Stage::distances(const Trial& one, const Trial& other) const {
+  std::vector<double> all;
+  if (one.path.size() != other.path.size() || one.path.size() != times_.size()) return all;
+  for (std::size_t i = 0; i < times_.size(); ++i)
+    all.push_back(errors_between(model_, one.path[i], other.path[i], 0, scales_).position);
+  return all;
 }
 
 }  // namespace qddot::measure

@@ -16,8 +16,9 @@ struct Trial {
   const Method* method = nullptr;
   double value = 0;  // of its knob: h [s] or rtol
   Summary summary{};
-  double seconds = 0;         // wall time of the run
-  std::vector<State> path{};  // at the times, the end last; as far as it came
+  double seconds = 0;  // wall time of the run
+  // At the times, the end last, as far as it came; or the end alone.
+  std::vector<State> path{};
 
   double expected = 0;  // error, before it was made
 
@@ -25,10 +26,12 @@ struct Trial {
 };
 
 // One motion, which trials are runs of: a model up to a time, seen at `looks` equal parts of that.
+// Where positions at the end are all that is asked for, implicit methods of fixed steps are seen
+// there alone: each look between two steps would be one more step, of another length.
 class Stage {
  public:
   // Borrows the model.
-  Stage(const ReducedScene& model, double until, int looks);
+  Stage(const ReducedScene& model, double until, AccuracyOf of, int looks);
 
   // Runs the method to the end, for so many seconds at most. Where it comes there in less than a
   // millisecond, its time is the least of several.
@@ -40,10 +43,11 @@ class Stage {
   // on. None are known before.
   void measure_by(const Trial& trial);
 
-  // How far two trials that came to the end are apart, relative to the motion: at the end, on the
-  // way at each of the times, and as `of` says (of positions or the path).
-  double distance(const Trial& one, const Trial& other, AccuracyOf of) const;
-  double distance_at(const Trial& one, const Trial& other, std::size_t look) const;
+  // How far two trials that came to the end are apart, relative to the motion: at the end or, where
+  // the path is asked for, at any of the times.
+  double distance(const Trial& one, const Trial& other) const;
+  // The same at each of the times; nothing where one of them was seen at the end alone.
+  std::vector<double> distances(const Trial& one, const Trial& other) const;
 
   // The largest error of the energy at the times of a trial that came to the end.
   double energy_error(const Trial& trial) const;
@@ -56,6 +60,7 @@ class Stage {
  private:
   const ReducedScene& model_;
   double until_;
+  AccuracyOf of_;
   std::vector<double> times_;
   Scales scales_;
 };

@@ -9,11 +9,11 @@ std::optional<Divergence> parting_of_twins(const Stage& stage, const Trial& tria
   const State pushed = displaced_start(stage.model(), stage.scales(), machine_epsilon);
   const Trial twin = stage.run_from(pushed, *trial.method, trial.value, seconds);
   if (!twin.reached_end()) return {};
+  const std::vector<double> seen = stage.distances(trial, twin);
+  if (seen.empty()) return {};
   std::vector<double> times{0}, distances{machine_epsilon};
-  for (std::size_t i = 0; i < stage.times().size(); ++i) {
-    times.push_back(stage.times()[i]);
-    distances.push_back(stage.distance_at(trial, twin, i));
-  }
+  times.insert(times.end(), stage.times().begin(), stage.times().end());
+  distances.insert(distances.end(), seen.begin(), seen.end());
   return divergence(times, distances);
 }
 
