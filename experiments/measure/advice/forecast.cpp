@@ -93,9 +93,11 @@ double Forecast::seconds(const Method& method, double value) const {
   if (method.order == 0) return seconds_of_exact(stage_.model());
   const auto seen = seen_.find(&method);
   if (seen != seen_.end()) {
-    const double finer = seen->second.value / value;
-    return seen->second.seconds *
-           (method.knob == Knob::rtol ? std::pow(finer, 1.0 / method.order) : finer);
+    // Half of what steps with steps inside take is the latter's, whatever the step.
+    const double share = method.knob == Knob::rtol         ? 1.0 / method.order
+                         : method.asks(Need::split_forces) ? 0.5
+                                                           : 1;
+    return seen->second.seconds * std::pow(seen->second.value / value, share);
   }
   const double steps = std::max(1.0, std::round(stage_.until() / value));
   const auto timed = seconds_a_step_.find(&method);
