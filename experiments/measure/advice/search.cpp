@@ -348,8 +348,9 @@ std::optional<Candidate> Search::unknown(double accuracy, const Trial& answer) c
       const double steps = std::max(8.0, std::ceil(stage_.until() * w));
       return Candidate{&method, stage_.until() / steps, 0, 0};
     } else {
-      const double h = stage_.until() / few_steps(accuracy);
-      if (forecast_->seconds(method, h) < little * answer.seconds)
+      const double steps = few_steps(accuracy), h = stage_.until() / steps;
+      const double in_all = 1 + steps_to_analyse(system.size()) / steps;
+      if (forecast_->seconds(method, h) * in_all < little * answer.seconds)
         return Candidate{&method, h, 0, 0};
     }
   }
@@ -430,7 +431,7 @@ bool Search::by_refinement(double accuracy) {
       // What such a method does within a step is not refined with it.
       if (soft > much_softer * w_start_ || accuracy < least_of_split) continue;
       steps = std::max(steps, std::ceil(stage_.until() * soft / 2));
-    } else if (steps * usual_step_cost(method, system.size()) >
+    } else if ((steps + steps_to_analyse(system.size())) * usual_step_cost(method, system.size()) >
                no_time * steps_of_verlet(model, stage_.until())) {
       continue;
     }

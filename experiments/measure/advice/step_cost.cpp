@@ -52,6 +52,11 @@ double usual_step_cost(const Method& method, Index unknowns) {
   return found->steps[low] * std::pow(found->steps[low + 1] / found->steps[low], part);
 }
 
+double steps_to_analyse(Index unknowns) {
+  constexpr Index small = 300;  // where it takes no time
+  return unknowns > small ? 10 : 0;
+}
+
 double forces_to_begin(const Method& method) {
   // Sweeps of deferred correction over the first steps (see symmetric_multistep.hpp).
   return method.recurrence_roots ? method.order / 2.0 * (method.order - 1) : 0;
