@@ -5,6 +5,8 @@
 //   advice --out results/advice
 //   advice --cases 40 --first 2000000 --out results/other
 //
+//   advice --step-costs --out results/step_costs
+//
 //  1. Cases are drawn by their number (see drawn_case.hpp). Those below 1000000 are what the
 //  constants
 //     of the search were chosen on; the study takes others.
@@ -14,10 +16,13 @@
 //  3. worth.csv: how often claims and error bars hold, how wide the bars are, how near the choice
 //  is
 //     to the best, what everything takes.
+// With --step-costs, nothing of this: step_costs.csv has what a step of each method takes, which is
+// what forecasts begin with.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/advice/case_result.hpp"
+#include "experiments/advice/step_costs.hpp"
 #include "experiments/advice/worth.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
@@ -38,6 +43,7 @@ struct Arguments {
   std::string out;
   int cases = 200, first = first_unseen, repeats = 3;
   double reference_seconds = 5;
+  bool step_costs = false;
 };
 
 void declare(CommandLine& line, Arguments& a) {
@@ -51,7 +57,23 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--reference-seconds", a.reference_seconds,
                   "seconds that a reference may take, about")
       .capture_default_str();
+  line.add_flag("--step-costs", a.step_costs,
+                "time a step of each method at four sizes instead, into step_costs.csv");
   line.add_option("--out", a.out, "the folder for cases.csv and worth.csv");
+}
+
+int step_costs(const Arguments& a, const std::vector<std::string>& command_line) {
+  CsvFile csv(a.out + "/step_costs.csv", {"method", "unknowns", "steps_of_verlet"});
+  for (const MeasuredCost& cost : measured_costs()) {
+    fmt::print("{:<26}", cost.method->name);
+    for (std::size_t i = 0; i < sizes_of_costs.size(); ++i) {
+      csv.row(cost.method->name, sizes_of_costs[i], cost.steps[i]);
+      fmt::print(" {:>8.3g}", cost.steps[i]);
+    }
+    fmt::print("\n");
+  }
+  csv.commit(provenance(command_line));
+  return done;
 }
 
 int advice(const CommandLine& line, const Arguments& a,
@@ -62,6 +84,7 @@ int advice(const CommandLine& line, const Arguments& a,
   require_repeats(a.repeats);
   require_positive(a.reference_seconds, "--reference-seconds", "the seconds of a reference");
   require_folder(a.out);
+  if (a.step_costs) return step_costs(a, command_line);
   Study study(line, a.out, {"cases.csv", "worth.csv"}, {{"code", code_hash()}});
   if (const auto status = study.completed()) return *status;
   CsvFile cases_csv(a.out + "/cases.csv", case_columns().header());

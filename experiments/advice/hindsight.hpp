@@ -14,8 +14,9 @@ struct Hindsight {
   Point best;                 // not reached_end where no run came so far
 };
 
-// Sweeps every method that fits the scene until its runs take longer than the fastest one so far
-// that is known to be within `accuracy` of the reference. The best few are timed `repeats` times.
+// Sweeps every method that may be the fastest and fits the scene until its runs take longer than
+// the fastest one so far that is known to be within `accuracy` of the reference, the most promising
+// ones first, for some forty seconds in all. The best few are timed `repeats` times.
 Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
                     const Reference& reference, int repeats);
 

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "qddot/integrators/method.hpp"
+
+namespace qddot::advice_study {
+
+// The sizes that steps are timed at, in unknowns, about.
+constexpr std::array<double, 4> sizes_of_costs = {3, 30, 300, 3000};
+
+// What a step of a method takes, in steps of Verlet's method, at each of the sizes; no number where
+// it did not make its steps.
+struct MeasuredCost {
+  const Method* method = nullptr;
+  std::array<double, sizes_of_costs.size()> steps{};
+};
+
+// Times the steps of all methods of fixed steps that forecasts are made for: explicit ones at half
+// of their limit, implicit ones at h w_max = 10; the median over a chain, a cloth and a lattice.
+// The table in step_cost.cpp of measure/advice has these numbers.
+std::vector<MeasuredCost> measured_costs();
+
+}  // namespace qddot::advice_study
