@@ -16,8 +16,11 @@
 //  3. worth.csv: how often claims and error bars hold, how wide the bars are, how near the choice
 //  is
 //     to the best, what everything takes.
+//
 // With --step-costs, nothing of this: step_costs.csv has what a step of each method takes, which is
 // what forecasts begin with.
+#include <exception>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -37,11 +40,11 @@ namespace qddot::advice_study {
 using namespace measure;
 namespace {
 
-constexpr int most_cases = 100000, first_unseen = 1000000, last = 2000000000;
+constexpr int most_cases = 100000, most_jobs = 256, first_unseen = 1000000, last = 2000000000;
 
 struct Arguments {
   std::string out;
-  int cases = 200, first = first_unseen, repeats = 3;
+  int cases = 200, first = first_unseen, repeats = 3, jobs = 1;
   double reference_seconds = 5;
   bool step_costs = false;
 };
@@ -53,6 +56,8 @@ void declare(CommandLine& line, Arguments& a) {
                   "search was tuned on")
       .capture_default_str();
   line.add_option("--repeats", a.repeats, "timed runs of the best and of the chosen run")
+      .capture_default_str();
+  line.add_option("--jobs", a.jobs, "cases at a time, each on a core of its own")
       .capture_default_str();
   line.add_option("--reference-seconds", a.reference_seconds,
                   "seconds that a reference may take, about")
@@ -82,6 +87,7 @@ int advice(const CommandLine& line, const Arguments& a,
   require_within(a.cases, 1, most_cases, "--cases");
   require_within(a.first, 0, last, "--first");
   require_repeats(a.repeats);
+  require_within(a.jobs, 1, most_jobs, "--jobs");
   require_positive(a.reference_seconds, "--reference-seconds", "the seconds of a reference");
   require_folder(a.out);
   if (a.step_costs) return step_costs(a, command_line);
@@ -90,16 +96,30 @@ int advice(const CommandLine& line, const Arguments& a,
   CsvFile cases_csv(a.out + "/cases.csv", case_columns().header());
   CsvFile worth_csv(a.out + "/worth.csv", {"figure", "value", "cases", "meaning"});
 
-  std::vector<CaseResult> results;
+  std::vector<CaseResult> results(static_cast<std::size_t>(a.cases));
+  std::size_t finished = 0;
   study.measure([&] {
-    for (int i = 0; i < a.cases; ++i) {
-      const auto number = static_cast<std::uint64_t>(a.first + i);
-      show_progress(fmt::format("case {} of {} ...", i + 1, a.cases));
-      results.push_back(result_from(study.piece(fmt::format("case {}", number), [&] {
-        return record_of(result_of(drawn_case(number), a.reference_seconds, a.repeats));
-      })));
+    std::exception_ptr error;
+#pragma omp parallel for schedule(dynamic) num_threads(a.jobs)
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const auto number = static_cast<std::uint64_t>(a.first) + i;
+      try {
+        const auto record = study.piece(fmt::format("case {}", number), [&] {
+          return record_of(result_of(drawn_case(number), a.reference_seconds, a.repeats));
+        });
+#pragma omp critical
+        {
+          results[i] = result_from(record);
+          show_progress(fmt::format("{} of {} cases", ++finished, a.cases));
+        }
+      } catch (...) {
+#pragma omp critical
+        error = std::current_exception();
+      }
     }
+    if (error) std::rethrow_exception(error);
   });
+  std::erase_if(results, [](const CaseResult& result) { return result.name.empty(); });
   show_progress("");
   for (const CaseResult& result : results) case_columns().write_row(cases_csv, result);
   fmt::print("{:<24} {:>8} {:>6}  {}\n", "figure", "value", "cases", "of what");

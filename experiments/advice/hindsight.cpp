@@ -11,7 +11,7 @@ namespace qddot::advice_study {
 namespace {
 
 // A run, and all runs of a case together [s].
-constexpr double longest_run = 2, patience = 40;
+constexpr double longest_run = 2, patience = 25;
 // Runs so much slower than the fastest in one timing may be as fast in several.
 constexpr double close_race = 1.3;
 

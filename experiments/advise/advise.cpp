@@ -13,7 +13,9 @@
 //     the next method and how many times as long that takes.
 #include "qddot/measure/advice/advise.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
