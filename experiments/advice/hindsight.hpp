@@ -16,7 +16,7 @@ struct Hindsight {
 
 // Sweeps every method that may be the fastest and fits the scene until its runs take longer than
 // the fastest one so far that is known to be within `accuracy` of the reference, the most promising
-// ones first, for half a minute seconds in all. The best few are timed `repeats` times.
+// ones first, for half a minute in all. The best few are timed `repeats` times.
 Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
                     const Reference& reference, int repeats);
 

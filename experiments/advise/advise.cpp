@@ -83,7 +83,7 @@ const Columns<Advice>& advice_columns() {
 
 std::string beside(const std::optional<Candidate>& other, const Advice& advice) {
   if (!other || !advice.take) return "";
-  if (other->method == advice.take->method) return "(it)";
+  if (other->method == advice.take->method) return "the one to take";
   return fmt::format("{} {:.3g} x", other->method->name, other->seconds / advice.take->seconds);
 }
 
@@ -124,21 +124,26 @@ void print_scene(const Advices& all, const Scene& start, const ReducedScene& sce
 }
 
 void print_advice(const Advices& all, const Arguments& a, double until) {
-  fmt::print("\n{:<9} {:<18} {:<16} {:>8}  {:>8}  {:<28} {:<24} {}\n", "accuracy", "take", "knob",
-             "error", "time", "next", "own implicit", "SUNDIALS");
+  constexpr const char* row = "{:<9} {:<18} {:<16} {:>8}  {:>8}  {:<26} {:<26} {:<26} {}\n";
+  fmt::print("\n");
+  fmt::print(fmt::runtime(row), "accuracy", "take", "knob", "error", "time", "next",
+             "best own explicit", "best own implicit", "best of SUNDIALS");
   for (const Advice& advice : all.for_each) {
     if (!advice.take) {
-      fmt::print("{:<9.1e} {}\n", advice.accuracy, advice.why);
+      fmt::print("{:<9.1e} none: {}\n", advice.accuracy, advice.why);
       continue;
     }
     const Candidate& take = *advice.take;
-    fmt::print("{:<9.1e} {:<18} {:<16} {:>8}  {:>8}  {:<28} {:<24} {}\n", advice.accuracy,
-               take.method->name, knob_in_words(*take.method, take.value),
+    fmt::print(fmt::runtime(row), fmt::format("{:.1e}", advice.accuracy), take.method->name,
+               knob_in_words(*take.method, take.value),
                fmt::format("{:.1e}{}", take.error, advice.is_seen ? " " : "?"),
                time_in_words(take.seconds), beside(advice.runner_up, advice),
-               beside(advice.own_implicit, advice), beside(advice.sundials, advice));
+               beside(advice.own_explicit, advice), beside(advice.own_implicit, advice),
+               beside(advice.sundials, advice));
   }
-  fmt::print("? expected, not seen; times are of one run, without set-up\n\n");
+  fmt::print(
+      "? expected, not seen; N x: times as long, which of other methods is mostly expected; times "
+      "are of one run, without set-up\n\n");
   std::string last;
   for (const Advice& advice : all.for_each) {
     if (!advice.take) continue;

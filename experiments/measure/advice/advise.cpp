@@ -99,16 +99,15 @@ Advice advice_for(const Search& search, double accuracy) {
 
 // Makes the runs that are advised, from the least accurate on, so long as that pays: each teaches
 // the forecast for the next.
-void try_out(Search& search, const std::vector<double>& accuracies,
+void try_out(Search& search, const std::vector<double>& coarse_first,
              std::chrono::steady_clock::time_point begin) {
-  std::vector<double> coarse_first = accuracies;
-  std::ranges::sort(coarse_first, std::ranges::greater());
   double longest = 0;
   for (const double accuracy : coarse_first) {
     const Advice advice = advice_for(search, accuracy);
     if (advice.take) longest = std::max(longest, advice.take->seconds);
   }
   const double allowed = std::max(always_allowed, of_the_run * longest);
+  search.stop_after(allowed);
   for (const double accuracy : coarse_first) {
     // The run, its check, and what may be faster; then once more, where all that says otherwise.
     constexpr double with_its_check = 3;
@@ -117,13 +116,27 @@ void try_out(Search& search, const std::vector<double>& accuracies,
       const Advice advice = advice_for(search, accuracy);
       if (!advice.take || advice.is_seen || advice.take->seconds > left) break;
       if (attempt == 0 && with_its_check * advice.take->seconds < left) {
-        const double share = left / static_cast<double>(2 * accuracies.size());
+        const double share = left / static_cast<double>(2 * coarse_first.size());
         search.race(search.find(accuracy), accuracy, share);
       } else {
-        search.try_once(*advice.take);
+        search.try_once(*advice.take, left);
       }
     }
   }
+}
+
+// SUNDIALS' fastest methods choose their steps: of them only runs tell. The explicit one is tried
+// for each accuracy, the implicit one for the first, until time is up.
+void try_sundials(Search& search, const std::vector<double>& coarse_first,
+                  std::chrono::steady_clock::time_point begin) {
+  constexpr double tolerance = 0.1;  // of the accuracy
+  const auto try_one = [&](const char* name, double accuracy) {
+    const double left = always_allowed - seconds_since(begin);
+    const double rtol = std::clamp(tolerance * accuracy, 1e-13, 1e-2);
+    if (left > 0) search.try_once({find_method(name), rtol, 0, 0}, left);
+  };
+  for (const double accuracy : coarse_first) try_one("arkode_erk4", accuracy);
+  try_one("cvode_bdf", coarse_first.front());
 }
 
 Advices of_nothing(const ReducedScene& model, double until, const std::vector<double>& accuracies) {
@@ -157,7 +170,10 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
   Search search(model, until, of, infinity);
   if (search.survey(std::ranges::min(accuracies))) {
     if (search.forecast()) {
-      try_out(search, accuracies, begin);
+      std::vector<double> coarse_first = accuracies;
+      std::ranges::sort(coarse_first, std::ranges::greater());
+      try_out(search, coarse_first, begin);
+      try_sundials(search, coarse_first, begin);
     } else {
       for (const double accuracy : accuracies) search.find(accuracy);
     }

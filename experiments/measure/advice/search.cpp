@@ -378,8 +378,8 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
   return answer;
 }
 
-void Search::try_once(const Candidate& candidate) {
-  if (!was_tried(candidate)) run(*candidate.method, candidate.value, limit_);
+void Search::try_once(const Candidate& candidate, double seconds) {
+  if (!was_tried(candidate)) run(*candidate.method, candidate.value, seconds);
 }
 
 // Doubles the number of steps until the error of all but the finest run is known to be at most the

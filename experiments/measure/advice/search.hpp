@@ -38,8 +38,8 @@ class Search {
   // those of which nothing is known; returns the fastest one that is known to be so accurate.
   const Trial* race(const Trial* answer, double accuracy, double seconds);
 
-  // Makes that run, unless it was made.
-  void try_once(const Candidate& candidate);
+  // Makes that run, unless it was made, for so many seconds at most.
+  void try_once(const Candidate& candidate, double seconds);
 
   // A bound of the trial's error, from how far it is from a more accurate one; nothing where there
   // is none.
@@ -59,6 +59,8 @@ class Search {
   const std::deque<Trial>& trials() const { return trials_; }
   double w_start() const { return w_start_; }
   double seconds_left() const;
+  // Begins nothing more after so many seconds in all.
+  void stop_after(double seconds) { limit_ = seconds; }
 
  private:
   double expected(const Trial& trial) const;
