@@ -1,8 +1,8 @@
 #include "qddot/measure/advice/search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
@@ -27,9 +27,9 @@ constexpr double checks = 3, chosen_to_check = 3.5;
 // Above the distance from a check: that this is not quite as accurate as is expected.
 constexpr double margin = 1.4;
 constexpr int most_rounds = 14;
-// Two runs that are `lost` apart have nothing to do with each other; up to `free` their distance
+// Two runs that are `lost` apart have nothing to do with each other; up to `parting` their distance
 // grows by itself.
-constexpr double lost = 0.1, free = 0.03;
+constexpr double lost = 0.1, parting = 0.03;
 
 // Each look costs as much as some forces.
 int number_of_looks(double steps, AccuracyOf of) {
@@ -224,7 +224,7 @@ double Search::lost_distance(const Trial& trial, const Trial& better) const {
   const std::vector<double> distances = stage_.distances(trial, better);
   std::size_t last = 0;
   for (std::size_t i = 0; i < distances.size(); ++i) {
-    if (distances[i] < free) last = i;
+    if (distances[i] < parting) last = i;
   }
   if (last < 2) return std::max(end, 1.0);
   const double before = distances[last / 2];
@@ -293,7 +293,7 @@ std::optional<Candidate> Search::fresh(double accuracy) const {
   double shortest = std::numeric_limits<double>::infinity();
   for (const Candidate& c : all) {
     if (c.error > 2 * accuracy || was_tried(c)) continue;
-    if (c.method->is(Trait::implicit) && c.seconds > much * least) continue;
+    if (c.method->is(Trait::implicit) && !(may_be_implicit() && c.seconds < much * least)) continue;
     const double seconds = c.seconds * (forecast_->has_learned(*c.method) ? 1 : unseen);
     if (seconds >= shortest) continue;
     shortest = seconds;
@@ -347,7 +347,7 @@ std::optional<Candidate> Search::unknown(double accuracy, const Trial& answer) c
       const double w = resolved_frequency(method, system, model.initial().q);
       const double steps = std::max(8.0, std::ceil(stage_.until() * w));
       return Candidate{&method, stage_.until() / steps, 0, 0};
-    } else {
+    } else if (may_be_implicit()) {
       const double steps = few_steps(accuracy), h = stage_.until() / steps;
       const double in_all = 1 + steps_to_analyse(system.size()) / steps;
       if (forecast_->seconds(method, h) * in_all < little * answer.seconds)
@@ -365,6 +365,7 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
     std::optional<Candidate> next = unknown(accuracy, *answer);
     for (const Candidate& c : forecast_->candidates(good_enough * accuracy)) {
       if (was_tried(c) || c.seconds > clearly_faster * answer->seconds) continue;
+      if (c.method->is(Trait::implicit) && !may_be_implicit()) continue;
       if (next && next->seconds == 0 && left < 2 * answer->seconds) next.reset();
       if (!next) next = c;
       break;
@@ -389,8 +390,8 @@ void Search::try_once(const Candidate& candidate, double seconds) {
 // missed none.
 bool Search::refine(const Method& method, double steps, double accuracy, double seconds) {
   const double fall = std::pow(2, method.order), end = seconds_since(begin_) + seconds;
-  const Trial *before = nullptr, *last = nullptr;
-  for (double finest = 0; seconds_since(begin_) < end; steps *= 2) {
+  const Trial* last = nullptr;
+  for (double before = 0; seconds_since(begin_) < end; steps *= 2) {
     Trial& trial = run(method, stage_.until() / steps, end - seconds_since(begin_));
     if (!trial.reached_end()) return false;
     stage_.measure_by(trial);
@@ -398,15 +399,14 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
       const double distance = stage_.distance(*last, trial);
       // Far within the accuracy, the order does not matter.
       constexpr double far_within = 0.1;
-      const bool is_asymptotic = (before && finest < 2 * fall * distance && finest > distance) ||
-                                 distance < far_within * accuracy;
+      const bool is_asymptotic =
+          (before > distance && before < 2 * fall * distance) || distance < far_within * accuracy;
       if (is_asymptotic && *bound(*last) <= accuracy) return true;
       // Two more runs are to come, if it goes on as it should.
       const double needed =
           std::sqrt(std::max(1.0, std::pow(distance / accuracy, 2.0 / method.order)));
-      if (last && trial.seconds * needed * 2 > end - seconds_since(begin_)) return false;
-      finest = distance;
-      before = last;
+      if (trial.seconds * needed * 2 > end - seconds_since(begin_)) return false;
+      before = distance;
     }
     last = &trial;
   }

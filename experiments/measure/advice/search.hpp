@@ -63,6 +63,8 @@ class Search {
   void stop_after(double seconds) { limit_ = seconds; }
 
  private:
+  // Nothing keeps its energy better than what hardly moves, as too long implicit steps may.
+  bool may_be_implicit() const { return of_ != AccuracyOf::energy; }
   double expected(const Trial& trial) const;
   double rounding() const;
   double ratio(const Trial& other, const Trial& trial) const;

@@ -1,6 +1,7 @@
 #include "qddot/measure/advice/trial.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
@@ -43,6 +44,11 @@ Trial Stage::run_from(const State& start, const Method& method, double value,
 
 Trial Stage::run(const Method& method, double value, double seconds) {
   Trial trial = run_from(model_.initial(), method, value, seconds);
+  if (of_ == AccuracyOf::energy) {
+    const double energy = model_.energy(model_.initial());
+    for (const State& seen : trial.path)
+      trial.energy_gap = std::max(trial.energy_gap, std::abs(model_.energy(seen) - energy));
+  }
   if (!trial.reached_end() || trial.seconds >= short_run) return trial;
   const auto integrator =
       make_integrator(method, model_.system(), options_for(method, value, model_));
@@ -61,11 +67,7 @@ void Stage::measure_by(const Trial& trial) {
 }
 
 double Stage::energy_error(const Trial& trial) const {
-  const double energy = model_.energy(model_.initial());
-  double largest = 0;
-  for (const State& seen : trial.path)
-    largest = std::max(largest, errors_between(model_, seen, seen, energy, scales_).energy);
-  return largest;
+  return scales_.kinetic > 0 ? trial.energy_gap / scales_.kinetic : trial.energy_gap;
 }
 
 double Stage::distance(const Trial& one, const Trial& other) const {

@@ -20,7 +20,8 @@ struct Trial {
   // At the times, the end last, as far as it came; or the end alone.
   std::vector<State> path{};
 
-  double expected = 0;  // error, before it was made
+  double energy_gap = 0;  // largest |E - E(0)| at these times [J]
+  double expected = 0;    // error, before it was made
 
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
 };
@@ -49,7 +50,8 @@ class Stage {
   // The same at each of the times; nothing where one of them was seen at the end alone.
   std::vector<double> distances(const Trial& one, const Trial& other) const;
 
-  // The largest error of the energy at the times of a trial that came to the end.
+  // The largest error of the energy at the times of a trial that came to the end, where the energy
+  // is asked for.
   double energy_error(const Trial& trial) const;
 
   const ReducedScene& model() const { return model_; }
