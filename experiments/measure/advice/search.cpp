@@ -328,30 +328,47 @@ const Trial* Search::find(double accuracy) {
   return nullptr;
 }
 
-// A method of which nothing is known yet and that may be faster than the answer, with a knob to
-// begin with: adaptive ones of high order for few unknowns, those that take stiff forces apart
-// where some are named, and implicit ones where few of their steps take little beside it.
+// Four times the steps that an implicit method has missed the accuracy with, or few of them where
+// it was not tried, so long as that takes little beside the answer; nothing else.
+std::optional<Candidate> Search::more_steps(const Method& method, double accuracy,
+                                            const Trial& answer) const {
+  constexpr double little = 0.1, times = 4;
+  double steps = few_steps(accuracy);
+  for (const Trial& trial : trials_) {
+    if (trial.method != &method) continue;
+    if (!trial.reached_end() || !(error(trial) > accuracy)) return {};
+    steps = std::max(steps, times * std::round(stage_.until() / trial.value));
+  }
+  const double h = stage_.until() / steps;
+  const double in_all = 1 + steps_to_analyse(stage_.model().system().size()) / steps;
+  const double seconds = forecast_->seconds(method, h) * in_all;
+  if (!(seconds < little * answer.seconds)) return {};
+  return Candidate{&method, h, 0, seconds};
+}
+
+// A run of which nothing is known yet and that may be faster than the answer: of adaptive methods
+// of high order for few unknowns, of those that take stiff forces apart where some are named, and
+// of implicit ones where few of their steps take little beside it.
 std::optional<Candidate> Search::unknown(double accuracy, const Trial& answer) const {
   constexpr Index few = 60;
-  constexpr double little = 0.1;
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
-  for (const char* name : {"linear_midpoint", "bdf2", "multirate_adams4", "multirate_adams2",
-                           "multirate_adams5", "dprkn12", "dprkn8", "dprkn6"}) {
+  for (const char* name : {"linear_midpoint", "trbdf2", "bdf2", "multirate_adams4",
+                           "multirate_adams2", "multirate_adams5", "dprkn12", "dprkn8", "dprkn6"}) {
     const Method& method = *find_method(name);
     if (!applies_to(method, system)) continue;
+    if (method.is(Trait::implicit)) {
+      const auto next = may_be_implicit() ? more_steps(method, accuracy, answer) : std::nullopt;
+      if (next && !was_tried(*next)) return next;
+      continue;
+    }
     if (std::ranges::find(trials_, &method, &Trial::method) != trials_.end()) continue;
     if (method.knob == Knob::rtol) {
       if (system.size() <= few) return Candidate{&method, std::clamp(accuracy, 1e-13, 1e-2), 0, 0};
-    } else if (method.asks(Need::split_forces)) {
+    } else {
       const double w = resolved_frequency(method, system, model.initial().q);
       const double steps = std::max(8.0, std::ceil(stage_.until() * w));
       return Candidate{&method, stage_.until() / steps, 0, 0};
-    } else if (may_be_implicit()) {
-      const double steps = few_steps(accuracy), h = stage_.until() / steps;
-      const double in_all = 1 + steps_to_analyse(system.size()) / steps;
-      if (forecast_->seconds(method, h) * in_all < little * answer.seconds)
-        return Candidate{&method, h, 0, 0};
     }
   }
   return {};
@@ -401,7 +418,7 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
       constexpr double far_within = 0.1;
       const bool is_asymptotic =
           (before > distance && before < 2 * fall * distance) || distance < far_within * accuracy;
-      if (is_asymptotic && *bound(*last) <= accuracy) return true;
+      if (is_asymptotic && bound(*last).value_or(1) <= accuracy) return true;
       // Two more runs are to come, if it goes on as it should.
       const double needed =
           std::sqrt(std::max(1.0, std::pow(distance / accuracy, 2.0 / method.order)));
@@ -447,7 +464,7 @@ const Trial* Search::by_tolerance(double accuracy) {
     const Trial& trial = run(*find_method("ida"), rtol, limit_);
     if (!trial.reached_end()) return nullptr;
     stage_.measure_by(trial);
-    if (before && *bound(*before) <= accuracy) return before;
+    if (before && bound(*before).value_or(1) <= accuracy) return before;
     before = &trial;
   }
   return nullptr;

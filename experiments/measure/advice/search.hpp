@@ -72,6 +72,8 @@ class Search {
   bool was_tried(const Candidate& candidate) const;
   std::optional<Candidate> check_of(const Trial& trial) const;
   std::optional<Candidate> fresh(double accuracy) const;
+  std::optional<Candidate> more_steps(const Method& method, double accuracy,
+                                      const Trial& answer) const;
   std::optional<Candidate> unknown(double accuracy, const Trial& answer) const;
   bool survey_by_verlet();
   const Trial* by_tolerance(double accuracy);

@@ -33,6 +33,11 @@ void fill(Answer& answer, const Search& search, const Trial& trial, const Reduce
   if (const Trial* check = search.checker(trial)) answer.seconds.check = check->seconds;
 }
 
+bool is_known(const Search& search, const Trial& trial, double accuracy) {
+  const auto bound = search.bound(trial);
+  return bound && *bound <= accuracy;
+}
+
 EstimateKind kind_of(const Trial& trial, AccuracyOf of) {
   if (of == AccuracyOf::energy) return EstimateKind::conserved;
   return trial.method->order == 0 ? EstimateKind::rounding : EstimateKind::compared;
@@ -185,8 +190,8 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
   try {
     if (search.survey(wanted.accuracy)) found = search.find(wanted.accuracy);
     if (found) found = search.race(found, wanted.accuracy, seconds_of_race(*found));
-    // What the race taught may be that the bound is another.
-    if (found && *search.bound(*found) > wanted.accuracy) found = search.find(wanted.accuracy);
+    // What the race taught may be that the bound is another, or that there is none.
+    if (found && !is_known(search, *found, wanted.accuracy)) found = search.find(wanted.accuracy);
     if (search.seconds_left() <= 0) stopped_by = "time was up";
   } catch (const Interrupted& interrupted) {
     stopped_by = interrupted.what();
@@ -194,7 +199,7 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
   answer.advised_by = search.forecast()               ? "forecast"
                       : model.system().has_massless() ? "tolerance"
                                                       : "modes";
-  if (found) {
+  if (found && is_known(search, *found, wanted.accuracy)) {
     fill(answer, search, *found, model);
     answer.is_reached = true;
     answer.error_estimate = *search.bound(*found);
