@@ -71,7 +71,8 @@ double few_steps(double accuracy) { return accuracy > 1e-3 ? 2 : 8; }
 double growth_of_frequency(const ReducedScene& model, const std::vector<State>& path, double bound,
                            double steps) {
   if (model.system().stiffness_is_constant() || bound == 0) return 1;
-  const auto seen = static_cast<std::size_t>(std::clamp(steps / 100, 1.0, 12.0));
+  const std::size_t seen =
+      std::min(path.size(), static_cast<std::size_t>(std::clamp(steps / 100, 1.0, 12.0)));
   double most = bound;
   for (std::size_t i = 1; i <= seen; ++i)
     most = std::max(most, frequency_bound(model.system(), path[i * path.size() / seen - 1].q));

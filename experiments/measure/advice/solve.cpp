@@ -20,8 +20,12 @@
 namespace qddot::measure {
 namespace {
 
-// What may be spent on runs that are only perhaps faster than the answer.
-double seconds_of_race(const Trial& answer) { return std::max(0.01, 0.2 * answer.seconds); }
+// What may be spent on runs that are only perhaps faster than the answer [s]: what nobody notices
+// or, where the answer took that long itself, a part of that.
+double seconds_of_race(const Trial& answer) {
+  constexpr double unnoticed = 0.01, part = 0.15;
+  return answer.seconds < unnoticed ? unnoticed : part * answer.seconds;
+}
 
 void fill(Answer& answer, const Search& search, const Trial& trial, const ReducedScene& model) {
   answer.method = trial.method;
@@ -119,10 +123,13 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
   const std::string instead =
       agreed > 0 ? fmt::format("; to t = {:.3g} s it can be had", agreed) : "";
   if (answer.horizon <= until) {
+    // Two runs that are lost may come near each other by chance.
+    answer.error_estimate = std::numeric_limits<double>::infinity();
+    answer.error_estimate_kind = EstimateKind::none;
     answer.why = fmt::format(
         "the motion is chaotic: from t = {:.3g} s on nobody knows its positions (errors grow by a "
-        "factor of e in {}); {}{}; ask for an earlier end, or for --accuracy-of energy",
-        answer.horizon, duration_in_words(1 / answer.lyapunov), reached, instead);
+        "factor of e in {}){}; ask for an earlier end, or for --accuracy-of energy",
+        answer.horizon, duration_in_words(1 / answer.lyapunov), instead);
   } else if (answer.lyapunov > 0) {
     answer.why =
         fmt::format("the motion is chaotic: its rounding has grown beyond that by t = {:g} s; {}{}",
