@@ -66,7 +66,8 @@ def read_cases(path):
     for line, row in read_rows(path, columns + times + texts):
         if row["is_claimed"] != "1" or row["left_out"] or not row["best_method"]:
             continue
-        numbers = [parse(path, line, row, name, True) for name in columns]
+        # An exact answer has no error.
+        numbers = [parse(path, line, row, name, False) for name in columns]
         seconds = [parse(path, line, row, name, True) for name in times]
         cases.append(Case(*numbers, row["best_method"], *seconds))
     return cases
