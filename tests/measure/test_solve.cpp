@@ -36,8 +36,8 @@ double error_of(const Answer& answer, const ReducedScene& model, const Reference
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(what_it_claims_holds_on_drawn_scenes) {
-  // Of 24 cases, which are no part of those that the search was tuned on, one may miss its error
-  // bar: that is to hold in 95 of 100.
+  // These 24 cases are none that the search was tuned on. One may miss its error bar, which is to
+  // hold in 95 of 100.
   int claimed = 0, beyond_bar = 0, beyond_accuracy = 0;
   for (std::uint64_t seed = 5000000; claimed < 24; ++seed) {
     const advice_study::Case c = advice_study::drawn_case(seed);

@@ -78,7 +78,7 @@ Advice advice_for(const Search& search, double accuracy) {
     } else {
       keep_faster(is_implicit ? advice.own_implicit : advice.own_explicit, c);
     }
-    // Of implicit steps, neither what they take nor what they miss by is known well before.
+    // What implicit steps take and miss by is known badly before.
     if (is_implicit && !is_seen) continue;
     if (!advice.take) {
       advice.take = c;

@@ -37,8 +37,8 @@ double seconds_of_exact(const ReducedScene& model);
 // on the error goes as h^order or as rtol.
 class Forecast {
  public:
-  // `w_start`, `w_motion`: the largest frequency [rad/s] at the start and over the motion; infinite
-  // or zero where explicit methods have no limit to be told. `step_seconds`: of Verlet's method.
+  // Borrows the stage. `w_motion`: the largest frequency over the motion [rad/s], zero where
+  // nothing vibrates. `step_seconds`: of Verlet's method.
   Forecast(const Stage& stage, const OwnFrequencies& own, double w_motion, double step_seconds);
 
   // `value`: of the knob, h [s] or rtol. Infinite where nothing is known.

@@ -63,6 +63,15 @@ class Search {
   void stop_after(double seconds) { limit_ = seconds; }
 
  private:
+  // Fraction of an accuracy that an earlier run may be expected to miss by and be taken for good
+  // enough.
+  static constexpr double good_enough = 0.6;
+  // Steps that implicit methods begin with: what is not to be accurate may be a motion of some
+  // steps.
+  static double few_steps(double accuracy) { return accuracy > 1e-3 ? 2 : 8; }
+  // Steps that a run of Verlet's method takes at its limit, by a bound of w_max; at least 1.
+  static double steps_of_verlet(const ReducedScene& model, double until);
+
   // Nothing keeps its energy better than what hardly moves, as too long implicit steps may.
   bool may_be_implicit() const { return of_ != AccuracyOf::energy; }
   double expected(const Trial& trial) const;

@@ -21,7 +21,6 @@ struct Trial {
   std::vector<State> path{};
 
   double energy_gap = 0;  // largest |E - E(0)| at these times [J]
-  double expected = 0;    // error, before it was made
 
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
 };
