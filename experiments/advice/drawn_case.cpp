@@ -244,7 +244,7 @@ Case drawn_case(std::uint64_t seed) {
   const ReducedScene model(drawn.scene);
   const double w =
       model.system().size() > 0 ? frequency_at_least(model.system(), model.initial().q) : 0;
-  constexpr double most_work = 3e7, fewest_steps = 30, most_steps = 1e5;
+  constexpr double most_work = 1e8, fewest_steps = 100, most_steps = 1e5;
   const double size = static_cast<double>(drawn.scene.springs.size() + 10);
   const double steps =
       draw.by_logarithm(fewest_steps, std::clamp(most_work / size, 2 * fewest_steps, most_steps));

@@ -76,6 +76,9 @@ std::string estimate_in_words(const Answer& answer) {
     case EstimateKind::compared:
       return fmt::format("error at most {:.1e}, as a more accurate run says",
                          answer.error_estimate);
+    case EstimateKind::refined:
+      return fmt::format("error at most {:.1e}, as a coarser run of the same method says",
+                         answer.error_estimate);
     case EstimateKind::conserved:
       return fmt::format("energy error at most {:.1e}, as seen on the way", answer.error_estimate);
     case EstimateKind::rounding:

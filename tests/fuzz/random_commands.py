@@ -86,7 +86,8 @@ class Commands:
         forced = self._simulate(random) if self.program == "simulate" else {}
         given = []
         for option in self.options:
-            chance = 0.99 if option.name in NEEDED else 0.3 / len(self.options)
+            is_needed = option.name in NEEDED or (self.program, option.name) in NEEDED
+            chance = 0.99 if is_needed else 0.3 / len(self.options)
             if option.name in ("--explain", "--list-methods", "--list-scenes"):
                 chance = 0.01
             if self.program == "simulate" and option.name in (

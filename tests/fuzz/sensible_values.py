@@ -96,5 +96,6 @@ NEEDED = {
     "--sizes",
     "--peers",
     "scenes",
+    ("advise", "--accuracy"),
 }
 GENERATORS = ["oscillator", "orbit", "pair", "pendulum", "strut", "chain"]

@@ -41,8 +41,11 @@ class Forecast {
   // nothing vibrates. `step_seconds`: of Verlet's method.
   Forecast(const Stage& stage, const OwnFrequencies& own, double w_motion, double step_seconds);
 
-  // `value`: of the knob, h [s] or rtol. Infinite where nothing is known.
+  // `value`: of the knob, h [s] or rtol. The error is what the method leaves out (truncation) and
+  // what rounding adds with each step; infinite where nothing is known.
   double error(const Method& method, double value) const;
+  double truncation(const Method& method, double value) const;
+  double rounding(const Method& method, double value) const;
   double seconds(const Method& method, double value) const;
   // By what factor the ratio of the errors of two methods may be another than is expected, one of
   // `doubts`: none for two runs of one method, little where runs of both were seen.

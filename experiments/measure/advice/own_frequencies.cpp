@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "qddot/integrators/registry.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::measure {
 namespace {
@@ -20,6 +21,23 @@ std::vector<Vec> burst(const ReducedScene& model, const State& from, double h) {
   for (int i = 1; i <= burst_steps; ++i) each.times.push_back(i * h);
   integrator->advance(state, each.times.back(), each);
   return q;
+}
+
+// k-th differences of rounded positions have variances of C(2k, k) times the positions'. From where
+// the squares of differences are no larger than that, they go on falling as those before did.
+void leave_out_rounding(std::array<double, OwnFrequencies::highest_order + 2>& squares,
+                        double largest_q) {
+  constexpr double largest_of_many = 4;  // of a normal distribution, in its deviations
+  const double rounding = largest_of_many * machine_epsilon * largest_q;
+  double binomial = 2;
+  for (std::size_t k = 2; k < squares.size(); ++k) {
+    const double order = static_cast<double>(k);
+    binomial *= 2 * (2 * order - 1) / order;
+    if (k < 4 || squares[k] > binomial * rounding * rounding) continue;
+    // The last one before may be mixed with it.
+    squares[k] =
+        squares[k - 1] * std::min(squares[k - 1] / squares[k - 2], squares[k - 2] / squares[k - 3]);
+  }
 }
 
 }  // namespace
@@ -50,7 +68,9 @@ OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<Stat
   }
   OwnFrequencies own;
   if (taken == 0 || farthest == 0 || squares[1] == 0) return own;
-  own.speed = std::sqrt(squares[1] / taken) / h / farthest;
+  for (double& square : squares) square /= taken;
+  leave_out_rounding(squares, std::max(start.lpNorm<Eigen::Infinity>(), farthest));
+  own.speed = std::sqrt(squares[1]) / h / farthest;
   for (std::size_t p = 1; p < own.of_order.size(); ++p)
     own.of_order[p] = std::pow(squares[p + 1] / squares[1], 0.5 / static_cast<double>(p)) / h;
   return own;

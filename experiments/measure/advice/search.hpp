@@ -17,8 +17,9 @@ namespace qddot::measure {
 //  2. A Forecast names the run that comes to half of the accuracy in the least time. It is made,
 //     unless one that was made already is expected to be good enough.
 //  3. Another, which is expected to miss by a third of that, checks it: their distance is the error
-//     of the first but for that of the second. Both teach the forecast. Where the bound is above
-//     the accuracy, 2. again, from what is known now.
+//     of the first but for that of the second, which is itself within it where both are of one
+//     method. Both teach the forecast. Where neither bound is within the accuracy, 2. again, from
+//     what is known now.
 // Where the first run would take a thousand times what a few implicit steps do, or stiff springs
 // are named, a method that need not resolve them is refined before, until its runs agree: in a
 // small part of the first run's time, or it is left. Systems with massless nodes have no Verlet
@@ -41,13 +42,16 @@ class Search {
   // Makes that run, unless it was made, for so many seconds at most.
   void try_once(const Candidate& candidate, double seconds);
 
-  // A bound of the trial's error, from how far it is from a more accurate one; nothing where there
-  // is none.
+  // A bound of the trial's error, from how far it is from all that are more accurate or else from
+  // the coarser one; nothing where there is none of these.
   std::optional<double> bound(const Trial& trial) const;
   // What is known of the trial's error, or else expected.
   double error(const Trial& trial) const;
-  // The trial that bounds the error of this one; nullptr where there is none.
+  // The most accurate of the trials that bound the error of this one; nullptr where there is none.
   const Trial* checker(const Trial& trial) const;
+  // The coarser trial of the same method that bounds it else: an order that shows leaves the finer
+  // of two runs within their distance. nullptr where there is none.
+  const Trial* coarser(const Trial& trial) const;
   // The trial that is expected to be the most accurate, of all or of those that were seen on their
   // way; nullptr where none came to the end.
   const Trial* most_accurate(bool seen_on_its_way = false) const;
@@ -69,24 +73,29 @@ class Search {
   // Steps that implicit methods begin with: what is not to be accurate may be a motion of some
   // steps.
   static double few_steps(double accuracy) { return accuracy > 1e-3 ? 2 : 8; }
-  // Steps that a run of Verlet's method takes at its limit, by a bound of w_max; at least 1.
-  static double steps_of_verlet(const ReducedScene& model, double until);
+  // Steps that a run of Verlet's method takes at its limit, by the bound of w_max at the start; at
+  // least 1.
+  double steps_of_verlet() const;
 
   // Nothing keeps its energy better than what hardly moves, as too long implicit steps may.
   bool may_be_implicit() const { return of_ != AccuracyOf::energy; }
   double expected(const Trial& trial) const;
-  double rounding() const;
+  double rounding(const Trial& trial) const;
+  double truncation(const Trial& trial) const;
   double ratio(const Trial& other, const Trial& trial) const;
+  bool is_check(const Trial& other, const Trial& trial) const;
+  double likely_distance(const Trial& trial, const Trial& better) const;
+  bool is_refined_by(const Trial& coarser, const Trial& finer) const;
   double lost_distance(const Trial& trial, const Trial& better) const;
+  bool all_are_lost() const;
   bool was_tried(const Candidate& candidate) const;
   std::optional<Candidate> check_of(const Trial& trial) const;
   std::optional<Candidate> fresh(double accuracy) const;
-  std::optional<Candidate> more_steps(const Method& method, double accuracy,
-                                      const Trial& answer) const;
-  std::optional<Candidate> unknown(double accuracy, const Trial& answer) const;
+  std::optional<Candidate> more_steps(const Method& method, double accuracy, double seconds) const;
+  std::optional<Candidate> unknown(double accuracy, double seconds) const;
   bool survey_by_verlet();
   const Trial* by_tolerance(double accuracy);
-  bool refine(const Method& method, double steps, double accuracy, double seconds);
+  bool refine(const Method& method, double steps, double accuracy, double seconds, double longest);
   bool by_refinement(double accuracy);
   Trial& run(const Method& method, double value, double seconds);
   void learn();
@@ -94,7 +103,7 @@ class Search {
   AccuracyOf of_;
   double limit_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double w_start_ = 0, first_seconds_ = 0;
+  double bound_of_w_, w_start_ = 0, first_seconds_ = 0;
   Stage stage_;
   std::optional<Forecast> forecast_;
   std::deque<Trial> trials_;

@@ -41,8 +41,9 @@ double frequency_at_start(const ReducedScene& model, double until, double bound)
 double growth_of_frequency(const ReducedScene& model, const std::vector<State>& path, double bound,
                            double steps) {
   if (model.system().stiffness_is_constant() || bound == 0) return 1;
+  // A bound costs as much as about 17 forces.
   const std::size_t seen =
-      std::min(path.size(), static_cast<std::size_t>(std::clamp(steps / 100, 1.0, 12.0)));
+      std::min(path.size(), static_cast<std::size_t>(std::clamp(steps / 400, 1.0, 12.0)));
   double most = bound;
   for (std::size_t i = 1; i <= seen; ++i)
     most = std::max(most, frequency_bound(model.system(), path[i * path.size() / seen - 1].q));
@@ -55,12 +56,11 @@ bool Search::survey(double accuracy) {
   const ReducedScene& model = stage_.model();
   const double until = stage_.until();
   if (model.system().has_massless()) return true;
-  w_start_ = frequency_at_start(model, until, frequency_bound(model.system(), model.initial().q));
+  w_start_ = frequency_at_start(model, until, bound_of_w_);
   // An eigenproblem of a few unknowns takes no time.
   constexpr double not_worth_a_search = 1e-4;
   const double exactly = seconds_of_exact(model);
-  if (exactly <
-      std::max(not_worth_a_search, 1.5 * steps_of_verlet(model, until) * seconds_of_force(model))) {
+  if (exactly < std::max(not_worth_a_search, 1.5 * steps_of_verlet() * seconds_of_force(model))) {
     Trial& exact = run(*find_method("exact"), until, limit_);
     if (exact.reached_end()) stage_.measure_by(exact);
     return exact.reached_end();
@@ -70,10 +70,10 @@ bool Search::survey(double accuracy) {
 
 bool Search::survey_by_verlet() {
   const ReducedScene& model = stage_.model();
-  const System& system = model.system();
-  const double until = stage_.until(), bound = frequency_bound(system, model.initial().q);
+  const double until = stage_.until();
   constexpr double below_limit = 0.9, shorter = 0.75;
   constexpr int most_attempts = 6;
+  constexpr double no_time = 1e-3;
   const double looks = static_cast<double>(stage_.times().size());
   double steps = std::max(8.0, std::ceil(until * w_start_ / (2 * below_limit)));
   Trial* first = nullptr;
@@ -86,25 +86,37 @@ bool Search::survey_by_verlet() {
     if (first->reached_end() && first->summary.energy_growth < grows) break;
   }
   if (!first->reached_end()) return false;
-  const double w = w_start_ * growth_of_frequency(model, first->path, bound, steps);
-  const int bursts = static_cast<int>(std::clamp(steps / 80, 2.0, 16.0));
+  // The bound may grow more than w_max does. Steps that held for so long were not far beyond their
+  // limit.
+  constexpr double hardly_beyond = 1.02;
+  const double w = std::min(w_start_ * growth_of_frequency(model, first->path, bound_of_w_, steps),
+                            hardly_beyond * 2 * steps / until);
+  // A burst costs as much as about 25 forces.
+  const int bursts =
+      static_cast<int>(std::clamp(steps / (first->seconds < no_time ? 80 : 250), 2.0, 16.0));
   forecast_.emplace(stage_, own_frequencies(model, first->path, w, bursts), w,
                     first->seconds / steps);
   first_seconds_ = first->seconds;
-  forecast_->learn_seconds(*first);
+  for (const Trial& trial : trials_) {
+    if (trial.reached_end()) forecast_->learn_seconds(trial);
+  }
   learn();
   return true;
 }
 
 // Doubles the number of steps until the error of all but the finest run is known to be at most the
 // accuracy, which that of the finest is then as well: it falls as the order says. Ends early where
-// it does not, or where that would take more seconds. Steps without damping that do not resolve a
-// vibration turn it by another angle with each number of steps, so that runs that agree have
-// missed none.
-bool Search::refine(const Method& method, double steps, double accuracy, double seconds) {
+// it does not, where that would take more seconds, or the run itself longer. An undamped step that
+// does not resolve a vibration turns it by half a turn: with odd and even numbers of steps in turn,
+// runs that agree have missed none.
+bool Search::refine(const Method& method, double steps, double accuracy, double seconds,
+                    double longest) {
   const double fall = std::pow(2, method.order), end = seconds_since(begin_) + seconds;
   const Trial* last = nullptr;
-  for (double before = 0; seconds_since(begin_) < end; steps *= 2) {
+  const auto more = [&](double n) {
+    return 2 * n + (method.is(Trait::implicit) && std::fmod(n, 2) == 0 ? 1 : 0);
+  };
+  for (double before = 0; seconds_since(begin_) < end; steps = more(steps)) {
     Trial& trial = run(method, stage_.until() / steps, end - seconds_since(begin_));
     if (!trial.reached_end()) return false;
     stage_.measure_by(trial);
@@ -115,10 +127,9 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
       const bool is_asymptotic =
           (before > distance && before < 2 * fall * distance) || distance < far_within * accuracy;
       if (is_asymptotic && bound(*last).value_or(1) <= accuracy) return true;
-      // Two more runs are to come, if it goes on as it should.
-      const double needed =
-          std::sqrt(std::max(1.0, std::pow(distance / accuracy, 2.0 / method.order)));
-      if (trial.seconds * needed * 2 > end - seconds_since(begin_)) return false;
+      const double to_come =
+          trial.seconds * std::pow(std::max(1.0, distance / accuracy), 1.0 / method.order);
+      if (to_come > longest || 2 * trial.seconds > end - seconds_since(begin_)) return false;
       before = distance;
     }
     last = &trial;
@@ -130,25 +141,26 @@ bool Search::by_refinement(double accuracy) {
   if (of_ == AccuracyOf::energy) return false;
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
-  const double explicitly = steps_of_verlet(model, stage_.until()) * seconds_of_force(model);
-  constexpr double much_softer = 0.05, share = 0.4, no_time = 0.05;
-  // Where little accuracy is asked for, a few implicit steps may do.
-  std::vector<const char*> names = {"multirate_adams4", "multirate_adams2", "linear_midpoint"};
-  if (few_steps(accuracy) == 2) std::ranges::reverse(names);
-  for (const char* name : names) {
+  const double force = seconds_of_force(model), explicitly = steps_of_verlet() * force;
+  // What such a method does within a step is not refined with it.
+  constexpr double much_softer = 0.05, share = 0.4;
+  constexpr double no_time = 0.05, unnoticed = 4e-3;
+  for (const char* name : {"linear_midpoint", "multirate_adams4", "multirate_adams2"}) {
     const Method& method = *find_method(name);
     if (!applies_to(method, system)) continue;
-    double steps = few_steps(accuracy);
+    double steps = 1, seconds = share * explicitly;
     if (method.asks(Need::split_forces)) {
       const double soft = resolved_frequency(method, system, model.initial().q);
-      // What such a method does within a step is not refined with it.
       if (soft > much_softer * w_start_ || accuracy < least_of_split) continue;
-      steps = std::max(steps, std::ceil(stage_.until() * soft / 2));
-    } else if ((steps + steps_to_analyse(system.size())) * usual_step_cost(method, system.size()) >
-               no_time * steps_of_verlet(model, stage_.until())) {
-      continue;
+      steps = std::max(few_steps(accuracy), std::ceil(stage_.until() * soft / 2));
+    } else {
+      seconds = std::max(no_time * explicitly, unnoticed);
+      if ((1 + steps_to_begin(method, system.size())) * usual_step_cost(method, system.size()) *
+              force >
+          seconds)
+        continue;
     }
-    if (refine(method, steps, accuracy, share * explicitly)) return true;
+    if (refine(method, steps, accuracy, seconds, 2 * explicitly)) return true;
   }
   return false;
 }

@@ -23,8 +23,8 @@ namespace {
 // What may be spent on runs that are only perhaps faster than the answer [s]: what nobody notices
 // or, where the answer took that long itself, a part of that.
 double seconds_of_race(const Trial& answer) {
-  constexpr double unnoticed = 0.01, part = 0.15;
-  return answer.seconds < unnoticed ? unnoticed : part * answer.seconds;
+  constexpr double unnoticed = 0.01, least = 0.003, part = 0.1;
+  return answer.seconds < unnoticed ? unnoticed : std::max(least, part * answer.seconds);
 }
 
 void fill(Answer& answer, const Search& search, const Trial& trial, const ReducedScene& model) {
@@ -34,7 +34,9 @@ void fill(Answer& answer, const Search& search, const Trial& trial, const Reduce
   answer.end = trial.path.empty() ? model.initial() : trial.path.back();
   answer.nodes = model.expand(answer.end);
   answer.seconds.run = trial.seconds;
-  if (const Trial* check = search.checker(trial)) answer.seconds.check = check->seconds;
+  const Trial* check = search.checker(trial);
+  if (!check) check = search.coarser(trial);
+  if (check) answer.seconds.check = check->seconds;
 }
 
 bool is_known(const Search& search, const Trial& trial, double accuracy) {
@@ -42,9 +44,11 @@ bool is_known(const Search& search, const Trial& trial, double accuracy) {
   return bound && *bound <= accuracy;
 }
 
-EstimateKind kind_of(const Trial& trial, AccuracyOf of) {
+EstimateKind kind_of(const Search& search, const Trial& trial, AccuracyOf of) {
   if (of == AccuracyOf::energy) return EstimateKind::conserved;
-  return trial.method->order == 0 ? EstimateKind::rounding : EstimateKind::compared;
+  if (trial.method->order == 0) return EstimateKind::rounding;
+  return search.checker(trial) || !search.coarser(trial) ? EstimateKind::compared
+                                                         : EstimateKind::refined;
 }
 
 // The run of which the least error is known, and a bound of that: or else, of two runs that should
@@ -102,7 +106,7 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
   fill(answer, search, *best, search.stage().model());
   answer.error_estimate = least;
   answer.error_estimate_kind =
-      std::isfinite(least) ? kind_of(*best, wanted.of) : EstimateKind::none;
+      std::isfinite(least) ? kind_of(search, *best, wanted.of) : EstimateKind::none;
   const std::string reached = std::isfinite(least)
                                   ? fmt::format("the best that is known is {:.1e}", least)
                                   : "no error is known";
@@ -164,6 +168,8 @@ const char* name(EstimateKind kind) {
   switch (kind) {
     case EstimateKind::compared:
       return "compared";
+    case EstimateKind::refined:
+      return "refined";
     case EstimateKind::conserved:
       return "conserved";
     case EstimateKind::rounding:
@@ -210,7 +216,7 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
     fill(answer, search, *found, model);
     answer.is_reached = true;
     answer.error_estimate = *search.bound(*found);
-    answer.error_estimate_kind = kind_of(*found, wanted.of);
+    answer.error_estimate_kind = kind_of(search, *found, wanted.of);
   } else {
     explain_failure(answer, search, wanted, until, stopped_by);
   }

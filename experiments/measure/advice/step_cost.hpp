@@ -9,8 +9,9 @@ namespace qddot::measure {
 // where it was never measured.
 double usual_step_cost(const Method& method, Index unknowns);
 
-// What analysing the pattern of K takes before the first implicit step, in such steps.
-double steps_to_analyse(Index unknowns);
+// What an implicit method takes before its steps, in these: it analyses the pattern of K, and its
+// first, long steps take the most iterations.
+double steps_to_begin(const Method& method, Index unknowns);
 
 // Forces that the method evaluates before its first step, beside those of its steps.
 double forces_to_begin(const Method& method);
