@@ -108,17 +108,26 @@ BOOST_AUTO_TEST_CASE(the_finer_of_two_runs_is_within_their_distance) {
 }
 
 BOOST_AUTO_TEST_CASE(a_vibration_that_long_steps_leave_standing_is_not_missed) {
-  // Its spring begins 1 % too long and vibrates by that, ten times the accuracy. Implicit steps
-  // that are far longer than a period hold it where it is, or opposite.
-  Scene scene = drawn("pendulum", {{"stiffness", 1e8}, {"angle", 0.5}});
-  scene.nodes[1].position *= 1.01;
+  // A mass on a slow nonlinear spring, and on it by another a mass on a stiff one that begins a
+  // twentieth out of place and vibrates by that, by more than the accuracy. Implicit steps far
+  // longer than its period hold it where it is, or opposite.
+  Scene scene{.name = "stiff and slow", .dimension = 1};
+  scene.nodes.resize(3);
+  scene.nodes[0].pinned = true;
+  for (const std::size_t i : {1u, 2u}) scene.nodes[i].mass = 1;
+  scene.nodes[1].position = {1.05, 0, 0};
+  scene.nodes[2].position = {3, 0, 0};
+  scene.nodes[2].velocity = {3, 0, 0};
+  scene.springs.push_back({{0, 1}, {.stiffness = 1e10, .rest_length = 1}});
+  scene.springs.push_back({{1, 2}, {.stiffness = 1, .rest_length = 1, .quartic = 0.1}});
   const ReducedScene model(scene);
+  BOOST_TEST_REQUIRE(!model.system().stiffness_is_constant());
   for (const double until : {0.3, 0.7, 1.1}) {
     const Reference reference = make_reference(model, until, reference_seconds);
-    BOOST_TEST_REQUIRE(reference.certified.position < 1e-4);
-    const Answer answer = measure::solve(model, until, {.accuracy = 1e-3});
+    BOOST_TEST_REQUIRE(reference.certified.position < 1e-3);
+    const Answer answer = measure::solve(model, until, {.accuracy = 1e-2});
     BOOST_TEST_REQUIRE(answer.is_reached, answer.why);
-    BOOST_TEST(error_of(answer, model, reference) <= 1e-3, answer.method->name);
+    BOOST_TEST(error_of(answer, model, reference) <= 1e-2, answer.method->name);
   }
 }
 
