@@ -23,9 +23,8 @@ constexpr double margin = 1.4;
 // where its order shows: in 19 of 20 training runs within this.
 constexpr double margin_of_finer = 1.2;
 constexpr int most_rounds = 14;
-// Two runs that are `lost` apart have nothing to do with each other; up to `parting` their distance
-// grows by itself.
-constexpr double lost = 0.1, parting = 0.03;
+// Up to here the distance of two runs grows by itself.
+constexpr double parting = 0.03;
 
 // Each look costs as much as about seven forces.
 int number_of_looks(double steps, AccuracyOf of) {

@@ -70,6 +70,8 @@ class Search {
   // Fraction of an accuracy that an earlier run may be expected to miss by and be taken for good
   // enough.
   static constexpr double good_enough = 0.6;
+  // Two runs that are so far apart have nothing to do with each other.
+  static constexpr double lost = 0.1;
   // Steps that implicit methods begin with: what is not to be accurate may be a motion of some
   // steps.
   static double few_steps(double accuracy) { return accuracy > 1e-3 ? 2 : 8; }
@@ -92,7 +94,9 @@ class Search {
   std::optional<Candidate> check_of(const Trial& trial) const;
   std::optional<Candidate> fresh(double accuracy) const;
   std::optional<Candidate> more_steps(const Method& method, double accuracy, double seconds) const;
-  std::optional<Candidate> unknown(double accuracy, double seconds) const;
+  std::optional<Candidate> unknown(double accuracy, double seconds, bool has_time) const;
+  std::optional<Candidate> promised(double accuracy, double seconds, bool explicitly) const;
+  std::optional<Candidate> lead(double accuracy, double seconds) const;
   bool survey_by_verlet();
   const Trial* by_tolerance(double accuracy);
   bool refine(const Method& method, double steps, double accuracy, double seconds, double longest);

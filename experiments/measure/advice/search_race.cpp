@@ -13,11 +13,11 @@ namespace qddot::measure {
 // it was not tried, so long as that takes less than so many seconds; nothing else.
 std::optional<Candidate> Search::more_steps(const Method& method, double accuracy,
                                             double seconds) const {
-  constexpr double fewest = 1.5, most = 4;
+  constexpr double fewest = 1.2, most = 6;
   double steps = few_steps(accuracy);
   for (const Trial& trial : trials_) {
     if (trial.method != &method) continue;
-    if (!trial.reached_end() || !(error(trial) > accuracy)) return {};
+    if (!trial.reached_end() || bound(trial).value_or(1) <= accuracy) return {};
     const double missed = error(trial) / (good_enough * accuracy);
     const double times = std::clamp(std::pow(missed, 1.0 / method.order), fewest, most);
     steps = std::max(steps, std::ceil(times * std::round(stage_.until() / trial.value)));
@@ -29,26 +29,29 @@ std::optional<Candidate> Search::more_steps(const Method& method, double accurac
 
 // A run of which nothing is known yet and that may be faster than the answer: of adaptive methods
 // of high order for few unknowns, of those that take stiff forces apart where some are named, and
-// of implicit ones where few of their steps take little beside it.
-std::optional<Candidate> Search::unknown(double accuracy, double seconds) const {
+// of implicit ones where few of their steps take less than so many seconds. What adaptive ones take
+// is not known before: only where there is time.
+std::optional<Candidate> Search::unknown(double accuracy, double seconds, bool has_time) const {
   constexpr Index few = 60;
-  // Their order is low, which is soon too many steps.
-  constexpr double least_by_implicit = 1e-4;
+  // Of a low order, which soon takes too many steps.
+  constexpr double least_by_second = 1e-4;
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
-  for (const char* name : {"linear_midpoint", "trbdf2", "bdf2", "multirate_adams4",
-                           "multirate_adams2", "multirate_adams5", "dprkn12", "dprkn8", "dprkn6"}) {
+  for (const char* name :
+       {"linear_midpoint", "linear_midpoint4", "multirate_adams4", "multirate_adams2",
+        "multirate_adams5", "trbdf2", "bdf2", "dprkn12", "dprkn8", "dprkn6"}) {
     const Method& method = *find_method(name);
     if (!applies_to(method, system)) continue;
     if (method.is(Trait::implicit)) {
-      if (!may_be_implicit() || accuracy < least_by_implicit) continue;
+      if (!may_be_implicit() || (method.order <= 2 && accuracy < least_by_second)) continue;
       const auto next = more_steps(method, accuracy, seconds);
       if (next && !was_tried(*next)) return next;
       continue;
     }
     if (std::ranges::find(trials_, &method, &Trial::method) != trials_.end()) continue;
     if (method.knob == Knob::rtol) {
-      if (system.size() <= few) return Candidate{&method, std::clamp(accuracy, 1e-13, 1e-2), 0, 0};
+      if (system.size() <= few && has_time)
+        return Candidate{&method, std::clamp(accuracy, 1e-13, 1e-2), 0, 0};
     } else {
       const double w = resolved_frequency(method, system, model.initial().q);
       const double steps = std::max(8.0, std::ceil(stage_.until() * w));
@@ -58,33 +61,57 @@ std::optional<Candidate> Search::unknown(double accuracy, double seconds) const 
   return {};
 }
 
+// The fastest run that is expected to come to the accuracy in less than so many seconds, and was
+// not made; by an explicit method or by one of all.
+std::optional<Candidate> Search::promised(double accuracy, double seconds, bool explicitly) const {
+  for (const Candidate& c : forecast_->candidates(good_enough * accuracy)) {
+    if (c.seconds > seconds) break;
+    if (was_tried(c) || (c.method->is(Trait::implicit) && (explicitly || !may_be_implicit())))
+      continue;
+    return c;
+  }
+  return {};
+}
+
+// An implicit run that is likely to come to the accuracy in less than so many seconds, as an
+// earlier one of the method came near.
+std::optional<Candidate> Search::lead(double accuracy, double seconds) const {
+  constexpr double near = 6;  // times the steps, at most
+  std::optional<Candidate> best;
+  for (const Trial& trial : trials_) {
+    const Method& method = *trial.method;
+    if (!may_be_implicit() || !method.is(Trait::implicit) || method.knob != Knob::step_size ||
+        !trial.reached_end() ||
+        !(error(trial) < std::min(lost, std::pow(near, method.order) * good_enough * accuracy)))
+      continue;
+    const std::optional<Candidate> next = more_steps(method, accuracy, seconds);
+    if (next && !was_tried(*next) && (!best || next->seconds < best->seconds)) best = next;
+  }
+  return best;
+}
+
 const Trial* Search::race(const Trial* answer, double accuracy, double seconds) {
-  constexpr double clearly_faster = 0.92, part_of_answer = 0.5;
+  constexpr double clearly_faster = 0.92, part_of_answer = 0.5, much = 2;
+  // A lead is worth more time than was meant.
+  constexpr double worth = 0.5;
+  int leads = 2;
   const double end = seconds_since(begin_) + seconds;
   while (answer && forecast_ && answer->method->order > 0 && seconds_left() > 0) {
     const double left = end - seconds_since(begin_);
-    std::optional<Candidate> next;
-    for (const Candidate& c : forecast_->candidates(good_enough * accuracy)) {
-      if (was_tried(c) || c.seconds > clearly_faster * answer->seconds || c.seconds > left)
-        continue;
-      if (c.method->is(Trait::implicit)) continue;
-      next = c;
-      break;
+    const double faster = std::min(left, clearly_faster * answer->seconds);
+    // What is known best first.
+    std::optional<Candidate> next = promised(accuracy, faster, true);
+    if (!next)
+      next = unknown(accuracy, std::min(left, part_of_answer * answer->seconds),
+                     left > much * answer->seconds);
+    if (!next) next = promised(accuracy, faster, false);
+    double longest = std::min(left, clearly_faster * answer->seconds + 1e-5);
+    if (!next || left <= 0) {
+      longest = worth * answer->seconds;
+      next = leads-- > 0 ? lead(accuracy, longest) : std::nullopt;
     }
-    if (!next) next = unknown(accuracy, std::min(left, part_of_answer * answer->seconds));
-    if (next && next->seconds == 0 && left < 2 * answer->seconds) next.reset();
-    if (!next) {
-      for (const Candidate& c : forecast_->candidates(good_enough * accuracy)) {
-        if (was_tried(c) || c.seconds > clearly_faster * answer->seconds || c.seconds > left)
-          continue;
-        if (!may_be_implicit()) continue;
-        next = c;
-        break;
-      }
-    }
-    if (!next || left <= 0) break;
-    const Trial& trial =
-        run(*next->method, next->value, std::min(left, clearly_faster * answer->seconds + 1e-5));
+    if (!next) break;
+    const Trial& trial = run(*next->method, next->value, longest);
     const auto most = bound(trial);
     if (most && *most <= accuracy && trial.seconds < answer->seconds) answer = &trial;
   }

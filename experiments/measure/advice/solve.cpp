@@ -23,7 +23,7 @@ namespace {
 // What may be spent on runs that are only perhaps faster than the answer [s]: what nobody notices
 // or, where the answer took that long itself, a part of that.
 double seconds_of_race(const Trial& answer) {
-  constexpr double unnoticed = 0.01, least = 0.003, part = 0.1;
+  constexpr double unnoticed = 0.01, least = 0.003, part = 0.15;
   return answer.seconds < unnoticed ? unnoticed : std::max(least, part * answer.seconds);
 }
 
