@@ -283,7 +283,7 @@ const Trial* Search::find(double accuracy) {
   const double most_seconds =
       seconds_since(begin_) + std::max(always_allowed, of_the_first * first_seconds_);
   constexpr double cautious = 0.2, cheaper = 0.8;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0;; ++round) {
     const Trial *known = nullptr, *promising = nullptr;
     for (const Trial& trial : trials_) {
       if (!trial.reached_end()) continue;
@@ -294,7 +294,9 @@ const Trial* Search::find(double accuracy) {
         promising = &trial;
     }
     if (known) return known;
-    if (!forecast_ || seconds_left() <= 0 || seconds_since(begin_) > most_seconds) return nullptr;
+    if (!forecast_ || round == most_rounds || seconds_left() <= 0 ||
+        seconds_since(begin_) > most_seconds)
+      return nullptr;
     std::optional<Candidate> next = fresh((all_are_lost() ? cautious : 1) * aim * accuracy);
     if (promising) {
       // A cheaper run than the check, which the promising one checks, does as well.
@@ -308,7 +310,6 @@ const Trial* Search::find(double accuracy) {
     if (!next) return nullptr;
     run(*next->method, next->value, most_seconds - seconds_since(begin_));
   }
-  return nullptr;
 }
 
 }  // namespace qddot::measure
