@@ -7,7 +7,6 @@
 #include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::measure {
 namespace {
@@ -15,13 +14,8 @@ namespace {
 // Fraction of the accuracy that a run is chosen to miss by, as it is known to a factor of about two
 // before.
 constexpr double aim = 0.45;
-// How many times as accurate a run must be to check another, and is chosen to be.
-constexpr double checks = 3, chosen_to_check = 3.5;
-// Above the distance from a check: that this is not quite as accurate as is expected.
-constexpr double margin = 1.4;
-// Above the distance from a coarser run of the same method, which the finer one is off by at most
-// where its order shows: in 19 of 20 training runs within this.
-constexpr double margin_of_finer = 1.2;
+// How many times as accurate a run is chosen to be that is to check another.
+constexpr double chosen_to_check = 3.5;
 constexpr int most_rounds = 14;
 // Up to here the distance of two runs grows by itself.
 constexpr double parting = 0.03;
@@ -61,119 +55,6 @@ Trial& Search::run(const Method& method, double value, double seconds) {
   }
   learn();
   return trial;
-}
-
-// What rounding leaves of a run. Of a motion that is computed mode by mode: w_max^2 is known to its
-// last digit, so that a slower frequency w is off by w_max^2 / (2 w) of that, for a time t.
-double Search::rounding(const Trial& trial) const {
-  if (trial.method->order > 0) {
-    const double steps = forecast_ ? forecast_->rounding(*trial.method, trial.value) : 0;
-    return 4 * machine_epsilon + steps;
-  }
-  const Scales& scales = stage_.scales();
-  const double slow = scales.displacement > 0 ? scales.speed / scales.displacement : 0;
-  const double phase = w_start_ * stage_.until() * (slow > 0 ? std::max(1.0, w_start_ / slow) : 1);
-  return 4 * machine_epsilon * (1 + phase);
-}
-
-double Search::expected(const Trial& trial) const {
-  if (of_ == AccuracyOf::energy) return stage_.energy_error(trial);
-  if (trial.method->order == 0) return rounding(trial);
-  return forecast_ ? forecast_->error(*trial.method, trial.value)
-                   : std::pow(trial.value, power_of_error(*trial.method));
-}
-
-// What the error of `other` is of that of `trial`, at most, but for rounding.
-double Search::ratio(const Trial& other, const Trial& trial) const {
-  if (other.method->order == 0) return 0;
-  if (!forecast_ && other.method != trial.method) return std::numeric_limits<double>::infinity();
-  const double doubt = forecast_ ? forecast_->doubt(*other.method, *trial.method) : 1;
-  const double own = truncation(trial), others = truncation(other);
-  return std::isfinite(others) ? others / own * doubt : std::numeric_limits<double>::infinity();
-}
-
-double Search::truncation(const Trial& trial) const {
-  if (of_ == AccuracyOf::energy || !forecast_) return expected(trial);
-  return forecast_->truncation(*trial.method, trial.value);
-}
-
-bool Search::is_check(const Trial& other, const Trial& trial) const {
-  return &other != &trial && other.reached_end() && ratio(other, trial) * checks <= 1;
-}
-
-const Trial* Search::checker(const Trial& trial) const {
-  const Trial* best = nullptr;
-  for (const Trial& other : trials_) {
-    if (is_check(other, trial) && (!best || expected(other) < expected(*best))) best = &other;
-  }
-  return best;
-}
-
-const Trial* Search::most_accurate(bool seen_on_its_way) const {
-  const Trial* best = nullptr;
-  for (const Trial& trial : trials_) {
-    if (!trial.reached_end()) continue;
-    if (seen_on_its_way && trial.path.size() < stage_.times().size()) continue;
-    if (!best || expected(trial) < expected(*best)) best = &trial;
-  }
-  return best;
-}
-
-std::optional<double> Search::bound(const Trial& trial) const {
-  if (!trial.reached_end()) return {};
-  if (of_ == AccuracyOf::energy) return margin * stage_.energy_error(trial) + 4 * machine_epsilon;
-  if (trial.method->order == 0) return expected(trial);
-  if (checker(trial)) {
-    // What is hardly finer checks nothing, but may contradict.
-    constexpr double hardly_finer = 0.5;
-    double most = 0;
-    for (const Trial& other : trials_) {
-      const bool may_contradict =
-          other.method == trial.method && other.reached_end() && ratio(other, trial) < hardly_finer;
-      if (is_check(other, trial) || may_contradict)
-        most = std::max(most, likely_distance(trial, other) / (1 - ratio(other, trial)));
-    }
-    return margin * most + rounding(trial);
-  }
-  if (const Trial* refined = coarser(trial))
-    return margin_of_finer * likely_distance(*refined, trial) + rounding(trial);
-  return {};
-}
-
-const Trial* Search::coarser(const Trial& trial) const {
-  const Trial* nearest = nullptr;
-  double least = lost;
-  for (const Trial& other : trials_) {
-    if (!is_refined_by(other, trial)) continue;
-    const double distance = likely_distance(other, trial);
-    if (distance >= least) continue;
-    least = distance;
-    nearest = &other;
-  }
-  return nearest;
-}
-
-// How far apart two runs are. A distance far below what is expected may be so by chance: errors
-// change their sign. It is believed half of the way.
-double Search::likely_distance(const Trial& trial, const Trial& better) const {
-  const double distance = stage_.distance(trial, better);
-  if (!forecast_) return distance;
-  return std::max(distance, std::sqrt(distance * std::min(expected(trial), 1.0)));
-}
-
-// Whether `finer` is a run of the same method whose order makes it so much more accurate that it
-// is off by less than how far they are apart.
-bool Search::is_refined_by(const Trial& coarser, const Trial& finer) const {
-  const Method& method = *finer.method;
-  return coarser.method == &method && method.knob == Knob::step_size &&
-         !method.asks(Need::split_forces) && coarser.reached_end() &&
-         ratio(finer, coarser) * checks <= 1;
-}
-
-double Search::error(const Trial& trial) const {
-  if (of_ == AccuracyOf::energy) return stage_.energy_error(trial);
-  if (const Trial* better = checker(trial)) return stage_.distance(trial, *better);
-  return expected(trial);
 }
 
 // How far apart two runs are or, where they are lost, would be had their distance gone on growing.
@@ -279,7 +160,7 @@ bool Search::all_are_lost() const {
 const Trial* Search::find(double accuracy) {
   if (stage_.model().system().has_massless()) return by_tolerance(accuracy);
   // Where so much did not do, more hardly will: chaos and rounding are not refined away.
-  constexpr double always_allowed = 1, of_the_first = 60;
+  constexpr double always_allowed = 1, of_the_first = 20;
   const double most_seconds =
       seconds_since(begin_) + std::max(always_allowed, of_the_first * first_seconds_);
   constexpr double cautious = 0.2, cheaper = 0.8;

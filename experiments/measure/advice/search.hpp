@@ -70,6 +70,8 @@ class Search {
   // Fraction of an accuracy that an earlier run may be expected to miss by and be taken for good
   // enough.
   static constexpr double good_enough = 0.6;
+  // How many times as accurate a run must be to check another.
+  static constexpr double checks = 3;
   // Two runs that are so far apart have nothing to do with each other.
   static constexpr double lost = 0.1;
   // Steps that implicit methods begin with: what is not to be accurate may be a motion of some

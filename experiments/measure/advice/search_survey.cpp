@@ -80,10 +80,12 @@ bool Search::survey_by_verlet() {
   for (int attempt = 0; attempt < most_attempts; ++attempt, steps = steps / shorter) {
     steps = looks * std::ceil(steps / looks);
     first = &run(*find_method("verlet"), until / steps, limit_);
-    constexpr double grows = 10;
+    // More of this are not worth much time: what is chaotic stays so.
+    constexpr double grows = 10, long_enough = 0.3;
     const Outcome outcome = first->summary.outcome;
     if (outcome == Outcome::over_budget || outcome == Outcome::went_slack) return false;
-    if (first->reached_end() && first->summary.energy_growth < grows) break;
+    if (!first->reached_end()) continue;
+    if (first->summary.energy_growth < grows || seconds_since(begin_) > long_enough) break;
   }
   if (!first->reached_end()) return false;
   // The bound may grow more than w_max does. Steps that held for so long were not far beyond their

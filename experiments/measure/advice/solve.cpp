@@ -209,9 +209,10 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
   } catch (const Interrupted& interrupted) {
     stopped_by = interrupted.what();
   }
-  answer.advised_by = search.forecast()               ? "forecast"
-                      : model.system().has_massless() ? "tolerance"
-                                                      : "modes";
+  answer.advised_by = search.forecast()                   ? "forecast"
+                      : model.system().has_massless()     ? "tolerance"
+                      : found && found->method->order > 0 ? "refinement"
+                                                          : "modes";
   if (found && is_known(search, *found, wanted.accuracy)) {
     fill(answer, search, *found, model);
     answer.is_reached = true;

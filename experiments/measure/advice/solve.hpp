@@ -49,7 +49,8 @@ struct Answer {
   // A bound of the error in the sense that was asked for; infinite where none is known.
   double error_estimate = std::numeric_limits<double>::infinity();
   EstimateKind error_estimate_kind = EstimateKind::none;
-  std::string advised_by{};  // what chose the method: "modes", "forecast", "refinement"
+  // What chose the method: "modes", "forecast", "refinement" or, by IDA's, "tolerance".
+  std::string advised_by{};
   // From which time on [s] a motion that starts one rounding away is another one, and how fast they
   // part [1/s]; infinite and zero where this was not seen.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
