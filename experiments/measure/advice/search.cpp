@@ -160,7 +160,7 @@ bool Search::all_are_lost() const {
 const Trial* Search::find(double accuracy) {
   if (stage_.model().system().has_massless()) return by_tolerance(accuracy);
   // Where so much did not do, more hardly will: chaos and rounding are not refined away.
-  constexpr double always_allowed = 1, of_the_first = 20;
+  constexpr double always_allowed = 2, of_the_first = 20;
   const double most_seconds =
       seconds_since(begin_) + std::max(always_allowed, of_the_first * first_seconds_);
   constexpr double cautious = 0.2, cheaper = 0.8;
