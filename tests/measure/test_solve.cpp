@@ -122,8 +122,8 @@ BOOST_AUTO_TEST_CASE(a_vibration_that_long_steps_leave_standing_is_not_missed) {
   scene.springs.push_back({{1, 2}, {.stiffness = 1, .rest_length = 1, .quartic = 0.1}});
   const ReducedScene model(scene);
   BOOST_TEST_REQUIRE(!model.system().stiffness_is_constant());
-  for (const double until : {0.3, 0.7, 1.1}) {
-    const Reference reference = make_reference(model, until, reference_seconds);
+  for (const double until : {0.3, 0.7}) {
+    const Reference reference = make_reference(model, until, 1);
     BOOST_TEST_REQUIRE(reference.certified.position < 1e-3);
     const Answer answer = measure::solve(model, until, {.accuracy = 1e-2});
     BOOST_TEST_REQUIRE(answer.is_reached, answer.why);
