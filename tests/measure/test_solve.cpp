@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <boost/test/unit_test.hpp>
 
@@ -72,8 +74,18 @@ BOOST_AUTO_TEST_CASE(a_first_run_that_has_to_be_made_shorter_is_no_trouble) {
   // than its length asks for.
   for (const std::uint64_t seed : {191u, 398u}) {
     const advice_study::Case c = advice_study::drawn_case(seed);
-    const Answer answer =
-        measure::solve(ReducedScene(c.scene), c.until, {.accuracy = c.accuracy, .seconds = 1});
+    const ReducedScene model(c.scene);
+    Search search(model, c.until, AccuracyOf::positions, reference_seconds);
+    BOOST_TEST(search.survey(c.accuracy), c.scene.name);
+    BOOST_TEST_REQUIRE(search.forecast().has_value());
+    BOOST_TEST(
+        std::ranges::count(search.trials(), std::string("verlet"),
+                           [](const Trial& trial) { return std::string(trial.method->name); }) > 1,
+        c.scene.name);
+    const double w = search.forecast()->w_motion();
+    BOOST_TEST(std::isfinite(w));
+    BOOST_TEST(w >= search.w_start());
+    const Answer answer = measure::solve(model, c.until, {.accuracy = c.accuracy, .seconds = 1});
     BOOST_TEST((answer.is_reached || !answer.why.empty()), c.scene.name);
   }
 }

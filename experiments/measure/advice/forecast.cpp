@@ -99,7 +99,7 @@ double Forecast::truncation(const Method& method, double value) const {
 }
 
 double Forecast::rounding(const Method& method, double value) const {
-  // Of roundings one a step, which mostly cancel, a part adds up: 0.02 to 0.5 in stiff chains.
+  // Each step rounds once. Most of that cancels; 0.02 to 0.5 of it adds up in stiff chains.
   constexpr double part = 0.1;
   const double steps =
       method.knob == Knob::step_size && method.order > 0 ? stage_.until() / value : 1;

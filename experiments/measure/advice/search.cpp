@@ -17,7 +17,7 @@ constexpr double aim = 0.45;
 // How many times as accurate a run is chosen to be that is to check another.
 constexpr double chosen_to_check = 3.5;
 constexpr int most_rounds = 14;
-// Up to here the distance of two runs grows by itself.
+// The distance of two runs grows by itself up to here.
 constexpr double parting = 0.03;
 
 // Each look costs as much as about seven forces.

@@ -9,10 +9,11 @@
 namespace qddot::measure {
 namespace {
 
-// Above the distance from a check: that this is not quite as accurate as is expected.
+// The error is at most so many times the distance from a check, which may be less accurate than is
+// expected.
 constexpr double margin = 1.4;
-// Above the distance from a coarser run of the same method, which the finer one is off by at most
-// where its order shows: in 19 of 20 training runs within this.
+// The finer of two runs of one method is off by at most so many times their distance where its
+// order shows: 19 of 20 training runs were.
 constexpr double margin_of_finer = 1.2;
 
 }  // namespace

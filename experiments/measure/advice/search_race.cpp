@@ -33,7 +33,7 @@ std::optional<Candidate> Search::more_steps(const Method& method, double accurac
 // is not known before: only where there is time.
 std::optional<Candidate> Search::unknown(double accuracy, double seconds, bool has_time) const {
   constexpr Index few = 60;
-  // Of a low order, which soon takes too many steps.
+  // A method of order 2 soon takes too many steps.
   constexpr double least_by_second = 1e-4;
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
