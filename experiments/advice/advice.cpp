@@ -13,8 +13,7 @@
 //     hindsight, and the seconds of all of these. Cases without a reference are left out and say
 //     so.
 //  3. worth.csv: how often claims and error bars hold, how wide the bars are, how near the choice
-//  is
-//     to the best, what everything takes.
+//     is to the best, what everything takes.
 //
 // With --step-costs, nothing of this: step_costs.csv has what a step of each method takes, which is
 // what forecasts begin with.

@@ -100,15 +100,23 @@ def dots(axes, cases, across, up):
         axes.scatter([across(case)], [up(case)], **style)
 
 
-def lines(axes, values):
-    """Where the median and nine tenths of the values end."""
-    for part, dashes in ((0.5, (6, 2)), (0.9, (2, 2))):
-        axes.axhline(quantile(values, part), color=INK, linewidth=1, dashes=dashes, zorder=2)
+def lines(axes, values, of_what=""):
+    """Where the median and nine tenths of the values end, drawn and in words."""
+    ends = [quantile(values, part) for part in (0.5, 0.9)]
+    for end, dashes in zip(ends, ((6, 2), (2, 2))):
+        axes.axhline(end, color=INK, linewidth=1, dashes=dashes, zorder=2)
+    words = f"{of_what}median {ends[0]:.3g}, nine in ten below {ends[1]:.3g}"
+    axes.text(0.02, 0.97, words, transform=axes.transAxes, va="top", size=9, color=INK)
 
 
-def in_words(values):
-    """The median and where nine tenths end."""
-    return f"median {quantile(values, 0.5):.3g}, nine in ten below {quantile(values, 0.9):.3g}"
+def set_factors(axes, values):
+    """Ticks of a few factors, and room for the words above the dots."""
+    low, high = 0.8 * min(0.5, min(values)), max(10, max(values))
+    axes.set_ylim(low, high * (high / low) ** 0.12)
+    factors = [f for f in (0.5, 1, 2, 3, 5, 10, 30, 100, 1000, 10000) if low <= f <= 1.3 * high]
+    axes.yaxis.set_major_locator(FixedLocator(factors))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def draw_bars(sheet, cases):
@@ -120,19 +128,8 @@ def draw_bars(sheet, cases):
     dots(axes, seen, lambda c: c.error, lambda c: c.bar / c.error)
     axes.axhspan(1e-3, 1, facecolor=GRID, alpha=0.7, zorder=0.5)
     ratios = [c.bar / c.error for c in seen]
+    set_factors(axes, ratios)
     lines(axes, ratios)
-    axes.set_ylim(min(0.3, 0.8 * min(ratios)), max(10, 1.5 * max(ratios)))
-    axes.text(0.02, 0.97, in_words(ratios), transform=axes.transAxes, va="top", size=9, color=INK)
-
-
-def set_factors(axes, values):
-    """Ticks of a few factors."""
-    low, high = min(0.5, min(values)), max(10, max(values))
-    axes.set_ylim(0.8 * low, 1.3 * high)
-    factors = [f for f in (0.5, 1, 2, 3, 5, 10, 30, 100, 1000, 10000) if f <= 1.3 * high]
-    axes.yaxis.set_major_locator(FixedLocator(factors))
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-    axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def draw_choice(sheet, cases):
@@ -144,9 +141,8 @@ def draw_choice(sheet, cases):
         return
     dots(axes, cases, lambda c: c.accuracy, lambda c: c.run / c.best)
     ratios = [c.run / c.best for c in cases]
-    lines(axes, ratios)
     set_factors(axes, ratios)
-    axes.text(0.02, 0.97, in_words(ratios), transform=axes.transAxes, va="top", size=9, color=INK)
+    lines(axes, ratios)
 
 
 def draw_total(sheet, cases):
@@ -157,14 +153,11 @@ def draw_total(sheet, cases):
     if not cases:
         return
     dots(axes, cases, lambda c: c.best, lambda c: c.total / c.best)
-    ratios = [c.total / c.best for c in cases]
-    set_factors(axes, ratios)
+    set_factors(axes, [c.total / c.best for c in cases])
     counted = [c.total / c.best for c in cases if c.best >= WORTH_COUNTING]
-    axes.axvline(WORTH_COUNTING, color=FAINT, linewidth=1, zorder=1)
+    axes.axvline(WORTH_COUNTING, ymax=0.9, color=FAINT, linewidth=1, zorder=1)
     if counted:
-        lines(axes, counted)
-        words = f"from 20 ms on: {in_words(counted)}"
-        axes.text(0.98, 0.97, words, transform=axes.transAxes, va="top", ha="right", size=9)
+        lines(axes, counted, "from 20 ms on: ")
 
 
 def main(folder):
