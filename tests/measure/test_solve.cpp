@@ -112,11 +112,39 @@ BOOST_AUTO_TEST_CASE(the_finer_of_two_runs_is_within_their_distance) {
       const double error = errors_between(model, trial->path.back(), reference.end,
                                           reference.energy, search.stage().scales())
                                .position;
-      BOOST_TEST(error <= *bound, name);
+      BOOST_TEST(error <= bound->error, name);
       // Not much wider: twice their distance, of which the order leaves 0.7 of the coarse error.
-      BOOST_TEST(*bound <= 8 * error, name);
+      BOOST_TEST(bound->error <= 8 * error, name);
+      BOOST_TEST(bound->by_coarser == (trial == &fine), name);
     }
   }
+}
+
+// Nothing is expected of a method before a forecast. How far its run is from one that is bounded
+// bounds it all the same, by |q - q*| <= |q - q_best| + |q_best - q*|.
+BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {
+  const ReducedScene model(drawn("orbit", {}));
+  const double until = 2, h = 0.01;
+  const Reference reference = make_reference(model, until, reference_seconds);
+  Search search(model, until, AccuracyOf::positions, reference_seconds);
+  const Method &other = method("blanes_moan4"), &verlet = method("verlet");
+  search.try_once({&other, h}, reference_seconds);
+  search.try_once({&verlet, h}, reference_seconds);
+  BOOST_TEST(!search.bound(search.trials().front()));
+  search.try_once({&other, h / 1.5}, reference_seconds);
+  const Trial &first = search.trials()[1], &best = search.trials().back();
+  search.stage().measure_by(best);
+  const auto bound = search.bound(first), least = search.bound(best);
+  BOOST_TEST_REQUIRE((bound && least));
+  BOOST_TEST((bound->by == &best));
+  BOOST_TEST(!bound->by_coarser);
+  const double error = errors_between(model, first.path.back(), reference.end, reference.energy,
+                                      search.stage().scales())
+                           .position;
+  BOOST_TEST(error <= bound->error);
+  // What the best run may be off by is part of it, and nothing else.
+  const double apart = search.stage().distance(first, best);
+  BOOST_TEST(std::abs(bound->error - apart - least->error) <= 1e-15 * bound->error);
 }
 
 BOOST_AUTO_TEST_CASE(a_vibration_that_long_steps_leave_standing_is_not_missed) {

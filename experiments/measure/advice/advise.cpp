@@ -25,8 +25,8 @@ constexpr double always_allowed = 0.4, of_the_run = 1.8;
 constexpr double expected_to_miss = 0.45;
 
 Candidate as_candidate(const Search& search, const Trial& trial) {
-  return {trial.method, trial.value, search.bound(trial).value_or(search.error(trial)),
-          trial.seconds};
+  const auto bound = search.bound(trial);
+  return {trial.method, trial.value, bound ? bound->error : search.error(trial), trial.seconds};
 }
 
 void keep_faster(std::optional<Candidate>& fastest, const Candidate& candidate) {
@@ -54,8 +54,7 @@ std::vector<Contender> contenders(const Search& search, double accuracy) {
     }
   }
   for (const Trial& trial : search.trials()) {
-    const auto bound = search.bound(trial);
-    if (!bound || *bound > accuracy) continue;
+    if (!search.is_known(trial, accuracy)) continue;
     const Contender seen{as_candidate(search, trial), true};
     const auto same = std::ranges::find(all, trial.method,
                                         [](const Contender& other) { return other.run.method; });
@@ -106,7 +105,8 @@ void try_out(Search& search, const std::vector<double>& coarse_first,
     const Advice advice = advice_for(search, accuracy);
     if (advice.take) longest = std::max(longest, advice.take->seconds);
   }
-  const double allowed = std::max(always_allowed, of_the_run * longest);
+  const double allowed =
+      std::max(always_allowed, std::min(of_the_run * longest, search.seconds_worth_trying()));
   search.stop_after(allowed);
   for (const double accuracy : coarse_first) {
     // The run, its check, and what may be faster; then once more, where all that says otherwise.

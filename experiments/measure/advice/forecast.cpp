@@ -68,11 +68,14 @@ double Forecast::doubt(const Method& one, const Method& other) const {
   return has_learned(one) && has_learned(other) ? doubts[1] : doubts[2];
 }
 
+bool Forecast::has_seen(const Method& method) const {
+  return seen_.contains(&method) || by_method_.contains(&method);
+}
+
 double Forecast::sensitivity(const Method& method) const {
-  if (method.is(Trait::implicit)) {
-    const auto own = by_method_.find(&method);
-    return sensitivity_ * (own == by_method_.end() ? implicit_share : own->second);
-  }
+  const auto own = by_method_.find(&method);
+  if (own != by_method_.end()) return sensitivity_ * own->second;
+  if (method.is(Trait::implicit)) return sensitivity_ * implicit_share;
   if (by_order_.empty()) return sensitivity_;
   const auto orders_apart = [&](const auto& known) { return std::abs(known.first - method.order); };
   const auto nearest = std::ranges::min_element(by_order_, {}, orders_apart);
@@ -156,6 +159,10 @@ std::optional<Candidate> Forecast::from_seen(const Method& method, double error)
   const double finer = std::pow(seen.error / error, 1 / power_of_error(method));
   if (!(finer < farthest && finer > 1 / farthest)) return {};
   double value = seen.value / finer;
+  // Between what held and what did not, the middle.
+  const auto failed = failed_.find(&method);
+  if (failed != failed_.end() && failed->second > seen.value)
+    value = std::min(value, std::sqrt(failed->second * seen.value));
   if (method.knob == Knob::rtol) value = std::clamp(value, 1e-14, 0.1);
   if (method.knob == Knob::step_size) {
     value = stage_.until() / std::ceil(stage_.until() / std::min(value, largest_step(method)));
@@ -163,11 +170,12 @@ std::optional<Candidate> Forecast::from_seen(const Method& method, double error)
   return Candidate{&method, value, this->error(method, value), seconds(method, value)};
 }
 
-std::vector<Candidate> Forecast::candidates(double error) const {
+std::vector<Candidate> Forecast::candidates(double error, bool explicit_steps) const {
   std::vector<Candidate> all;
   const System& system = stage_.model().system();
   for (const Method& method : methods()) {
     if (!applies_to(method, system) || !method.stock_of.empty()) continue;
+    if (explicit_steps && (method.is(Trait::implicit) || !is_told_by_frequency(method))) continue;
     std::optional<Candidate> own;
     if (method.order == 0) {
       const double h = stage_.until();
@@ -201,11 +209,8 @@ void Forecast::learn_error(const Trial& trial, double error) {
   constexpr double mostly_rounding = 3;
   if (!std::isfinite(expected) || expected == 0) return;
   if (error < mostly_rounding * rounding(method, trial.value)) return;
-  if (method.is(Trait::implicit)) {
-    by_method_[&method] = error / expected;
-  } else {
-    by_order_[method.order] = error / expected;
-  }
+  by_method_[&method] = error / expected;
+  if (!method.is(Trait::implicit)) by_order_[method.order] = error / expected;
 }
 
 void Forecast::learn_seconds(const Trial& trial) {

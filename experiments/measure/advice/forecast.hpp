@@ -32,9 +32,9 @@ double seconds_of_exact(const ReducedScene& model);
 //   error = sensitivity * frequency_error(method, h w_p),   seconds = steps * seconds of a step,
 // with w_p the motion's own frequency of the method's order p. The sensitivity is at first that of
 // a motion in which errors add up, |q'| t / |q - q(0)|; with each run whose error was seen, it is
-// corrected for the methods of that order, and of the orders next to it. Of methods that choose
-// their steps, or take stiff forces apart, nothing is expected before one run was seen; from there
-// on the error goes as h^order or as rtol.
+// corrected for that method, for others of its order, and of the orders next to it. Of methods that
+// choose their steps, or take stiff forces apart, nothing is expected before one run was seen; from
+// there on the error goes as h^order or as rtol.
 class Forecast {
  public:
   // Borrows the stage. `w_motion`: the largest frequency over the motion [rad/s], zero where
@@ -51,11 +51,14 @@ class Forecast {
   // `doubts`: none for two runs of one method, little where runs of both were seen.
   static constexpr std::array doubts = {1.0, 1.5, 4.0};
   double doubt(const Method& one, const Method& other) const;
-  // The runs that are expected to come to that error, one a method, the fastest first.
-  std::vector<Candidate> candidates(double error) const;
+  // The runs that are expected to come to that error, one a method, the fastest first; of all
+  // methods or of the explicit ones of fixed steps.
+  std::vector<Candidate> candidates(double error, bool explicit_steps = false) const;
 
   // Whether the error of a run of the method, or of an explicit one of its order, was seen.
   bool has_learned(const Method& method) const;
+  // Whether the error of a run of the method itself was seen.
+  bool has_seen(const Method& method) const;
   // Takes in that a run missed by so much, and what it took.
   void learn_error(const Trial& trial, double error);
   void learn_seconds(const Trial& trial);
@@ -80,8 +83,8 @@ class Forecast {
   const Stage& stage_;
   OwnFrequencies own_;
   double w_motion_, step_seconds_, sensitivity_;
-  std::map<int, double> by_order_;             // of explicit methods: seen over expected
-  std::map<const Method*, double> by_method_;  // of implicit ones
+  std::map<const Method*, double> by_method_;  // error that was seen, over the expected one
+  std::map<int, double> by_order_;             // of the last explicit method of that order
   std::map<const Method*, Seen> seen_;
   std::map<const Method*, double> seconds_a_step_;  // as timed [s]
   std::map<const Method*, double> failed_;          // the least step that did not hold [s]

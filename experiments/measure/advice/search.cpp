@@ -157,20 +157,21 @@ bool Search::all_are_lost() const {
   });
 }
 
+double Search::seconds_worth_trying() const {
+  constexpr double always = 2, of_the_first = 20;
+  return std::max(always, of_the_first * first_seconds_);
+}
+
 const Trial* Search::find(double accuracy) {
   if (stage_.model().system().has_massless()) return by_tolerance(accuracy);
-  // Where so much did not do, more hardly will: chaos and rounding are not refined away.
-  constexpr double always_allowed = 2, of_the_first = 20;
-  const double most_seconds =
-      seconds_since(begin_) + std::max(always_allowed, of_the_first * first_seconds_);
+  const double most_seconds = seconds_since(begin_) + seconds_worth_trying();
   constexpr double cautious = 0.2, cheaper = 0.8;
   for (int round = 0;; ++round) {
     const Trial *known = nullptr, *promising = nullptr;
     for (const Trial& trial : trials_) {
       if (!trial.reached_end()) continue;
-      const auto most = bound(trial);
-      if (most && *most <= accuracy && (!known || trial.seconds < known->seconds)) known = &trial;
-      if (!checker(trial) && expected(trial) <= good_enough * accuracy &&
+      if ((!known || trial.seconds < known->seconds) && is_known(trial, accuracy)) known = &trial;
+      if (!trial.is_gamble && !checker(trial) && expected(trial) <= good_enough * accuracy &&
           (!promising || trial.seconds < promising->seconds))
         promising = &trial;
     }

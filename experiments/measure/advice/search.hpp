@@ -9,6 +9,13 @@
 
 namespace qddot::measure {
 
+// What the error of a run is at most, and the run that says so; nullptr where none has to.
+struct Bound {
+  double error = 0;
+  const Trial* by = nullptr;
+  bool by_coarser = false;  // a run of the same method that is less accurate
+};
+
 // Looks for the run that comes to an accuracy in the least time, and for a bound of its error.
 //
 //  1. A first run by Verlet's method near its limit, seen on its way, and short bursts from there
@@ -35,16 +42,17 @@ class Search {
   bool survey(double accuracy);
   // Refines until a run is known to be within `accuracy`; nullptr where none came there.
   const Trial* find(double accuracy);
-  // Makes runs that may be faster than `answer` to the accuracy, for so many seconds in all, first
-  // those of which nothing is known; returns the fastest one that is known to be so accurate.
+  // Makes runs that may be faster than `answer` to the accuracy, for as long as that is worth and
+  // so many seconds at most; returns the fastest one that is known to be so accurate.
   const Trial* race(const Trial* answer, double accuracy, double seconds);
 
   // Makes that run, unless it was made, for so many seconds at most.
   void try_once(const Candidate& candidate, double seconds);
 
-  // A bound of the trial's error, from how far it is from all that are more accurate or else from
-  // the coarser one; nothing where there is none of these.
-  std::optional<double> bound(const Trial& trial) const;
+  // A bound of the trial's error, from how far it is from those that are more accurate or else from
+  // a coarser one; nothing where there is none of these.
+  std::optional<Bound> bound(const Trial& trial) const;
+  bool is_known(const Trial& trial, double accuracy) const;  // to be within the accuracy
   // What is known of the trial's error, or else expected.
   double error(const Trial& trial) const;
   // The most accurate of the trials that bound the error of this one; nullptr where there is none.
@@ -63,6 +71,9 @@ class Search {
   const std::deque<Trial>& trials() const { return trials_; }
   double w_start() const { return w_start_; }
   double seconds_left() const;
+  // After so many seconds without an answer, more hardly helps: chaos and rounding are not refined
+  // away.
+  double seconds_worth_trying() const;
   // Begins nothing more after so many seconds in all.
   void stop_after(double seconds) { limit_ = seconds; }
 
@@ -83,6 +94,7 @@ class Search {
 
   // Nothing keeps its energy better than what hardly moves, as too long implicit steps may.
   bool may_be_implicit() const { return of_ != AccuracyOf::energy; }
+  std::optional<Bound> bound_by_order(const Trial& trial) const;
   double expected(const Trial& trial) const;
   double rounding(const Trial& trial) const;
   double truncation(const Trial& trial) const;
@@ -98,6 +110,8 @@ class Search {
   std::optional<Candidate> more_steps(const Method& method, double accuracy, double seconds) const;
   std::optional<Candidate> unknown(double accuracy, double seconds, bool has_time) const;
   std::optional<Candidate> promised(double accuracy, double seconds, bool explicitly) const;
+  std::optional<Candidate> unseen(double accuracy, double seconds) const;
+  const Trial* gamble(const Trial* answer, double accuracy, double seconds);
   std::optional<Candidate> lead(double accuracy, double seconds) const;
   bool survey_by_verlet();
   const Trial* by_tolerance(double accuracy);

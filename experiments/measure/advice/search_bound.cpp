@@ -53,7 +53,8 @@ double Search::truncation(const Trial& trial) const {
 }
 
 bool Search::is_check(const Trial& other, const Trial& trial) const {
-  return &other != &trial && other.reached_end() && ratio(other, trial) * checks <= 1;
+  return &other != &trial && other.reached_end() && !trial.is_gamble && !other.is_gamble &&
+         ratio(other, trial) * checks <= 1;
 }
 
 const Trial* Search::checker(const Trial& trial) const {
@@ -67,31 +68,46 @@ const Trial* Search::checker(const Trial& trial) const {
 const Trial* Search::most_accurate(bool seen_on_its_way) const {
   const Trial* best = nullptr;
   for (const Trial& trial : trials_) {
-    if (!trial.reached_end()) continue;
+    if (!trial.reached_end() || trial.is_gamble) continue;
     if (seen_on_its_way && trial.path.size() < stage_.times().size()) continue;
     if (!best || expected(trial) < expected(*best)) best = &trial;
   }
   return best;
 }
 
-std::optional<double> Search::bound(const Trial& trial) const {
+// |q - q*| <= |q - q_best| + |q_best - q*|: where the most accurate run is bounded, it bounds all
+// others, whatever is expected of them.
+std::optional<Bound> Search::bound(const Trial& trial) const {
+  const std::optional<Bound> own = bound_by_order(trial);
+  const Trial* best = most_accurate();
+  if (of_ == AccuracyOf::energy || !trial.reached_end() || !best || best == &trial) return own;
+  const std::optional<Bound> least = bound_by_order(*best);
+  if (!least) return own;
+  const double by_best = stage_.distance(trial, *best) + least->error;
+  return own && own->error <= by_best ? own : Bound{by_best, best};
+}
+
+// From how much more, or less, accurate other runs are expected to be.
+std::optional<Bound> Search::bound_by_order(const Trial& trial) const {
   if (!trial.reached_end()) return {};
-  if (of_ == AccuracyOf::energy) return margin * stage_.energy_error(trial) + 4 * machine_epsilon;
-  if (trial.method->order == 0) return expected(trial);
-  if (checker(trial)) {
+  if (of_ == AccuracyOf::energy)
+    return Bound{margin * stage_.energy_error(trial) + 4 * machine_epsilon};
+  if (trial.method->order == 0) return Bound{expected(trial)};
+  if (const Trial* check = checker(trial)) {
     // What is hardly finer checks nothing, but may contradict.
     constexpr double hardly_finer = 0.5;
     double most = 0;
     for (const Trial& other : trials_) {
-      const bool may_contradict =
-          other.method == trial.method && other.reached_end() && ratio(other, trial) < hardly_finer;
+      const bool may_contradict = other.method == trial.method && other.reached_end() &&
+                                  !other.is_gamble && ratio(other, trial) < hardly_finer;
       if (is_check(other, trial) || may_contradict)
         most = std::max(most, likely_distance(trial, other) / (1 - ratio(other, trial)));
     }
-    return margin * most + rounding(trial);
+    return Bound{margin * most + rounding(trial), check};
   }
   if (const Trial* refined = coarser(trial))
-    return margin_of_finer * likely_distance(*refined, trial) + rounding(trial);
+    return Bound{margin_of_finer * likely_distance(*refined, trial) + rounding(trial), refined,
+                 true};
   return {};
 }
 
@@ -121,8 +137,13 @@ double Search::likely_distance(const Trial& trial, const Trial& better) const {
 bool Search::is_refined_by(const Trial& coarser, const Trial& finer) const {
   const Method& method = *finer.method;
   return coarser.method == &method && method.knob == Knob::step_size &&
-         !method.asks(Need::split_forces) && coarser.reached_end() &&
-         ratio(finer, coarser) * checks <= 1;
+         !method.asks(Need::split_forces) && coarser.reached_end() && !coarser.is_gamble &&
+         !finer.is_gamble && ratio(finer, coarser) * checks <= 1;
+}
+
+bool Search::is_known(const Trial& trial, double accuracy) const {
+  const auto most = bound(trial);
+  return most && most->error <= accuracy;
 }
 
 double Search::error(const Trial& trial) const {

@@ -1,6 +1,7 @@
 // How a search goes on once it has an answer: runs that may be faster.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
@@ -8,17 +9,32 @@
 #include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::measure {
+namespace {
 
-// The steps that an implicit method should need that has missed the accuracy, or few of them where
-// it was not tried, so long as that takes less than so many seconds; nothing else.
+// A run is worth making for its time below so many times that of the answer.
+constexpr double clearly_faster = 0.92;
+
+// What runs are worth that are only perhaps faster than the answer [s]: what nobody notices and,
+// where the answer takes long itself, a part of it.
+double seconds_of_race(const Trial& answer) {
+  constexpr double unnoticed = 0.02, as_long = 0.01, part = 0.15;
+  const double falling = as_long * as_long / answer.seconds;
+  return std::max(std::min(unnoticed, falling), part * answer.seconds);
+}
+
+}  // namespace
+
+// The steps that an implicit method should need that has missed the accuracy or diverged, or few of
+// them where it was not tried, so long as that takes less than so many seconds; nothing else.
 std::optional<Candidate> Search::more_steps(const Method& method, double accuracy,
                                             double seconds) const {
-  constexpr double fewest = 1.2, most = 6;
+  constexpr double fewest = 1.2, most = 6, infinite = std::numeric_limits<double>::infinity();
   double steps = few_steps(accuracy);
   for (const Trial& trial : trials_) {
     if (trial.method != &method) continue;
-    if (!trial.reached_end() || bound(trial).value_or(1) <= accuracy) return {};
-    const double missed = error(trial) / (good_enough * accuracy);
+    const bool failed = !trial.reached_end();
+    if (failed ? trial.summary.outcome != Outcome::diverged : is_known(trial, accuracy)) return {};
+    const double missed = failed ? infinite : error(trial) / (good_enough * accuracy);
     const double times = std::clamp(std::pow(missed, 1.0 / method.order), fewest, most);
     steps = std::max(steps, std::ceil(times * std::round(stage_.until() / trial.value)));
   }
@@ -73,6 +89,17 @@ std::optional<Candidate> Search::promised(double accuracy, double seconds, bool 
   return {};
 }
 
+// A run of an explicit method of which nothing was seen, in less than so many seconds: what is
+// expected of it may be a factor of `unsure` too much.
+std::optional<Candidate> Search::unseen(double accuracy, double seconds) const {
+  constexpr double unsure = 30;
+  for (const Candidate& c : forecast_->candidates(unsure * good_enough * accuracy, true)) {
+    if (c.seconds > seconds) break;
+    if (!forecast_->has_seen(*c.method) && !was_tried(c)) return c;
+  }
+  return {};
+}
+
 // An implicit run that is likely to come to the accuracy in less than so many seconds, as an
 // earlier one of the method came near.
 std::optional<Candidate> Search::lead(double accuracy, double seconds) const {
@@ -91,12 +118,14 @@ std::optional<Candidate> Search::lead(double accuracy, double seconds) const {
 }
 
 const Trial* Search::race(const Trial* answer, double accuracy, double seconds) {
-  constexpr double clearly_faster = 0.92, part_of_answer = 0.5, much = 2;
+  if (!answer) return nullptr;
+  seconds = std::min(seconds, seconds_of_race(*answer));
+  constexpr double part_of_answer = 0.5, much = 2;
   // A lead is worth more time than was meant.
   constexpr double worth = 0.5;
   int leads = 2;
   const double end = seconds_since(begin_) + seconds;
-  while (answer && forecast_ && answer->method->order > 0 && seconds_left() > 0) {
+  while (forecast_ && answer->method->order > 0 && seconds_left() > 0) {
     const double left = end - seconds_since(begin_);
     const double faster = std::min(left, clearly_faster * answer->seconds);
     // What is known best first.
@@ -104,6 +133,7 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
     if (!next)
       next = unknown(accuracy, std::min(left, part_of_answer * answer->seconds),
                      left > much * answer->seconds);
+    if (!next) next = unseen(accuracy, faster);
     if (!next) next = promised(accuracy, faster, false);
     double longest = std::min(left, clearly_faster * answer->seconds + 1e-5);
     if (!next || left <= 0) {
@@ -112,8 +142,30 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
     }
     if (!next) break;
     const Trial& trial = run(*next->method, next->value, longest);
-    const auto most = bound(trial);
-    if (most && *most <= accuracy && trial.seconds < answer->seconds) answer = &trial;
+    if (trial.seconds < answer->seconds && is_known(trial, accuracy)) answer = &trial;
+  }
+  return forecast_ && is_known(*answer, accuracy)
+             ? gamble(answer, accuracy, end - seconds_since(begin_))
+             : answer;
+}
+
+// Errors go through zero, so that runs which are too coarse may be good by chance. Tries them,
+// those by explicit methods that are expected to miss by least first. That one of them is good says
+// nothing of others: they are held against what is known, and teach nothing.
+const Trial* Search::gamble(const Trial* answer, double accuracy, double seconds) {
+  constexpr double most = 300, coarser = 2;
+  const double end = seconds_since(begin_) + seconds;
+  if (of_ == AccuracyOf::energy) return answer;
+  for (double factor = coarser; factor < most; factor *= coarser) {
+    for (const Candidate& c : forecast_->candidates(factor * good_enough * accuracy, true)) {
+      const double left = std::min(end - seconds_since(begin_), seconds_left());
+      if (c.seconds > std::min(left, clearly_faster * answer->seconds)) break;
+      if (was_tried(c)) continue;
+      trials_.push_back(stage_.run(*c.method, c.value, left));
+      Trial& trial = trials_.back();
+      trial.is_gamble = true;
+      if (trial.seconds < answer->seconds && is_known(trial, accuracy)) answer = &trial;
+    }
   }
   return answer;
 }

@@ -128,7 +128,7 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
       constexpr double far_within = 0.1;
       const bool is_asymptotic =
           (before > distance && before < 2 * fall * distance) || distance < far_within * accuracy;
-      if (is_asymptotic && bound(*last).value_or(1) <= accuracy) return true;
+      if (is_asymptotic && is_known(*last, accuracy)) return true;
       const double to_come =
           trial.seconds * std::pow(std::max(1.0, distance / accuracy), 1.0 / method.order);
       if (to_come > longest || 2 * trial.seconds > end - seconds_since(begin_)) return false;
@@ -174,7 +174,7 @@ const Trial* Search::by_tolerance(double accuracy) {
     const Trial& trial = run(*find_method("ida"), rtol, limit_);
     if (!trial.reached_end()) return nullptr;
     stage_.measure_by(trial);
-    if (before && bound(*before).value_or(1) <= accuracy) return before;
+    if (before && is_known(*before, accuracy)) return before;
     before = &trial;
   }
   return nullptr;

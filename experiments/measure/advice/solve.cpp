@@ -20,13 +20,6 @@
 namespace qddot::measure {
 namespace {
 
-// What may be spent on runs that are only perhaps faster than the answer [s]: what nobody notices
-// or, where the answer took that long itself, a part of that.
-double seconds_of_race(const Trial& answer) {
-  constexpr double unnoticed = 0.01, least = 0.003, part = 0.15;
-  return answer.seconds < unnoticed ? unnoticed : std::max(least, part * answer.seconds);
-}
-
 void fill(Answer& answer, const Search& search, const Trial& trial, const ReducedScene& model) {
   answer.method = trial.method;
   answer.value = trial.value;
@@ -34,21 +27,15 @@ void fill(Answer& answer, const Search& search, const Trial& trial, const Reduce
   answer.end = trial.path.empty() ? model.initial() : trial.path.back();
   answer.nodes = model.expand(answer.end);
   answer.seconds.run = trial.seconds;
-  const Trial* check = search.checker(trial);
-  if (!check) check = search.coarser(trial);
-  if (check) answer.seconds.check = check->seconds;
-}
-
-bool is_known(const Search& search, const Trial& trial, double accuracy) {
   const auto bound = search.bound(trial);
-  return bound && *bound <= accuracy;
+  if (bound && bound->by) answer.seconds.check = bound->by->seconds;
 }
 
 EstimateKind kind_of(const Search& search, const Trial& trial, AccuracyOf of) {
   if (of == AccuracyOf::energy) return EstimateKind::conserved;
   if (trial.method->order == 0) return EstimateKind::rounding;
-  return search.checker(trial) || !search.coarser(trial) ? EstimateKind::compared
-                                                         : EstimateKind::refined;
+  const auto bound = search.bound(trial);
+  return bound && bound->by_coarser ? EstimateKind::refined : EstimateKind::compared;
 }
 
 // The run of which the least error is known, and a bound of that: or else, of two runs that should
@@ -58,8 +45,8 @@ std::pair<const Trial*, double> nearest(const Search& search, AccuracyOf of) {
   double least = std::numeric_limits<double>::infinity();
   for (const Trial& trial : search.trials()) {
     const auto bound = search.bound(trial);
-    if (!bound || *bound >= least) continue;
-    least = *bound;
+    if (!bound || bound->error >= least) continue;
+    least = bound->error;
     best = &trial;
   }
   if (of == AccuracyOf::energy) return {best, least};
@@ -202,9 +189,9 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
   std::string stopped_by;
   try {
     if (search.survey(wanted.accuracy)) found = search.find(wanted.accuracy);
-    if (found) found = search.race(found, wanted.accuracy, seconds_of_race(*found));
+    if (found) found = search.race(found, wanted.accuracy, search.seconds_left());
     // What the race taught may be that the bound is another, or that there is none.
-    if (found && !is_known(search, *found, wanted.accuracy)) found = search.find(wanted.accuracy);
+    if (found && !search.is_known(*found, wanted.accuracy)) found = search.find(wanted.accuracy);
     if (search.seconds_left() <= 0) stopped_by = "time was up";
   } catch (const Interrupted& interrupted) {
     stopped_by = interrupted.what();
@@ -213,10 +200,10 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
                       : model.system().has_massless()     ? "tolerance"
                       : found && found->method->order > 0 ? "refinement"
                                                           : "modes";
-  if (found && is_known(search, *found, wanted.accuracy)) {
+  if (found && search.is_known(*found, wanted.accuracy)) {
     fill(answer, search, *found, model);
     answer.is_reached = true;
-    answer.error_estimate = *search.bound(*found);
+    answer.error_estimate = search.bound(*found)->error;
     answer.error_estimate_kind = kind_of(search, *found, wanted.of);
   } else {
     explain_failure(answer, search, wanted, until, stopped_by);

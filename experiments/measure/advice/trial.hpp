@@ -20,7 +20,8 @@ struct Trial {
   // At the times, the end last, as far as it came; or the end alone.
   std::vector<State> path{};
 
-  double energy_gap = 0;  // largest |E - E(0)| at these times [J]
+  double energy_gap = 0;   // largest |E - E(0)| at these times [J]
+  bool is_gamble = false;  // made in the hope of chance: no other run is judged by it
 
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
 };
