@@ -91,10 +91,19 @@ void Search::learn() {
       forecast_->learn_error(trial, stage_.energy_error(trial));
     } else if (const Trial* better = checker(trial)) {
       const double error = lost_distance(trial, *better);
-      // Steps that are far too long say nothing of those that are not.
-      if (error < lost || !trial.method->is(Trait::implicit)) forecast_->learn_error(trial, error);
+      if (is_telling(trial, error)) forecast_->learn_error(trial, error);
     }
   }
+}
+
+// Steps of implicit methods may be far too long, and then say nothing of those that are not: even
+// where they are good by chance, which a finer run shows that misses by more.
+bool Search::is_telling(const Trial& trial, double error) const {
+  if (!trial.method->is(Trait::implicit)) return true;
+  return error < lost && std::ranges::none_of(trials_, [&](const Trial& other) {
+           const bool is_finer = other.method == trial.method && other.value < trial.value;
+           return is_finer && other.reached_end() && this->error(other) > error;
+         });
 }
 
 bool Search::was_tried(const Candidate& candidate) const {

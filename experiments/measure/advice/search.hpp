@@ -119,6 +119,7 @@ class Search {
   bool by_refinement(double accuracy);
   Trial& run(const Method& method, double value, double seconds);
   void learn();
+  bool is_telling(const Trial& trial, double error) const;
 
   AccuracyOf of_;
   double limit_;

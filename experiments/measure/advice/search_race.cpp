@@ -29,18 +29,21 @@ double seconds_of_race(const Trial& answer) {
 std::optional<Candidate> Search::more_steps(const Method& method, double accuracy,
                                             double seconds) const {
   constexpr double fewest = 1.2, most = 6, infinite = std::numeric_limits<double>::infinity();
-  double steps = few_steps(accuracy);
+  double steps = few_steps(accuracy), enough = steps;
   for (const Trial& trial : trials_) {
     if (trial.method != &method) continue;
     const bool failed = !trial.reached_end();
     if (failed ? trial.summary.outcome != Outcome::diverged : is_known(trial, accuracy)) return {};
     const double missed = failed ? infinite : error(trial) / (good_enough * accuracy);
-    const double times = std::clamp(std::pow(missed, 1.0 / method.order), fewest, most);
-    steps = std::max(steps, std::ceil(times * std::round(stage_.until() / trial.value)));
+    const double times = std::pow(missed, 1.0 / method.order);
+    const double made = std::round(stage_.until() / trial.value);
+    steps = std::max(steps, std::ceil(std::clamp(times, fewest, most) * made));
+    // What is lost does not say how far.
+    if (missed * good_enough * accuracy < lost) enough = std::max(enough, times * made);
   }
-  const double h = stage_.until() / steps, expected = forecast_->seconds(method, h);
-  if (!(expected < seconds)) return {};
-  return Candidate{&method, h, 0, expected};
+  const double h = stage_.until() / std::max(steps, enough);
+  if (!(forecast_->seconds(method, h) < seconds)) return {};
+  return Candidate{&method, stage_.until() / steps, 0, forecast_->seconds(method, h)};
 }
 
 // A run of which nothing is known yet and that may be faster than the answer: of adaptive methods
@@ -49,8 +52,6 @@ std::optional<Candidate> Search::more_steps(const Method& method, double accurac
 // is not known before: only where there is time.
 std::optional<Candidate> Search::unknown(double accuracy, double seconds, bool has_time) const {
   constexpr Index few = 60;
-  // A method of order 2 soon takes too many steps.
-  constexpr double least_by_second = 1e-4;
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
   for (const char* name :
@@ -59,7 +60,7 @@ std::optional<Candidate> Search::unknown(double accuracy, double seconds, bool h
     const Method& method = *find_method(name);
     if (!applies_to(method, system)) continue;
     if (method.is(Trait::implicit)) {
-      if (!may_be_implicit() || (method.order <= 2 && accuracy < least_by_second)) continue;
+      if (!may_be_implicit()) continue;
       const auto next = more_steps(method, accuracy, seconds);
       if (next && !was_tried(*next)) return next;
       continue;
