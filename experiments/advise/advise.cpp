@@ -8,9 +8,8 @@
 //     steps follows from what it does to a vibration.
 //  2. As far as time allows (half a second, or about twice the run that is advised), the runs that
 //     are advised are made, and checked by more accurate ones; what is seen corrects the forecast.
-//  3. advice.csv has, for each accuracy, what to take, what that is expected to miss by and to
-//  take,
-//     the next method and how many times as long that takes.
+//  3. advice.csv has, for each accuracy, what to take, the error and the time to expect, the next
+//     method and how many times as long that takes.
 #include "qddot/measure/advice/advise.hpp"
 
 #include <algorithm>
@@ -19,6 +18,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/accuracy_choice.hpp"
@@ -148,9 +148,13 @@ void print_advice(const Advices& all, const Arguments& a, double until) {
   for (const Advice& advice : all.for_each) {
     if (!advice.take) continue;
     const Candidate& take = *advice.take;
+    const std::string reductions =
+        a.scene.no_reduce.empty()
+            ? ""
+            : fmt::format(" --no-reduce {}", fmt::join(a.scene.no_reduce, ","));
     const std::string command =
-        fmt::format("simulate --scene {} --until {} --method {} --{} {} --final end.csv",
-                    word_option(a.scene.name), until, take.method->name,
+        fmt::format("simulate --scene {}{} --until {} --method {} --{} {} --final end.csv",
+                    word_option(a.scene.name), reductions, until, take.method->name,
                     take.method->knob == Knob::step_size ? "step-size" : "rtol", take.value);
     if (command != last) fmt::print("{}\n", command);
     last = command;

@@ -38,6 +38,15 @@ BOOST_AUTO_TEST_CASE(it_says_what_to_take_and_the_command_line_runs) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_command_line_has_the_reductions_that_were_left_out) {
+  const Exit result = run("advise", {"--scene", "pendulum", "--until", "1", "--accuracy", "1e-3",
+                                     "--no-reduce", "dimension,mirror"});
+  BOOST_TEST_REQUIRE(result.status == 0, result.err);
+  BOOST_TEST(
+      contains(result.out, {"simulate --scene pendulum --no-reduce dimension,mirror --until 1 "}),
+      result.out);
+}
+
 BOOST_AUTO_TEST_CASE(an_answer_has_its_error_bar_in_words_and_beside_its_file) {
   const Folder folder;
   const Exit result =
