@@ -57,6 +57,13 @@ Forecast::Forecast(const Stage& stage, const OwnFrequencies& own, double w_motio
       step_seconds_(step_seconds),
       sensitivity_(own.speed * stage.until()) {}
 
+void Forecast::learn_frequencies(const OwnFrequencies& own) {
+  own_ = own;
+  sensitivity_ = own.speed * stage_.until();
+  by_method_.clear();
+  by_order_.clear();
+}
+
 bool Forecast::has_learned(const Method& method) const {
   if (!is_told_by_frequency(method)) return seen_.contains(&method);
   return method.is(Trait::implicit) ? by_method_.contains(&method)

@@ -55,6 +55,9 @@ class Forecast {
   // methods or of the explicit ones of fixed steps.
   std::vector<Candidate> candidates(double error, bool explicit_steps = false) const;
 
+  // Takes in what a better run says of the motion's own frequencies, and forgets the errors that
+  // were seen: they are to be learned anew.
+  void learn_frequencies(const OwnFrequencies& own);
   // Whether the error of a run of the method, or of an explicit one of its order, was seen.
   bool has_learned(const Method& method) const;
   // Whether the error of a run of the method itself was seen.

@@ -114,6 +114,7 @@ class Search {
   const Trial* gamble(const Trial* answer, double accuracy, double seconds);
   std::optional<Candidate> lead(double accuracy, double seconds) const;
   bool survey_by_verlet();
+  void survey_again();
   const Trial* by_tolerance(double accuracy);
   bool refine(const Method& method, double steps, double accuracy, double seconds, double longest);
   bool by_refinement(double accuracy);

@@ -121,6 +121,7 @@ std::optional<Candidate> Search::lead(double accuracy, double seconds) const {
 const Trial* Search::race(const Trial* answer, double accuracy, double seconds) {
   if (!answer) return nullptr;
   seconds = std::min(seconds, seconds_of_race(*answer));
+  survey_again();
   constexpr double part_of_answer = 0.5, much = 2;
   // A lead is worth more time than was meant.
   constexpr double worth = 0.5;

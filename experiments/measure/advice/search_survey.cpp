@@ -50,6 +50,12 @@ double growth_of_frequency(const ReducedScene& model, const std::vector<State>& 
   return most / bound;
 }
 
+// A burst costs as much as about 25 forces.
+int number_of_bursts(double steps, double seconds) {
+  constexpr double no_time = 1e-3;
+  return static_cast<int>(std::clamp(steps / (seconds < no_time ? 80 : 250), 2.0, 16.0));
+}
+
 }  // namespace
 
 bool Search::survey(double accuracy) {
@@ -73,7 +79,6 @@ bool Search::survey_by_verlet() {
   const double until = stage_.until();
   constexpr double below_limit = 0.9, shorter = 0.75;
   constexpr int most_attempts = 6;
-  constexpr double no_time = 1e-3;
   const double looks = static_cast<double>(stage_.times().size());
   double steps = std::max(8.0, std::ceil(until * w_start_ / (2 * below_limit)));
   Trial* first = nullptr;
@@ -93,17 +98,26 @@ bool Search::survey_by_verlet() {
   constexpr double hardly_beyond = 1.02;
   const double w = std::min(w_start_ * growth_of_frequency(model, first->path, bound_of_w_, steps),
                             hardly_beyond * 2 * steps / until);
-  // A burst costs as much as about 25 forces.
-  const int bursts =
-      static_cast<int>(std::clamp(steps / (first->seconds < no_time ? 80 : 250), 2.0, 16.0));
-  forecast_.emplace(stage_, own_frequencies(model, first->path, w, bursts), w,
-                    first->seconds / steps);
+  forecast_.emplace(stage_,
+                    own_frequencies(model, first->path, w, number_of_bursts(steps, first->seconds)),
+                    w, first->seconds / steps);
   first_seconds_ = first->seconds;
   for (const Trial& trial : trials_) {
     if (trial.reached_end()) forecast_->learn_seconds(trial);
   }
   learn();
   return true;
+}
+
+// Steps near the limit of stability have vibrations of their own making, which bursts along the
+// first run take for the motion's. Bursts along the most accurate run say what it has.
+void Search::survey_again() {
+  const Trial* best = most_accurate(true);
+  if (!best || !forecast_) return;
+  const double steps = steps_of_verlet();
+  forecast_->learn_frequencies(own_frequencies(stage_.model(), best->path, forecast_->w_motion(),
+                                               number_of_bursts(steps, first_seconds_)));
+  learn();
 }
 
 // Doubles the number of steps until the error of all but the finest run is known to be at most the
