@@ -96,6 +96,20 @@ Advice advice_for(const Search& search, double accuracy) {
   return advice;
 }
 
+// What is accurate enough for more is so for less, where that has nothing faster.
+void take_from_finer(std::vector<Advice>& all) {
+  for (Advice& advice : all) {
+    for (const Advice& finer : all) {
+      if (!finer.take || finer.accuracy >= advice.accuracy) continue;
+      if (advice.take && advice.take->seconds <= finer.take->seconds) continue;
+      const bool is_another = advice.take && advice.take->method != finer.take->method;
+      advice.runner_up = is_another ? advice.take : finer.runner_up;
+      advice.take = finer.take;
+      advice.is_seen = finer.is_seen;
+    }
+  }
+}
+
 // Makes the runs that are advised, from the least accurate on, so long as that pays: each teaches
 // the forecast for the next.
 void try_out(Search& search, const std::vector<double>& coarse_first,
@@ -180,6 +194,7 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
   }
   Advices all{.horizon = infinity};
   for (const double accuracy : accuracies) all.for_each.push_back(advice_for(search, accuracy));
+  take_from_finer(all.for_each);
   all.w_start = all.w_motion = search.w_start();
   if (search.forecast()) {
     all.w_motion = search.forecast()->w_motion();
