@@ -89,6 +89,9 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_had_is_said_and_what_was_reached_is_there) {
   const auto origin = nlohmann::json::parse(read_all(folder / "end.json"));
   BOOST_TEST(origin.at("is_reached") == false);
   BOOST_TEST(origin.at("horizon").get<double>() < 12);
+  const Exit advised = run("advise", {"--scene", scene, "--accuracy", "1e-4"});
+  BOOST_TEST(advised.status == 3);
+  BOOST_TEST(contains(advised.out, {"none: the motion is chaotic", "energy"}), advised.out);
 }
 
 BOOST_AUTO_TEST_CASE(what_makes_no_sense_is_refused_before_anything_is_written) {

@@ -19,8 +19,9 @@ namespace qddot::measure {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// What advice may take [s], whatever is advised, and of the run that is.
-constexpr double always_allowed = 0.4, of_the_run = 1.8;
+// What advice may take [s], whatever is advised, and of the run that is; what its runs may, and
+// what the twin may that shows chaos.
+constexpr double always_allowed = 0.4, of_the_run = 1.8, for_runs = 0.3, for_twin = 0.15;
 // Fraction of an accuracy that a run is expected to miss by, as in solve().
 constexpr double expected_to_miss = 0.45;
 
@@ -120,7 +121,7 @@ void try_out(Search& search, const std::vector<double>& coarse_first,
     if (advice.take) longest = std::max(longest, advice.take->seconds);
   }
   const double allowed =
-      std::max(always_allowed, std::min(of_the_run * longest, search.seconds_worth_trying()));
+      std::max(for_runs, std::min(of_the_run * longest, search.seconds_worth_trying()));
   search.stop_after(allowed);
   for (const double accuracy : coarse_first) {
     // The run, its check, and what may be faster; then once more, where all that says otherwise.
@@ -136,6 +137,33 @@ void try_out(Search& search, const std::vector<double>& coarse_first,
         search.try_once(*advice.take, left);
       }
     }
+  }
+}
+
+// How fast the most accurate run that takes so little parts from one with a start that is one
+// rounding away.
+void see_chaos(Advices& all, const Search& search) {
+  const Trial* best = nullptr;
+  for (const Trial& trial : search.trials()) {
+    const bool is_short = trial.reached_end() && trial.seconds < for_twin && !trial.is_gamble &&
+                          trial.path.size() == search.stage().times().size();
+    if (is_short && (!best || search.error(trial) < search.error(*best))) best = &trial;
+  }
+  if (!best) return;
+  if (const auto parted = parting_of_twins(search.stage(), *best, for_twin)) {
+    all.horizon = parted->horizon;
+    all.lyapunov = parted->lyapunov;
+  }
+}
+
+// What no two runs agree on cannot be expected of one.
+void refuse_chaos(Advices& all) {
+  for (Advice& advice : all.for_each) {
+    if (!advice.take || advice.is_seen) continue;
+    advice = {.accuracy = advice.accuracy,
+              .why = fmt::format("the motion is chaotic: from t = {:.3g} s on nobody knows its "
+                                 "positions; ask for an earlier end, or for --accuracy-of energy",
+                                 all.horizon)};
   }
 }
 
@@ -182,33 +210,27 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
   if (!model.system().has_stiffness())
     throw std::invalid_argument("advise: the system has no stiffness, which says how fast it is");
   Search search(model, until, of, infinity);
+  Advices all{.horizon = infinity};
   if (search.survey(std::ranges::min(accuracies))) {
     if (search.forecast()) {
       std::vector<double> coarse_first = accuracies;
       std::ranges::sort(coarse_first, std::ranges::greater());
       try_out(search, coarse_first, begin);
+      see_chaos(all, search);
       try_sundials(search, coarse_first, begin);
     } else {
       for (const double accuracy : accuracies) search.find(accuracy);
     }
   }
-  Advices all{.horizon = infinity};
   for (const double accuracy : accuracies) all.for_each.push_back(advice_for(search, accuracy));
   take_from_finer(all.for_each);
+  if (of != AccuracyOf::energy && all.horizon <= until) refuse_chaos(all);
   all.w_start = all.w_motion = search.w_start();
   if (search.forecast()) {
     all.w_motion = search.forecast()->w_motion();
     all.own_frequency = search.forecast()->own().at(2);
   }
   all.largest_stable_step = all.w_motion > 0 ? 2 / all.w_motion : infinity;
-  // A twin is one more run.
-  const Trial* best = search.most_accurate(true);
-  if (best && search.forecast() && seconds_since(begin) + best->seconds < always_allowed) {
-    if (const auto parted = parting_of_twins(search.stage(), *best, always_allowed)) {
-      all.horizon = parted->horizon;
-      all.lyapunov = parted->lyapunov;
-    }
-  }
   all.runs = static_cast<int>(search.trials().size());
   all.seconds = seconds_since(begin);
   return all;
