@@ -39,6 +39,8 @@ struct Contender {
   Candidate run;
   bool is_seen = false;
 
+  // What implicit steps take and miss by is known badly before.
+  bool is_vague() const { return !is_seen && run.method->is(Trait::implicit); }
   // What it takes, with something on top for what is not known.
   double handicapped() const {
     constexpr double unseen = 1.3;
@@ -61,7 +63,7 @@ std::vector<Contender> contenders(const Search& search, double accuracy) {
                                         [](const Contender& other) { return other.run.method; });
     if (same == all.end()) {
       all.push_back(seen);
-    } else if (seen.handicapped() < same->handicapped()) {
+    } else if (same->is_vague() || seen.handicapped() < same->handicapped()) {
       *same = seen;
     }
   }
@@ -71,18 +73,17 @@ std::vector<Contender> contenders(const Search& search, double accuracy) {
 
 Advice advice_for(const Search& search, double accuracy) {
   Advice advice{.accuracy = accuracy};
-  for (const auto& [c, is_seen] : contenders(search, accuracy)) {
-    const bool is_implicit = c.method->is(Trait::implicit);
+  for (const Contender& contender : contenders(search, accuracy)) {
+    const Candidate& c = contender.run;
     if (c.method->family == Family::sundials) {
       keep_faster(advice.sundials, c);
     } else {
-      keep_faster(is_implicit ? advice.own_implicit : advice.own_explicit, c);
+      keep_faster(c.method->is(Trait::implicit) ? advice.own_implicit : advice.own_explicit, c);
     }
-    // What implicit steps take and miss by is known badly before.
-    if (is_implicit && !is_seen) continue;
+    if (contender.is_vague()) continue;
     if (!advice.take) {
       advice.take = c;
-      advice.is_seen = is_seen;
+      advice.is_seen = contender.is_seen;
     } else if (!advice.runner_up) {
       advice.runner_up = c;
     }
@@ -95,20 +96,6 @@ Advice advice_for(const Search& search, double accuracy) {
     return advice;
   }
   return advice;
-}
-
-// What is accurate enough for more is so for less, where that has nothing faster.
-void take_from_finer(std::vector<Advice>& all) {
-  for (Advice& advice : all) {
-    for (const Advice& finer : all) {
-      if (!finer.take || finer.accuracy >= advice.accuracy) continue;
-      if (advice.take && advice.take->seconds <= finer.take->seconds) continue;
-      const bool is_another = advice.take && advice.take->method != finer.take->method;
-      advice.runner_up = is_another ? advice.take : finer.runner_up;
-      advice.take = finer.take;
-      advice.is_seen = finer.is_seen;
-    }
-  }
 }
 
 // Makes the runs that are advised, from the least accurate on, so long as that pays: each teaches
@@ -223,7 +210,6 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
     }
   }
   for (const double accuracy : accuracies) all.for_each.push_back(advice_for(search, accuracy));
-  take_from_finer(all.for_each);
   if (of != AccuracyOf::energy && all.horizon <= until) refuse_chaos(all);
   all.w_start = all.w_motion = search.w_start();
   if (search.forecast()) {
