@@ -130,12 +130,7 @@ void try_out(Search& search, const std::vector<double>& coarse_first,
 // How fast the most accurate run that takes so little parts from one with a start that is one
 // rounding away.
 void see_chaos(Advices& all, const Search& search) {
-  const Trial* best = nullptr;
-  for (const Trial& trial : search.trials()) {
-    const bool is_short = trial.reached_end() && trial.seconds < for_twin && !trial.is_gamble &&
-                          trial.path.size() == search.stage().times().size();
-    if (is_short && (!best || search.error(trial) < search.error(*best))) best = &trial;
-  }
+  const Trial* best = search.most_accurate(true, for_twin);
   if (!best) return;
   if (const auto parted = parting_of_twins(search.stage(), *best, for_twin)) {
     all.horizon = parted->horizon;

@@ -27,6 +27,22 @@ int number_of_looks(double steps, AccuracyOf of) {
                                                       : std::clamp(steps / 20, 20.0, 100.0));
 }
 
+struct SeenError {
+  const Trial* trial;
+  double error;
+};
+
+// Steps of implicit methods may be far too long, and then say nothing of those that are not: even
+// where they are good by chance, which a finer run shows that misses by more.
+bool is_telling(const SeenError& one, const std::vector<SeenError>& all, double lost) {
+  const Method& method = *one.trial->method;
+  if (!method.is(Trait::implicit)) return true;
+  return one.error < lost && std::ranges::none_of(all, [&](const SeenError& other) {
+           return other.trial->method == &method && other.trial->value < one.trial->value &&
+                  other.error > one.error;
+         });
+}
+
 }  // namespace
 
 double Search::steps_of_verlet() const {
@@ -85,25 +101,19 @@ void Search::learn() {
     measured_by_ = best;
     measured_within_ = expected(*best);
   }
+  std::vector<SeenError> seen;
   for (const Trial& trial : trials_) {
-    if (!trial.reached_end()) continue;
+    if (!trial.reached_end() || trial.is_gamble) continue;
     if (of_ == AccuracyOf::energy) {
-      forecast_->learn_error(trial, stage_.energy_error(trial));
+      seen.push_back({&trial, stage_.energy_error(trial)});
     } else if (const Trial* better = checker(trial)) {
-      const double error = lost_distance(trial, *better);
-      if (is_telling(trial, error)) forecast_->learn_error(trial, error);
+      seen.push_back({&trial, lost_distance(trial, *better)});
     }
   }
-}
-
-// Steps of implicit methods may be far too long, and then say nothing of those that are not: even
-// where they are good by chance, which a finer run shows that misses by more.
-bool Search::is_telling(const Trial& trial, double error) const {
-  if (!trial.method->is(Trait::implicit)) return true;
-  return error < lost && std::ranges::none_of(trials_, [&](const Trial& other) {
-           const bool is_finer = other.method == trial.method && other.value < trial.value;
-           return is_finer && other.reached_end() && this->error(other) > error;
-         });
+  for (const SeenError& one : seen) {
+    if (of_ == AccuracyOf::energy || is_telling(one, seen, lost))
+      forecast_->learn_error(*one.trial, one.error);
+  }
 }
 
 bool Search::was_tried(const Candidate& candidate) const {

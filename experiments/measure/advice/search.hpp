@@ -61,8 +61,9 @@ class Search {
   // of two runs within their distance. nullptr where there is none.
   const Trial* coarser(const Trial& trial) const;
   // The trial that is expected to be the most accurate, of all or of those that were seen on their
-  // way; nullptr where none came to the end.
-  const Trial* most_accurate(bool seen_on_its_way = false) const;
+  // way, in at most so many seconds; nullptr where none came to the end.
+  const Trial* most_accurate(bool seen_on_its_way = false,
+                             double longest = std::numeric_limits<double>::infinity()) const;
 
   Stage& stage() { return stage_; }
   const Stage& stage() const { return stage_; }
@@ -120,7 +121,6 @@ class Search {
   bool by_refinement(double accuracy);
   Trial& run(const Method& method, double value, double seconds);
   void learn();
-  bool is_telling(const Trial& trial, double error) const;
 
   AccuracyOf of_;
   double limit_;
@@ -129,6 +129,7 @@ class Search {
   Stage stage_;
   std::optional<Forecast> forecast_;
   std::deque<Trial> trials_;
+  const Trial* surveyed_by_ = nullptr;  // the run that bursts went along
   const Trial* measured_by_ = nullptr;  // the motion, by a run that is expected to miss by
   double measured_within_ = std::numeric_limits<double>::infinity();
 };

@@ -65,10 +65,10 @@ const Trial* Search::checker(const Trial& trial) const {
   return best;
 }
 
-const Trial* Search::most_accurate(bool seen_on_its_way) const {
+const Trial* Search::most_accurate(bool seen_on_its_way, double longest) const {
   const Trial* best = nullptr;
   for (const Trial& trial : trials_) {
-    if (!trial.reached_end() || trial.is_gamble) continue;
+    if (!trial.reached_end() || trial.is_gamble || trial.seconds > longest) continue;
     if (seen_on_its_way && trial.path.size() < stage_.times().size()) continue;
     if (!best || expected(trial) < expected(*best)) best = &trial;
   }

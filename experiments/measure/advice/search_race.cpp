@@ -34,12 +34,12 @@ std::optional<Candidate> Search::more_steps(const Method& method, double accurac
     if (trial.method != &method) continue;
     const bool failed = !trial.reached_end();
     if (failed ? trial.summary.outcome != Outcome::diverged : is_known(trial, accuracy)) return {};
-    const double missed = failed ? infinite : error(trial) / (good_enough * accuracy);
-    const double times = std::pow(missed, 1.0 / method.order);
+    const double missed = failed ? infinite : error(trial);
+    const double times = std::pow(missed / (good_enough * accuracy), 1.0 / method.order);
     const double made = std::round(stage_.until() / trial.value);
     steps = std::max(steps, std::ceil(std::clamp(times, fewest, most) * made));
     // What is lost does not say how far.
-    if (missed * good_enough * accuracy < lost) enough = std::max(enough, times * made);
+    if (missed < lost) enough = std::max(enough, times * made);
   }
   const double h = stage_.until() / std::max(steps, enough);
   if (!(forecast_->seconds(method, h) < seconds)) return {};

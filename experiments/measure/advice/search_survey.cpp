@@ -102,6 +102,7 @@ bool Search::survey_by_verlet() {
                     own_frequencies(model, first->path, w, number_of_bursts(steps, first->seconds)),
                     w, first->seconds / steps);
   first_seconds_ = first->seconds;
+  surveyed_by_ = first;
   for (const Trial& trial : trials_) {
     if (trial.reached_end()) forecast_->learn_seconds(trial);
   }
@@ -113,7 +114,8 @@ bool Search::survey_by_verlet() {
 // first run take for the motion's. Bursts along the most accurate run say what it has.
 void Search::survey_again() {
   const Trial* best = most_accurate(true);
-  if (!best || !forecast_) return;
+  if (!best || !forecast_ || best == surveyed_by_) return;
+  surveyed_by_ = best;
   const double steps = steps_of_verlet();
   forecast_->learn_frequencies(own_frequencies(stage_.model(), best->path, forecast_->w_motion(),
                                                number_of_bursts(steps, first_seconds_)));
