@@ -147,6 +147,60 @@ BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {
   BOOST_TEST(std::abs(bound->error - apart - least->error) <= 1e-15 * bound->error);
 }
 
+// Errors go through zero: a run that is good by chance says nothing of others.
+BOOST_AUTO_TEST_CASE(runs_that_are_good_by_chance_judge_and_teach_nothing) {
+  const ReducedScene model(drawn("pendulum", {}));
+  const double accuracy = 1e-6;
+  Search search(model, 5, AccuracyOf::positions, reference_seconds);
+  BOOST_TEST_REQUIRE(search.survey(accuracy));
+  const Trial* found = search.find(accuracy);
+  BOOST_TEST_REQUIRE((found != nullptr));
+  found = search.race(found, accuracy, reference_seconds);
+  BOOST_TEST(search.is_known(*found, accuracy));
+  int gambles = 0, only_gambles = 0;
+  const auto is_of = [](const Method& method) {
+    return [&method](const Trial& t) { return t.method == &method && !t.is_gamble; };
+  };
+  for (const Trial& trial : search.trials()) {
+    const Trial *checker = search.checker(trial), *coarser = search.coarser(trial);
+    const auto bound = search.bound(trial);
+    BOOST_TEST((!checker || !checker->is_gamble));
+    BOOST_TEST((!coarser || !coarser->is_gamble));
+    BOOST_TEST((!bound || !bound->by || !bound->by->is_gamble));
+    if (!trial.is_gamble) continue;
+    ++gambles;
+    if (std::ranges::any_of(search.trials(), is_of(*trial.method))) continue;
+    ++only_gambles;
+    BOOST_TEST(!search.forecast()->has_seen(*trial.method), trial.method->name);
+  }
+  BOOST_TEST(gambles > 0);
+  BOOST_TEST(only_gambles > 0);
+  BOOST_TEST_MESSAGE("gambles " << gambles << ", of methods else not run " << only_gambles);
+}
+
+BOOST_AUTO_TEST_CASE(an_implicit_method_that_diverges_gets_more_steps) {
+  // Steps of the midpoint rule that are too long for this case's motion diverge.
+  const advice_study::Case c = advice_study::drawn_case(4000205);
+  const ReducedScene model(c.scene);
+  Search search(model, c.until, AccuracyOf::positions, reference_seconds);
+  BOOST_TEST_REQUIRE(search.survey(c.accuracy));
+  const Trial* found = search.find(c.accuracy);
+  BOOST_TEST_REQUIRE((found != nullptr));
+  search.race(found, c.accuracy, reference_seconds);
+  double diverged = 0, shorter = std::numeric_limits<double>::infinity();
+  for (const Trial& trial : search.trials()) {
+    if (std::string(trial.method->name) != "linear_midpoint") continue;
+    BOOST_TEST_MESSAGE("h " << trial.value << " reached " << trial.reached_end());
+    if (!trial.reached_end()) {
+      diverged = std::max(diverged, trial.value);
+    } else {
+      shorter = std::min(shorter, trial.value);
+    }
+  }
+  BOOST_TEST(diverged > 0);
+  BOOST_TEST(shorter < diverged);
+}
+
 BOOST_AUTO_TEST_CASE(a_vibration_that_long_steps_leave_standing_is_not_missed) {
   // A mass on a slow nonlinear spring, and on it by another a mass on a stiff one that begins a
   // twentieth out of place and vibrates by that, by more than the accuracy. Implicit steps far

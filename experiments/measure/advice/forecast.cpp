@@ -178,6 +178,11 @@ std::optional<Candidate> Forecast::from_seen(const Method& method, double error)
 }
 
 std::vector<Candidate> Forecast::candidates(double error, bool explicit_steps) const {
+  return candidates([error](const Method&) { return error; }, explicit_steps);
+}
+
+std::vector<Candidate> Forecast::candidates(const std::function<double(const Method&)>& error,
+                                            bool explicit_steps) const {
   std::vector<Candidate> all;
   const System& system = stage_.model().system();
   for (const Method& method : methods()) {
@@ -188,9 +193,9 @@ std::vector<Candidate> Forecast::candidates(double error, bool explicit_steps) c
       const double h = stage_.until();
       own = Candidate{&method, h, machine_epsilon, seconds(method, h)};
     } else if (!is_told_by_frequency(method)) {
-      own = from_seen(method, error);
+      own = from_seen(method, error(method));
     } else if (method.order > 1) {
-      own = from_steps(method, error);
+      own = from_steps(method, error(method));
     }
     if (own && std::isfinite(own->seconds)) all.push_back(*own);
   }

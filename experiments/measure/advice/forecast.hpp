@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -54,6 +55,9 @@ class Forecast {
   // The runs that are expected to come to that error, one a method, the fastest first; of all
   // methods or of the explicit ones of fixed steps.
   std::vector<Candidate> candidates(double error, bool explicit_steps = false) const;
+  // The same, to an error of its own for each method.
+  std::vector<Candidate> candidates(const std::function<double(const Method&)>& error,
+                                    bool explicit_steps = false) const;
 
   // Takes in what a better run says of the motion's own frequencies, and forgets the errors that
   // were seen: they are to be learned anew.

@@ -149,7 +149,11 @@ std::optional<Candidate> Search::check_of(const Trial& trial) const {
 // promise much: what a step of theirs takes is known badly before.
 std::optional<Candidate> Search::fresh(double accuracy) const {
   constexpr double much = 0.2;
-  const auto all = forecast_->candidates(accuracy);
+  // To aim lower takes error^(1/order) more steps: methods of high order do for little.
+  constexpr double lower_by_order = 0.95;
+  const auto all = forecast_->candidates([&](const Method& method) {
+    return accuracy * std::pow(lower_by_order, std::max(0, method.order - 2));
+  });
   double least = std::numeric_limits<double>::infinity();
   for (const Candidate& c : all) {
     if (!c.method->is(Trait::implicit)) least = std::min(least, c.seconds);

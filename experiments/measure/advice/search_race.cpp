@@ -17,7 +17,7 @@ constexpr double clearly_faster = 0.92;
 // What runs are worth that are only perhaps faster than the answer [s]: what nobody notices and,
 // where the answer takes long itself, a part of it.
 double seconds_of_race(const Trial& answer) {
-  constexpr double unnoticed = 0.02, as_long = 0.01, part = 0.15;
+  constexpr double unnoticed = 0.02, as_long = 0.01, part = 0.08;
   const double falling = as_long * as_long / answer.seconds;
   return std::max(std::min(unnoticed, falling), part * answer.seconds);
 }
