@@ -127,11 +127,11 @@ double Forecast::seconds(const Method& method, double value) const {
     return seen->second.seconds * std::pow(seen->second.value / value, share);
   }
   const double steps = std::max(1.0, std::round(stage_.until() / value)) +
-                       steps_to_begin(method, stage_.model().system().size());
+                       steps_to_begin(method, stage_.model().system());
   const auto timed = seconds_a_step_.find(&method);
   const double step = timed != seconds_a_step_.end()
                           ? timed->second
-                          : step_seconds_ * usual_step_cost(method, stage_.model().system().size());
+                          : step_seconds_ * usual_step_cost(method, stage_.model().system());
   return steps * step + forces_to_begin(method) * step_seconds_;
 }
 
@@ -227,7 +227,8 @@ void Forecast::learn_error(const Trial& trial, double error) {
 
 void Forecast::learn_seconds(const Trial& trial) {
   if (trial.method->knob != Knob::step_size || trial.method->order == 0) return;
-  const double steps = std::max(1.0, std::round(stage_.until() / trial.value));
+  const double steps = std::max(1.0, std::round(stage_.until() / trial.value)) +
+                       steps_to_begin(*trial.method, stage_.model().system());
   const double begin = forces_to_begin(*trial.method) * step_seconds_;
   seconds_a_step_[trial.method] = std::max(trial.seconds - begin, 0.3 * trial.seconds) / steps;
 }

@@ -96,7 +96,9 @@ class Search {
   // Nothing keeps its energy better than what hardly moves, as too long implicit steps may.
   bool may_be_implicit() const { return of_ != AccuracyOf::energy; }
   std::optional<Bound> bound_by_order(const Trial& trial) const;
+  std::optional<Bound> bound_by_checked(const Trial& best) const;
   double expected(const Trial& trial) const;
+  bool is_vague(const Trial& trial) const;
   double rounding(const Trial& trial) const;
   double truncation(const Trial& trial) const;
   double ratio(const Trial& other, const Trial& trial) const;
@@ -109,7 +111,7 @@ class Search {
   std::optional<Candidate> check_of(const Trial& trial) const;
   std::optional<Candidate> fresh(double accuracy) const;
   std::optional<Candidate> more_steps(const Method& method, double accuracy, double seconds) const;
-  std::optional<Candidate> unknown(double accuracy, double seconds, bool has_time) const;
+  std::optional<Candidate> unknown(const Trial& answer, double accuracy, double left) const;
   std::optional<Candidate> promised(double accuracy, double seconds, bool explicitly) const;
   std::optional<Candidate> unseen(double accuracy, double seconds) const;
   const Trial* gamble(const Trial* answer, double accuracy, double seconds);

@@ -38,10 +38,17 @@ double Search::expected(const Trial& trial) const {
                    : std::pow(trial.value, power_of_error(*trial.method));
 }
 
+// What is expected of implicit steps that leave vibrations unresolved may be nothing like what they
+// do: until an error of the method was seen, no other method's runs are judged by its own.
+bool Search::is_vague(const Trial& trial) const {
+  return forecast_ && trial.method->is(Trait::implicit) && !forecast_->has_learned(*trial.method);
+}
+
 // What the error of `other` is of that of `trial`, at most, but for rounding.
 double Search::ratio(const Trial& other, const Trial& trial) const {
   if (other.method->order == 0) return 0;
-  if (!forecast_ && other.method != trial.method) return std::numeric_limits<double>::infinity();
+  if (other.method != trial.method && (!forecast_ || is_vague(other)))
+    return std::numeric_limits<double>::infinity();
   const double doubt = forecast_ ? forecast_->doubt(*other.method, *trial.method) : 1;
   const double own = truncation(trial), others = truncation(other);
   return std::isfinite(others) ? others / own * doubt : std::numeric_limits<double>::infinity();
@@ -69,6 +76,7 @@ const Trial* Search::most_accurate(bool seen_on_its_way, double longest) const {
   const Trial* best = nullptr;
   for (const Trial& trial : trials_) {
     if (!trial.reached_end() || trial.is_gamble || trial.seconds > longest) continue;
+    if (is_vague(trial)) continue;
     if (seen_on_its_way && trial.path.size() < stage_.times().size()) continue;
     if (!best || expected(trial) < expected(*best)) best = &trial;
   }
@@ -81,10 +89,22 @@ std::optional<Bound> Search::bound(const Trial& trial) const {
   const std::optional<Bound> own = bound_by_order(trial);
   const Trial* best = most_accurate();
   if (of_ == AccuracyOf::energy || !trial.reached_end() || !best || best == &trial) return own;
-  const std::optional<Bound> least = bound_by_order(*best);
+  std::optional<Bound> least = bound_by_order(*best);
+  if (!least) least = bound_by_checked(*best);
   if (!least) return own;
   const double by_best = stage_.distance(trial, *best) + least->error;
   return own && own->error <= by_best ? own : Bound{by_best, best};
+}
+
+// A run misses by less than those that it checks, and so by less than how far it is from them.
+std::optional<Bound> Search::bound_by_checked(const Trial& best) const {
+  std::optional<Bound> least;
+  for (const Trial& other : trials_) {
+    if (!other.reached_end() || is_vague(other) || !is_check(best, other)) continue;
+    const double error = margin_of_finer * likely_distance(other, best) + rounding(best);
+    if (error < lost && (!least || error < least->error)) least = Bound{error, &other, true};
+  }
+  return least;
 }
 
 // From how much more, or less, accurate other runs are expected to be.

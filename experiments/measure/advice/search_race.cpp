@@ -24,12 +24,12 @@ double seconds_of_race(const Trial& answer) {
 
 }  // namespace
 
-// The steps that an implicit method should need that has missed the accuracy or diverged, or few of
-// them where it was not tried, so long as that takes less than so many seconds; nothing else.
+// The steps that an implicit method should need that has missed the accuracy or diverged, or one
+// where it was not tried, so long as that takes less than so many seconds; nothing else.
 std::optional<Candidate> Search::more_steps(const Method& method, double accuracy,
                                             double seconds) const {
   constexpr double fewest = 1.2, most = 6, infinite = std::numeric_limits<double>::infinity();
-  double steps = few_steps(accuracy), enough = steps;
+  double steps = 1, enough = steps;
   for (const Trial& trial : trials_) {
     if (trial.method != &method) continue;
     const bool failed = !trial.reached_end();
@@ -48,24 +48,28 @@ std::optional<Candidate> Search::more_steps(const Method& method, double accurac
 
 // A run of which nothing is known yet and that may be faster than the answer: of adaptive methods
 // of high order for few unknowns, of those that take stiff forces apart where some are named, and
-// of implicit ones where few of their steps take less than so many seconds. What adaptive ones take
-// is not known before: only where there is time.
-std::optional<Candidate> Search::unknown(double accuracy, double seconds, bool has_time) const {
+// of implicit ones. What adaptive ones and the first steps of implicit ones take is known badly
+// before: they are tried where much time is left.
+std::optional<Candidate> Search::unknown(const Trial& answer, double accuracy, double left) const {
   constexpr Index few = 60;
+  constexpr double part_of_answer = 0.5, much = 2;
+  const bool has_time = left > much * answer.seconds;
+  const double seconds = std::min(left, part_of_answer * answer.seconds);
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
-  for (const char* name :
-       {"linear_midpoint", "linear_midpoint4", "multirate_adams4", "multirate_adams2",
-        "multirate_adams5", "trbdf2", "bdf2", "dprkn12", "dprkn8", "dprkn6"}) {
+  for (const char* name : {"linear_midpoint", "linear_midpoint4", "multirate_adams4",
+                           "multirate_adams2", "multirate_adams5", "trapezoidal", "hht", "trbdf2",
+                           "bdf2", "dprkn12", "dprkn8", "dprkn6"}) {
     const Method& method = *find_method(name);
     if (!applies_to(method, system)) continue;
+    const bool is_new = std::ranges::find(trials_, &method, &Trial::method) == trials_.end();
     if (method.is(Trait::implicit)) {
       if (!may_be_implicit()) continue;
-      const auto next = more_steps(method, accuracy, seconds);
+      const auto next = more_steps(method, accuracy, is_new && has_time ? left : seconds);
       if (next && !was_tried(*next)) return next;
       continue;
     }
-    if (std::ranges::find(trials_, &method, &Trial::method) != trials_.end()) continue;
+    if (!is_new) continue;
     if (method.knob == Knob::rtol) {
       if (system.size() <= few && has_time)
         return Candidate{&method, std::clamp(accuracy, 1e-13, 1e-2), 0, 0};
@@ -122,7 +126,6 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
   if (!answer) return nullptr;
   seconds = std::min(seconds, seconds_of_race(*answer));
   survey_again();
-  constexpr double part_of_answer = 0.5, much = 2;
   // A lead is worth more time than was meant.
   constexpr double worth = 0.5;
   int leads = 2;
@@ -132,9 +135,7 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
     const double faster = std::min(left, clearly_faster * answer->seconds);
     // What is known best first.
     std::optional<Candidate> next = promised(accuracy, faster, true);
-    if (!next)
-      next = unknown(accuracy, std::min(left, part_of_answer * answer->seconds),
-                     left > much * answer->seconds);
+    if (!next) next = unknown(*answer, accuracy, left);
     if (!next) next = unseen(accuracy, faster);
     if (!next) next = promised(accuracy, faster, false);
     double longest = std::min(left, clearly_faster * answer->seconds + 1e-5);

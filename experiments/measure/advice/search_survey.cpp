@@ -163,6 +163,8 @@ bool Search::by_refinement(double accuracy) {
   // What such a method does within a step is not refined with it.
   constexpr double much_softer = 0.05, share = 0.4;
   constexpr double no_time = 0.05, unnoticed = 4e-3;
+  // What its first step takes is known badly before, and mostly less.
+  constexpr double first_step = 12e-3, as_long = 5e-3;
   for (const char* name : {"linear_midpoint", "multirate_adams4", "multirate_adams2"}) {
     const Method& method = *find_method(name);
     if (!applies_to(method, system)) continue;
@@ -173,9 +175,8 @@ bool Search::by_refinement(double accuracy) {
       steps = std::max(few_steps(accuracy), std::ceil(stage_.until() * soft / 2));
     } else {
       seconds = std::max(no_time * explicitly, unnoticed);
-      if ((1 + steps_to_begin(method, system.size())) * usual_step_cost(method, system.size()) *
-              force >
-          seconds)
+      if ((1 + steps_to_begin(method, system)) * usual_step_cost(method, system) * force >
+          std::max(seconds, std::min(first_step, as_long * as_long / explicitly)))
         continue;
     }
     if (refine(method, steps, accuracy, seconds, 2 * explicitly)) return true;
