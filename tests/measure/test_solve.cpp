@@ -323,6 +323,10 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_nothing_is_claimed) {
   // Its energy can be had all the same, and so can positions before.
   BOOST_TEST(measure::solve(model, 12, {.accuracy = 1e-3, .of = AccuracyOf::energy}).is_reached);
   BOOST_TEST(measure::solve(model, reference.horizon / 3, {.accuracy = 1e-3}).is_reached);
+  // Nor does advice expect positions there of any method.
+  const Advices advices = advise(swinging_chain(), 12, {1e-3});
+  BOOST_TEST(std::abs(advices.horizon / reference.horizon - 1) < 0.25);
+  BOOST_TEST(!advices.for_each.front().take.has_value());
 }
 
 BOOST_AUTO_TEST_CASE(below_rounding_nothing_is_claimed) {
