@@ -16,6 +16,9 @@ namespace {
 constexpr double aim = 0.45;
 // How many times as accurate a run is chosen to be that is to check another.
 constexpr double chosen_to_check = 3.5;
+// The same for a run that is expected to miss by so small a part of the accuracy that a rough check
+// will do.
+constexpr double chosen_to_check_roughly = 1.6, far_within = 1.0 / 30;
 constexpr int most_rounds = 14;
 // The distance of two runs grows by itself up to here.
 constexpr double parting = 0.03;
@@ -125,13 +128,21 @@ bool Search::was_tried(const Candidate& candidate) const {
 
 // The cheapest run that is expected to be accurate enough to check the trial: one of the same
 // method is by its order, so that others have to be clearly cheaper.
-std::optional<Candidate> Search::check_of(const Trial& trial) const {
+std::optional<Candidate> Search::check_of(const Trial& trial, double accuracy) const {
   constexpr double clearly = 0.8;
   std::optional<Candidate> best;
   double shortest = std::numeric_limits<double>::infinity();
+  const bool is_roughly_checked = std::ranges::any_of(
+      trials_, [&](const Trial& other) { return is_hardly_finer(other, trial); });
+  const bool roughly = !is_roughly_checked && expected(trial) < far_within * accuracy &&
+                       !trial.method->is(Trait::implicit);
+  const auto error_of_check = [&](const Method& method) {
+    const bool is_own = &method == trial.method;
+    return truncation(trial) / (roughly && is_own ? chosen_to_check_roughly : chosen_to_check);
+  };
   for (const double doubt : Forecast::doubts) {
-    for (const Candidate& c :
-         forecast_->candidates(truncation(trial) / (chosen_to_check * doubt))) {
+    const auto error = [&](const Method& method) { return error_of_check(method) / doubt; };
+    for (const Candidate& c : forecast_->candidates(error)) {
       if (c.method->order == 0 || was_tried(c)) continue;
       if (forecast_->doubt(*c.method, *trial.method) > doubt) continue;
       if (c.method->is(Trait::implicit) && c.method != trial.method) continue;
@@ -158,8 +169,9 @@ std::optional<Candidate> Search::fresh(double accuracy) const {
   for (const Candidate& c : all) {
     if (!c.method->is(Trait::implicit)) least = std::min(least, c.seconds);
   }
-  // A method that was seen is preferred to one that promises as much.
-  constexpr double unseen = 1.2;
+  // A method whose errors were seen is preferred: what others promise may be far off, and a run of
+  // theirs needs a check of its own.
+  constexpr double unseen = 2;
   std::optional<Candidate> best;
   double shortest = std::numeric_limits<double>::infinity();
   for (const Candidate& c : all) {
@@ -205,7 +217,7 @@ const Trial* Search::find(double accuracy) {
     std::optional<Candidate> next = fresh((all_are_lost() ? cautious : 1) * aim * accuracy);
     if (promising) {
       // A cheaper run than the check, which the promising one checks, does as well.
-      const std::optional<Candidate> check = check_of(*promising);
+      const std::optional<Candidate> check = check_of(*promising, accuracy);
       const bool is_checked =
           next && !next->method->is(Trait::implicit) &&
           truncation(*promising) * forecast_->doubt(*promising->method, *next->method) * checks <=

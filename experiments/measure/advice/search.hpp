@@ -105,10 +105,12 @@ class Search {
   bool is_check(const Trial& other, const Trial& trial) const;
   double likely_distance(const Trial& trial, const Trial& better) const;
   bool is_refined_by(const Trial& coarser, const Trial& finer) const;
+  bool is_hardly_finer(const Trial& finer, const Trial& trial) const;
+  double bound_by_hardly_finer(const Trial& trial, const Trial& finer) const;
   double lost_distance(const Trial& trial, const Trial& better) const;
   bool all_are_lost() const;
   bool was_tried(const Candidate& candidate) const;
-  std::optional<Candidate> check_of(const Trial& trial) const;
+  std::optional<Candidate> check_of(const Trial& trial, double accuracy) const;
   std::optional<Candidate> fresh(double accuracy) const;
   std::optional<Candidate> more_steps(const Method& method, double accuracy, double seconds) const;
   std::optional<Candidate> unknown(const Trial& answer, double accuracy, double left) const;

@@ -15,6 +15,11 @@ constexpr double margin = 1.4;
 // The finer of two runs of one method is off by at most so many times their distance where its
 // order shows: 19 of 20 training runs were.
 constexpr double margin_of_finer = 1.2;
+// Where one run is hardly finer than the other, the order has to be what it should be. That is
+// believed to this factor.
+constexpr double margin_of_hardly_finer = 4;
+// What is hardly finer misses by so much of what the other does, at most.
+constexpr double hardly_finer = 0.7;
 
 }  // namespace
 
@@ -100,8 +105,11 @@ std::optional<Bound> Search::bound(const Trial& trial) const {
 std::optional<Bound> Search::bound_by_checked(const Trial& best) const {
   std::optional<Bound> least;
   for (const Trial& other : trials_) {
-    if (!other.reached_end() || is_vague(other) || !is_check(best, other)) continue;
-    const double error = margin_of_finer * likely_distance(other, best) + rounding(best);
+    const bool is_checked = other.reached_end() && !is_vague(other) && is_check(best, other);
+    if (!is_checked && !is_hardly_finer(best, other)) continue;
+    const double error = is_checked
+                             ? margin_of_finer * likely_distance(other, best) + rounding(best)
+                             : bound_by_hardly_finer(other, best);
     if (error < lost && (!least || error < least->error)) least = Bound{error, &other, true};
   }
   return least;
@@ -114,12 +122,12 @@ std::optional<Bound> Search::bound_by_order(const Trial& trial) const {
     return Bound{margin * stage_.energy_error(trial) + 4 * machine_epsilon};
   if (trial.method->order == 0) return Bound{expected(trial)};
   if (const Trial* check = checker(trial)) {
-    // What is hardly finer checks nothing, but may contradict.
-    constexpr double hardly_finer = 0.5;
+    // What is not much finer checks nothing, but may contradict.
+    constexpr double may_differ = 0.5;
     double most = 0;
     for (const Trial& other : trials_) {
       const bool may_contradict = other.method == trial.method && other.reached_end() &&
-                                  !other.is_gamble && ratio(other, trial) < hardly_finer;
+                                  !other.is_gamble && ratio(other, trial) < may_differ;
       if (is_check(other, trial) || may_contradict)
         most = std::max(most, likely_distance(trial, other) / (1 - ratio(other, trial)));
     }
@@ -128,6 +136,9 @@ std::optional<Bound> Search::bound_by_order(const Trial& trial) const {
   if (const Trial* refined = coarser(trial))
     return Bound{margin_of_finer * likely_distance(*refined, trial) + rounding(trial), refined,
                  true};
+  for (const Trial& other : trials_) {
+    if (is_hardly_finer(other, trial)) return Bound{bound_by_hardly_finer(trial, other), &other};
+  }
   return {};
 }
 
@@ -159,6 +170,20 @@ bool Search::is_refined_by(const Trial& coarser, const Trial& finer) const {
   return coarser.method == &method && method.knob == Knob::step_size &&
          !method.asks(Need::split_forces) && coarser.reached_end() && !coarser.is_gamble &&
          !finer.is_gamble && ratio(finer, coarser) * checks <= 1;
+}
+
+// Whether `finer` is a run of the same method that is more accurate by its order, but not by enough
+// to be a check.
+bool Search::is_hardly_finer(const Trial& finer, const Trial& trial) const {
+  return finer.method == trial.method && trial.method->knob == Knob::step_size &&
+         !trial.method->is(Trait::implicit) && !trial.method->asks(Need::split_forces) &&
+         finer.reached_end() && trial.reached_end() && !finer.is_gamble && !trial.is_gamble &&
+         ratio(finer, trial) <= hardly_finer;
+}
+
+double Search::bound_by_hardly_finer(const Trial& trial, const Trial& finer) const {
+  return margin_of_hardly_finer * likely_distance(trial, finer) / (1 - ratio(finer, trial)) +
+         rounding(trial);
 }
 
 bool Search::is_known(const Trial& trial, double accuracy) const {
