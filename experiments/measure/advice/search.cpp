@@ -15,7 +15,7 @@ namespace {
 // before.
 constexpr double aim = 0.45;
 // How many times as accurate a run is chosen to be that is to check another.
-constexpr double chosen_to_check = 3.5;
+constexpr double chosen_to_check = 2.4;
 // The same for a run that is expected to miss by so small a part of the accuracy that a rough check
 // will do.
 constexpr double chosen_to_check_roughly = 1.6, far_within = 1.0 / 30;
@@ -110,7 +110,7 @@ void Search::learn() {
     if (of_ == AccuracyOf::energy) {
       seen.push_back({&trial, stage_.energy_error(trial)});
     } else if (const Trial* better = checker(trial)) {
-      seen.push_back({&trial, lost_distance(trial, *better)});
+      seen.push_back({&trial, lost_distance(trial, *better) / (1 - ratio(*better, trial))});
     }
   }
   for (const SeenError& one : seen) {

@@ -23,7 +23,8 @@ struct Bound {
 //     is constant and all modes are found sooner than that, there is nothing to search.
 //  2. A Forecast names the run that comes to half of the accuracy in the least time. It is made,
 //     unless one that was made already is expected to be good enough.
-//  3. Another, which is expected to miss by a third of that, checks it: their distance is the error
+//  3. Another, which is expected to miss by less than half of that, checks it: their distance is
+//  the error
 //     of the first but for that of the second, which is itself within it where both are of one
 //     method. Both teach the forecast. Where neither bound is within the accuracy, 2. again, from
 //     what is known now.
@@ -83,7 +84,7 @@ class Search {
   // enough.
   static constexpr double good_enough = 0.6;
   // How many times as accurate a run must be to check another.
-  static constexpr double checks = 3;
+  static constexpr double checks = 2.1;
   // Two runs that are so far apart have nothing to do with each other.
   static constexpr double lost = 0.1;
   // Steps that implicit methods begin with: what is not to be accurate may be a motion of some
