@@ -24,7 +24,7 @@ void require_accuracy(double accuracy);
 
 // How an error estimate was made.
 enum class EstimateKind {
-  compared,   // with a run of another step size or formula that is at least twice as accurate
+  compared,   // with a more accurate run, of another step size or formula
   refined,    // with a coarser run of the same method, whose order leaves the finer within that
   conserved,  // the energy's own error, which needs no other run
   rounding,   // of a motion that is computed mode by mode, and has no other error
