@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+
+#include "experiments/advice/drawn_case.hpp"
+#include "qddot/measure/reference/reference.hpp"
+#include "qddot/scene/generators.hpp"
+
+namespace qddot {
+inline namespace tests {
+
+inline Scene drawn(const char* generator, const GeneratorValues& values) {
+  return generate(*find_generator(generator), values, generator);
+}
+
+// What the case is judged by: a reference that is ten times as accurate as what is asked for.
+// Nothing where the case has more nodes than that, nothing moves in it, or there is no such
+// reference in about so many seconds.
+inline std::optional<measure::Reference> judge(const advice_study::Case& drawn,
+                                               const ReducedScene& model, std::size_t most_nodes,
+                                               double seconds) {
+  constexpr double part = 0.1;
+  if (model.system().size() == 0 || drawn.scene.nodes.size() > most_nodes) return {};
+  try {
+    const measure::Reference reference = measure::make_reference(model, drawn.until, seconds);
+    if (reference.certified.position <= part * drawn.accuracy) return reference;
+  } catch (const measure::NoReference&) {
+  }
+  return {};
+}
+
+}  // namespace tests
+}  // namespace qddot

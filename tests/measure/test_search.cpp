@@ -1,0 +1,267 @@
+// What a search knows of its runs; what it finds is tried in test_solve.cpp.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/measure/advice/search.hpp"
+#include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/motion/simulation.hpp"
+#include "tests/measure/drawn_scenes.hpp"
+
+BOOST_AUTO_TEST_SUITE(search)
+
+using namespace qddot;
+using namespace qddot::measure;
+
+namespace {
+
+// Long enough for whatever is begun.
+constexpr double seconds = 100;
+
+double error_of(const Trial& trial, const Search& search, const Reference& reference) {
+  return errors_between(search.stage().model(), trial.path.back(), reference.end, reference.energy,
+                        search.stage().scales())
+      .position;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_first_run_that_has_to_be_made_shorter_is_no_trouble) {
+  // Here w_max grows so much that the first steps do not hold, and the run is looked at fewer times
+  // than its length asks for.
+  for (const std::uint64_t seed : {191u, 398u}) {
+    const advice_study::Case c = advice_study::drawn_case(seed);
+    const ReducedScene model(c.scene);
+    Search search(model, c.until, AccuracyOf::positions, seconds);
+    BOOST_TEST(search.survey(c.accuracy), c.scene.name);
+    BOOST_TEST_REQUIRE(search.forecast().has_value());
+    BOOST_TEST(
+        std::ranges::count(search.trials(), std::string("verlet"),
+                           [](const Trial& trial) { return std::string(trial.method->name); }) > 1,
+        c.scene.name);
+    const double w = search.forecast()->w_motion();
+    BOOST_TEST(std::isfinite(w));
+    BOOST_TEST(w >= search.w_start());
+    const Answer answer = measure::solve(model, c.until, {.accuracy = c.accuracy, .seconds = 1});
+    BOOST_TEST((answer.is_reached || !answer.why.empty()), c.scene.name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_finer_of_two_runs_is_within_their_distance) {
+  const ReducedScene model(drawn("orbit", {}));
+  const double until = 2, h = 0.01;
+  const Reference reference = make_reference(model, until, seconds);
+  for (const char* name : {"verlet", "symmetric6", "trapezoidal"}) {
+    Search search(model, until, AccuracyOf::positions, seconds);
+    const Method& tried = method(name);
+    search.try_once({&tried, h}, seconds);
+    BOOST_TEST(!search.bound(search.trials().front()));
+    // Three times as accurate by the order, and somewhat more.
+    search.try_once({&tried, h / std::pow(3.5, 1.0 / tried.order)}, seconds);
+    const Trial &coarse = search.trials().front(), &fine = search.trials().back();
+    search.stage().measure_by(fine);
+    BOOST_TEST((search.checker(coarse) == &fine));
+    BOOST_TEST(!search.checker(fine));
+    BOOST_TEST((search.coarser(fine) == &coarse));
+    for (const Trial* trial : {&coarse, &fine}) {
+      const auto bound = search.bound(*trial);
+      BOOST_TEST_REQUIRE(bound.has_value());
+      const double error = error_of(*trial, search, reference);
+      BOOST_TEST(error <= bound->error, name);
+      // Not much wider: twice their distance, of which the order leaves 0.7 of the coarse error.
+      BOOST_TEST(bound->error <= 8 * error, name);
+      BOOST_TEST(bound->by_coarser == (trial == &fine), name);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_that_is_hardly_finer_bounds_the_other_where_its_order_is_known) {
+  const ReducedScene model(drawn("orbit", {}));
+  const double until = 2, h = 0.01;
+  const Reference reference = make_reference(model, until, seconds);
+  for (const char* name : {"verlet", "symmetric6", "trapezoidal"}) {
+    const Method& tried = method(name);
+    for (const double finer : {1.2, 1.6}) {
+      Search search(model, until, AccuracyOf::positions, seconds);
+      search.try_once({&tried, h}, seconds);
+      search.try_once({&tried, h / std::pow(finer, 1.0 / tried.order)}, seconds);
+      const Trial& coarse = search.trials().front();
+      search.stage().measure_by(search.trials().back());
+      const auto bound = search.bound(coarse);
+      // Of 1.2 too little is left after the error is taken from itself; implicit steps may be far
+      // too long for their order.
+      BOOST_TEST_CONTEXT(name << " " << finer << " times as accurate") {
+        BOOST_TEST_REQUIRE(bound.has_value() == (finer == 1.6 && !tried.is(Trait::implicit)));
+        if (!bound) continue;
+        BOOST_TEST(error_of(coarse, search, reference) <= bound->error);
+        BOOST_TEST(bound->error <=
+                   6 * error_of(coarse, search, reference));  // 4, and what h^p is off
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_far_within_the_accuracy_is_checked_by_what_is_hardly_finer) {
+  // At its limit, Verlet's method is 10^4 times as accurate here as is asked for.
+  const advice_study::Case c = advice_study::drawn_case(8000395);
+  const ReducedScene model(c.scene);
+  Search search(model, c.until, AccuracyOf::positions, seconds);
+  BOOST_TEST_REQUIRE(search.survey(c.accuracy));
+  const Trial* found = search.find(c.accuracy);
+  BOOST_TEST_REQUIRE((found != nullptr));
+  const auto bound = search.bound(*found);
+  BOOST_TEST_REQUIRE((bound && bound->by));
+  BOOST_TEST(bound->error <= c.accuracy);
+  BOOST_TEST((bound->by->method == found->method));
+  // A check twice as accurate takes 1.5 times the steps.
+  BOOST_TEST(found->value / bound->by->value < 1.4);
+}
+
+// Nothing is expected of a method before a forecast. How far its run is from one that is bounded
+// bounds it all the same, by |q - q*| <= |q - q_best| + |q_best - q*|.
+BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {
+  const ReducedScene model(drawn("orbit", {}));
+  const double until = 2, h = 0.01;
+  const Reference reference = make_reference(model, until, seconds);
+  Search search(model, until, AccuracyOf::positions, seconds);
+  const Method &other = method("blanes_moan4"), &verlet = method("verlet");
+  search.try_once({&other, h}, seconds);
+  search.try_once({&verlet, h}, seconds);
+  BOOST_TEST(!search.bound(search.trials().front()));
+  search.try_once({&other, h / 1.5}, seconds);
+  const Trial &first = search.trials()[1], &best = search.trials().back();
+  search.stage().measure_by(best);
+  const auto bound = search.bound(first), least = search.bound(best);
+  BOOST_TEST_REQUIRE((bound && least));
+  BOOST_TEST((bound->by == &best));
+  BOOST_TEST(!bound->by_coarser);
+  const double error = error_of(first, search, reference);
+  BOOST_TEST(error <= bound->error);
+  // What the best run may be off by is part of it, and nothing else.
+  const double apart = search.stage().distance(first, best);
+  BOOST_TEST(std::abs(bound->error - apart - least->error) <= 1e-15 * bound->error);
+}
+
+// Errors go through zero: a run that is good by chance says nothing of others. A search that makes
+// such runs and one that makes the same runs but these know the same of each.
+BOOST_AUTO_TEST_CASE(runs_that_are_good_by_chance_judge_and_teach_nothing) {
+  const ReducedScene model(drawn("pendulum", {}));
+  const double until = 5, accuracy = 1e-6;
+  Search gambling(model, until, AccuracyOf::positions, seconds);
+  Search sober(model, until, AccuracyOf::positions, seconds);
+  for (Search* search : {&gambling, &sober}) {
+    BOOST_TEST_REQUIRE(search->survey(accuracy));
+    const Trial* found = search->find(accuracy);
+    BOOST_TEST_REQUIRE((found != nullptr));
+    search->race(found, accuracy, search == &gambling ? seconds : 0);
+  }
+  int gambles = 0;
+  for (const Trial& trial : gambling.trials()) {
+    gambles += trial.is_gamble;
+    if (!trial.is_gamble) sober.try_once({trial.method, trial.value}, seconds);
+  }
+  BOOST_TEST(gambles > 0);
+  BOOST_TEST(std::ranges::none_of(sober.trials(), &Trial::is_gamble));
+  // One more, for both to learn from all.
+  const Candidate last{&method("verlet"), until / 1000};
+  for (Search* search : {&gambling, &sober}) search->try_once(last, seconds);
+  constexpr double rounding = 1e-9;  // relative; nothing but the order of sums may differ
+  int compared = 0;
+  for (const Trial& trial : gambling.trials()) {
+    const Method& of = *trial.method;
+    if (trial.is_gamble || of.is(Trait::implicit) || of.knob != Knob::step_size) continue;
+    BOOST_TEST_CONTEXT(of.name << " at " << trial.value) {
+      const auto same = std::ranges::find_if(sober.trials(), [&](const Trial& other) {
+        return other.method == &of && other.value == trial.value;
+      });
+      BOOST_TEST_REQUIRE((same != sober.trials().end()));
+      const auto bound = gambling.bound(trial), other = sober.bound(*same);
+      BOOST_TEST_REQUIRE(bound.has_value() == other.has_value());
+      if (bound) BOOST_TEST(std::abs(bound->error / other->error - 1) < rounding);
+      const double expected = gambling.forecast()->error(of, trial.value);
+      BOOST_TEST(std::abs(expected / sober.forecast()->error(of, trial.value) - 1) < rounding);
+      ++compared;
+    }
+  }
+  BOOST_TEST(compared > 2);
+}
+
+// Not the answer alone: by whatever a run is bounded, its true error is within that. One in fifty
+// may miss, as an answer may, and then not by much.
+BOOST_AUTO_TEST_CASE(every_run_of_a_search_is_within_its_bound) {
+  int bounded = 0, beyond = 0, bounded_by_one_it_does_not_check = 0;
+  // How many runs are worth making depends on how fast the machine is: cases go on until there are
+  // enough.
+  for (std::uint64_t seed = 5000000; bounded < 120; ++seed) {
+    const advice_study::Case c = advice_study::drawn_case(seed);
+    const ReducedScene model(c.scene);
+    const auto reference = judge(c, model, 40, 0.5);
+    if (!reference) continue;
+    Search search(model, c.until, AccuracyOf::positions, seconds);
+    if (!search.survey(c.accuracy)) continue;
+    if (const Trial* found = search.find(c.accuracy)) search.race(found, c.accuracy, seconds);
+    for (const Trial& trial : search.trials()) {
+      const auto bound = search.bound(trial);
+      // What is off by as much as the motion itself is lost, and so are bounds of it.
+      if (!bound || bound->error > 0.1) continue;
+      ++bounded;
+      bounded_by_one_it_does_not_check += bound->by && bound->by != search.checker(trial);
+      const double error = error_of(trial, search, *reference) - reference->certified.position;
+      beyond += error > bound->error;
+      BOOST_TEST(error <= 2 * bound->error, c.scene.name << " by " << trial.method->name);
+    }
+  }
+  BOOST_TEST(bounded_by_one_it_does_not_check > 0);
+  BOOST_TEST(beyond <= 0.02 * bounded);
+}
+
+// Implicit steps may be nothing like what is expected of them. They judge other methods once an
+// error of theirs was seen.
+BOOST_AUTO_TEST_CASE(what_is_expected_of_implicit_steps_judges_no_other_method) {
+  const ReducedScene model(drawn("orbit", {}));
+  const double until = 2;
+  Search search(model, until, AccuracyOf::positions, seconds);
+  // No few implicit steps come there, so that there is a forecast.
+  BOOST_TEST_REQUIRE(search.survey(1e-12));
+  BOOST_TEST_REQUIRE(search.forecast().has_value());
+  const Trial& first = search.trials().back();
+  BOOST_TEST_REQUIRE((first.method == &method("verlet")));
+  const Method& vague = method("linear_midpoint4");
+  search.try_once({&vague, until / 2000}, seconds);
+  const Trial& implicit = search.trials().back();
+  BOOST_TEST_REQUIRE(search.error(implicit) < 0.01 * search.error(first));
+  BOOST_TEST(!search.checker(first));
+  BOOST_TEST((search.most_accurate() == &first));
+  // Coarse steps are seen to miss by so much.
+  search.try_once({&vague, until / 1000}, seconds);
+  BOOST_TEST_REQUIRE(search.forecast()->has_learned(vague));
+  BOOST_TEST((search.checker(first) == &implicit));
+  BOOST_TEST((search.most_accurate() == &implicit));
+}
+
+BOOST_AUTO_TEST_CASE(an_implicit_method_that_diverges_gets_more_steps) {
+  // Steps of the midpoint rule that are too long for this case's motion diverge.
+  const advice_study::Case c = advice_study::drawn_case(4000205);
+  const ReducedScene model(c.scene);
+  Search search(model, c.until, AccuracyOf::positions, seconds);
+  BOOST_TEST_REQUIRE(search.survey(c.accuracy));
+  const Trial* found = search.find(c.accuracy);
+  BOOST_TEST_REQUIRE((found != nullptr));
+  search.race(found, c.accuracy, seconds);
+  double diverged = 0, shorter = std::numeric_limits<double>::infinity();
+  for (const Trial& trial : search.trials()) {
+    if (std::string(trial.method->name) != "linear_midpoint") continue;
+    if (!trial.reached_end()) {
+      diverged = std::max(diverged, trial.value);
+    } else {
+      shorter = std::min(shorter, trial.value);
+    }
+  }
+  BOOST_TEST(diverged > 0);
+  BOOST_TEST(shorter < diverged);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
