@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(the_finer_of_two_runs_is_within_their_distance) {
     // Three times as accurate by the order, and somewhat more.
     search.try_once({&tried, h / std::pow(3.5, 1.0 / tried.order)}, seconds);
     const Trial &coarse = search.trials().front(), &fine = search.trials().back();
-    search.stage().measure_by(fine);
+    search.measure_by(fine);
     BOOST_TEST((search.checker(coarse) == &fine));
     BOOST_TEST(!search.checker(fine));
     BOOST_TEST((search.coarser(fine) == &coarse));
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_hardly_finer_bounds_the_other_where_its_order
       search.try_once({&tried, h}, seconds);
       search.try_once({&tried, h / std::pow(finer, 1.0 / tried.order)}, seconds);
       const Trial& coarse = search.trials().front();
-      search.stage().measure_by(search.trials().back());
+      search.measure_by(search.trials().back());
       const auto bound = search.bound(coarse);
       // Of 1.2 too little is left after the error is taken from itself; implicit steps may be far
       // too long for their order.
@@ -133,7 +133,11 @@ BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {
   BOOST_TEST(!search.bound(search.trials().front()));
   search.try_once({&other, h / 1.5}, seconds);
   const Trial &first = search.trials()[1], &best = search.trials().back();
-  search.stage().measure_by(best);
+  // Compared once, and again where the motion is measured anew.
+  const double unscaled = search.distance(first, best);
+  search.measure_by(best);
+  BOOST_TEST(search.distance(first, best) != unscaled);
+  BOOST_TEST(search.distance(best, first) == search.stage().distance(first, best));
   const auto bound = search.bound(first), least = search.bound(best);
   BOOST_TEST_REQUIRE((bound && least));
   BOOST_TEST((bound->by == &best));
@@ -141,7 +145,7 @@ BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {
   const double error = error_of(first, search, reference);
   BOOST_TEST(error <= bound->error);
   // What the best run may be off by is part of it, and nothing else.
-  const double apart = search.stage().distance(first, best);
+  const double apart = search.distance(first, best);
   BOOST_TEST(std::abs(bound->error - apart - least->error) <= 1e-15 * bound->error);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "qddot/analysis/frequency_bound.hpp"
@@ -76,9 +77,21 @@ Trial& Search::run(const Method& method, double value, double seconds) {
   return trial;
 }
 
+void Search::measure_by(const Trial& trial) {
+  stage_.measure_by(trial);
+  distances_.clear();
+}
+
+double Search::distance(const Trial& one, const Trial& other) const {
+  const auto [place, is_new] =
+      distances_.try_emplace(std::minmax(&one, &other, std::less<const Trial*>()));
+  if (is_new) place->second = stage_.distance(one, other);
+  return place->second;
+}
+
 // How far apart two runs are or, where they are lost, would be had their distance gone on growing.
 double Search::lost_distance(const Trial& trial, const Trial& better) const {
-  const double end = stage_.distance(trial, better);
+  const double end = distance(trial, better);
   if (end < lost) return end;
   const auto& times = stage_.times();
   const std::vector<double> distances = stage_.distances(trial, better);
@@ -100,7 +113,7 @@ void Search::learn() {
   constexpr double well_enough = 0.01;
   const Trial* best = most_accurate();
   if (best && best != measured_by_ && !(measured_within_ < well_enough)) {
-    stage_.measure_by(*best);
+    measure_by(*best);
     measured_by_ = best;
     measured_within_ = expected(*best);
   }

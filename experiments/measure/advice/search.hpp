@@ -3,7 +3,9 @@
 #include <chrono>
 #include <deque>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "qddot/measure/advice/forecast.hpp"
 
@@ -66,7 +68,11 @@ class Search {
   const Trial* most_accurate(bool seen_on_its_way = false,
                              double longest = std::numeric_limits<double>::infinity()) const;
 
-  Stage& stage() { return stage_; }
+  // Measures the motion by that trial (see Stage).
+  void measure_by(const Trial& trial);
+  // How far two of trials() that came to the end are apart (see Stage), compared once.
+  double distance(const Trial& one, const Trial& other) const;
+
   const Stage& stage() const { return stage_; }
   // After survey(); nothing where all was clear without.
   const std::optional<Forecast>& forecast() const { return forecast_; }
@@ -134,6 +140,7 @@ class Search {
   Stage stage_;
   std::optional<Forecast> forecast_;
   std::deque<Trial> trials_;
+  mutable std::map<std::pair<const Trial*, const Trial*>, double> distances_;  // as measured now
   const Trial* surveyed_by_ = nullptr;  // the run that bursts went along
   const Trial* measured_by_ = nullptr;  // the motion, by a run that is expected to miss by
   double measured_within_ = std::numeric_limits<double>::infinity();

@@ -97,7 +97,7 @@ std::optional<Bound> Search::bound(const Trial& trial) const {
   std::optional<Bound> least = bound_by_order(*best);
   if (!least) least = bound_by_checked(*best);
   if (!least) return own;
-  const double by_best = stage_.distance(trial, *best) + least->error;
+  const double by_best = distance(trial, *best) + least->error;
   return own && own->error <= by_best ? own : Bound{by_best, best};
 }
 
@@ -158,9 +158,9 @@ const Trial* Search::coarser(const Trial& trial) const {
 // How far apart two runs are. A distance far below what is expected may be so by chance: errors
 // change their sign. It is believed half of the way.
 double Search::likely_distance(const Trial& trial, const Trial& better) const {
-  const double distance = stage_.distance(trial, better);
-  if (!forecast_) return distance;
-  return std::max(distance, std::sqrt(distance * std::min(expected(trial), 1.0)));
+  const double gap = distance(trial, better);
+  if (!forecast_) return gap;
+  return std::max(gap, std::sqrt(gap * std::min(expected(trial), 1.0)));
 }
 
 // Whether `finer` is a run of the same method whose order makes it so much more accurate that it
@@ -193,7 +193,7 @@ bool Search::is_known(const Trial& trial, double accuracy) const {
 
 double Search::error(const Trial& trial) const {
   if (of_ == AccuracyOf::energy) return stage_.energy_error(trial);
-  if (const Trial* better = checker(trial)) return stage_.distance(trial, *better);
+  if (const Trial* better = checker(trial)) return distance(trial, *better);
   return expected(trial);
 }
 

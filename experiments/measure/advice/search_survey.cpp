@@ -68,7 +68,7 @@ bool Search::survey(double accuracy) {
   const double exactly = seconds_of_exact(model);
   if (exactly < std::max(not_worth_a_search, 1.5 * steps_of_verlet() * seconds_of_force(model))) {
     Trial& exact = run(*find_method("exact"), until, limit_);
-    if (exact.reached_end()) stage_.measure_by(exact);
+    if (exact.reached_end()) measure_by(exact);
     return exact.reached_end();
   }
   return by_refinement(accuracy) || survey_by_verlet();
@@ -137,18 +137,18 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
   for (double before = 0; seconds_since(begin_) < end; steps = more(steps)) {
     Trial& trial = run(method, stage_.until() / steps, end - seconds_since(begin_));
     if (!trial.reached_end()) return false;
-    stage_.measure_by(trial);
+    measure_by(trial);
     if (last) {
-      const double distance = stage_.distance(*last, trial);
+      const double gap = distance(*last, trial);
       // Far within the accuracy, the order does not matter.
       constexpr double far_within = 0.1;
       const bool is_asymptotic =
-          (before > distance && before < 2 * fall * distance) || distance < far_within * accuracy;
+          (before > gap && before < 2 * fall * gap) || gap < far_within * accuracy;
       if (is_asymptotic && is_known(*last, accuracy)) return true;
       const double to_come =
-          trial.seconds * std::pow(std::max(1.0, distance / accuracy), 1.0 / method.order);
+          trial.seconds * std::pow(std::max(1.0, gap / accuracy), 1.0 / method.order);
       if (to_come > longest || 2 * trial.seconds > end - seconds_since(begin_)) return false;
-      before = distance;
+      before = gap;
     }
     last = &trial;
   }
@@ -190,7 +190,7 @@ const Trial* Search::by_tolerance(double accuracy) {
        rtol /= 10) {
     const Trial& trial = run(*find_method("ida"), rtol, limit_);
     if (!trial.reached_end()) return nullptr;
-    stage_.measure_by(trial);
+    measure_by(trial);
     if (before && is_known(*before, accuracy)) return before;
     before = &trial;
   }

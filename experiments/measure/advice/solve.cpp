@@ -53,7 +53,7 @@ std::pair<const Trial*, double> nearest(const Search& search, AccuracyOf of) {
   const Trial* finest = search.most_accurate();
   for (const Trial& trial : search.trials()) {
     if (&trial == finest || !trial.reached_end()) continue;
-    const double apart = 2 * search.stage().distance(trial, *finest);
+    const double apart = 2 * search.distance(trial, *finest);
     if (apart >= least) continue;
     least = apart;
     best = finest;
