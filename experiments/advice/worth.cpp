@@ -5,6 +5,8 @@
 #include <functional>
 #include <limits>
 
+#include "qddot/measure/motion/timing.hpp"
+
 namespace qddot::advice_study {
 namespace {
 
@@ -12,9 +14,11 @@ namespace {
 constexpr double worth_counting = 0.02;
 constexpr double always_allowed = 0.5;  // of advise() [s]
 
+constexpr double of_no_case = std::numeric_limits<double>::quiet_NaN();
+
 // The value that the part p of them does not exceed.
 double quantile(std::vector<double> values, double p) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (values.empty()) return of_no_case;
   std::ranges::sort(values);
   const auto place = static_cast<std::size_t>(std::ceil(p * static_cast<double>(values.size())));
   return values[std::clamp<std::size_t>(place, 1, values.size()) - 1];
@@ -39,15 +43,15 @@ std::vector<Figure> worth_of(const std::vector<CaseResult>& results) {
     double sum = 0;
     for (const double x : all) sum += x;
     const double count = static_cast<double>(all.size());
-    figures.push_back({name, meaning,
-                       all.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / count,
-                       static_cast<int>(all.size())});
+    figures.push_back(
+        {name, meaning, all.empty() ? of_no_case : sum / count, static_cast<int>(all.size())});
   };
   const auto spread = [&](const std::string& name, const std::string& meaning, const Holds& counts,
                           const Value& value) {
     const auto all = values(counts, value);
     const int count = static_cast<int>(all.size());
-    figures.push_back({name + "_median", meaning + ", median", quantile(all, 0.5), count});
+    figures.push_back({name + "_median", meaning + ", median",
+                       all.empty() ? of_no_case : measure::median(all), count});
     figures.push_back(
         {name + "_90", meaning + ", of nine in ten at most", quantile(all, 0.9), count});
   };
