@@ -120,6 +120,28 @@ BOOST_AUTO_TEST_CASE(what_is_far_within_the_accuracy_is_checked_by_what_is_hardl
   BOOST_TEST(found->value / bound->by->value < 1.4);
 }
 
+BOOST_AUTO_TEST_CASE(a_coarser_run_checks_where_errors_fall_as_the_order_says) {
+  const advice_study::Case c = advice_study::drawn_case(8000280);
+  const ReducedScene model(c.scene);
+  Search search(model, c.until, AccuracyOf::positions, seconds);
+  BOOST_TEST_REQUIRE(search.survey(c.accuracy));
+  const Trial* found = search.find(c.accuracy);
+  BOOST_TEST_REQUIRE((found != nullptr));
+  const auto bound = search.bound(*found);
+  BOOST_TEST_REQUIRE((bound && bound->by));
+  BOOST_TEST(bound->by_coarser);
+  BOOST_TEST((bound->by->method == found->method));
+  BOOST_TEST(bound->by->value > found->value);
+  // The order leaves a small part of how far they are apart.
+  const double apart = search.distance(*found, *bound->by);
+  BOOST_TEST(bound->error <= 0.4 * apart);
+  BOOST_TEST(bound->error <= c.accuracy);
+  search.try_once({&method("symmetric10"), found->value / 2}, seconds);
+  const double error = search.distance(*found, search.trials().back());
+  BOOST_TEST(error <= bound->error);
+  BOOST_TEST(bound->error <= 4 * error);  // a margin of 1.6, and what h^p is off
+}
+
 // Nothing is expected of a method before a forecast. How far its run is from one that is bounded
 // bounds it all the same, by |q - q*| <= |q - q_best| + |q_best - q*|.
 BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {

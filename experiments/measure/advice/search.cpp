@@ -15,11 +15,6 @@ namespace {
 // Fraction of the accuracy that a run is chosen to miss by, as it is known to a factor of about two
 // before.
 constexpr double aim = 0.45;
-// How many times as accurate a run is chosen to be that is to check another.
-constexpr double chosen_to_check = 2.4;
-// The same for a run that is expected to miss by so small a part of the accuracy that a rough check
-// will do.
-constexpr double chosen_to_check_roughly = 1.6, far_within = 1.0 / 30;
 constexpr int most_rounds = 14;
 // The distance of two runs grows by itself up to here.
 constexpr double parting = 0.03;
@@ -67,6 +62,7 @@ double Search::seconds_left() const {
 Trial& Search::run(const Method& method, double value, double seconds) {
   trials_.push_back(stage_.run(method, value, std::min(seconds, seconds_left())));
   Trial& trial = trials_.back();
+  stage_.time_again(trial);
   if (!forecast_) return trial;
   if (trial.reached_end()) {
     forecast_->learn_seconds(trial);
@@ -130,6 +126,7 @@ void Search::learn() {
     if (of_ == AccuracyOf::energy || is_telling(one, seen, lost))
       forecast_->learn_error(*one.trial, one.error);
   }
+  truncations_.clear();
 }
 
 bool Search::was_tried(const Candidate& candidate) const {
@@ -137,36 +134,6 @@ bool Search::was_tried(const Candidate& candidate) const {
   return std::ranges::any_of(trials_, [&](const Trial& trial) {
     return trial.method == candidate.method && std::abs(trial.value / candidate.value - 1) < same;
   });
-}
-
-// The cheapest run that is expected to be accurate enough to check the trial: one of the same
-// method is by its order, so that others have to be clearly cheaper.
-std::optional<Candidate> Search::check_of(const Trial& trial, double accuracy) const {
-  constexpr double clearly = 0.8;
-  std::optional<Candidate> best;
-  double shortest = std::numeric_limits<double>::infinity();
-  const bool is_roughly_checked = std::ranges::any_of(
-      trials_, [&](const Trial& other) { return is_hardly_finer(other, trial); });
-  const bool roughly = !is_roughly_checked && expected(trial) < far_within * accuracy &&
-                       !trial.method->is(Trait::implicit);
-  const auto error_of_check = [&](const Method& method) {
-    const bool is_own = &method == trial.method;
-    return truncation(trial) / (roughly && is_own ? chosen_to_check_roughly : chosen_to_check);
-  };
-  for (const double doubt : Forecast::doubts) {
-    const auto error = [&](const Method& method) { return error_of_check(method) / doubt; };
-    for (const Candidate& c : forecast_->candidates(error)) {
-      if (c.method->order == 0 || was_tried(c)) continue;
-      if (forecast_->doubt(*c.method, *trial.method) > doubt) continue;
-      if (c.method->is(Trait::implicit) && c.method != trial.method) continue;
-      const double seconds = c.method == trial.method ? clearly * c.seconds : c.seconds;
-      if (seconds >= shortest) continue;
-      shortest = seconds;
-      best = c;
-      if (c.method != trial.method) break;
-    }
-  }
-  return best;
 }
 
 // The run that is expected to come to the accuracy in the least time. Implicit ones only where they

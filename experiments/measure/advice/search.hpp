@@ -113,10 +113,13 @@ class Search {
   double likely_distance(const Trial& trial, const Trial& better) const;
   bool is_refined_by(const Trial& coarser, const Trial& finer) const;
   bool is_hardly_finer(const Trial& finer, const Trial& trial) const;
+  bool falls_by_order(const Trial& finer, double error_of_coarser) const;
+  double bound_by_coarser(const Trial& trial, const Trial& coarser) const;
   double bound_by_hardly_finer(const Trial& trial, const Trial& finer) const;
   double lost_distance(const Trial& trial, const Trial& better) const;
   bool all_are_lost() const;
   bool was_tried(const Candidate& candidate) const;
+  std::optional<Candidate> coarser_check_of(const Trial& trial, double accuracy) const;
   std::optional<Candidate> check_of(const Trial& trial, double accuracy) const;
   std::optional<Candidate> fresh(double accuracy) const;
   std::optional<Candidate> more_steps(const Method& method, double accuracy, double seconds) const;
@@ -141,7 +144,8 @@ class Search {
   std::optional<Forecast> forecast_;
   std::deque<Trial> trials_;
   mutable std::map<std::pair<const Trial*, const Trial*>, double> distances_;  // as measured now
-  const Trial* surveyed_by_ = nullptr;  // the run that bursts went along
+  mutable std::map<const Trial*, double> truncations_;  // as the forecast has them now
+  const Trial* surveyed_by_ = nullptr;                  // the run that bursts went along
   const Trial* measured_by_ = nullptr;  // the motion, by a run that is expected to miss by
   double measured_within_ = std::numeric_limits<double>::infinity();
 };

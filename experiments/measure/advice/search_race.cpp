@@ -167,7 +167,9 @@ const Trial* Search::gamble(const Trial* answer, double accuracy, double seconds
       trials_.push_back(stage_.run(*c.method, c.value, left));
       Trial& trial = trials_.back();
       trial.is_gamble = true;
-      if (trial.seconds < answer->seconds && is_known(trial, accuracy)) answer = &trial;
+      if (!is_known(trial, accuracy)) continue;
+      stage_.time_again(trial);
+      if (trial.seconds < answer->seconds) answer = &trial;
     }
   }
   return answer;

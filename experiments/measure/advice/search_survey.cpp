@@ -119,6 +119,7 @@ void Search::survey_again() {
   const double steps = steps_of_verlet();
   forecast_->learn_frequencies(own_frequencies(stage_.model(), best->path, forecast_->w_motion(),
                                                number_of_bursts(steps, first_seconds_)));
+  truncations_.clear();
   learn();
 }
 

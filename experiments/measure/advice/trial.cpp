@@ -42,22 +42,25 @@ Trial Stage::run_from(const State& start, const Method& method, double value,
   return trial;
 }
 
-Trial Stage::run(const Method& method, double value, double seconds) {
+Trial Stage::run(const Method& method, double value, double seconds) const {
   Trial trial = run_from(model_.initial(), method, value, seconds);
   if (of_ == AccuracyOf::energy) {
     const double energy = model_.energy(model_.initial());
     for (const State& seen : trial.path)
       trial.energy_gap = std::max(trial.energy_gap, std::abs(model_.energy(seen) - energy));
   }
-  if (!trial.reached_end() || trial.seconds >= short_run) return trial;
-  const auto integrator =
-      make_integrator(method, model_.system(), options_for(method, value, model_));
+  return trial;
+}
+
+void Stage::time_again(Trial& trial) const {
+  if (!trial.reached_end() || trial.seconds >= short_run) return;
+  const auto integrator = make_integrator(*trial.method, model_.system(),
+                                          options_for(*trial.method, trial.value, model_));
   for (int i = 0; i < repeats_of_short; ++i) {
     State state = model_.initial();
     trial.seconds =
         std::min(trial.seconds, seconds_of([&] { integrator->advance(state, until_); }));
   }
-  return trial;
 }
 
 void Stage::measure_by(const Trial& trial) {

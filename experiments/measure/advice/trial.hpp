@@ -34,11 +34,13 @@ class Stage {
   // Borrows the model.
   Stage(const ReducedScene& model, double until, AccuracyOf of, int looks);
 
-  // Runs the method to the end, for so many seconds at most. Where it comes there in less than a
-  // millisecond, its time is the least of several.
-  Trial run(const Method& method, double value, double seconds);
-  // The same, once, from another start.
+  // Runs the method to the end, for so many seconds at most.
+  Trial run(const Method& method, double value, double seconds) const;
+  // The same from another start.
   Trial run_from(const State& start, const Method& method, double value, double seconds) const;
+  // Runs a trial that came to the end in less than a millisecond again: its time is the least of
+  // several.
+  void time_again(Trial& trial) const;
 
   // Measures the motion by that trial, which came to the end: what errors are divided by from now
   // on. None are known before.
