@@ -1,14 +1,18 @@
 // What a search knows of its runs; what it finds is tried in test_solve.cpp.
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/motion/timing.hpp"
 #include "tests/measure/drawn_scenes.hpp"
 
 BOOST_AUTO_TEST_SUITE(search)
@@ -25,6 +29,15 @@ double error_of(const Trial& trial, const Search& search, const Reference& refer
   return errors_between(search.stage().model(), trial.path.back(), reference.end, reference.energy,
                         search.stage().scales())
       .position;
+}
+
+// Whether the machine did other things while f ran: a search goes by the times that it measures.
+template <class F>
+bool is_disturbed(const F& f) {
+  constexpr double own_part = 0.95;
+  const std::clock_t begin = std::clock();
+  const double wall = seconds_of(f);
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < own_part * wall;
 }
 
 }  // namespace
@@ -48,6 +61,27 @@ BOOST_AUTO_TEST_CASE(a_first_run_that_has_to_be_made_shorter_is_no_trouble) {
     const Answer answer = measure::solve(model, c.until, {.accuracy = c.accuracy, .seconds = 1});
     BOOST_TEST((answer.is_reached || !answer.why.empty()), c.scene.name);
   }
+}
+
+BOOST_AUTO_TEST_CASE(steps_that_meet_a_resonance_are_made_somewhat_shorter) {
+  // 130 steps resolve the soft springs of this framed cloth, and grow all the same; 195 do not.
+  const advice_study::Case c = advice_study::drawn_case(8000385);
+  const ReducedScene model(c.scene);
+  std::vector<Trial> tried;
+  // On a busy machine, the first of them may take all the time there is.
+  for (int attempt = 0; attempt < 20 && tried.size() < 2; ++attempt) {
+    Search search(model, c.until, AccuracyOf::positions, seconds);
+    BOOST_TEST_REQUIRE(search.survey(c.accuracy));
+    tried.clear();
+    for (const Trial& trial : search.trials()) {
+      if (trial.method == &method("multirate_adams4")) tried.push_back(trial);
+    }
+  }
+  BOOST_TEST_REQUIRE(tried.size() >= 2);
+  BOOST_TEST((tried[0].summary.outcome == Outcome::diverged));
+  BOOST_TEST((tried[1].summary.outcome != Outcome::diverged));
+  BOOST_TEST(tried[1].value < tried[0].value);
+  BOOST_TEST(tried[1].value > tried[0].value / 2);
 }
 
 BOOST_AUTO_TEST_CASE(the_finer_of_two_runs_is_within_their_distance) {
@@ -172,28 +206,47 @@ BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {
 }
 
 // Errors go through zero: a run that is good by chance says nothing of others. A search that makes
-// such runs and one that makes the same runs but these know the same of each.
+// such runs and one that makes the same runs but these, in the same order, know the same of each.
 BOOST_AUTO_TEST_CASE(runs_that_are_good_by_chance_judge_and_teach_nothing) {
   const ReducedScene model(drawn("pendulum", {}));
-  const double until = 5, accuracy = 1e-6;
-  Search gambling(model, until, AccuracyOf::positions, seconds);
-  Search sober(model, until, AccuracyOf::positions, seconds);
-  for (Search* search : {&gambling, &sober}) {
+  // So short that the number of bursts along the first run does not depend on its time.
+  const double until = 0.5, accuracy = 1e-6;
+  std::optional<Search> first, second;
+  const auto begin = [&](std::optional<Search>& search) {
+    search.emplace(model, until, AccuracyOf::positions, seconds);
     BOOST_TEST_REQUIRE(search->survey(accuracy));
-    const Trial* found = search->find(accuracy);
+    return search->trials().size();
+  };
+  // How many steps a survey has time for may differ, and whether chance is given any.
+  std::size_t raced = 0;
+  const auto is_alike = [&] {
+    const std::size_t surveyed = begin(first);
+    const Trial* found = first->find(accuracy);
     BOOST_TEST_REQUIRE((found != nullptr));
-    search->race(found, accuracy, search == &gambling ? seconds : 0);
-  }
-  int gambles = 0;
-  for (const Trial& trial : gambling.trials()) {
-    gambles += trial.is_gamble;
+    raced = first->trials().size();
+    first->race(found, accuracy, seconds);
+    return std::ranges::any_of(first->trials(), &Trial::is_gamble) && begin(second) == surveyed;
+  };
+  int attempts = 100;
+  while (!is_alike()) BOOST_TEST_REQUIRE(--attempts > 0);
+  Search &gambling = *first, &sober = *second;
+  // A race without time looks at the motion along the most accurate run, and runs nothing.
+  const auto look_again = [&](Search& search) {
+    search.stop_after(0);
+    search.race(&search.trials().front(), accuracy, 0);
+    search.stop_after(seconds);
+  };
+  for (std::size_t i = 0; i < gambling.trials().size(); ++i) {
+    const Trial& trial = gambling.trials()[i];
+    if (i == raced) look_again(sober);
     if (!trial.is_gamble) sober.try_once({trial.method, trial.value}, seconds);
   }
-  BOOST_TEST(gambles > 0);
   BOOST_TEST(std::ranges::none_of(sober.trials(), &Trial::is_gamble));
-  // One more, for both to learn from all.
-  const Candidate last{&method("verlet"), until / 1000};
-  for (Search* search : {&gambling, &sober}) search->try_once(last, seconds);
+  for (Search* search : {&gambling, &sober}) {
+    look_again(*search);
+    // One more, for both to learn from all.
+    search->try_once({&method("verlet"), until / 1000}, seconds);
+  }
   constexpr double rounding = 1e-9;  // relative; nothing but the order of sums may differ
   int compared = 0;
   for (const Trial& trial : gambling.trials()) {
@@ -204,9 +257,9 @@ BOOST_AUTO_TEST_CASE(runs_that_are_good_by_chance_judge_and_teach_nothing) {
         return other.method == &of && other.value == trial.value;
       });
       BOOST_TEST_REQUIRE((same != sober.trials().end()));
-      const auto bound = gambling.bound(trial), other = sober.bound(*same);
-      BOOST_TEST_REQUIRE(bound.has_value() == other.has_value());
-      if (bound) BOOST_TEST(std::abs(bound->error / other->error - 1) < rounding);
+      const auto bound = gambling.bound(trial), known = sober.bound(*same);
+      BOOST_TEST_REQUIRE(bound.has_value() == known.has_value());
+      if (bound) BOOST_TEST(std::abs(bound->error / known->error - 1) < rounding);
       const double expected = gambling.forecast()->error(of, trial.value);
       BOOST_TEST(std::abs(expected / sober.forecast()->error(of, trial.value) - 1) < rounding);
       ++compared;
@@ -226,9 +279,16 @@ BOOST_AUTO_TEST_CASE(every_run_of_a_search_is_within_its_bound) {
     const ReducedScene model(c.scene);
     const auto reference = judge(c, model, 40, 0.5);
     if (!reference) continue;
-    Search search(model, c.until, AccuracyOf::positions, seconds);
-    if (!search.survey(c.accuracy)) continue;
-    if (const Trial* found = search.find(c.accuracy)) search.race(found, c.accuracy, seconds);
+    std::optional<Search> made;
+    const auto search_on = [&] {
+      made.emplace(model, c.until, AccuracyOf::positions, seconds);
+      const Trial* found = made->survey(c.accuracy) ? made->find(c.accuracy) : nullptr;
+      if (found) made->race(found, c.accuracy, seconds);
+    };
+    int attempts = 20;
+    while (is_disturbed(search_on) && --attempts > 0) {
+    }
+    const Search& search = *made;
     for (const Trial& trial : search.trials()) {
       const auto bound = search.bound(trial);
       // What is off by as much as the motion itself is lost, and so are bounds of it.
@@ -276,14 +336,14 @@ BOOST_AUTO_TEST_CASE(an_implicit_method_that_diverges_gets_more_steps) {
   BOOST_TEST_REQUIRE(search.survey(c.accuracy));
   const Trial* found = search.find(c.accuracy);
   BOOST_TEST_REQUIRE((found != nullptr));
-  search.race(found, c.accuracy, seconds);
   double diverged = 0, shorter = std::numeric_limits<double>::infinity();
-  for (const Trial& trial : search.trials()) {
-    if (std::string(trial.method->name) != "linear_midpoint") continue;
-    if (!trial.reached_end()) {
-      diverged = std::max(diverged, trial.value);
-    } else {
-      shorter = std::min(shorter, trial.value);
+  // On a busy machine, a race ends sooner.
+  for (int race = 0; race < 100 && !(shorter < diverged); ++race) {
+    search.race(found, c.accuracy, seconds);
+    for (const Trial& trial : search.trials()) {
+      if (trial.method != &method("linear_midpoint")) continue;
+      double& end = trial.reached_end() ? shorter : diverged;
+      end = trial.reached_end() ? std::min(end, trial.value) : std::max(end, trial.value);
     }
   }
   BOOST_TEST(diverged > 0);

@@ -132,12 +132,21 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
                     double longest) {
   const double fall = std::pow(2, method.order), end = seconds_since(begin_) + seconds;
   const Trial* last = nullptr;
+  constexpr double somewhat = 1.5;
+  int more_attempts = 2;
   const auto more = [&](double n) {
     return 2 * n + (method.is(Trait::implicit) && std::fmod(n, 2) == 0 ? 1 : 0);
   };
-  for (double before = 0; seconds_since(begin_) < end; steps = more(steps)) {
+  for (double before = 0; seconds_since(begin_) < end;) {
     Trial& trial = run(method, stage_.until() / steps, end - seconds_since(begin_));
-    if (!trial.reached_end()) return false;
+    if (!trial.reached_end()) {
+      // Steps that resolve the soft forces may meet a resonance with the stiff ones.
+      const bool may_hold = !last && method.asks(Need::split_forces) &&
+                            trial.summary.outcome == Outcome::diverged && more_attempts-- > 0;
+      if (!may_hold) return false;
+      steps = std::ceil(somewhat * steps);
+      continue;
+    }
     measure_by(trial);
     if (last) {
       const double gap = distance(*last, trial);
@@ -152,6 +161,7 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
       before = gap;
     }
     last = &trial;
+    steps = more(steps);
   }
   return false;
 }
