@@ -48,7 +48,7 @@ COMMANDS = {
     "verdicts": "--seeds 1 --cells 64 --out results",
     "symmetric_roots": "--samples 10 --out results",
     "advise": "--scene medium.toml --accuracy 1e-3 --out results",
-    "advice": "--cases 1 --first 10000000 --repeats 1 --reference-seconds 0.3 --out results",
+    "advice": "--cases 1 --first 11000000 --repeats 1 --reference-seconds 0.3 --out results",
 }
 SCENES = {
     "medium.toml": MEDIUM,

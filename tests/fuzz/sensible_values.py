@@ -57,7 +57,7 @@ SENSIBLE = {
     "--accuracy": (1e-6, 1e-1),
     "--accuracy-of": ["positions", "path", "energy"],
     "--cases": ["1", "2"],
-    "--first": ["10000000", "10000002"],
+    "--first": ["11000000", "11000002"],
     "--reference-seconds": ["0.2", "0.5"],
     "--samples": ["1", "5"],
 }

@@ -29,7 +29,7 @@ STUDIES = {
     "modes": "--scene steady.toml",
     "symmetric_roots": "--samples 30",
     "verdicts": "--seeds 1 --cells 64",
-    "advice": "--cases 2 --first 10000000 --repeats 1 --reference-seconds 0.3",
+    "advice": "--cases 2 --first 11000000 --repeats 1 --reference-seconds 0.3",
     "bench": "steady.toml@0.01 --methods verlet --repeats 1 --point-limit 100 --peers odeint",
 }
 
@@ -60,7 +60,7 @@ LONG_STUDIES = {
     " --point-limit 1000",
     "solvers": "--scene lattice --repeats 3",
     "verdicts": "--seeds 3 --cells 256",
-    "advice": "--cases 6 --first 10000000 --repeats 2 --reference-seconds 1",
+    "advice": "--cases 6 --first 11000000 --repeats 2 --reference-seconds 1",
     "bench": "larger.toml@0.02 --methods verlet,dprkn6 --repeats 1 --point-limit 1000"
     " --peers odeint",
 }
