@@ -25,11 +25,12 @@ struct Bound {
 //     is constant and all modes are found sooner than that, there is nothing to search.
 //  2. A Forecast names the run that comes to half of the accuracy in the least time. It is made,
 //     unless one that was made already is expected to be good enough.
-//  3. Another, which is expected to miss by less than half of that, checks it: their distance is
-//     the error of the first but for that of the second, which is itself within it where both are
-//     of one method. Where that is expected to be far within the accuracy, a run that is hardly
-//     finer will do. All runs teach the forecast. Where no bound is within the accuracy, 2. again,
-//     from what is known now.
+//  3. Another checks it. Where errors are small and time matters, this is a coarser run of the same
+//     method, as such errors fall as the order says. Else it is one that is expected to miss by
+//     less than half of that: their distance is the error of the first but for that of the second,
+//     which is itself within it where both are of one method. Where that is expected to be far
+//     within the accuracy, a run that is hardly finer will do. All runs teach the forecast. Where no
+//     bound is within the accuracy, 2. again, from what is known now.
 // Where the first run would take a thousand times what a few implicit steps do, or stiff springs
 // are named, a method that need not resolve them is refined before, until its runs agree: in a
 // small part of the first run's time, or it is left. Systems with massless nodes have no Verlet
