@@ -29,8 +29,8 @@ struct Bound {
 //     method, as such errors fall as the order says. Else it is one that is expected to miss by
 //     less than half of that: their distance is the error of the first but for that of the second,
 //     which is itself within it where both are of one method. Where that is expected to be far
-//     within the accuracy, a run that is hardly finer will do. All runs teach the forecast. Where no
-//     bound is within the accuracy, 2. again, from what is known now.
+//     within the accuracy, a run that is hardly finer will do. All runs teach the forecast. Where
+//     no bound is within the accuracy, 2. again, from what is known now.
 // Where the first run would take a thousand times what a few implicit steps do, or stiff springs
 // are named, a method that need not resolve them is refined before, until its runs agree: in a
 // small part of the first run's time, or it is left. Systems with massless nodes have no Verlet
