@@ -176,6 +176,23 @@ BOOST_AUTO_TEST_CASE(a_coarser_run_checks_where_errors_fall_as_the_order_says) {
   BOOST_TEST(bound->error <= 4 * error);  // a margin of 1.6, and what h^p is off
 }
 
+BOOST_AUTO_TEST_CASE(an_order_is_believed_to_leave_a_tenth_at_least) {
+  const ReducedScene model(drawn("lattice", {}));
+  const double until = 0.05, h = 2e-5;
+  Search search(model, until, AccuracyOf::positions, seconds);
+  const Method& tried = method("symmetric8");
+  search.try_once({&tried, h}, seconds);
+  search.try_once({&tried, h / 1.6}, seconds);  // 43 times as accurate
+  const Trial &coarse = search.trials().front(), &fine = search.trials().back();
+  search.measure_by(fine);
+  const double apart = search.distance(coarse, fine);
+  BOOST_TEST_REQUIRE(apart < 1e-4);
+  const auto bound = search.bound(fine);
+  BOOST_TEST_REQUIRE((bound && bound->by == &coarse));
+  BOOST_TEST(bound->error >= 0.1 * apart);
+  BOOST_TEST(bound->error <= 0.2 * apart);  // a margin of 1.6, and 0.9 of it is the coarse error
+}
+
 // Nothing is expected of a method before a forecast. How far its run is from one that is bounded
 // bounds it all the same, by |q - q*| <= |q - q_best| + |q_best - q*|.
 BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {

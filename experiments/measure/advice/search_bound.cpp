@@ -16,8 +16,9 @@ constexpr double margin = 1.4;
 // order shows: 19 of 20 training runs were.
 constexpr double margin_of_finer = 1.2;
 // The same where the error falls as the order says, of what that makes of their distance: 19 of 20
-// training pairs were, one of which was eight times as accurate.
-constexpr double margin_of_order = 1.6;
+// training pairs were, one of which was eight times as accurate. Of what is much more accurate by
+// its order, a part is left that the order does not know.
+constexpr double margin_of_order = 1.6, least_left = 0.1;
 // Where one run is hardly finer than the other, the order has to be what it should be. That is
 // believed to this factor.
 constexpr double margin_of_hardly_finer = 4;
@@ -156,7 +157,8 @@ bool Search::falls_by_order(const Trial& finer, double error_of_coarser) const {
 }
 
 double Search::bound_by_coarser(const Trial& trial, const Trial& coarser) const {
-  const double gap = likely_distance(coarser, trial), part = ratio(trial, coarser);
+  const double gap = likely_distance(coarser, trial);
+  const double part = std::max(ratio(trial, coarser), least_left);
   double most = margin_of_finer * gap;
   if (falls_by_order(trial, gap)) most = std::min(most, margin_of_order * gap * part / (1 - part));
   return most + rounding(trial);
