@@ -4,8 +4,6 @@
 
 namespace qddot::bench {
 
-using namespace measure;
-
 // Adds the time [s] that this thread's processor spends on it from its construction to its end, be
 // that by an exception. With nothing else on the machine it is the wall time; where others take
 // turns it leaves theirs out, which would count long runs alone.

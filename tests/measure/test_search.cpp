@@ -1,7 +1,6 @@
 // What a search knows of its runs; what it finds is tried in test_solve.cpp.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "experiments/bench/processor_time.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/simulation.hpp"
@@ -35,10 +35,30 @@ double error_of(const Trial& trial, const Search& search, const Reference& refer
 template <class F>
 bool is_disturbed(const F& f) {
   constexpr double own_part = 0.95;
-  const std::clock_t begin = std::clock();
-  const double wall = seconds_of(f);
-  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < own_part * wall;
+  double own = 0;
+  const double wall = seconds_of([&] {
+    const bench::ProcessorTime timed(own);
+    f();
+  });
+  return own < own_part * wall;
 }
+
+// What a search finds on a drawn case, and what says how accurate that is.
+struct Finding {
+  explicit Finding(std::uint64_t seed) : drawn(advice_study::drawn_case(seed)) {
+    BOOST_TEST_REQUIRE(search.survey(drawn.accuracy));
+    found = search.find(drawn.accuracy);
+    BOOST_TEST_REQUIRE((found != nullptr));
+    bound = search.bound(*found);
+    BOOST_TEST_REQUIRE((bound && bound->by));
+  }
+
+  advice_study::Case drawn;
+  ReducedScene model{drawn.scene};
+  Search search{model, drawn.until, AccuracyOf::positions, seconds};
+  const Trial* found = nullptr;
+  std::optional<Bound> bound{};
+};
 
 }  // namespace
 
@@ -125,8 +145,8 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_hardly_finer_bounds_the_other_where_its_order
       const Trial& coarse = search.trials().front();
       search.measure_by(search.trials().back());
       const auto bound = search.bound(coarse);
-      // Of 1.2 too little is left after the error is taken from itself; implicit steps may be far
-      // too long for their order.
+      // A run that is 1.2 times as accurate leaves too little of the error to be seen; implicit
+      // steps may be far too long for their order.
       BOOST_TEST_CONTEXT(name << " " << finer << " times as accurate") {
         BOOST_TEST_REQUIRE(bound.has_value() == (finer == 1.6 && !tried.is(Trait::implicit)));
         if (!bound) continue;
@@ -140,40 +160,26 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_hardly_finer_bounds_the_other_where_its_order
 
 BOOST_AUTO_TEST_CASE(what_is_far_within_the_accuracy_is_checked_by_what_is_hardly_finer) {
   // At its limit, Verlet's method is 10^4 times as accurate here as is asked for.
-  const advice_study::Case c = advice_study::drawn_case(8000395);
-  const ReducedScene model(c.scene);
-  Search search(model, c.until, AccuracyOf::positions, seconds);
-  BOOST_TEST_REQUIRE(search.survey(c.accuracy));
-  const Trial* found = search.find(c.accuracy);
-  BOOST_TEST_REQUIRE((found != nullptr));
-  const auto bound = search.bound(*found);
-  BOOST_TEST_REQUIRE((bound && bound->by));
-  BOOST_TEST(bound->error <= c.accuracy);
-  BOOST_TEST((bound->by->method == found->method));
+  Finding on(8000395);
+  BOOST_TEST(on.bound->error <= on.drawn.accuracy);
+  BOOST_TEST((on.bound->by->method == on.found->method));
   // A check twice as accurate takes 1.5 times the steps.
-  BOOST_TEST(found->value / bound->by->value < 1.4);
+  BOOST_TEST(on.found->value / on.bound->by->value < 1.4);
 }
 
 BOOST_AUTO_TEST_CASE(a_coarser_run_checks_where_errors_fall_as_the_order_says) {
-  const advice_study::Case c = advice_study::drawn_case(8000280);
-  const ReducedScene model(c.scene);
-  Search search(model, c.until, AccuracyOf::positions, seconds);
-  BOOST_TEST_REQUIRE(search.survey(c.accuracy));
-  const Trial* found = search.find(c.accuracy);
-  BOOST_TEST_REQUIRE((found != nullptr));
-  const auto bound = search.bound(*found);
-  BOOST_TEST_REQUIRE((bound && bound->by));
-  BOOST_TEST(bound->by_coarser);
-  BOOST_TEST((bound->by->method == found->method));
-  BOOST_TEST(bound->by->value > found->value);
+  Finding on(8000280);
+  BOOST_TEST(on.bound->by_coarser);
+  BOOST_TEST((on.bound->by->method == on.found->method));
+  BOOST_TEST(on.bound->by->value > on.found->value);
   // The order leaves a small part of how far they are apart.
-  const double apart = search.distance(*found, *bound->by);
-  BOOST_TEST(bound->error <= 0.4 * apart);
-  BOOST_TEST(bound->error <= c.accuracy);
-  search.try_once({&method("symmetric10"), found->value / 2}, seconds);
-  const double error = search.distance(*found, search.trials().back());
-  BOOST_TEST(error <= bound->error);
-  BOOST_TEST(bound->error <= 4 * error);  // a margin of 1.6, and what h^p is off
+  const double apart = on.search.distance(*on.found, *on.bound->by);
+  BOOST_TEST(on.bound->error <= 0.4 * apart);
+  BOOST_TEST(on.bound->error <= on.drawn.accuracy);
+  on.search.try_once({&method("symmetric10"), on.found->value / 2}, seconds);
+  const double error = on.search.distance(*on.found, on.search.trials().back());
+  BOOST_TEST(error <= on.bound->error);
+  BOOST_TEST(on.bound->error <= 4 * error);  // a margin of 1.6, and what h^p is off
 }
 
 BOOST_AUTO_TEST_CASE(an_order_is_believed_to_leave_a_tenth_at_least) {

@@ -33,9 +33,9 @@ double seconds_of_exact(const ReducedScene& model);
 //   error = sensitivity * frequency_error(method, h w_p),   seconds = steps * seconds of a step,
 // with w_p the motion's own frequency of the method's order p. The sensitivity is at first that of
 // a motion in which errors add up, |q'| t / |q - q(0)|; with each run whose error was seen, it is
-// corrected for that method, for others of its order, and of the orders next to it. Of methods that
-// choose their steps, or take stiff forces apart, nothing is expected before one run was seen; from
-// there on the error goes as h^order or as rtol.
+// corrected for that method, for others of its order, and of the orders next to it. Nothing is
+// expected of methods that choose their steps, or take stiff forces apart, before one run was seen;
+// from there on the error goes as h^order or as rtol.
 class Forecast {
  public:
   // Borrows the stage. `w_motion`: the largest frequency over the motion [rad/s], zero where

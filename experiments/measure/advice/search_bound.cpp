@@ -16,8 +16,8 @@ constexpr double margin = 1.4;
 // order shows: 19 of 20 training runs were.
 constexpr double margin_of_finer = 1.2;
 // The same where the error falls as the order says, of what that makes of their distance: 19 of 20
-// training pairs were, one of which was eight times as accurate. Of what is much more accurate by
-// its order, a part is left that the order does not know.
+// training pairs were, one of which was eight times as accurate. The order does not know all of an
+// error: a run that it makes much more accurate keeps a part.
 constexpr double margin_of_order = 1.6, least_left = 0.1;
 // Where one run is hardly finer than the other, the order has to be what it should be. That is
 // believed to this factor.
@@ -27,8 +27,8 @@ constexpr double hardly_finer = 0.7;
 
 }  // namespace
 
-// What rounding leaves of a run. Of a motion that is computed mode by mode: w_max^2 is known to its
-// last digit, so that a slower frequency w is off by w_max^2 / (2 w) of that, for a time t.
+// What rounding leaves of a run. A motion that is computed mode by mode has w_max^2 to its last
+// digit, so that a slower frequency w is off by w_max^2 / (2 w) of that, for a time t.
 double Search::rounding(const Trial& trial) const {
   if (trial.method->order > 0) {
     const double steps = forecast_ ? forecast_->rounding(*trial.method, trial.value) : 0;
