@@ -36,6 +36,7 @@ double lowest_ahead(const System& system, const Vec& q, Vec& ahead, Vec& way) {
 void EnergyGrowth::start(const State& state) {
   until_look_ = 1;
   looks_ = 0;
+  if (!system_.has_potential()) return;
   q_ = q_of_kinetic_ = state.q;
   v_of_kinetic_ = state.v;
   kinetic_ = system_.kinetic(state.v);
@@ -45,6 +46,7 @@ void EnergyGrowth::start(const State& state) {
 
 void EnergyGrowth::look(const State& state) {
   until_look_ = steps_a_look;
+  if (!system_.has_potential()) return;
   const double kinetic = system_.kinetic(state.v);
   if (kinetic > 2 * kinetic_) {
     kinetic_ = kinetic;
@@ -75,6 +77,7 @@ double EnergyGrowth::rounding() {
 }
 
 double EnergyGrowth::factor(const State& state) {
+  if (!system_.has_potential()) return 1;
   see(q_of_kinetic_, v_of_kinetic_);
   see(state.q, state.v);
   const double gained = most_ - start_;

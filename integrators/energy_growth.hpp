@@ -9,7 +9,8 @@ namespace qddot {
 //   1 + (E_max - E(0)) / D,
 // 1 for an exact motion, also for one that begins at rest and falls. E is computed at the start, at
 // the end, at every 1024th step and where the kinetic energy was largest (to a factor of two, of
-// every 32nd step); so this is a lower bound, at a cost that a run does not notice.
+// every 32nd step); so this is a lower bound, at a cost that a run does not notice. Of a system
+// without V nothing is known, and the growth is 1.
 class EnergyGrowth {
  public:
   // Borrows the system.

@@ -42,25 +42,16 @@
 #include "experiments/command/scene_choice.hpp"
 #include "experiments/command/study.hpp"
 #include "experiments/command/summary_record.hpp"
-#include "experiments/exchange/energy_exchange.hpp"
-#include "experiments/exchange/exchange_words.hpp"
-#include "qddot/analysis/natural_modes.hpp"
 #include "qddot/integrators/registry.hpp"
-#include "qddot/measure/motion/deadline.hpp"
-#include "qddot/measure/motion/samples.hpp"
-#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/measure/exchange/exchange_words.hpp"
+#include "qddot/measure/exchange/excitation.hpp"
 #include "qddot/scene/invalid_input.hpp"
-#include "qddot/scene/stiff_energies.hpp"
 
 namespace qddot::exchange {
 
 using namespace measure;
 using namespace command;
 namespace {
-
-constexpr double reference_h_omega = 0.1, reference_rtol = 1e-12;
-constexpr double longest_run = 60;  // [s] of wall time
-constexpr double periods_of_mean = 40;
 
 struct Arguments {
   SceneChoice scene;
@@ -92,37 +83,8 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--out", a.out, "the folder for exchange.csv and summary.csv");
 }
 
-// The highest frequency [rad/s] of the stiff springs alone; 0 where there are none.
-double stiff_frequency(const System& system, const Vec& q) {
-  double highest = 0;
-  Index first = 0;
-  for (const auto& block : blocks_of(system)) {
-    highest = std::max(highest, stiff_frequency(*block, q.segment(first, block->size())));
-    first += block->size();
-  }
-  const Split* split = split_of(system);
-  if (!split || split->stiff_unknowns.empty()) return highest;
-  const Vec own = q(split->stiff_unknowns);
-  return std::max(highest, std::sqrt(highest_modes(*split->stiff_block, own, 1).squares[0]));
-}
-
-// The scene, what its runs have in common, and what its stiff springs start with.
-struct Excitation {
-  Scene drawn, start;
-  ReducedScene scene;
-  double until = 0, every = 0, omega = 0, window = 0;
-  double energy = 0, sum = 0;  // H and sum I at t = 0 [J]
-};
-
-// A run of one method.
-struct Result {
-  EnergyCourse course{};
-  Summary summary{};
-  double sum_deviation = 0, energy_error = 0;
-};
-
 // As a journal keeps it, and back.
-nlohmann::json record_of(const Result& result) {
+nlohmann::json record_of(const ExchangeRun& result) {
   nlohmann::json energies = nlohmann::json::array();
   for (const Vec& e : result.course.energies) energies.push_back(std::vector(e.begin(), e.end()));
   return {{"times", result.course.times},
@@ -132,75 +94,16 @@ nlohmann::json record_of(const Result& result) {
           {"energy_error", result.energy_error}};
 }
 
-Result result_of(const nlohmann::json& record) {
-  Result result{.summary = record.at("summary"),
-                .sum_deviation = record.at("sum_deviation"),
-                .energy_error = record.at("energy_error")};
+ExchangeRun run_of(const nlohmann::json& record) {
+  ExchangeRun result{.summary = record.at("summary"),
+                     .sum_deviation = record.at("sum_deviation"),
+                     .energy_error = record.at("energy_error")};
   result.course.times = record.at("times").get<std::vector<double>>();
   for (const auto& energies : record.at("energies")) {
     const auto values = energies.get<std::vector<double>>();
     result.course.energies.push_back(Vec::Map(values.data(), std::ssize(values)));
   }
   return result;
-}
-
-// Seen at the start and then at `times`, which a run of constant steps is to reach in whole ones.
-Result run_of(const Excitation& excitation, const Method& method, double knob,
-              const std::vector<double>& times) {
-  Result result;
-  const auto see = [&](const State& state) {
-    const Vec energies = stiff_energies(excitation.start, excitation.scene.expand(state));
-    const auto raise = [](double& largest, double value) {
-      if (!(value <= largest)) largest = value;
-    };
-    raise(result.sum_deviation, std::abs(energies.sum() / excitation.sum - 1));
-    raise(result.energy_error, std::abs(excitation.scene.energy(state) / excitation.energy - 1));
-    result.course.times.push_back(state.t);
-    result.course.energies.push_back(energies);
-  };
-  State state = excitation.scene.initial();
-  see(state);
-  const Deadline deadline(longest_run);
-  result.summary = make_integrator(method, excitation.scene.system(),
-                                   options_for(method, knob, excitation.scene))
-                       ->advance(state, excitation.until, {times, see}, deadline.token());
-  return result;
-}
-
-// The multiples of h after 0 that are nearest to those of `every`.
-std::vector<double> multiples_near(double every, double h, double until) {
-  auto times = samples(h * std::max(1.0, std::round(every / h)), until);
-  times.erase(times.begin());
-  return times;
-}
-
-// The motion that others are compared with.
-struct CertifiedCourse {
-  double h = 0;
-  Result result{};
-  double certified = 0;  // the largest |I_j - I_j'| of the two ways, over sum I(0)
-};
-
-CertifiedCourse reference_of(Study& study, const Excitation& excitation) {
-  CertifiedCourse reference{.h = reference_h_omega / excitation.omega};
-  const auto times = multiples_near(excitation.every, reference.h, excitation.until);
-  const auto reached = [&](const char* name, double knob) {
-    Result result = result_of(study.piece(fmt::format("reference {}", name), [&] {
-      return record_of(run_of(excitation, *find_method(name), knob, times));
-    }));
-    if (result.summary.outcome == Outcome::reached_end) return result;
-    throw NoReference(fmt::format("{} reaches {} of {} s only, so that there is no reference: {}",
-                                  name, result.summary.t_reached, excitation.until,
-                                  result.summary.message));
-  };
-  reference.result = reached("kahan_li8", reference.h);
-  const Result other = reached("dprkn12", reference_rtol);
-  for (std::size_t i = 0; i <= times.size(); ++i) {
-    const Vec apart = reference.result.course.energies[i] - other.course.energies[i];
-    reference.certified =
-        std::max(reference.certified, apart.lpNorm<Eigen::Infinity>() / excitation.sum);
-  }
-  return reference;
 }
 
 void write_course(CsvFile& csv, const std::string& method, double h, double h_omega,
@@ -233,73 +136,59 @@ std::vector<const Method*> select_fixed_step(const Arguments& a, const ReducedSc
   return selected;
 }
 
+// A scene as drawn, and as its stiff springs start.
+struct Subject {
+  Scene drawn;
+  Excitation excitation;
+};
+
 // Checks what was asked for and looks at the start.
-Excitation excitation_of(const CommandLine& line, const Arguments& a) {
+Subject subject_of(const CommandLine& line, const Arguments& a) {
   const Scene drawn = load(a.scene);
   const Scene start = started(drawn, a.scene);
-  Excitation excitation{
-      .drawn = drawn, .start = start, .scene = ReducedScene(start, reductions_of(a.scene))};
-  require_reference_exists(excitation.scene, a.scene.name);
-  excitation.until = end_time(a.until, line.has("--until"), drawn);
-  const State& initial = excitation.scene.initial();
-  excitation.omega = stiff_frequency(excitation.scene.system(), initial.q);
-  excitation.energy = excitation.scene.energy(initial);
-  excitation.sum = stiff_energies(start, start.nodes).sum();
-  if (!(excitation.omega > 0)) {
-    throw InvalidInput(fmt::format(
-        "{}: stiff_above: {}; allowed are finite numbers above 0 in N/m that some spring between "
-        "free nodes has more stiffness than, since it is such springs whose energy is followed",
-        a.scene.name,
-        drawn.stiff_above ? fmt::format("{} leaves no stiff spring that moves", *drawn.stiff_above)
-                          : "it is missing"));
-  }
-  if (!(excitation.sum > 0)) {
-    throw InvalidInput(
-        fmt::format("{}: the stiff springs start without energy, {} J, so that there is none to be "
-                    "exchanged; allowed are scenes that start with a stiff spring drawn or moving "
-                    "out of its rest length",
-                    a.scene.name, excitation.sum));
-  }
+  ReducedScene scene(start, reductions_of(a.scene));
+  require_reference_exists(scene, a.scene.name);
+  const double until = end_time(a.until, line.has("--until"), drawn);
+  Excitation excitation = excitation_of(start, std::move(scene), until, a.scene.name);
   for (const double h_omega : a.h_omega) {
     require_step_size(h_omega / excitation.omega, fmt::format("--h-omega {:g}: h =", h_omega),
-                      excitation.until);
+                      until);
   }
   const double longest = std::ranges::max(a.h_omega) / excitation.omega;
-  if (!(10 * longest <= excitation.until)) {
+  if (!(10 * longest <= until)) {
     throw InvalidInput(
         fmt::format("--until {} is not allowed with --h-omega {}; it is at least ten steps of it, "
                     "{:.3g} s",
-                    excitation.until, std::ranges::max(a.h_omega), 10 * longest));
+                    until, std::ranges::max(a.h_omega), 10 * longest));
   }
-  excitation.every = line.has("--every") ? a.every : excitation.until / 1000;
-  if (!(excitation.every <= excitation.until / 10)) {
+  if (line.has("--every")) excitation.every = a.every;
+  if (!(excitation.every <= until / 10)) {
     throw InvalidInput(
         fmt::format("--every {} is not allowed; it is at most a tenth of the time, "
                     "{} s",
-                    excitation.every, excitation.until));
+                    excitation.every, until));
   }
-  excitation.window = std::min(periods_of_mean * 2 * M_PI / excitation.omega, excitation.until / 4);
-  return excitation;
+  return {drawn, std::move(excitation)};
 }
 
 // Writes and prints what came of each run, against the reference.
 class Reporter {
  public:
-  Reporter(const Excitation& excitation, const CertifiedCourse& reference, CsvFile& courses,
-           CsvFile& table)
+  Reporter(const std::string& scene, const Excitation& excitation, const CertifiedCourse& reference,
+           CsvFile& courses, CsvFile& table)
       : excitation_(excitation),
-        exact_(reference.result.course),
+        exact_(reference.run.course),
         own_(compare(exact_, exact_, excitation.window)),
         courses_(courses),
         table_(table) {
     fmt::print(
         "{} to t = {:g} s: w = {:.7g} rad/s; reference certified to {:.1e} of the energy\n\n",
-        excitation.drawn.name, excitation.until, excitation.omega, reference.certified);
+        scene, excitation.until, excitation.omega, reference.certified);
     fmt::print("{:<24} {:>6} {:>10} {:>10} {:>10} {:>7}  {}\n", "method", "h w", "sum I off",
                "H off", "I_j off", "tempo", "verdict");
   }
 
-  void operator()(const std::string& method, double h, double h_omega, const Result& result) {
+  void operator()(const std::string& method, double h, double h_omega, const ExchangeRun& result) {
     const double nothing = std::numeric_limits<double>::quiet_NaN();
     const bool reached = result.summary.outcome == Outcome::reached_end;
     ExchangeComparison c{.distance = nothing, .tempo = nothing, .misfit = nothing};
@@ -330,35 +219,37 @@ int exchange(const CommandLine& line, const Arguments& a,
       throw InvalidInput(fmt::format("--h-omega: {} is named twice; allowed is once", h_omega));
   }
   if (line.has("--every")) require_positive(a.every, "--every", "a time in s");
-  const Excitation excitation = excitation_of(line, a);
+  const auto [drawn, excitation] = subject_of(line, a);
   const auto selected = select_fixed_step(a, excitation.scene);
   require_folder(a.out);
   Study study(line, a.out, {"exchange.csv", "summary.csv"},
-              {{"scene", content_hash(excitation.drawn)}, {"name", excitation.drawn.name}});
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}});
   if (const auto status = study.completed()) return *status;
   CsvFile courses(a.out + "/exchange.csv", {"method", "h", "h_omega", "t", "spring", "energy"});
   CsvFile table(a.out + "/summary.csv",
                 {"method", "h", "h_omega", "outcome", "t_reached", "steps", "force_evaluations",
                  "sum_deviation", "energy_error", "exchange_error", "tempo", "misfit", "verdict"});
 
-  nlohmann::json origin =
-      provenance(command_line, excitation.drawn, excitation.start, excitation.scene);
+  nlohmann::json origin = provenance(command_line, drawn, excitation.start, excitation.scene);
   origin["omega"] = excitation.omega;
   origin["until"] = excitation.until;
   origin["window"] = excitation.window;
   study.measure([&] {
-    const CertifiedCourse reference = reference_of(study, excitation);
+    const CertifiedCourse reference =
+        certified_course(excitation, [&](const std::string& name, const auto& make) {
+          return run_of(study.piece(name, [&] { return record_of(make()); }));
+        });
     origin["certified"] = reference.certified;
-    Reporter report(excitation, reference, courses, table);
-    report("reference", reference.h, reference_h_omega, reference.result);
+    Reporter report(drawn.name, excitation, reference, courses, table);
+    report("reference", reference.h, CertifiedCourse::h_omega, reference.run);
     for (const Method* method : selected) {
       for (const double h_omega : a.h_omega) {
         const double h = h_omega / excitation.omega;
         show_progress(fmt::format("{} at h w = {:g}", method->name, h_omega));
         const auto times = multiples_near(excitation.every, h, excitation.until);
         report(method->name, h, h_omega,
-               result_of(study.piece(fmt::format("{} {:.17g}", method->name, h), [&] {
-                 return record_of(run_of(excitation, *method, h, times));
+               run_of(study.piece(fmt::format("{} {:.17g}", method->name, h), [&] {
+                 return record_of(exchange_run(excitation, *method, h, times));
                })));
       }
     }

@@ -9,6 +9,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/advise.hpp"
 #include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/exchange/excitation.hpp"
 #include "qddot/measure/motion/samples.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"

@@ -230,7 +230,9 @@ double ImplicitStep::search(const Vec& q, double s) {
   for (int halvings = 0; halvings < most_halvings; ++halvings, length /= 2) {
     add_scaled(before_, length, p_, u_);
     residual(q, s);
-    if (!is_minimisation() || std::sqrt(squared_norm(r_)) <= 0.5 * norm) return length;
+    if (!is_minimisation() || !system().has_potential() ||
+        std::sqrt(squared_norm(r_)) <= 0.5 * norm)
+      return length;
     const double g_there = objective(q, s);
     if (std::isnan(g)) {
       u_.swap(before_);

@@ -18,7 +18,7 @@ namespace qddot {
 // Newton's method with the last factors of M - s K as long as they converge, and K anew where they
 // do not. Where M - s K is not positive definite, only some of the compression is kept (see
 // compression.hpp). So directions descend, and a step along one that does not decrease g is halved
-// until it does.
+// until it does. A system without V has no g, and its steps are whole.
 class ImplicitStep : public FixedStep {
  public:
   // Solving far below the step's own error gains nothing. But a method that keeps an invariant
@@ -46,7 +46,7 @@ class ImplicitStep : public FixedStep {
   virtual void stage_force(const Vec& q, const Vec& u, Vec& f);
   virtual void stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                                SymmetricMatrix& k);
-  // Whether f is the gradient of a potential, so that there is a g to decrease.
+  // Whether a stage's f is the gradient of a potential, so that there is a g to decrease.
   virtual bool is_minimisation() const { return true; }
   // Whether a stage's f knows forces at q itself, which then have to be linear as well.
   virtual bool knows_start() const { return false; }

@@ -22,6 +22,7 @@ class DifferencedStiffness final : public System {
                        const std::vector<std::pair<Index, Index>>& pairs, double length = 1);
 
   double potential(const ConstVec& q) const override { return system_->potential(q); }
+  bool has_potential() const override { return system_->has_potential(); }
   void force(const ConstVec& q, MutableVec f) const override { system_->force(q, f); }
   void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }

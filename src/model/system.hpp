@@ -50,6 +50,9 @@ class System {
 
   // V(q) [J]; q: n.
   virtual double potential(const ConstVec& q) const = 0;
+  // Whether the system computes V. One that does not is run without a look at its energy, and
+  // implicit steps go without a line search; nothing calls its potential().
+  virtual bool has_potential() const { return true; }
   // f = -dV/dq [N]; q, f: n, f sized by the caller.
   virtual void force(const ConstVec& q, MutableVec f) const = 0;
 

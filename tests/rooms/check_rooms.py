@@ -21,7 +21,8 @@ STABILITY = MOTION | {"experiments/measure/stability"}
 SPEED = REFERENCE | STABILITY | {"experiments/measure/speed"}
 ADVICE = SPEED | {"experiments/measure/advice"}
 TREND = SPEED | {"experiments/measure/trend"}
-COMMAND = TREND | ADVICE | {"experiments/command"}
+EXCHANGE = SPEED | {"experiments/measure/exchange"}
+COMMAND = TREND | ADVICE | EXCHANGE | {"experiments/command"}
 VECTORS = "src/model/kernels/vectors"
 
 MAY_SEE = {
@@ -39,6 +40,7 @@ MAY_SEE = {
     "experiments/measure/speed": SPEED,
     "experiments/measure/trend": TREND,
     "experiments/measure/advice": ADVICE,
+    "experiments/measure/exchange": EXCHANGE,
     "experiments/command": COMMAND,
     # Compiled for more than one processor: seen by each other only, and see what is plain data.
     VECTORS: {"src/model/kernels"},

@@ -100,11 +100,15 @@ double position_error(const std::vector<Node>& nodes, const std::vector<Node>& r
                        &Scales::displacement_of);
 }
 
+double velocity_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,
+                      const Scales& scales) {
+  return largest_error(nodes, reference, &Node::velocity, scales, scales.speed, &Scales::speed_of);
+}
+
 Errors errors_between(const ReducedScene& scene, const State& state, const State& reference,
                       double energy, const Scales& scales) {
   const auto nodes = measured(scene, state), expected = measured(scene, reference);
-  return {position_error(nodes, expected, scales),
-          largest_error(nodes, expected, &Node::velocity, scales, scales.speed, &Scales::speed_of),
+  return {position_error(nodes, expected, scales), velocity_error(nodes, expected, scales),
           divided(std::abs(scene.energy(state) - energy), scales.kinetic)};
 }
 

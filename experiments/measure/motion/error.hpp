@@ -51,8 +51,10 @@ void extend(Scales& scales, const ReducedScene& scene, const State& state);
 Errors errors_between(const ReducedScene& scene, const State& state, const State& reference,
                       double energy, const Scales& scales);
 
-// The position error alone, of all nodes of the scene.
+// The position error alone, of all nodes of the scene, and that of the velocities.
 double position_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,
+                      const Scales& scales);
+double velocity_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,
                       const Scales& scales);
 
 // The larger of the two of positions and velocities.

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <utility>
 
 namespace qddot::measure {
 namespace {
@@ -18,6 +19,8 @@ Shared& shared() {
   return all;
 }
 
+thread_local OwnInterruption* own = nullptr;
+
 }  // namespace
 
 void interrupt(const Interruption& why) {
@@ -28,9 +31,10 @@ void interrupt(const Interruption& why) {
   shared().source.request_stop();
 }
 
-std::stop_token interruption() { return shared().source.get_token(); }
+std::stop_token interruption() { return own ? own->stop() : shared().source.get_token(); }
 
 std::optional<Interruption> interrupted() {
+  if (own) return own->stop().stop_requested() ? std::optional(own->why()) : std::nullopt;
   if (!shared().source.stop_requested()) return {};
   shared().is_noticed = true;
   const std::lock_guard lock(shared().mutex);
@@ -42,5 +46,10 @@ void stop_if_interrupted() {
 }
 
 bool is_interruption_noticed() { return shared().is_noticed; }
+
+OwnInterruption::OwnInterruption(std::stop_token stop, Interruption why)
+    : stop_(std::move(stop)), why_(std::move(why)), outer_(std::exchange(own, this)) {}
+
+OwnInterruption::~OwnInterruption() { own = outer_; }
 
 }  // namespace qddot::measure

@@ -32,4 +32,22 @@ void stop_if_interrupted();
 // Whether somebody has learned of the interruption by one of these two.
 bool is_interruption_noticed();
 
+// Ends the work of one thread: while this lives, interruption() and interrupted() of the thread that
+// made it are those of `stop`, in the place of the process's.
+class OwnInterruption {
+ public:
+  OwnInterruption(std::stop_token stop, Interruption why);
+  ~OwnInterruption();
+  OwnInterruption(const OwnInterruption&) = delete;
+  OwnInterruption& operator=(const OwnInterruption&) = delete;
+
+  const std::stop_token& stop() const { return stop_; }
+  const Interruption& why() const { return why_; }
+
+ private:
+  std::stop_token stop_;
+  Interruption why_;
+  OwnInterruption* outer_;  // which this one stands before; may be none
+};
+
 }  // namespace qddot::measure

@@ -1,6 +1,7 @@
 #include "qddot/measure/speed/work_precision.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -9,10 +10,10 @@
 
 namespace qddot::measure {
 
-WorkPrecision work_precision(const ReducedScene& model, double until,
-                             std::vector<const Method*> methods, const Effort& effort,
-                             double reference_seconds,
-                             const std::function<void(const Point&)>& report) {
+namespace {
+
+// Throws std::invalid_argument where there is nothing to measure the methods on.
+void require_measurable(const ReducedScene& model, const std::vector<const Method*>& methods) {
   const System& system = model.system();
   if (system.size() == 0 || system.has_massless()) {
     throw std::invalid_argument(
@@ -24,20 +25,37 @@ WorkPrecision work_precision(const ReducedScene& model, double until,
           fmt::format("work_precision: {} cannot run this: {}", method->name, advice(*why)));
     }
   }
+}
+
+}  // namespace
+
+WorkPrecision work_precision(const ReducedScene& model, Reference reference,
+                             std::vector<const Method*> methods, const Effort& effort,
+                             const std::function<void(const Point&)>& report) {
+  require_measurable(model, methods);
   if (methods.empty()) {
     for (const Method& method : qddot::methods()) {
-      if (applies_to(method, system)) methods.push_back(&method);
+      if (applies_to(method, model.system())) methods.push_back(&method);
     }
   }
-  WorkPrecision all{.reference = make_reference(model, until, reference_seconds), .points = {}};
+  WorkPrecision all{.reference = std::move(reference), .points = {}};
   for (const Method* method : methods) {
     const auto see = [&](const Point& point) {
       if (report) report(point);
     };
-    const auto points = sweep(*method, model, until, all.reference, effort, see);
+    const auto points = sweep(*method, model, all.reference.end.t, all.reference, effort, see);
     all.points.insert(all.points.end(), points.begin(), points.end());
   }
   return all;
+}
+
+WorkPrecision work_precision(const ReducedScene& model, double until,
+                             std::vector<const Method*> methods, const Effort& effort,
+                             double reference_seconds,
+                             const std::function<void(const Point&)>& report) {
+  require_measurable(model, methods);
+  return work_precision(model, make_reference(model, until, reference_seconds), std::move(methods),
+                        effort, report);
 }
 
 }  // namespace qddot::measure

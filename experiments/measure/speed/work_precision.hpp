@@ -24,5 +24,9 @@ WorkPrecision work_precision(const ReducedScene& model, double until,
                              std::vector<const Method*> methods = {}, const Effort& effort = {},
                              double reference_seconds = 10,
                              const std::function<void(const Point&)>& report = {});
+// The same against a reference at hand, up to its end.
+WorkPrecision work_precision(const ReducedScene& model, Reference reference,
+                             std::vector<const Method*> methods = {}, const Effort& effort = {},
+                             const std::function<void(const Point&)>& report = {});
 
 }  // namespace qddot::measure

@@ -1,9 +1,9 @@
-#include "experiments/exchange/energy_exchange.hpp"
+#include "qddot/measure/exchange/energy_exchange.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace qddot::exchange {
+namespace qddot::measure {
 namespace {
 
 constexpr Index points = 1000;  // at which means are compared, equally spaced
@@ -96,4 +96,4 @@ ExchangeComparison compare(const EnergyCourse& course, const EnergyCourse& other
   return result;
 }
 
-}  // namespace qddot::exchange
+}  // namespace qddot::measure

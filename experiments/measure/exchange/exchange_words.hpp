@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "experiments/exchange/energy_exchange.hpp"
 #include "qddot/integrators/integrator.hpp"
+#include "qddot/measure/exchange/energy_exchange.hpp"
 
-namespace qddot::exchange {
+namespace qddot::measure {
 
 // The verdict on a run of `exchange` that did not reach its end: its outcome and when.
 std::string verdict_on(const Summary& summary);
@@ -15,4 +15,4 @@ std::string verdict_on(const Summary& summary);
 // itself.
 std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& reference);
 
-}  // namespace qddot::exchange
+}  // namespace qddot::measure

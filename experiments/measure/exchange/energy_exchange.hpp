@@ -4,7 +4,7 @@
 
 #include "qddot/model/system.hpp"
 
-namespace qddot::exchange {
+namespace qddot::measure {
 
 // Energies of some springs over time.
 struct EnergyCourse {
@@ -32,4 +32,4 @@ struct ExchangeComparison {
 // at t = 0; what one has after the end of the other does not count. At least two times each.
 ExchangeComparison compare(const EnergyCourse& course, const EnergyCourse& other, double window);
 
-}  // namespace qddot::exchange
+}  // namespace qddot::measure

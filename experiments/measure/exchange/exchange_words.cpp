@@ -1,11 +1,11 @@
-#include "experiments/exchange/exchange_words.hpp"
+#include "qddot/measure/exchange/exchange_words.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-namespace qddot::exchange {
+namespace qddot::measure {
 namespace {
 
 // Beyond these of the tempo, the misfit and the sum from start to end, something is wrong.
@@ -47,4 +47,4 @@ std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& re
   return "exchanges as it should";
 }
 
-}  // namespace qddot::exchange
+}  // namespace qddot::measure

@@ -2,12 +2,12 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/exchange/energy_exchange.hpp"
+#include "qddot/measure/exchange/energy_exchange.hpp"
 
 BOOST_AUTO_TEST_SUITE(energy_exchange)
 
 using namespace qddot;
-using namespace qddot::exchange;
+using namespace qddot::measure;
 
 namespace {
 

@@ -1,0 +1,113 @@
+#include <cmath>
+#include <pybind11/complex.h>
+
+#include "bindings.hpp"
+#include "outside.hpp"
+#include "qddot/analysis/equilibrium.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/analysis/natural_modes.hpp"
+#include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/stability/linear_limit.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
+#include "qddot/scene/settle.hpp"
+
+namespace qddot::python {
+namespace {
+
+using py::arg;
+
+// A scene in all directions in which its nodes may move, or an own system as it is.
+std::shared_ptr<const ReducedScene> all_directions(const Model& model) {
+  if (!model.start) return model.reduced;
+  return std::make_shared<const ReducedScene>(*model.start, Reductions::all_directions());
+}
+
+const char* name_of(Equilibrium::Outcome outcome) {
+  switch (outcome) {
+    case Equilibrium::Outcome::reached:
+      return "reached";
+    case Equilibrium::Outcome::unbounded:
+      return "unbounded";
+    case Equilibrium::Outcome::not_converged:
+      break;
+  }
+  return "not_converged";
+}
+
+// Where the model comes to rest, downhill from its start; `length` [m] is the size of an own
+// system.
+py::dict equilibrium(const Model& model, double length) {
+  std::shared_ptr<const ReducedScene> scene;
+  Equilibrium rest;
+  double energy = 0;
+  outside(1, [&](const std::stop_token&) {
+    scene = all_directions(model);
+    rest = model.start ? equilibrium_of(*scene)
+                       : find_equilibrium(scene->system(), scene->initial().q, length);
+    energy = scene->potential({0, rest.q, Vec::Zero(rest.q.size())});
+  });
+  const auto nodes = scene->expand({0, rest.q, Vec::Zero(rest.q.size())});
+  return py::dict(arg("outcome") = name_of(rest.outcome), arg("message") = rest.message,
+                  arg("positions") = array_of(nodes, &Node::position, scene->dimension()),
+                  arg("potential") = energy, arg("residual") = rest.residual,
+                  arg("smallest_eigenvalue") = rest.smallest_eigenvalue,
+                  arg("isolated") = rest.isolated, arg("flat_directions") = rest.flat_directions,
+                  arg("iterations") = rest.iterations);
+}
+
+// The lowest modes about the start: w^2 and, as displacements of all nodes, their shapes.
+py::dict modes(const Model& model, Index count) {
+  std::shared_ptr<const ReducedScene> scene;
+  NaturalModes lowest;
+  double largest = 0;
+  outside(1, [&](const std::stop_token&) {
+    scene = all_directions(model);
+    lowest = lowest_modes(scene->system(), scene->initial().q, count);
+    largest = largest_frequency(scene->system(), scene->initial().q);
+  });
+  const int d = scene->dimension();
+  py::list shapes;
+  for (Index j = 0; j < lowest.shapes.cols(); ++j) {
+    // A displacement goes through the reduction as a velocity does.
+    const auto nodes = scene->expand({0, scene->initial().q, lowest.shapes.col(j)});
+    shapes.append(array_of(nodes, &Node::velocity, d));
+  }
+  return py::dict(arg("squares") = array_of(lowest.squares), arg("shapes") = shapes,
+                  arg("omega_max") = largest, arg("finite") = finite_modes(scene->system()));
+}
+
+py::dict linear_step(const std::string& name, double h_omega, const py::dict& given) {
+  const measure::LinearStep step = measure::linear_step(method(name), h_omega, options_of(given));
+  return py::dict(arg("h_omega") = step.h_omega, arg("roots") = step.roots,
+                  arg("spectral_radius") = step.spectral_radius(),
+                  arg("damping_ratio") = step.damping_ratio(),
+                  arg("period_error") = step.period_error());
+}
+
+}  // namespace
+
+void add_analyses(py::module_& module) {
+  module.def("equilibrium", &equilibrium);
+  module.def("modes", &modes);
+  module.def("linear_step", &linear_step);
+  // The largest h w at which a method does not let an oscillation grow, by theory and as it is.
+  module.def("stability_limit", [](const std::string& name) {
+    const Method& chosen = method(name);
+    if (chosen.knob != Knob::step_size)
+      throw std::invalid_argument(name +
+                                  " chooses its steps by itself, so that it has no limit of "
+                                  "h w; allowed are methods whose knob is step_size");
+    double measured = 0;
+    outside(1, [&](const std::stop_token&) { measured = measure::measured_limit(chosen); });
+    return py::make_tuple(linear_limit(chosen), measured);
+  });
+  module.def("largest_frequency", [](const Model& model) {
+    double omega = 0;
+    outside(1, [&](const std::stop_token&) {
+      omega = largest_frequency(model.reduced->system(), model.reduced->initial().q);
+    });
+    return omega;
+  });
+}
+
+}  // namespace qddot::python

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "own_forces.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/trial.hpp"
+#include "qddot/measure/reference/reference.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
+
+namespace qddot::python {
+
+using Names = std::vector<std::string>;
+
+// What is run: the smallest system of a scene, or a system of the caller's own.
+struct Model {
+  std::shared_ptr<const ReducedScene> reduced;
+  // The scene as its motion starts; none of an own system.
+  std::shared_ptr<const Scene> start{};
+};
+
+// A certified motion, and whose it is.
+struct HeldReference {
+  Model model;
+  measure::Reference reference;
+};
+
+// The options of that dictionary, whose keys are those of Options; `solver` is a name.
+Options options_of(const py::dict& given);
+
+// "positions", "path" or "energy"; throws std::invalid_argument for anything else.
+measure::AccuracyOf accuracy_of(const std::string& of);
+
+// A summary, an error, a point of a chart as dictionaries.
+py::dict record_of(const Counts& counts);
+py::dict record_of(const Summary& summary);
+py::dict record_of(const measure::Errors& errors);
+py::dict record_of(const measure::Point& point);
+
+// Each adds its functions and classes to the module.
+void add_methods(py::module_& module);
+void add_scenes(py::module_& module);
+void add_models(py::module_& module);
+void add_runs(py::module_& module);
+void add_analyses(py::module_& module);
+void add_measures(py::module_& module);
+void add_exchange(py::module_& module);
+
+}  // namespace qddot::python

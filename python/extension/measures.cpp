@@ -1,0 +1,230 @@
+#include <chrono>
+
+#include "bindings.hpp"
+#include "outside.hpp"
+#include "qddot/measure/advice/advise.hpp"
+#include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/reference/reference_words.hpp"
+#include "qddot/measure/speed/judgement.hpp"
+#include "qddot/measure/speed/work_precision.hpp"
+#include "qddot/measure/trend/scene_trend.hpp"
+
+namespace qddot::python {
+namespace {
+
+using namespace measure;
+using py::arg;
+
+HeldReference reference_of(const Model& model, double until, double seconds) {
+  HeldReference held{.model = model, .reference = {}};
+  outside(1, [&](const std::stop_token&) {
+    held.reference = make_reference(*model.reduced, until, seconds, model.start.get());
+  });
+  return held;
+}
+
+// What a picture and a reader want to know of a reference.
+py::dict reference_record(const HeldReference& held) {
+  const Reference& r = held.reference;
+  py::list parts;
+  for (const PartScale& part : r.scales.parts) {
+    parts.append(
+        py::dict(arg("displacement") = part.displacement, arg("at_rest") = part.is_at_rest()));
+  }
+  py::dict record(
+      arg("until") = r.end.t, arg("energy") = r.energy, arg("certified") = record_of(r.certified),
+      arg("rounding_effect") = r.rounding_effect, arg("chaotic") = r.is_chaotic(),
+      arg("horizon") = r.horizon, arg("lyapunov") = r.lyapunov,
+      arg("beyond_horizon") = r.is_beyond_horizon(), arg("only_symmetric") = r.is_only_symmetric(),
+      arg("modal_shares_floor") = r.modal_shares_floor, arg("made_by") = r.made_by,
+      arg("seconds") = r.seconds, arg("displacement") = r.scales.displacement, arg("parts") = parts,
+      arg("divided_by") = what_divides(r));
+  if (r.out_of_symmetry) record["symmetric_until"] = r.out_of_symmetry->horizon;
+  return record;
+}
+
+py::dict end_of(const HeldReference& held) {
+  const auto nodes = held.model.reduced->expand(held.reference.end);
+  const int d = held.model.reduced->dimension();
+  return py::dict(arg("q") = array_of(nodes, &Node::position, d),
+                  arg("v") = array_of(nodes, &Node::velocity, d));
+}
+
+// Errors of positions and velocities of all nodes at the reference's end, whoever computed them.
+py::tuple errors_of(const HeldReference& held, const Doubles& q, const Doubles& v) {
+  const ReducedScene& scene = *held.model.reduced;
+  const auto exact = scene.expand(held.reference.end);
+  const int d = scene.dimension();
+  const auto wanted = static_cast<py::ssize_t>(exact.size()) * d;
+  if (q.size() != wanted || v.size() != wanted)
+    throw std::invalid_argument("errors: " + std::to_string(q.size()) + " positions and " +
+                                std::to_string(v.size()) + " velocities; there are " +
+                                std::to_string(wanted) + " of each");
+  std::vector<Node> nodes = exact;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (int c = 0; c < d; ++c) {
+      const auto at = static_cast<py::ssize_t>(i) * d + c;
+      nodes[i].position[c] = q.data()[at];
+      nodes[i].velocity[c] = v.data()[at];
+    }
+  }
+  const Scales& scales = held.reference.scales;
+  return py::make_tuple(position_error(nodes, exact, scales), velocity_error(nodes, exact, scales));
+}
+
+std::vector<const Method*> methods_named(const Names& names) {
+  std::vector<const Method*> chosen;
+  for (const std::string& name : names) chosen.push_back(&method(name));
+  return chosen;
+}
+
+// The points of all methods, and the rows of the front by their numbers. `report` is a callable
+// that sees each point, or None.
+py::dict work_precision_of(const HeldReference& held, const Names& names, double seconds,
+                           int repeats, const py::dict& given, const py::object& report) {
+  const Effort effort{
+      .seconds = seconds, .repeats = repeats, .options = options_of(given), .watch = nullptr};
+  const auto see = [&](const Point& point) {
+    if (report.is_none()) return stop_if_interrupted();
+    try {
+      const py::gil_scoped_acquire acquired;
+      report(record_of(point));
+    } catch (...) {
+      remember(std::current_exception());
+      throw;
+    }
+    stop_if_interrupted();
+  };
+  WorkPrecision chart;
+  std::vector<FrontRow> front;
+  outside(1, [&](const std::stop_token&) {
+    std::optional<Watch> watch;
+    Effort watched = effort;
+    if (held.model.start) {  // momenta are those of springs
+      watch.emplace(*held.model.start, *held.model.reduced, held.reference.end.t, held.reference);
+      watched.watch = &*watch;
+    }
+    chart = work_precision(*held.model.reduced, held.reference, methods_named(names), watched, see);
+    front = chart.front();
+    add_stability_margins(front, *held.model.reduced);
+  });
+  py::list points, rows;
+  for (const Point& point : chart.points) {
+    py::dict record = record_of(point);
+    const Known position = known(point.errors.position, held.reference.certified.position);
+    record["error_position_at_least"] = position.at_least;
+    record["error_position_at_most"] = position.at_most;
+    points.append(record);
+  }
+  const auto number = [&](const Point* point) -> py::object {
+    if (!point) return py::none();
+    return py::int_(point - chart.points.data());
+  };
+  for (const FrontRow& row : front) {
+    rows.append(py::dict(arg("accuracy") = row.accuracy, arg("fastest") = number(row.fastest),
+                         arg("hand_written") = number(row.fastest_hand_written),
+                         arg("sundials") = number(row.fastest_sundials),
+                         arg("stability_margin") = row.stability_margin));
+  }
+  return py::dict(arg("points") = points, arg("front") = rows);
+}
+
+py::object candidate(const std::optional<Candidate>& c) {
+  if (!c) return py::none();
+  return py::dict(arg("method") = c->method->name, arg("knob") = knob_name(c->method->knob),
+                  arg("value") = c->value, arg("error") = c->error, arg("seconds") = c->seconds);
+}
+
+py::dict advise_on(const Model& model, double until, const std::vector<double>& accuracies,
+                   const std::string& of) {
+  const AccuracyOf what = accuracy_of(of);
+  Advices all;
+  outside(1,
+          [&](const std::stop_token&) { all = advise(*model.reduced, until, accuracies, what); });
+  py::list each;
+  for (const Advice& advice : all.for_each) {
+    each.append(py::dict(arg("accuracy") = advice.accuracy, arg("why") = advice.why,
+                         arg("is_seen") = advice.is_seen, arg("margin") = advice.margin(),
+                         arg("take") = candidate(advice.take),
+                         arg("runner_up") = candidate(advice.runner_up),
+                         arg("own_explicit") = candidate(advice.own_explicit),
+                         arg("own_implicit") = candidate(advice.own_implicit),
+                         arg("sundials") = candidate(advice.sundials)));
+  }
+  return py::dict(arg("for_each") = each, arg("w_start") = all.w_start,
+                  arg("w_motion") = all.w_motion, arg("own_frequency") = all.own_frequency,
+                  arg("largest_stable_step") = all.largest_stable_step,
+                  arg("lyapunov") = all.lyapunov, arg("horizon") = all.horizon,
+                  arg("runs") = all.runs, arg("seconds") = all.seconds);
+}
+
+py::dict trend_record(const Trend& t, const TrendScales& scales) {
+  const auto interval = [](const Interval& i) { return py::make_tuple(i.value, i.low, i.high); };
+  return py::dict(arg("verdict") = verdict_name(t.verdict),
+                  arg("words") = trend_in_words(t, scales), arg("drift") = interval(t.drift),
+                  arg("rate") = interval(t.rate), arg("oscillation") = t.oscillation,
+                  arg("walk") = t.walk, arg("needed") = t.needed);
+}
+
+// Where the energy of a scene goes in a run of a method.
+py::dict energy_trend_of(const Model& model, const std::string& name, const py::dict& given,
+                         double until, double seconds) {
+  DriftRun run;
+  outside(1, [&](const std::stop_token&) {
+    run = energy_trend(*model.start, method(name), options_of(given), until, seconds);
+    stop_if_interrupted();
+  });
+  std::vector<double> t, energy, error;
+  for (const DriftPoint& point : run.path) {
+    t.push_back(point.t);
+    energy.push_back(point.energy);
+    error.push_back(point.error);
+  }
+  return py::dict(
+      arg("summary") = record_of(run.summary), arg("seconds") = run.seconds, arg("t") = array_of(t),
+      arg("energy") = array_of(energy), arg("error") = array_of(error),
+      arg("trend") = trend_record(run.energy, run.scales),
+      arg("verdict") = verdict_name(verdict_at(run, until)), arg("words") = verdict(run, until));
+}
+
+}  // namespace
+
+py::dict record_of(const Errors& errors) {
+  return py::dict(arg("position") = errors.position, arg("velocity") = errors.velocity,
+                  arg("energy") = errors.energy);
+}
+
+py::dict record_of(const Point& p) {
+  const bool is = p.outcome == Outcome::reached_end;
+  const auto measured = [is](double x) {
+    return is ? x : std::numeric_limits<double>::quiet_NaN();
+  };
+  py::dict record(arg("method") = p.method->name, arg("knob") = knob_name(p.method->knob),
+                  arg("value") = p.value, arg("outcome") = std::string(name(p.outcome)),
+                  arg("t_reached") = p.t_reached,
+                  arg("error_position") = measured(p.errors.position),
+                  arg("error_velocity") = measured(p.errors.velocity),
+                  arg("error_energy") = measured(p.errors.energy), arg("time_s") = measured(p.time),
+                  arg("time_min_s") = measured(p.time_min), arg("setup_s") = measured(p.setup),
+                  arg("order_mean") = order_mean(p.counts), arg("timed_runs") = p.timed_runs,
+                  arg("family") = family_name(p.method->family), arg("order") = p.method->order,
+                  arg("error_energy_max") = measured(p.path.energy),
+                  arg("error_momentum_max") = measured(p.path.momentum),
+                  arg("error_modal_shares") = measured(p.path.modal_shares),
+                  arg("energy_growth") = p.energy_growth, arg("stock_of") = p.method->stock_of);
+  record.attr("update")(record_of(p.counts));
+  return record;
+}
+
+void add_measures(py::module_& module) {
+  py::class_<HeldReference> reference(module, "Reference");
+  reference.def("record", [](const HeldReference& held) { return reference_record(held); });
+  reference.def("end", &end_of);
+  reference.def("errors", &errors_of);
+  module.def("reference", &reference_of);
+  module.def("work_precision", &work_precision_of);
+  module.def("advise", &advise_on);
+  module.def("energy_trend", &energy_trend_of);
+}
+
+}  // namespace qddot::python

@@ -1,0 +1,80 @@
+#include <array>
+
+#include "bindings.hpp"
+#include "qddot/measure/motion/simulation.hpp"
+
+namespace qddot::python {
+namespace {
+
+template <class Kind, std::size_t count>
+Names names_in(const SetOf<Kind>& set, const std::array<const char*, count>& names) {
+  Names held;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (set.has(static_cast<Kind>(i))) held.emplace_back(names[i]);
+  }
+  return held;
+}
+
+// In the order of the enumerations in method.hpp.
+constexpr std::array traits = {"implicit",        "linearly_implicit", "symplectic",
+                               "cancels_torques", "accepts_massless",  "interpolates",
+                               "bounds_steps"};
+constexpr std::array needs = {"stiffness", "constant_stiffness", "split_forces",
+                              "discrete_gradient", "laplacian"};
+constexpr std::array options = {"max_order",       "stability_detection", "iterations",
+                                "solve_tolerance", "spectral_radius",     "solver",
+                                "compensated"};
+
+py::dict method_record(const Method& method) {
+  using py::arg;
+  return py::dict(
+      arg("name") = method.name, arg("summary") = method.summary, arg("source") = method.source,
+      arg("order") = method.order, arg("family") = family_name(method.family),
+      arg("knob") = knob_name(method.knob), arg("stability_limit") = method.stability_limit,
+      arg("traits") = names_in(method.traits, traits), arg("needs") = names_in(method.needs, needs),
+      arg("takes") = names_in(method.takes, options), arg("stock_of") = method.stock_of);
+}
+
+py::list records() {
+  py::list all;
+  for (const Method& method : methods()) all.append(method_record(method));
+  return all;
+}
+
+}  // namespace
+
+Options options_of(const py::dict& given) {
+  Options options;
+  const auto take = [&](const char* name, auto& to) {
+    if (given.contains(name)) to = given[name].template cast<std::decay_t<decltype(to)>>();
+  };
+  take("step_size", options.step_size);
+  take("rtol", options.rtol);
+  take("atol", options.atol);
+  take("max_order", options.max_order);
+  take("stability_detection", options.stability_detection);
+  take("iterations", options.iterations);
+  take("solve_tolerance", options.solve_tolerance);
+  take("spectral_radius", options.spectral_radius);
+  take("compensated", options.compensated);
+  if (given.contains("solver")) {
+    const auto name = given["solver"].cast<std::string>();
+    const auto solver = find_solver(name);
+    if (!solver)
+      throw std::invalid_argument("solver: " + name + " is none; allowed are " + solver_list());
+    options.solver = *solver;
+  }
+  return options;
+}
+
+void add_methods(py::module_& module) {
+  module.def("methods", &records);
+  module.def("advice", [](const std::string& outcome) {
+    for (int i = 0; i <= static_cast<int>(Outcome::no_discrete_gradient); ++i) {
+      if (name(static_cast<Outcome>(i)) == outcome) return advice(static_cast<Outcome>(i));
+    }
+    throw std::invalid_argument(outcome + " is no outcome");
+  });
+}
+
+}  // namespace qddot::python

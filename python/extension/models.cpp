@@ -1,0 +1,157 @@
+#include "bindings.hpp"
+#include "outside.hpp"
+#include "qddot/measure/motion/simulation.hpp"
+#include "qddot/model/differenced_stiffness.hpp"
+#include "qddot/scene/explain.hpp"
+
+namespace qddot::python {
+namespace {
+
+Reductions reductions_without(const Names& kept) {
+  Reductions reductions;
+  for (const std::string& name : kept) {
+    const auto found = std::ranges::find(reduction_names, name);
+    if (found == reduction_names.end()) {
+      std::string all;
+      for (const auto other : reduction_names)
+        all += (all.empty() ? "" : ", ") + std::string(other);
+      throw std::invalid_argument("keep: " + name + " is no reduction; allowed are " + all);
+    }
+    reductions = reductions.without(static_cast<Reduction>(found - reduction_names.begin()));
+  }
+  return reductions;
+}
+
+// The smallest system of a scene as it starts (see reduced_for), for a method or for none.
+Model model_of(const std::shared_ptr<Scene>& start, const std::optional<std::string>& name,
+               const Names& kept) {
+  Model model{.reduced = nullptr, .start = start};
+  const Reductions reductions = reductions_without(kept);
+  outside(1, [&](const std::stop_token&) {
+    model.reduced = std::make_shared<const ReducedScene>(
+        name ? reduced_for(method(*name), *start, reductions) : ReducedScene(*start, reductions));
+  });
+  return model;
+}
+
+OwnForces::Force force_of(const py::object& given) {
+  if (py::isinstance<py::int_>(given))
+    return reinterpret_cast<CForce>(given.cast<std::uintptr_t>());
+  return given;
+}
+OwnForces::Potential potential_of(const py::object& given) {
+  if (given.is_none()) return {};
+  if (py::isinstance<py::int_>(given))
+    return reinterpret_cast<CPotential>(given.cast<std::uintptr_t>());
+  return given;
+}
+
+// A system of the caller's own. `pattern`: rows and columns of K, which is differences of f where
+// there is no `stiffness`.
+Model own_model(const Doubles& mass, const std::vector<py::ssize_t>& shape, const py::object& force,
+                const py::object& potential, const py::object& stiffness,
+                const std::optional<std::pair<Indices, Indices>>& pattern, double length,
+                const Doubles& q, const Doubles& v, int dimension) {
+  const Vec m = vec_of(mass);
+  const bool computes = !stiffness.is_none();
+  SymmetricMatrix own_pattern;
+  if (computes) own_pattern = pattern_of(pattern->first, pattern->second, m.size());
+  std::shared_ptr<const System> system = std::make_shared<OwnForces>(
+      m, shape, force_of(force), potential_of(potential), stiffness, std::move(own_pattern));
+  if (!computes && pattern) {
+    std::vector<std::pair<Index, Index>> pairs;
+    for (py::ssize_t a = 0; a < pattern->first.size(); ++a)
+      pairs.emplace_back(pattern->first.at(a), pattern->second.at(a));
+    system = std::make_shared<DifferencedStiffness>(system, pairs, length);
+  }
+  return {std::make_shared<const ReducedScene>(system, State{0, vec_of(q), vec_of(v)}, dimension)};
+}
+
+Vec unknowns(const Model& model, const Doubles& q) {
+  const Index n = model.reduced->system().size();
+  if (q.size() != n)
+    throw std::invalid_argument("q: " + std::to_string(q.size()) + " numbers; there are " +
+                                std::to_string(n) + " unknowns");
+  return vec_of(q);
+}
+
+// Calls back nobody but the system itself, whose own callables hold the GIL.
+py::array_t<double> force_at(const Model& model, const Doubles& q) {
+  const Vec x = unknowns(model, q);
+  Vec f(x.size());
+  model.reduced->system().force(x, f);
+  return array_of(f);
+}
+
+// K as (data, indices, indptr) of its lower triangle, column by column.
+py::tuple stiffness_at(const Model& model, const Doubles& q) {
+  const System& system = model.reduced->system();
+  const Vec x = unknowns(model, q);
+  SymmetricMatrix k = system.stiffness_pattern();
+  system.stiffness(x, k);
+  k.makeCompressed();
+  const auto copied = [](const auto* from, Index count) {
+    py::array_t<std::decay_t<decltype(*from)>> array(count);
+    std::copy_n(from, count, array.mutable_data());
+    return array;
+  };
+  return py::make_tuple(copied(k.valuePtr(), k.nonZeros()), copied(k.innerIndexPtr(), k.nonZeros()),
+                        copied(k.outerIndexPtr(), k.cols() + 1));
+}
+
+py::dict explanation_of(const Model& model) {
+  using py::arg;
+  Explanation e;
+  std::string words;
+  outside(1, [&](const std::stop_token&) {
+    e = explain(*model.start, *model.reduced);
+    words = explanation_in_words(e, *model.start);
+  });
+  py::list findings;
+  for (const Finding& finding : e.findings)
+    findings.append(py::make_tuple(std::string(name(finding.reduction)), finding.what));
+  return py::dict(arg("text") = words, arg("drawn_unknowns") = e.drawn_unknowns,
+                  arg("unknowns") = e.unknowns, arg("left_out") = findings,
+                  arg("stiffness_is_constant") = e.stiffness_is_constant,
+                  arg("omega_max") = e.omega_max, arg("omega_bound") = e.omega_bound,
+                  arg("unstable") = e.unstable, arg("flat") = e.flat, arg("growth") = e.growth);
+}
+
+}  // namespace
+
+void add_models(py::module_& module) {
+  py::class_<Model> model(module, "Model");
+  model.def_property_readonly("nodes", [](const Model& self) {
+    return self.reduced->expand(self.reduced->initial()).size();
+  });
+  model.def_property_readonly("dimension",
+                              [](const Model& self) { return self.reduced->dimension(); });
+  model.def_property_readonly("size",
+                              [](const Model& self) { return self.reduced->system().size(); });
+  model.def_property_readonly(
+      "mass", [](const Model& self) { return array_of(self.reduced->system().mass()); });
+  model.def_property_readonly(
+      "q", [](const Model& self) { return array_of(self.reduced->initial().q); });
+  model.def_property_readonly(
+      "v", [](const Model& self) { return array_of(self.reduced->initial().v); });
+  model.def_property_readonly(
+      "has_potential", [](const Model& self) { return self.reduced->system().has_potential(); });
+  model.def_property_readonly(
+      "has_stiffness", [](const Model& self) { return self.reduced->system().has_stiffness(); });
+  model.def("force", &force_at);
+  model.def("stiffness", &stiffness_at);
+  model.def("potential", [](const Model& self, const Doubles& q) {
+    return self.reduced->system().potential(unknowns(self, q));
+  });
+  // All nodes of the scene where the unknowns are q and v: positions and velocities.
+  model.def("nodes_at", [](const Model& self, const Doubles& q, const Doubles& v, double t) {
+    const auto nodes = self.reduced->expand({t, unknowns(self, q), unknowns(self, v)});
+    const int d = self.reduced->dimension();
+    return py::make_tuple(array_of(nodes, &Node::position, d), array_of(nodes, &Node::velocity, d));
+  });
+  model.def("explain", &explanation_of);
+  module.def("model_of", &model_of);
+  module.def("own_model", &own_model);
+}
+
+}  // namespace qddot::python

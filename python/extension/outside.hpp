@@ -1,0 +1,56 @@
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <pybind11/pybind11.h>
+#include <semaphore.h>
+#include <stop_token>
+#include <thread>
+
+#include "qddot/measure/motion/interruption.hpp"
+
+namespace qddot::python {
+
+// While this lives, Ctrl-C asks for a stop, if it is made in Python's main thread, which is the one
+// that Python answers signals in. The signal goes on to Python, which raises KeyboardInterrupt
+// where raise_what_came() is called.
+class ControlC {
+ public:
+  ControlC();  // holds the GIL
+  ~ControlC();
+  ControlC(const ControlC&) = delete;
+  ControlC& operator=(const ControlC&) = delete;
+
+  std::stop_token stop() const { return source_.get_token(); }
+  // Throws what Python's handlers of signals raise; holds the GIL.
+  static void raise_what_came();
+
+ private:
+  bool watches_ = false;
+  std::stop_source source_;
+  sem_t came_{};
+  sem_t* outer_ = nullptr;  // of a call that this one is within; may be none
+  std::jthread watcher_;
+};
+
+// While this lives, forces and factorisations take so many threads where this one asks for them.
+class Threads {
+ public:
+  explicit Threads(int count);
+  ~Threads();
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+ private:
+  int before_;
+};
+
+// What a callable raised within outside(), to be raised again at its end even where a library took
+// it for a failure of its own.
+void remember(std::exception_ptr thrown);
+
+// Does the work without the GIL, on so many threads, so that other threads of Python go on. Ctrl-C
+// ends it (see OwnInterruption), and is raised then; so is what a callable raised.
+void outside(int threads, const std::function<void(std::stop_token)>& work);
+
+}  // namespace qddot::python

@@ -1,0 +1,160 @@
+#include <chrono>
+
+#include "bindings.hpp"
+#include "outside.hpp"
+#include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/stability/diagnosis.hpp"
+
+namespace qddot::python {
+namespace {
+
+using namespace measure;
+using py::arg;
+
+// Arrays of the caller's that a run fills at the times that it is looked at: positions and
+// velocities (2, times, nodes, dimension), energies (3, times).
+class Filling {
+ public:
+  Filling(const ReducedScene& model, std::vector<double> times, py::array_t<double>& motion,
+          std::optional<py::array_t<double>>& energies)
+      : model_(model),
+        times_(std::move(times)),
+        motion_(motion.mutable_data()),
+        block_(static_cast<std::size_t>(motion.size()) / 2),
+        frame_(times_.empty() ? 0 : block_ / times_.size()),
+        energies_(energies ? energies->mutable_data() : nullptr) {}
+
+  Observer observer() {
+    if (times_.empty()) return {};
+    return {times_, [this](const State& state) { see(state); }};
+  }
+  std::size_t seen() const { return seen_; }
+
+ private:
+  void see(const State& state) {
+    const auto nodes = model_.expand(state);
+    double* to = motion_ + seen_ * frame_;
+    write(nodes, &Node::position, model_.dimension(), to);
+    write(nodes, &Node::velocity, model_.dimension(), to + block_);
+    if (energies_) {
+      const double kinetic = model_.kinetic(state), potential = model_.potential(state);
+      energies_[seen_] = kinetic;
+      energies_[seen_ + times_.size()] = potential;
+      energies_[seen_ + 2 * times_.size()] = kinetic + potential;
+    }
+    ++seen_;
+  }
+
+  const ReducedScene& model_;
+  std::vector<double> times_;
+  double* motion_;
+  std::size_t block_, frame_;
+  double* energies_;
+  std::size_t seen_ = 0;
+};
+
+py::dict end_of(const ReducedScene& model, const State& state) {
+  const auto nodes = model.expand(state);
+  const int d = model.dimension();
+  return py::dict(arg("t") = state.t, arg("q") = array_of(nodes, &Node::position, d),
+                  arg("v") = array_of(nodes, &Node::velocity, d));
+}
+
+// One run of a method. The arrays are as Filling has them.
+py::dict run(const Model& model, const std::string& name, const py::dict& given, double until,
+             const std::vector<double>& times, py::array_t<double> motion,
+             std::optional<py::array_t<double>> energies, std::optional<double> most_seconds,
+             int threads) {
+  Simulation simulation(model.reduced, method(name), options_of(given));
+  Filling filling(*model.reduced, times, motion, energies);
+  Summary summary;
+  double seconds = 0;
+  outside(threads, [&](const std::stop_token& stop) {
+    std::optional<Deadline> deadline;
+    if (most_seconds) deadline.emplace(*most_seconds);
+    const auto begin = std::chrono::steady_clock::now();
+    summary = simulation.advance(until, filling.observer(), deadline ? deadline->token() : stop);
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  });
+  return py::dict(arg("summary") = record_of(summary), arg("seconds") = seconds,
+                  arg("seen") = filling.seen(),
+                  arg("end") = end_of(*model.reduced, simulation.state()),
+                  arg("growth") = growth_warning(method(name), summary));
+}
+
+// The motion to an accuracy.
+py::dict answer(const Model& model, double until, double accuracy, const std::string& of,
+                std::optional<double> most_seconds, int threads) {
+  Wanted wanted{.accuracy = accuracy, .of = accuracy_of(of)};
+  if (most_seconds) wanted.seconds = *most_seconds;
+  Answer found;
+  outside(threads, [&](const std::stop_token&) { found = solve(*model.reduced, until, wanted); });
+  py::dict record(arg("is_reached") = found.is_reached, arg("why") = found.why,
+                  arg("error_estimate") = found.error_estimate,
+                  arg("error_estimate_kind") = name(found.error_estimate_kind),
+                  arg("advised_by") = found.advised_by, arg("horizon") = found.horizon,
+                  arg("lyapunov") = found.lyapunov, arg("runs") = found.runs,
+                  arg("seconds") = found.seconds.run, arg("seconds_in_all") = found.seconds.total(),
+                  arg("summary") = record_of(found.summary));
+  if (!found.method) return record;
+  record["method"] = found.method->name;
+  record["value"] = found.value;
+  record["end"] = end_of(*model.reduced, found.end);
+  if (model.reduced->system().has_potential()) {
+    const double kinetic = model.reduced->kinetic(found.end);
+    const double potential = model.reduced->potential(found.end);
+    record["energies"] = py::make_tuple(kinetic, potential, kinetic + potential);
+  }
+  return record;
+}
+
+std::string why_it_failed(const Model& model, const std::string& name, const py::dict& given,
+                          double until, double seconds) {
+  const Method& chosen = method(name);
+  const Options options = options_of(given);
+  std::string words;
+  outside(1, [&](const std::stop_token& stop) {
+    Simulation simulation(model.reduced, chosen, options);
+    const Summary summary = simulation.advance(until, {}, stop);
+    words = summary.outcome == Outcome::reached_end
+                ? step_warning(chosen, options, *model.reduced)
+                : diagnosis(chosen, options, *model.reduced, until, summary, seconds);
+  });
+  return words;
+}
+
+}  // namespace
+
+measure::AccuracyOf accuracy_of(const std::string& of) {
+  if (of == "positions") return AccuracyOf::positions;
+  if (of == "path") return AccuracyOf::path;
+  if (of == "energy") return AccuracyOf::energy;
+  throw std::invalid_argument("accuracy_of: " + of + "; allowed are positions, path and energy");
+}
+
+py::dict record_of(const Counts& c) {
+  return py::dict(arg("steps") = c.steps, arg("rejected") = c.rejected,
+                  arg("force_evaluations") = c.force_evaluations,
+                  arg("stiffness_evaluations") = c.stiffness_evaluations,
+                  arg("factorizations") = c.factorizations, arg("solves") = c.solves,
+                  arg("newton_iterations") = c.newton_iterations,
+                  arg("indefinite_factorizations") = c.indefinite_factorizations,
+                  arg("order_reductions") = c.order_reductions,
+                  arg("stability_limited_steps") = c.stability_limited_steps);
+}
+
+py::dict record_of(const Summary& s) {
+  return py::dict(arg("outcome") = std::string(name(s.outcome)), arg("t_reached") = s.t_reached,
+                  arg("message") = s.message, arg("energy_growth") = s.energy_growth,
+                  arg("counts") = record_of(s.counts));
+}
+
+void add_runs(py::module_& module) {
+  module.def("run", &run);
+  module.def("answer", &answer);
+  module.def("why_it_failed", &why_it_failed);
+}
+
+}  // namespace qddot::python

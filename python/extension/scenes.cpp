@@ -1,0 +1,156 @@
+#include "bindings.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/scene_arrays.hpp"
+#include "qddot/scene/scene_file.hpp"
+#include "qddot/scene/scene_writer.hpp"
+#include "qddot/scene/settle.hpp"
+
+namespace qddot::python {
+namespace {
+
+using Given = std::optional<Doubles>;
+
+Eigen::MatrixXd matrix_of(const Doubles& array, const char* name) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  if (array.ndim() != 2)
+    throw std::invalid_argument(std::string(name) +
+                                ": it is no table of (nodes, dimension) numbers");
+  return RowMajor::Map(array.data(), array.shape(0), array.shape(1));
+}
+
+Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles& mass,
+                 const Doubles& stiffness, const Indices& pinned, const Given& gravity,
+                 const Given& velocities, const Given& rest_length, const Given& quartic) {
+  SceneArrays a;
+  const auto node = [](std::int64_t number, const char* name) {
+    if (number >= 0) return static_cast<std::size_t>(number);
+    throw std::invalid_argument(std::string(name) + ": node " + std::to_string(number) +
+                                " is none; nodes count from 0");
+  };
+  a.positions = matrix_of(positions, "positions");
+  if (springs.size() > 0 && (springs.ndim() != 2 || springs.shape(1) != 2))
+    throw std::invalid_argument("springs: they are no table of (springs, 2) nodes");
+  for (py::ssize_t s = 0; s < springs.size() / 2; ++s) {
+    const std::int64_t* ends = springs.data() + 2 * s;
+    a.springs.push_back({node(ends[0], "springs"), node(ends[1], "springs")});
+  }
+  a.mass = vec_of(mass);
+  a.stiffness = vec_of(stiffness);
+  for (py::ssize_t i = 0; i < pinned.size(); ++i)
+    a.pinned.push_back(node(pinned.data()[i], "pinned"));
+  if (gravity) a.gravity = vec_of(*gravity);
+  if (velocities) a.velocities = matrix_of(*velocities, "velocities");
+  if (rest_length) a.rest_length = vec_of(*rest_length);
+  if (quartic) a.quartic = vec_of(*quartic);
+  return scene_of(a);
+}
+
+// A number of each node or spring.
+template <class Value, class Items, class Take>
+py::array_t<Value> column(const Items& items, const Take& take) {
+  py::array_t<Value> array(static_cast<py::ssize_t>(items.size()));
+  std::transform(items.begin(), items.end(), array.mutable_data(), take);
+  return array;
+}
+
+py::array_t<std::int64_t> ends_of(const Scene& scene) {
+  py::array_t<std::int64_t> array({static_cast<py::ssize_t>(scene.springs.size()), py::ssize_t{2}});
+  std::int64_t* to = array.mutable_data();
+  for (const Spring& spring : scene.springs)
+    to = std::copy(spring.nodes.begin(), spring.nodes.end(), to);
+  return array;
+}
+
+const Generator& generator_named(const std::string& name) {
+  if (const Generator* generator = find_generator(name)) return *generator;
+  std::string all;
+  for (const Generator& other : generators()) all += (all.empty() ? "" : ", ") + other.name;
+  throw std::invalid_argument(name + " is no generator of scenes; there are " + all);
+}
+
+py::list generator_records() {
+  using py::arg;
+  py::list all;
+  for (const Generator& generator : generators()) {
+    py::list parameters;
+    for (const GeneratorParameter& p : generator.parameters) {
+      parameters.append(py::dict(arg("name") = p.name, arg("standard") = p.standard,
+                                 arg("low") = p.low, arg("high") = p.high,
+                                 arg("meaning") = p.meaning, arg("whole") = p.whole));
+    }
+    all.append(py::dict(arg("name") = generator.name, arg("summary") = generator.summary,
+                        arg("parameters") = parameters));
+  }
+  return all;
+}
+
+}  // namespace
+
+void add_scenes(py::module_& module) {
+  using Shared = std::shared_ptr<Scene>;
+  const auto shared = [](Scene scene) { return std::make_shared<Scene>(std::move(scene)); };
+  py::class_<Scene, Shared> scene(module, "Scene");
+  scene.def_static("load", [=](const std::string& name) { return shared(load_scene(name)); });
+  scene.def_static(
+      "parse", [=](const std::string& text, const std::string& name, const std::string& folder) {
+        return shared(parse_scene(text, name, folder));
+      });
+  scene.def_static("generate", [=](const std::string& name, const GeneratorValues& values) {
+    return shared(generate(generator_named(name), values, name));
+  });
+  scene.def_static("from_arrays",
+                   [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
+                       const Doubles& stiffness, const Indices& pinned, const Given& gravity,
+                       const Given& velocities, const Given& rest_length, const Given& quartic,
+                       const std::string& name, std::optional<double> until,
+                       std::optional<double> stiff_above, bool starts_at_equilibrium) {
+                     Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity,
+                                             velocities, rest_length, quartic);
+                     made.name = name;
+                     made.until = until;
+                     made.stiff_above = stiff_above;
+                     made.starts_at_equilibrium = starts_at_equilibrium;
+                     validate(made, name);
+                     return shared(std::move(made));
+                   });
+  // The scene as its motion starts: with its nodes at rest where it asks for that.
+  scene.def("started", [=](const Shared& self) {
+    return self->starts_at_equilibrium ? shared(settled(*self, self->name)) : self;
+  });
+  scene.def("to_toml", [](const Scene& self) { return to_toml(self); });
+  scene.def("content_hash", [](const Scene& self) { return content_hash(self); });
+  scene.def_readonly("name", &Scene::name);
+  scene.def_readonly("dimension", &Scene::dimension);
+  scene.def_readonly("until", &Scene::until);
+  scene.def_readonly("stiff_above", &Scene::stiff_above);
+  scene.def_readonly("starts_at_equilibrium", &Scene::starts_at_equilibrium);
+  scene.def_readonly("warnings", &Scene::warnings);
+  scene.def_property_readonly("positions", [](const Scene& self) {
+    return array_of(self.nodes, &Node::position, self.dimension);
+  });
+  scene.def_property_readonly("velocities", [](const Scene& self) {
+    return array_of(self.nodes, &Node::velocity, self.dimension);
+  });
+  scene.def_property_readonly("gravity", [](const Scene& self) {
+    return array_of(Vec(self.gravity.head(self.dimension)));
+  });
+  scene.def_property_readonly("mass", [](const Scene& self) {
+    return column<double>(self.nodes, [](const Node& node) { return node.mass; });
+  });
+  scene.def_property_readonly("pinned", [](const Scene& self) {
+    return column<bool>(self.nodes, [](const Node& node) { return node.pinned; });
+  });
+  scene.def_property_readonly("springs", &ends_of);
+  const auto of_springs = [&](const char* name, double SpringLaw::*which) {
+    scene.def_property_readonly(name, [which](const Scene& self) {
+      return column<double>(self.springs,
+                            [which](const Spring& spring) { return spring.law.*which; });
+    });
+  };
+  of_springs("stiffness", &SpringLaw::stiffness);
+  of_springs("rest_length", &SpringLaw::rest_length);
+  of_springs("quartic", &SpringLaw::quartic);
+  module.def("generators", &generator_records);
+}
+
+}  // namespace qddot::python

@@ -1,0 +1,79 @@
+"""Time integration of deformable objects: mass-spring networks, or an own M q'' = f(q), by all of
+qddot's methods and SUNDIALS', with references, charts, advice and answers with an error bar.
+
+    import qddot
+    cloth = qddot.scenes.cloth(nodes=30)
+    solution = qddot.solve(cloth, "blanes_moan4", step_size=1e-3, until=0.5)
+    sure = qddot.solve(cloth, accuracy=1e-4, until=0.5)
+
+Arrays are float64 in C order, (nodes, dimension) or, over time, (times, nodes, dimension). Units are
+SI. A run that fails is a Solution with an outcome; `or_raise()` makes an exception of it. What cannot
+be asked for is a ValueError with one sentence.
+"""
+
+from qddot import scenes
+from qddot._advice import Advice, Advices, Candidate, advise
+from qddot._analysis import (
+    Equilibrium,
+    LinearStep,
+    Modes,
+    StabilityLimit,
+    equilibrium,
+    linear_step,
+    modes,
+    stability_limit,
+)
+from qddot._exchange import Exchange, ExchangeRun, exchange
+from qddot._methods import Method, method, methods
+from qddot._qddot import InvalidInput, NoReference, __version__
+from qddot._reference import Errors, Reference, reference
+from qddot._scene import Explanation, Scene
+from qddot._solution import Counts, Energy, RunFailed, Solution, State
+from qddot._solve import solve
+from qddot._system import System
+from qddot._trend import EnergyTrend, energy_trend
+from qddot._work_precision import Convergence, Point, WorkPrecision, convergence, work_precision
+
+__all__ = [
+    "Advice",
+    "Advices",
+    "Candidate",
+    "Convergence",
+    "Counts",
+    "Energy",
+    "EnergyTrend",
+    "Equilibrium",
+    "Errors",
+    "Exchange",
+    "ExchangeRun",
+    "Explanation",
+    "InvalidInput",
+    "LinearStep",
+    "Method",
+    "Modes",
+    "NoReference",
+    "Point",
+    "Reference",
+    "RunFailed",
+    "Scene",
+    "Solution",
+    "StabilityLimit",
+    "State",
+    "System",
+    "WorkPrecision",
+    "__version__",
+    "advise",
+    "convergence",
+    "energy_trend",
+    "equilibrium",
+    "exchange",
+    "linear_step",
+    "method",
+    "methods",
+    "modes",
+    "reference",
+    "scenes",
+    "solve",
+    "stability_limit",
+    "work_precision",
+]

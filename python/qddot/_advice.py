@@ -1,0 +1,107 @@
+"""Which method to take."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Sequence
+
+from numpy.typing import ArrayLike
+
+from qddot import _qddot
+from qddot._scene import Scene
+from qddot._solve import end_of, model_of, require_measurable
+from qddot._system import System
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A run that might be made: what it is expected to miss by and to take [s]."""
+
+    method: str
+    knob: str
+    value: float
+    error: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to take for one accuracy; take is None where no run is expected to come so far, and why
+    says what stands against it. The runner-up takes `margin` times as long. is_seen: whether the
+    error was seen in a run and its check, and not only expected."""
+
+    accuracy: float
+    take: Candidate | None
+    why: str
+    is_seen: bool
+    margin: float
+    runner_up: Candidate | None
+    own_explicit: Candidate | None
+    own_implicit: Candidate | None
+    sundials: Candidate | None
+
+
+@dataclass(frozen=True)
+class Advices:
+    """Advice for each accuracy, and what the scene asks of a method: largest frequencies [rad/s] at
+    the start and over the motion, Verlet's largest stable step [s], the horizon [s] of a chaotic
+    motion."""
+
+    for_each: list[Advice]
+    w_start: float
+    w_motion: float
+    own_frequency: float
+    largest_stable_step: float
+    lyapunov: float
+    horizon: float
+    runs: int
+    seconds: float
+
+    def _repr_html_(self) -> str:
+        head = ("accuracy", "take", "at", "expected error", "expected time", "runner-up")
+        rows = []
+        for advice in self.for_each:
+            cells = [f"{advice.accuracy:.0e}"]
+            if advice.take is None:
+                cells += ["-", advice.why, "", "", ""]
+            else:
+                take, margin = advice.take, advice.margin
+                cells += [take.method, f"{take.knob} = {take.value:.3g}", f"{take.error:.1e}"]
+                cells.append(f"{take.seconds:.2g} s")
+                next_best = advice.runner_up
+                many = math.isfinite(margin) and next_best is not None
+                cells.append(f"{next_best.method}, {margin:.2g} x" if many and next_best else "")
+            rows.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+        titles = "".join(f"<th>{title}</th>" for title in head)
+        return f"<table><tr>{titles}</tr>{''.join(rows)}</table>"
+
+
+def advise(
+    of: Scene | System,
+    accuracies: float | Sequence[float],
+    *,
+    until: float | None = None,
+    accuracy_of: str = "positions",
+    q0: ArrayLike | None = None,
+    v0: ArrayLike | None = None,
+) -> Advices:
+    """Which method comes to each accuracy in the least time, found out in at most half a second or
+    twice the run that is advised."""
+    require_measurable(of, "advise")
+    asked = [accuracies] if isinstance(accuracies, (int, float)) else list(accuracies)
+    for accuracy in asked:
+        if not 1e-14 <= accuracy < 1:
+            raise ValueError(f"accuracy {accuracy} is not allowed; it is a relative error from 1e-14 "
+                             "to below 1")
+    record = _qddot.advise(
+        model_of(of, q0, v0), end_of(of, until), [float(a) for a in asked], accuracy_of
+    )
+    record["for_each"] = [_advice(one) for one in record["for_each"]]
+    return Advices(**record)
+
+
+def _advice(record: dict[str, Any]) -> Advice:
+    for name in ("take", "runner_up", "own_explicit", "own_implicit", "sundials"):
+        record[name] = None if record[name] is None else Candidate(**record[name])
+    return Advice(**record)

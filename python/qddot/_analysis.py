@@ -1,0 +1,139 @@
+"""What is known of a scene or a method without a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from qddot import _qddot
+from qddot._arrays import Floats
+from qddot._scene import Scene
+from qddot._solve import model_of
+from qddot._system import System
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A stable rest, downhill from the start: all nodes' positions [m], V there [J].
+
+    outcome: "reached", "unbounded" or "not_converged", message says why in a sentence. residual is
+    the largest force [N], smallest_eigenvalue that of -K [N/m]. isolated: whether V rises in every
+    direction; if not, it is flat within rounding in so many.
+    """
+
+    positions: Floats
+    potential: float
+    outcome: str
+    message: str
+    residual: float
+    smallest_eigenvalue: float
+    isolated: bool
+    flat_directions: int
+    iterations: int
+
+
+@dataclass(frozen=True)
+class Modes:
+    """The lowest natural modes about the start, by rank.
+
+    squares: w^2 [1/s^2], below zero where a shape grows. shapes: (modes, nodes, dimension),
+    x with x'Mx = 1. omega_max [rad/s]: the largest natural frequency; finite: how many modes there
+    are.
+    """
+
+    squares: Floats
+    shapes: Floats
+    omega_max: float
+    finite: int
+
+    @property
+    def omega(self) -> Floats:
+        """w [rad/s], or minus the rate of growth [1/s]."""
+        return np.copysign(np.sqrt(np.abs(self.squares)), self.squares)
+
+
+@dataclass(frozen=True)
+class LinearStep:
+    """What a method of fixed steps does to a vibration q'' = -w^2 q in a step of h w = h_omega: the
+    roots that the motion is multiplied by, the largest of which is spectral_radius; the damping ratio
+    and the relative error of the period that come of it."""
+
+    h_omega: float
+    roots: tuple[complex, ...]
+    spectral_radius: float
+    damping_ratio: float
+    period_error: float
+
+
+@dataclass(frozen=True)
+class StabilityLimit:
+    """The largest h w at which a method lets no vibration grow, by theory and as it is; infinite where
+    there is none. For a scene also the step h [s] that this is."""
+
+    method: str
+    predicted: float
+    measured: float
+    step_size: float | None = None
+
+
+def equilibrium(
+    of: Scene | System, q0: ArrayLike | None = None, *, length: float = 1.0
+) -> Equilibrium:
+    """The stable equilibrium that is reached downhill from where a scene is drawn, or from q0 of a
+    System of the size `length` [m]."""
+    if isinstance(of, Scene):
+        start = _qddot.model_of(of._handle, None, [])
+    else:
+        start = model_of(of, q0)
+    record = _qddot.equilibrium(start, length)
+    record["positions"] = _shaped(of, record["positions"])
+    return Equilibrium(**record)
+
+
+def modes(
+    of: Scene | System,
+    count: int = 10,
+    q0: ArrayLike | None = None,
+    *,
+    at_equilibrium: bool = False,
+) -> Modes:
+    """The `count` lowest modes of a scene where its motion starts (or at its equilibrium), in all
+    directions in which its nodes may move; of a System at q0."""
+    if count < 1:
+        raise ValueError(f"count {count} is not allowed; it is 1 or more")
+    if at_equilibrium:
+        if isinstance(of, Scene):
+            of = of.replace(starts_at_equilibrium=True)
+        else:
+            q0 = equilibrium(of, q0).positions
+    record = _qddot.modes(model_of(of, q0), count)
+    shapes = [_shaped(of, shape) for shape in record["shapes"]]
+    record["shapes"] = np.array(shapes)
+    return Modes(**record)
+
+
+def linear_step(method: str, h_omega: float, **options: Any) -> LinearStep:
+    """What the method does to a vibration in a step of h w; options are those of solve()."""
+    record = _qddot.linear_step(method, float(h_omega), options)
+    record["roots"] = tuple(record["roots"])
+    return LinearStep(**record)
+
+
+def stability_limit(
+    method: str, of: Scene | System | None = None, q0: ArrayLike | None = None
+) -> StabilityLimit:
+    """The method's limit of h w, by theory and found by bisection; and the step that it is on a scene,
+    or a System at q0, where w is the largest natural frequency of the start."""
+    predicted, measured = _qddot.stability_limit(method)
+    step = None
+    if of is not None:
+        omega = _qddot.largest_frequency(model_of(of, q0))
+        step = predicted / omega if omega > 0 else np.inf
+    return StabilityLimit(method, predicted, measured, step)
+
+
+def _shaped(of: Scene | System, nodes: Floats) -> Floats:
+    return nodes.reshape(-1) if isinstance(of, System) and of.dimension is None else nodes

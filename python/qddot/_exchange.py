@@ -1,0 +1,72 @@
+"""The energy that stiff springs exchange."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Sequence
+
+from qddot import _qddot
+from qddot._arrays import Floats
+from qddot._methods import method as method_named
+from qddot._scene import Scene
+from qddot._solve import end_of
+
+
+@dataclass(frozen=True)
+class ExchangeRun:
+    """One method at one step size. energies: (times, stiff springs), the oscillatory energy of each
+    [J]. tempo: how fast they exchange it beside the reference, misfit what is left of the difference
+    then; None where the run failed. verdict says it in words."""
+
+    method: str
+    step_size: float
+    h_omega: float
+    t: Floats
+    energies: Floats
+    sum_deviation: float
+    energy_error: float
+    exchange_error: float | None
+    tempo: float | None
+    misfit: float | None
+    verdict: str
+    outcome: str
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """How methods exchange the energy of stiff springs. omega [rad/s] is these springs' highest
+    frequency, certified what the reference may be off by, in parts of their energy."""
+
+    omega: float
+    certified: float
+    reference: ExchangeRun
+    runs: list[ExchangeRun]
+
+
+def exchange(
+    of: Scene,
+    methods: Sequence[str],
+    h_omega: Sequence[float] = (0.1, 1.0),
+    *,
+    until: float | None = None,
+    every: float | None = None,
+) -> Exchange:
+    """Follows the energies of the stiff springs (Scene.stiff_above) by each method at each step h with
+    h w as given, w the springs' highest frequency; seen about `every` [s], a thousandth of the time
+    where not given."""
+    for name in methods:
+        method_named(name)
+    steps = [float(x) for x in h_omega]
+    if not all(0 < x < float("inf") for x in steps):
+        raise ValueError("h_omega: its numbers are finite and above 0")
+    made = _qddot.exchange(of._model(), list(methods), steps, end_of(of, until), every)
+    return Exchange(
+        made["omega"], made["certified"], _run(made["reference"]), [_run(r) for r in made["runs"]]
+    )
+
+
+def _run(record: dict[str, Any]) -> ExchangeRun:
+    record["outcome"] = record.pop("summary")["outcome"]
+    for name in ("exchange_error", "tempo", "misfit"):
+        record.setdefault(name, None)
+    return ExchangeRun(**record)

@@ -1,0 +1,73 @@
+"""What there is to integrate with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from qddot import _qddot
+
+
+@dataclass(frozen=True)
+class Method:
+    """An integrator: an entry of the registry, which tables, tests and studies are driven by.
+
+    `order` is that of the global error, 0 where there is none. `knob` is what trades speed for
+    accuracy: "step_size" [s] or "rtol". `stability_limit` is the largest h w at which an explicit
+    method of fixed steps lets no oscillation grow; None for others. `takes` names the options of
+    solve() that it listens to, `needs` what it asks of a System beside its forces.
+    """
+
+    name: str
+    summary: str
+    source: str
+    order: int
+    family: str
+    knob: str
+    stability_limit: float | None
+    traits: tuple[str, ...]
+    needs: tuple[str, ...]
+    takes: tuple[str, ...]
+    stock_of: str
+
+
+@lru_cache(maxsize=None)
+def _all() -> dict[str, Method]:
+    tuples = ("traits", "needs", "takes")
+    records = (
+        {key: tuple(value) if key in tuples else value for key, value in record.items()}
+        for record in _qddot.methods()
+    )
+    return {record["name"]: Method(**record) for record in records}
+
+
+def methods() -> list[Method]:
+    """All methods, in the order in which they are listed and drawn."""
+    return list(_all().values())
+
+
+def method(name: str) -> Method:
+    """The method of that name; a ValueError that names all there are where there is none."""
+    found = _all().get(name)
+    if found is None:
+        raise ValueError(f"{name!r} is no method; there are {', '.join(_all())}")
+    return found
+
+
+def options_for(chosen: Method, given: dict[str, Any]) -> dict[str, Any]:
+    """The options that were given, as the method takes them; a ValueError for those it ignores and
+    where its knob is missing."""
+    options = {name: value for name, value in given.items() if value is not None}
+    other = "rtol" if chosen.knob == "step_size" else "step_size"
+    for name in (other, *(["atol"] if chosen.knob == "step_size" else [])):
+        if name in options:
+            raise ValueError(f"{name} is not for {chosen.name}, which takes {chosen.knob}")
+    for name in options:
+        if name not in ("step_size", "rtol", "atol", *chosen.takes):
+            those = ", ".join(m.name for m in methods() if name in m.takes)
+            raise ValueError(f"{name} is not for {chosen.name}; it is for {those or 'no method'}")
+    if chosen.knob not in options:
+        what = "h in s" if chosen.knob == "step_size" else "a relative tolerance"
+        raise ValueError(f"{chosen.knob} is missing; {chosen.name} needs it, {what} above 0")
+    return options

@@ -1,0 +1,99 @@
+"""Motions that are known to certified digits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from qddot import _qddot
+from qddot._arrays import Floats, floats
+from qddot._scene import Scene
+from qddot._solution import Solution, State
+from qddot._solve import end_of, model_of, require_measurable
+from qddot._system import System
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Relative errors: the largest of any node, over the largest displacement or speed of the motion
+    (of its part of the scene); of the energy, over the largest kinetic energy."""
+
+    position: float
+    velocity: float
+    energy: float = float("nan")
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The motion at `until` [s], and how far it can be trusted: `certified` bounds its errors.
+
+    q, v: all nodes. made_by names the two ways that agree. chaotic: whether a rounding of the start
+    grows exponentially; from `horizon` [s] on nobody knows the positions, which part as
+    exp(lyapunov t).
+    """
+
+    until: float
+    q: Floats
+    v: Floats
+    energy: float
+    certified: Errors
+    made_by: str
+    seconds: float
+    chaotic: bool
+    horizon: float
+    lyapunov: float
+    beyond_horizon: bool
+    divided_by: str
+    _held: _qddot.Reference = field(repr=False, compare=False)
+    _record: dict[str, Any] = field(repr=False, compare=False)
+
+    def errors(self, motion: Solution | State | ArrayLike, v: ArrayLike | None = None) -> Errors:
+        """The errors of a solution that ended at `until`, or of q and v of all nodes there, whoever
+        computed them."""
+        state = motion.end if isinstance(motion, Solution) else motion
+        if isinstance(state, State):
+            if state.t != self.until:
+                raise ValueError(f"the motion ends at t = {state.t:g} s, and the reference is that of "
+                                 f"{self.until:g} s")
+            q, v = state.q, state.v
+        else:
+            q = floats(state, "q")
+        velocities = np.zeros_like(q) if v is None else floats(v, "v")
+        position, velocity = self._held.errors(q, velocities)
+        return Errors(position, velocity if v is not None else float("nan"))
+
+
+def reference(
+    of: Scene | System,
+    until: float | None = None,
+    *,
+    q0: ArrayLike | None = None,
+    v0: ArrayLike | None = None,
+    seconds: float = 10,
+) -> Reference:
+    """A certified motion, made in about so many seconds at most by two unlike ways. Raises NoReference
+    where either never reaches the end."""
+    require_measurable(of, "reference")
+    end = end_of(of, until)
+    return held(of, _qddot.reference(model_of(of, q0, v0), end, seconds))
+
+
+def held(of: Scene | System, handle: _qddot.Reference) -> Reference:
+    """The same as a dataclass."""
+    record, end = handle.record(), handle.end()
+    flat = isinstance(of, System) and of.dimension is None
+    certified = record["certified"]
+    names = (
+        "until energy made_by seconds chaotic horizon lyapunov beyond_horizon divided_by"
+    ).split()
+    return Reference(
+        q=end["q"].reshape(-1) if flat else end["q"],
+        v=end["v"].reshape(-1) if flat else end["v"],
+        certified=Errors(certified["position"], certified["velocity"], certified["energy"]),
+        _held=handle,
+        _record=record,
+        **{name: record[name] for name in names},
+    )

@@ -1,0 +1,283 @@
+"""What is drawn: nodes, springs, gravity; and what is left of it to be integrated."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qddot import _qddot
+from qddot._arrays import Floats, floats, frozen, whole_numbers
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What is left of a scene to be integrated, what was left out of it and why.
+
+    `left_out` has pairs (reduction, sentence). `omega_max` [rad/s] is the largest natural frequency
+    at the start, at most `omega_bound`; `largest_stable_step` = 2/omega_max [s] is that of Verlet's
+    method. `unstable` is the number of directions in which the energy falls at the start, the
+    fastest of which grows as exp(growth t). print() it for all of that in sentences.
+    """
+
+    text: str
+    drawn_unknowns: int
+    unknowns: int
+    left_out: tuple[tuple[str, str], ...]
+    stiffness_is_constant: bool
+    omega_max: float
+    omega_bound: float
+    unstable: int
+    flat: int
+    growth: float
+
+    @property
+    def largest_stable_step(self) -> float:
+        return 2 / self.omega_max if self.omega_max > 0 else np.inf
+
+    def __str__(self) -> str:
+        return self.text.rstrip()
+
+
+class Scene:
+    """A network of masses and springs, immutable.
+
+    positions: (nodes, dimension) [m], dimension 1, 2 or 3. springs: (springs, 2), the nodes of each,
+    from 0. stiffness [N/m], rest_length [m] (default: as drawn) and quartic [N/m^3] (default: none):
+    of each spring, or one for all. mass [kg]: of each node, or one for all; 0 is massless. pinned:
+    the nodes that stay, by number or as a mask. gravity: (dimension) [m/s^2]. velocities: as
+    positions [m/s]. until [s]: the end of its runs where none is asked for. stiff_above [N/m]:
+    springs of more are the stiff ones of methods that take these apart. With starts_at_equilibrium
+    its motion begins at rest, downhill from the positions. Raises InvalidInput, in a sentence, for
+    what cannot be.
+    """
+
+    _handle: _qddot.Scene
+    _start: _qddot.Scene | None
+    _models: dict[tuple[object, ...], _qddot.Model]
+
+    def __init__(
+        self,
+        positions: ArrayLike,
+        springs: ArrayLike,
+        *,
+        stiffness: ArrayLike,
+        mass: ArrayLike,
+        pinned: ArrayLike = (),
+        gravity: ArrayLike | None = None,
+        velocities: ArrayLike | None = None,
+        rest_length: ArrayLike | None = None,
+        quartic: ArrayLike | None = None,
+        name: str = "scene",
+        until: float | None = None,
+        stiff_above: float | None = None,
+        starts_at_equilibrium: bool = False,
+    ) -> None:
+        held = np.asarray(pinned)
+        if held.dtype == bool:
+            held = np.flatnonzero(held)
+        self._hold(
+            _qddot.Scene.from_arrays(
+                floats(positions, "positions"),
+                whole_numbers(springs, "springs"),
+                floats(mass, "mass", one=True),
+                floats(stiffness, "stiffness", one=True),
+                whole_numbers(held, "pinned"),
+                None if gravity is None else floats(gravity, "gravity"),
+                None if velocities is None else floats(velocities, "velocities"),
+                None if rest_length is None else floats(rest_length, "rest_length", one=True),
+                None if quartic is None else floats(quartic, "quartic", one=True),
+                name,
+                until,
+                stiff_above,
+                starts_at_equilibrium,
+            )
+        )
+
+    def _hold(self, handle: _qddot.Scene) -> None:
+        self._handle = handle
+        self._start = None
+        self._models = {}
+
+    @classmethod
+    def _of(cls, handle: _qddot.Scene) -> Scene:
+        scene = cls.__new__(cls)
+        scene._hold(handle)
+        return scene
+
+    @classmethod
+    def load(cls, name_or_path: str | os.PathLike[str]) -> Scene:
+        """The scene of a TOML file, or that a generator draws by its standard values."""
+        return cls._of(_qddot.Scene.load(os.fspath(name_or_path)))
+
+    @classmethod
+    def from_toml(cls, text: str, folder: str | os.PathLike[str] = ".") -> Scene:
+        """The scene of a TOML text; meshes that it names are sought from the folder."""
+        return cls._of(_qddot.Scene.parse(text, "the text", os.fspath(folder)))
+
+    @classmethod
+    def from_mesh(
+        cls,
+        file: str | os.PathLike[str],
+        *,
+        stiffness: float,
+        node_mass: float | None = None,
+        total_mass: float | None = None,
+        bending_stiffness: float | None = None,
+        scale: float | None = None,
+        pins: Sequence[tuple[Sequence[float], Sequence[float]]] = (),
+        gravity: Sequence[float] | None = None,
+        until: float | None = None,
+    ) -> Scene:
+        """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh): every edge is a spring at its own
+        length. `pins`: boxes (min, max) whose nodes stay."""
+        numbers = {
+            "stiffness": stiffness,
+            "node_mass": node_mass,
+            "total_mass": total_mass,
+            "bending_stiffness": bending_stiffness,
+            "scale": scale,
+        }
+        path = os.path.abspath(os.fspath(file))
+        quoted = path.replace("\\", "\\\\").replace('"', '\\"')
+        stem = os.path.splitext(os.path.basename(quoted))[0]
+        lines = [f'name = "{stem}"']
+        if until is not None:
+            lines.append(f"until = {float(until)!r}")
+        if gravity is not None:
+            lines.append(f"gravity = {[float(g) for g in gravity]!r}")
+        lines += ["[mesh]", f'file = "{quoted}"']
+        lines += [f"{k} = {float(v)!r}" for k, v in numbers.items() if v is not None]
+        for low, high in pins:
+            box = f"min = {[float(x) for x in low]!r}\nmax = {[float(x) for x in high]!r}"
+            lines += ["[[mesh.pin]]", box]
+        return cls._of(_qddot.Scene.parse("\n".join(lines) + "\n", path, os.path.dirname(path)))
+
+    name = property(lambda self: str(self._handle.name))
+    dimension = property(lambda self: int(self._handle.dimension))
+
+    @property
+    def until(self) -> float | None:
+        """The end of its runs where none is asked for [s]."""
+        return self._handle.until
+
+    @property
+    def stiff_above(self) -> float | None:
+        """Springs of more stiffness than that [N/m] are the stiff ones."""
+        return self._handle.stiff_above
+
+    @property
+    def starts_at_equilibrium(self) -> bool:
+        """Whether its motion begins at rest, downhill from the positions."""
+        return self._handle.starts_at_equilibrium
+
+    @property
+    def warnings(self) -> list[str]:
+        """What one should know of how the scene was read."""
+        return self._handle.warnings
+
+    @property
+    def positions(self) -> Floats:
+        """(nodes, dimension) [m]."""
+        return frozen(self._handle.positions)
+
+    @property
+    def velocities(self) -> Floats:
+        """(nodes, dimension) [m/s]."""
+        return frozen(self._handle.velocities)
+
+    @property
+    def mass(self) -> Floats:
+        """(nodes) [kg]."""
+        return frozen(self._handle.mass)
+
+    @property
+    def pinned(self) -> NDArray[np.bool_]:
+        """(nodes), whether each stays where it is."""
+        return frozen(self._handle.pinned)
+
+    @property
+    def gravity(self) -> Floats:
+        """(dimension) [m/s^2]."""
+        return frozen(self._handle.gravity)
+
+    @property
+    def springs(self) -> NDArray[np.int64]:
+        """(springs, 2), the nodes of each."""
+        return frozen(self._handle.springs)
+
+    @property
+    def stiffness(self) -> Floats:
+        """(springs) [N/m]."""
+        return frozen(self._handle.stiffness)
+
+    @property
+    def rest_length(self) -> Floats:
+        """(springs) [m]."""
+        return frozen(self._handle.rest_length)
+
+    @property
+    def quartic(self) -> Floats:
+        """(springs) [N/m^3]."""
+        return frozen(self._handle.quartic)
+
+    def replace(self, **changes: Any) -> Scene:
+        """The same scene but for these arguments of Scene()."""
+        names = (
+            "positions springs stiffness mass pinned gravity velocities rest_length quartic name "
+            "until stiff_above starts_at_equilibrium"
+        ).split()
+        for name in changes:
+            if name not in names:
+                raise ValueError(f"replace: {name} is none of {', '.join(names)}")
+        return Scene(**{**{name: getattr(self, name) for name in names}, **changes})
+
+    def to_toml(self) -> str:
+        """The text of a scene file that gives the same scene to the last bit."""
+        return self._handle.to_toml()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes that scene file."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.to_toml())
+
+    def content_hash(self) -> str:
+        """A hash of all that decides its motion, the same on every machine."""
+        return self._handle.content_hash()
+
+    def explain(self, keep: Sequence[str] = ()) -> Explanation:
+        """What is left of it to be integrated and why, w_max and the largest stable step."""
+        record = self._model(keep=keep).explain()
+        record["left_out"] = tuple(record["left_out"])
+        return Explanation(**record)
+
+    def model(self, keep: Sequence[str] = ()) -> _qddot.Model:
+        """The smallest system that moves as the scene does: mass, force(q), potential(q) and, as
+        (data, indices, indptr) of its lower triangle, stiffness(q), over the unknowns q alone;
+        nodes_at(q, v, t) has all nodes. `keep`: reductions that are not made."""
+        return self._model(keep=keep)
+
+    def _started(self) -> _qddot.Scene:
+        if self._start is None:
+            self._start = self._handle.started()
+        return self._start
+
+    def _model(
+        self, method: str | None = None, accepts_massless: bool = False, keep: Sequence[str] = ()
+    ) -> _qddot.Model:
+        # What a method has left of a scene depends on no more of it than that.
+        key = (accepts_massless, *sorted(keep))
+        if key not in self._models:
+            name = method if accepts_massless else None
+            self._models[key] = _qddot.model_of(self._started(), name, list(keep))
+        return self._models[key]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Scene.from_toml, (self.to_toml(),))
+
+    def __repr__(self) -> str:
+        nodes, springs = len(self.mass), len(self.stiffness)
+        return f"<qddot.Scene {self.name!r}: {nodes} nodes, {springs} springs, {self.dimension}D>"

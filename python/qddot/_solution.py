@@ -1,0 +1,138 @@
+"""What comes of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from html import escape
+from typing import Any, Callable
+
+from qddot._arrays import Floats
+
+
+class RunFailed(RuntimeError):
+    """A run that did not reach its end or its accuracy; `solution` has how far it came and why."""
+
+    def __init__(self, solution: Solution) -> None:
+        super().__init__(solution.message)
+        self.solution = solution
+
+
+@dataclass(frozen=True)
+class Counts:
+    """The work done. Steps are accepted ones; solves are right-hand sides."""
+
+    steps: int
+    rejected: int
+    force_evaluations: int
+    stiffness_evaluations: int
+    factorizations: int
+    solves: int
+    newton_iterations: int
+    indefinite_factorizations: int
+    order_reductions: int
+    stability_limited_steps: int
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energies [J] at the times of a solution."""
+
+    kinetic: Floats
+    potential: Floats
+    total: Floats
+
+
+@dataclass(frozen=True)
+class State:
+    """Positions [m] and velocities [m/s] of all nodes at time t [s]."""
+
+    t: float
+    q: Floats
+    v: Floats
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The motion that a method computed, at the times t of `save_at` that it reached, and at its end.
+
+    q, v: (times, nodes, dimension), or (times, n) of a System without a dimension; views into one
+    buffer. energy is None for a System without a potential. outcome is "reached_end" or says why
+    not, message in a sentence. seconds is the wall time of the run. Where an accuracy was asked for,
+    error_estimate bounds the relative error, error_estimate_kind says how it was made ("compared",
+    "refined", "conserved", "rounding", "none"), is_reached whether it is at most the accuracy, and
+    horizon [s] from when on nobody can know the motion.
+    """
+
+    method: str
+    knob: str
+    value: float
+    t: Floats
+    q: Floats
+    v: Floats
+    energy: Energy | None
+    end: State
+    outcome: str
+    message: str
+    t_reached: float
+    counts: Counts
+    seconds: float
+    energy_growth: float
+    accuracy: float | None = None
+    is_reached: bool | None = None
+    error_estimate: float | None = None
+    error_estimate_kind: str | None = None
+    horizon: float | None = None
+    runs: int = 1
+    seconds_in_all: float | None = None
+    _diagnose: Callable[[float], str] | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def success(self) -> bool:
+        """Whether the run reached its end and, where one was asked for, its accuracy."""
+        return self.outcome == "reached_end" and self.is_reached is not False
+
+    def or_raise(self) -> Solution:
+        """Itself; raises RunFailed where it is no success."""
+        if not self.success:
+            raise RunFailed(self)
+        return self
+
+    def diagnosis(self, seconds: float = 5) -> str:
+        """Why the run failed and what would have held, found out by trying for some seconds; or, of
+        one that did not fail, what is wrong with its steps all the same. Empty where nothing is to
+        be said."""
+        return self._diagnose(seconds) if self._diagnose else ""
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_diagnose": None}  # which holds a model, for this process alone
+
+    def __repr__(self) -> str:
+        words = [f"{self.method} at {self.knob} = {self.value:.4g}: {self.outcome}"]
+        words.append(f"t = {self.t_reached:g} s after {self.counts.steps} steps")
+        words.append(f"{self.seconds:.3g} s")
+        if self.error_estimate is not None:
+            words.append(f"error at most {self.error_estimate:.1e}")
+        return f"<qddot.Solution {', '.join(words)}>"
+
+    def _repr_html_(self) -> str:
+        rows = [("method", self.method), (self.knob, f"{self.value:.6g}")]
+        rows += [("outcome", self.outcome), ("t", f"{self.t_reached:g} s")]
+        if self.message:
+            rows.append(("", self.message))
+        if self.error_estimate is not None:
+            how = f"{self.error_estimate:.2g} ({self.error_estimate_kind})"
+            rows.append(("error at most", how))
+        rows.append(("wall time", f"{self.seconds:.3g} s"))
+        counts = ((f.name, getattr(self.counts, f.name)) for f in fields(self.counts))
+        rows += [(name.replace("_", " "), str(count)) for name, count in counts if count]
+        return table(rows)
+
+
+def table(rows: list[tuple[str, str]]) -> str:
+    """Rows of a name and a value as HTML."""
+    cells = "".join(
+        f"<tr><th style='text-align:left'>{escape(name)}</th>"
+        f"<td style='text-align:left'>{escape(value)}</td></tr>"
+        for name, value in rows
+    )
+    return f"<table>{cells}</table>"

@@ -1,0 +1,328 @@
+"""Speed against accuracy: the work-precision chart."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from typing import Any, Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qddot import _qddot
+from qddot._methods import method as method_named
+from qddot._reference import Reference, held
+from qddot._scene import Scene
+from qddot._solve import end_of, model_of, require_measurable
+from qddot._system import System
+
+_text = ("scene", "method", "knob", "outcome", "family", "stock_of")
+_whole = (
+    "steps rejected force_evaluations stiffness_evaluations factorizations solves newton_iterations "
+    "indefinite_factorizations order_reductions stability_limited_steps timed_runs order"
+).split()
+# The columns of points.csv, as the program work_precision writes it.
+COLUMNS = (
+    "scene method knob value outcome t_reached error_position error_velocity error_energy time_s "
+    "time_min_s setup_s steps rejected force_evaluations stiffness_evaluations factorizations solves "
+    "newton_iterations indefinite_factorizations order_mean order_reductions stability_limited_steps "
+    "timed_runs family order error_energy_max error_momentum_max error_modal_shares "
+    "error_position_at_least error_position_at_most energy_growth stock_of"
+).split()
+_drawing = os.path.join(os.path.dirname(__file__), "drawing")
+
+
+@dataclass(frozen=True)
+class Point:
+    """A method at one value of its knob: relative errors and the wall time of a run [s]."""
+
+    method: str
+    knob: str
+    value: float
+    error_position: float
+    error_position_at_most: float
+    error_velocity: float
+    error_energy: float
+    time_s: float
+    outcome: str
+
+
+@dataclass(frozen=True)
+class WorkPrecision:
+    """What every method takes and misses by, from coarse to fine, against a reference.
+
+    points: a structured array with the columns of points.csv, fit for pandas.DataFrame(points);
+    front: the fastest point at each accuracy, with the best of each family. In a notebook it draws
+    itself, if matplotlib is there.
+    """
+
+    reference: Reference
+    points: NDArray[Any] = field(repr=False)
+    front: NDArray[Any] = field(repr=False)
+    scene: str
+
+    def _judged(self) -> NDArray[np.float64]:
+        """What each point's accuracy is judged by, at most."""
+        # Beyond the horizon positions are known to nobody.
+        column = "error_energy_max" if self.reference.beyond_horizon else "error_position_at_most"
+        error = np.array(self.points[column], dtype=float)
+        error[self.points["outcome"] != "reached_end"] = np.inf
+        return np.where(np.isnan(error), np.inf, error)
+
+    def best(self, accuracy: float) -> Point | None:
+        """The fastest point that is known to come to the accuracy; None where none is."""
+        good = np.flatnonzero(self._judged() <= accuracy)
+        if good.size == 0:
+            return None
+        row = self.points[good[np.argmin(self.points["time_s"][good])]]
+        names = Point.__dataclass_fields__
+        return Point(**{name: row[name].item() for name in names})
+
+    def save(self, folder: str | os.PathLike[str]) -> None:
+        """Writes points.csv, front.csv and reference.json into the folder, as the program
+        work_precision does, which its pictures are drawn from."""
+        os.makedirs(folder, exist_ok=True)
+        for name, rows in (("points", self.points), ("front", self.front)):
+            with open(os.path.join(folder, f"{name}.csv"), "w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow(rows.dtype.names or ())
+                writer.writerows([_cell(value) for value in row.tolist()] for row in rows)
+        with open(os.path.join(folder, "reference.json"), "w", encoding="utf-8") as file:
+            json.dump(self._reference_record(), file, indent=1)
+
+    def _reference_record(self) -> dict[str, Any]:
+        record = self.reference._record
+        parts = record["parts"]
+        return {
+            "scene": self.scene,
+            "until": record["until"],
+            "certified_position": record["certified"]["position"],
+            "certified_velocity": record["certified"]["velocity"],
+            "certified_energy": record["certified"]["energy"],
+            "made_by": record["made_by"],
+            "chaotic": record["chaotic"],
+            "rounding_effect": record["rounding_effect"],
+            "beyond_horizon": record["beyond_horizon"],
+            "horizon": _finite(record["horizon"]),
+            "lyapunov": record["lyapunov"],
+            "modal_shares_floor": record["modal_shares_floor"],
+            "only_symmetric": record["only_symmetric"],
+            "out_of_symmetry": {"horizon": _finite(record.get("symmetric_until", math.inf))},
+            "scales": {"displacement": record["displacement"], "parts": parts},
+        }
+
+    def draw(self, path: str | os.PathLike[str]) -> None:
+        """Draws the chart into a PNG or SVG file. Raises RuntimeError where matplotlib is missing."""
+        ending = os.path.splitext(os.fspath(path))[1]
+        if ending not in (".png", ".svg"):
+            raise ValueError(f"{os.fspath(path)}: allowed are the endings .png and .svg")
+        with tempfile.TemporaryDirectory() as parent:
+            folder = os.path.join(parent, "chart")
+            self.save(folder)
+            script = os.path.join(_drawing, "work_precision.py")
+            done = subprocess.run(
+                [sys.executable, script, folder],
+                env={**os.environ, "PYTHONPATH": _drawing, "MPLBACKEND": "Agg"},
+                capture_output=True,
+                text=True,
+            )
+            if done.returncode != 0:
+                raise RuntimeError(f"the chart cannot be drawn: {done.stderr.strip()[-300:]}")
+            with open(os.path.join(folder, f"chart{ending}"), "rb") as drawn:
+                data = drawn.read()
+        with open(path, "wb") as file:
+            file.write(data)
+
+    def _repr_png_(self) -> bytes | None:
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "chart.png")
+            try:
+                self.draw(path)
+            except RuntimeError:
+                return None  # the table is there without matplotlib, too
+            with open(path, "rb") as file:
+                return file.read()
+
+    def _repr_html_(self) -> str:
+        head = "".join(f"<th>{name}</th>" for name in ("accuracy", "take", "at", "error", "time"))
+        rows = []
+        for row in self.front:
+            if row["method"]:
+                knob = f"{row['knob']} = {row['value']:.3g}"
+                cells = (f"{row['accuracy']:.0e}", row["method"], knob,
+                         f"{row['error_position']:.1e}", f"{row['time_s']:.3g} s")
+                rows.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+        return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, float):
+        return repr(value) if math.isfinite(value) else ""
+    return value
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _table(names: Sequence[str], records: list[dict[str, Any]]) -> NDArray[Any]:
+    def kind(name: str) -> tuple[str, str]:
+        if name in _text or name.endswith(("hand_written", "sundials", "fastest")):
+            longest = max((len(str(record[name])) for record in records), default=1)
+            return name, f"U{max(1, longest)}"
+        return name, "i8" if name in _whole else "f8"
+
+    table = np.empty(len(records), dtype=[kind(name) for name in names])
+    for i, record in enumerate(records):
+        table[i] = tuple(record[name] for name in names)
+    return table
+
+
+class _Progress:
+    """A line on stderr that says what was measured last."""
+
+    def __init__(self) -> None:
+        self.shown = 0
+
+    def __call__(self, point: Point) -> None:
+        words = f"{point.method} {point.value:.3g}: "
+        words += f"{point.error_position:.1e}" if point.outcome == "reached_end" else point.outcome
+        sys.stderr.write("\r" + words.ljust(self.shown))
+        sys.stderr.flush()
+        self.shown = len(words)
+
+    def end(self) -> None:
+        sys.stderr.write("\r" + " " * self.shown + "\r")
+        sys.stderr.flush()
+
+
+def work_precision(
+    of: Scene | System,
+    until: float | None = None,
+    methods: Sequence[str] = (),
+    *,
+    q0: ArrayLike | None = None,
+    v0: ArrayLike | None = None,
+    point_limit: float = 10,
+    repeats: int = 5,
+    reference: Reference | None = None,
+    reference_seconds: float = 10,
+    progress: bool | Callable[[Point], None] = False,
+) -> WorkPrecision:
+    """Measures methods, all that can run it where none are named, over the values of their knobs.
+
+    A run takes `point_limit` seconds at most and is timed `repeats` times, one after the other on one
+    thread. `reference`: one that was made of the same. `progress`: True for a line on stderr, or a
+    callable that sees each point.
+    """
+    require_measurable(of, "work_precision")
+    if isinstance(methods, str):
+        raise ValueError(f"methods: {methods!r} is one word; it is a list of names")
+    for name in methods:
+        method_named(name)
+    end = end_of(of, until)
+    if reference is None:
+        handle = _qddot.reference(model_of(of, q0, v0), end, reference_seconds)
+    elif reference.until != end:
+        raise ValueError(f"reference: it is that of {reference.until:g} s, and until is {end:g} s")
+    else:
+        handle = reference._held
+    line = _Progress() if progress is True else None
+    see = line if line else progress if callable(progress) else None
+
+    def report(record: dict[str, Any]) -> None:
+        assert see is not None
+        at_most = record["error_position"] + certified
+        see(Point(**{name: record.get(name, at_most) for name in Point.__dataclass_fields__}))
+
+    certified = float(handle.record()["certified"]["position"])
+    try:
+        made = _qddot.work_precision(
+            handle, list(methods), point_limit, repeats, {}, report if see else None
+        )
+    finally:
+        if line:
+            line.end()
+    scene = of.name if isinstance(of, Scene) else "system"
+    for record in made["points"]:
+        record["scene"] = scene
+        record["knob"] = str(record["knob"])
+    points = _table(COLUMNS, made["points"])
+    return WorkPrecision(held(of, handle), points, _front(made), scene)
+
+
+def _front(made: dict[str, Any]) -> NDArray[Any]:
+    names = (
+        "accuracy method knob value error_position time_s stability_margin hand_written "
+        "hand_written_time_s sundials sundials_time_s"
+    ).split()
+    rows = []
+    for row in made["front"]:
+        best, own, sundials = (
+            made["points"][row[which]] if row[which] is not None else None
+            for which in ("fastest", "hand_written", "sundials")
+        )
+        nothing = {"method": "", "knob": "", "value": math.nan, "error_position": math.nan,
+                   "time_s": math.nan}
+        best, own, sundials = best or nothing, own or nothing, sundials or nothing
+        rows.append(
+            {
+                "accuracy": row["accuracy"],
+                **{name: best[name] for name in nothing},
+                "stability_margin": row["stability_margin"],
+                "hand_written": own["method"],
+                "hand_written_time_s": own["time_s"],
+                "sundials": sundials["method"],
+                "sundials_time_s": sundials["time_s"],
+            }
+        )
+    return _table(names, rows)
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """Errors of a method at h, h/2, h/4, ... [s], and the order that each halving shows: log2 of the
+    ratio of errors, no number where one of them did not come to the end or is near what the reference
+    certifies."""
+
+    method: str
+    step_size: NDArray[np.float64]
+    error_position: NDArray[np.float64]
+    error_velocity: NDArray[np.float64]
+    order: NDArray[np.float64]
+
+
+def convergence(
+    of: Scene | System,
+    method: str,
+    step_size: float,
+    halvings: int = 6,
+    *,
+    until: float | None = None,
+    q0: ArrayLike | None = None,
+    v0: ArrayLike | None = None,
+    reference: Reference | None = None,
+) -> Convergence:
+    """The observed order of convergence of a method of fixed steps, from `step_size` [s] on."""
+    from qddot._reference import reference as make_reference
+    from qddot._solve import solve
+
+    exact = reference or make_reference(of, until, q0=q0, v0=v0)
+    steps = step_size / 2.0 ** np.arange(halvings + 1)
+    q, v = np.full(len(steps), np.nan), np.full(len(steps), np.nan)
+    for i, h in enumerate(steps):
+        solution = solve(of, method, step_size=float(h), until=exact.until, q0=q0, v0=v0)
+        if solution.success:
+            errors = exact.errors(solution)
+            q[i], v[i] = errors.position, errors.velocity
+    # Twenty times what is certified is an error of 0.07 in the order.
+    known = np.where(q > 20 * exact.certified.position, q, np.nan)
+    order = np.full(len(steps), np.nan)
+    order[1:] = np.log2(known[:-1] / known[1:])
+    return Convergence(method, steps, q, v, order)

@@ -1,0 +1,50 @@
+"""Scenes drawn from a few numbers: qddot.scenes.cloth(nodes=30). dir(qddot.scenes) lists them, and
+help() says which numbers each takes, in which range."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any, Protocol
+
+from qddot import _qddot
+from qddot._scene import Scene
+
+
+class Generator(Protocol):
+    """Draws a scene; parameters that are not named take their standard value."""
+
+    def __call__(self, **parameters: float) -> Scene: ...
+
+
+def _draw(record: dict[str, Any]) -> Generator:
+    name: str = record["name"]
+
+    def draw(**parameters: float) -> Scene:
+        return Scene._of(_qddot.Scene.generate(name, parameters))
+
+    lines = [record["summary"], ""]
+    signature = []
+    for p in record["parameters"]:
+        lines.append(f"{p['name']}: {p['meaning']}; from {p['low']:g} to {p['high']:g}")
+        standard = int(p["standard"]) if p["whole"] else p["standard"]
+        kind = inspect.Parameter.KEYWORD_ONLY
+        signature.append(inspect.Parameter(p["name"], kind, default=standard))
+    draw.__name__ = draw.__qualname__ = name
+    draw.__doc__ = "\n".join(lines)
+    setattr(draw, "__signature__", inspect.Signature(signature))
+    return draw
+
+
+_generators = {record["name"]: _draw(record) for record in _qddot.generators()}
+
+
+def __getattr__(name: str) -> Generator:
+    try:
+        return _generators[name]
+    except KeyError:
+        those = ", ".join(_generators)
+        raise AttributeError(f"{name} is no generator of scenes; there are {those}") from None
+
+
+def __dir__() -> list[str]:
+    return [*_generators, "Generator"]
