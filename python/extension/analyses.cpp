@@ -1,8 +1,8 @@
 #include <cmath>
 #include <pybind11/complex.h>
 
-#include "bindings.hpp"
-#include "outside.hpp"
+#include "python/extension/bindings.hpp"
+#include "python/extension/outside.hpp"
 #include "qddot/analysis/equilibrium.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/natural_modes.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "arrays.hpp"
-#include "own_forces.hpp"
+#include "python/extension/arrays.hpp"
+#include "python/extension/own_forces.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/trial.hpp"
 #include "qddot/measure/reference/reference.hpp"

@@ -1,5 +1,5 @@
-#include "bindings.hpp"
-#include "outside.hpp"
+#include "python/extension/bindings.hpp"
+#include "python/extension/outside.hpp"
 #include "qddot/measure/exchange/exchange_words.hpp"
 #include "qddot/measure/exchange/excitation.hpp"
 #include "qddot/measure/motion/simulation.hpp"

@@ -1,6 +1,6 @@
 #include <array>
 
-#include "bindings.hpp"
+#include "python/extension/bindings.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 
 namespace qddot::python {

@@ -1,5 +1,5 @@
-#include "bindings.hpp"
-#include "outside.hpp"
+#include "python/extension/bindings.hpp"
+#include "python/extension/outside.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/model/differenced_stiffness.hpp"
 #include "qddot/scene/explain.hpp"

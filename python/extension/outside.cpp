@@ -1,4 +1,4 @@
-#include "outside.hpp"
+#include "python/extension/outside.hpp"
 
 #include <atomic>
 #include <cerrno>
@@ -96,15 +96,20 @@ void outside(int threads, const std::function<void(std::stop_token)>& work) {
     }
     raised = outer;
   }
-  if (!thrown) return ControlC::raise_what_came();
   try {
-    std::rethrow_exception(std::exchange(thrown, nullptr));
+    if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
+  } catch (const py::error_already_set&) {
+    throw;
   } catch (const measure::Interrupted&) {
     ControlC::raise_what_came();
     // A handler of the user's own that raises nothing cannot have the work back.
     PyErr_SetNone(PyExc_KeyboardInterrupt);
     throw py::error_already_set();
+  } catch (...) {  // which may be what an interrupted run came to
+    ControlC::raise_what_came();
+    throw;
   }
+  ControlC::raise_what_came();
 }
 
 }  // namespace qddot::python

@@ -1,10 +1,10 @@
-#include "own_forces.hpp"
+#include "python/extension/own_forces.hpp"
 
 #include <stdexcept>
 
 #include <fmt/format.h>
 
-#include "outside.hpp"
+#include "python/extension/outside.hpp"
 
 namespace qddot::python {
 namespace {
@@ -171,7 +171,10 @@ double OwnForces::potential(const ConstVec& q) const {
   double v = 0;
   inside([&] {
     call(std::get<py::object>(potential_), "potential", q,
-         [&](const py::object& callable, py::object& x) { v = callable(x).cast<double>(); });
+         [&](const py::object& callable, py::object& x) {
+           v = PyFloat_AsDouble(callable(x).ptr());
+           if (PyErr_Occurred()) throw py::error_already_set();
+         });
   });
   return v;
 }

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "arrays.hpp"
+#include "python/extension/arrays.hpp"
 #include "qddot/model/system.hpp"
 
 namespace qddot::python {

@@ -1,7 +1,7 @@
 #include <chrono>
 
-#include "bindings.hpp"
-#include "outside.hpp"
+#include "python/extension/bindings.hpp"
+#include "python/extension/outside.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/simulation.hpp"

@@ -1,4 +1,4 @@
-#include "bindings.hpp"
+#include "python/extension/bindings.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/scene_arrays.hpp"
 #include "qddot/scene/scene_file.hpp"

@@ -97,11 +97,19 @@ class System:
 
     def _pairs(self, pattern: Any) -> Pattern:
         n = self.mass.size
+        rows, columns = self._entries(pattern)
+        beyond = (rows < 0) | (rows >= n) | (columns < 0) | (columns >= n)
+        if np.any(beyond):
+            i = int(np.flatnonzero(beyond)[0])
+            raise ValueError(f"pattern: entry ({rows[i]}, {columns[i]}) is not among the {n} unknowns")
+        return rows.astype(np.int64), columns.astype(np.int64)
+
+    def _entries(self, pattern: Any) -> Pattern:
+        n = self.mass.size
         if isinstance(pattern, str):
             if pattern != "dense":
                 raise ValueError(f"pattern {pattern!r} is not allowed; the only word is 'dense'")
-            rows, columns = np.tril_indices(n)
-            return rows.astype(np.int64), columns.astype(np.int64)
+            return np.tril_indices(n)
         if hasattr(pattern, "tocoo"):
             coo = pattern.tocoo()
             shape, rows, columns = coo.shape, coo.row, coo.col
@@ -114,15 +122,12 @@ class System:
             else:
                 shape, (rows, columns) = array.shape, np.nonzero(array)
         if shape == (n, n):
-            return rows.astype(np.int64), columns.astype(np.int64)
+            return rows, columns
         nodes = len(self.mass)
         if shape == (nodes, nodes) and self.dimension is not None:
             d = self.dimension
             a, b = (x.reshape(-1) for x in np.indices((d, d)))
-            return (
-                (rows[:, None] * d + a).reshape(-1).astype(np.int64),
-                (columns[:, None] * d + b).reshape(-1).astype(np.int64),
-            )
+            return (rows[:, None] * d + a).reshape(-1), (columns[:, None] * d + b).reshape(-1)
         raise ValueError(
             f"pattern: its shape is {shape}; allowed are ({n}, {n}), pairs (m, 2) of unknowns and, "
             f"with a dimension, (nodes, nodes) = ({nodes}, {nodes})"
@@ -150,7 +155,7 @@ class System:
         q = self._numbers(q0, "q0")
         v = np.zeros_like(q) if v0 is None else self._numbers(v0, "v0")
         if self._stiffness is not None and self._pattern is None:
-            self._pattern = self._pattern_at(q)
+            self._pattern = self._pattern_near(q)
         model = self._made(q, v)
         if self._must_check:
             self._check(model, q)
@@ -180,14 +185,18 @@ class System:
                              "of the masses")
         return array
 
-    def _pattern_at(self, q: Floats) -> Pattern:
-        shown = q.copy()
-        shown.setflags(write=False)
-        k = self._columns(shown)
-        if not isinstance(k, tuple):
-            return self._pairs("dense")
-        columns = np.repeat(np.arange(q.size, dtype=np.int64), np.diff(k[2]))
-        return np.asarray(k[1], dtype=np.int64), columns
+    def _pattern_near(self, q: Floats) -> Pattern:
+        """The entries of K at q and beside it, where none is zero by symmetry."""
+        beside = np.random.default_rng(0).uniform(0.5, 1, q.shape) * 1e-3 * self._length
+        rows, columns = [], []
+        for place in (q.copy(), q + beside):
+            place.setflags(write=False)
+            k = self._columns(place)
+            if not isinstance(k, tuple):
+                return self._pairs("dense")
+            rows.append(np.asarray(k[1], dtype=np.int64))
+            columns.append(np.repeat(np.arange(q.size, dtype=np.int64), np.diff(k[2])))
+        return np.concatenate(rows), np.concatenate(columns)
 
     def _check(self, model: _qddot.Model, q: Floats) -> None:
         """Holds V, f and K against each other at q, along one direction."""
@@ -204,7 +213,8 @@ class System:
         if self.has_potential:
             fall = (model.potential(x - d * u) - model.potential(x + d * u)) / (2 * d)
             work = float((ahead + behind) @ u) / 2
-            size = float(np.abs(f) @ np.abs(u)) + 1e-9 * abs(model.potential(x)) / d
+            size = float((np.abs(f) + np.abs(ahead - behind)) @ np.abs(u))
+            size += 1e-9 * abs(model.potential(x)) / d  # which is rounding
             if abs(fall - work) > TOLERANCE * size:
                 raise ValueError(f"potential: it falls by {fall:.6g} J/m where the force does "
                                  f"{work:.6g} J/m; f is -dV/dq (check=False takes it as it is)")

@@ -74,6 +74,10 @@ bool BlockDiagonalSystem::offers(const std::type_info& type) const {
   return true;
 }
 
+bool BlockDiagonalSystem::has_potential() const {
+  return std::ranges::all_of(blocks_, [](const auto& block) { return block->has_potential(); });
+}
+
 double BlockDiagonalSystem::potential(const ConstVec& q) const {
   double v = 0;
   for_each(blocks_, q,

@@ -26,6 +26,7 @@ class BlockDiagonalSystem final : public System,
   explicit BlockDiagonalSystem(std::vector<std::unique_ptr<System>> blocks);
 
   double potential(const ConstVec& q) const override;
+  bool has_potential() const override;
   void force(const ConstVec& q, MutableVec f) const override;
   void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }

@@ -27,6 +27,7 @@ class ConstrainedSystem final : public System,
   ConstrainedSystem(std::shared_ptr<const System> system, std::vector<bool> is_held);
 
   double potential(const ConstVec& q) const override { return system_->potential(q); }
+  bool has_potential() const override { return system_->has_potential(); }
   void force(const ConstVec& q, MutableVec f) const override;
   void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }

@@ -1,4 +1,5 @@
 #include <set>
+#include <stdexcept>
 
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
@@ -103,6 +104,29 @@ BOOST_AUTO_TEST_CASE(the_reference_is_one_and_the_chain_moves) {
 
 BOOST_AUTO_TEST_CASE(with_v_and_f_alone_it_is_run_by_every_method_that_needs_no_k) {
   run_all(Chain(), without_stiffness);
+}
+
+// Nothing asks for its V.
+template <class Base>
+class WithoutPotential final : public Base {
+ public:
+  bool has_potential() const override { return false; }
+  double potential(const ConstVec&) const override { throw std::logic_error("V was asked for"); }
+};
+
+BOOST_AUTO_TEST_CASE(with_f_alone_it_is_run_by_the_same_methods_and_its_growth_is_not_known) {
+  run_all(WithoutPotential<Chain>(), without_stiffness);
+  run_all(WithoutPotential<ChainWithStiffness>(), with_stiffness);
+  const Run grown = run(method_named("explicit_euler"), WithoutPotential<Chain>(), start(), 20,
+                        {.step_size = 1e-2});
+  BOOST_TEST(grown.summary.energy_growth == 1);
+  std::vector<std::unique_ptr<System>> blocks;
+  blocks.push_back(std::make_unique<ChainWithStiffness>());
+  BOOST_TEST(BlockDiagonalSystem(std::move(blocks)).has_potential());
+  blocks.clear();
+  blocks.push_back(std::make_unique<ChainWithStiffness>());
+  blocks.push_back(std::make_unique<WithoutPotential<ChainWithStiffness>>());
+  BOOST_TEST(!BlockDiagonalSystem(std::move(blocks)).has_potential());
 }
 
 BOOST_AUTO_TEST_CASE(a_capability_does_not_stand_for_k) {

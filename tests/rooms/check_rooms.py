@@ -42,6 +42,7 @@ MAY_SEE = {
     "experiments/measure/advice": ADVICE,
     "experiments/measure/exchange": EXCHANGE,
     "experiments/command": COMMAND,
+    "python/extension": COMMAND - {"experiments/command"},
     # Compiled for more than one processor: seen by each other only, and see what is plain data.
     VECTORS: {"src/model/kernels"},
     "src/algebra/multifrontal/vectors": {VECTORS, "src/algebra/multifrontal"},
@@ -73,7 +74,7 @@ def may_see(room):
 def check(root):
     """The arrows between rooms, and a sentence for each that the plan does not have."""
     arrows, wrong = {}, []
-    for top in ("src", "integrators", "experiments"):
+    for top in ("src", "integrators", "experiments", "python"):
         for file in sorted((root / top).rglob("*.[ch]pp")):
             room = str(file.parent.relative_to(root))
             text = file.read_text()

@@ -1,0 +1,152 @@
+"""Problems that the tests of the module share."""
+
+import csv
+import os
+import subprocess
+import tempfile
+
+import numpy as np
+
+import qddot
+
+BIN = os.environ.get("QDDOT_BIN", "")
+
+
+def run_program(name, *words):
+    """Runs a program; its standard output and error, and its status."""
+    done = subprocess.run([os.path.join(BIN, name), *map(str, words)], capture_output=True, text=True)
+    return done.stdout, done.stderr, done.returncode
+
+
+def read_table(path):
+    """The columns of a CSV file, as numbers where they are."""
+    with open(path, newline="", encoding="utf-8") as file:
+        header, *rows = list(csv.reader(file))
+    columns = dict(zip(header, zip(*rows)))
+
+    def numbers(column):
+        try:
+            return np.array([float(x) if x else np.nan for x in column])
+        except ValueError:
+            return np.array(column)
+
+    return {name: numbers(column) for name, column in columns.items()}
+
+
+def random_scene(seed, dimension=3):
+    """A network of springs without a symmetry, that hangs from one node and was pushed."""
+    random = np.random.default_rng(seed)
+    nodes = 8
+    positions = np.arange(nodes)[:, None] * np.eye(dimension)[0] * 0.5
+    positions = positions + 0.1 * random.standard_normal((nodes, dimension))
+    springs = [(i, i + 1) for i in range(nodes - 1)] + [(i, i + 2) for i in range(nodes - 2)]
+    return qddot.Scene(
+        positions=positions,
+        springs=springs,
+        stiffness=random.uniform(100, 1000, len(springs)),
+        mass=random.uniform(0.1, 0.3, nodes),
+        pinned=[0],
+        gravity=-9.81 * np.eye(dimension)[-1],
+        velocities=random.standard_normal((nodes, dimension)),
+        rest_length=random.uniform(0.4, 0.6, len(springs)),
+        name=f"random {seed}",
+    )
+
+
+def duffing_force(q, f):
+    """f of V = q^2/2 + q^4/4, for each unknown by itself."""
+    np.copyto(f, -q - q**3)
+
+
+def duffing_potential(q):
+    return float((q**2 / 2 + q**4 / 4).sum())
+
+
+def duffing_stiffness(q):
+    return np.diag(-1 - 3 * q**2)
+
+
+class Chain:
+    """Springs between neighbours in the plane between two pins, by NumPy alone: an independent f, V
+    and K."""
+
+    def __init__(self, nodes, stiffness=100.0):
+        self.nodes, self.k, self.rest = nodes, stiffness, 1.0
+
+    def _bonds(self, q):
+        x = np.concatenate(([[0.0, 0.0]], q, [[self.nodes + 1.0, 0.0]]))
+        d = np.diff(x, axis=0)
+        return d, np.linalg.norm(d, axis=1)
+
+    def force(self, q, f):
+        d, length = self._bonds(q)
+        pull = (self.k * (length - self.rest) / length)[:, None] * d
+        f[:] = pull[1:] - pull[:-1]
+
+    def potential(self, q):
+        return float((self.k * (self._bonds(q)[1] - self.rest) ** 2 / 2).sum())
+
+    def blocks(self, q):
+        d, length = self._bonds(q)
+        n = d / length[:, None]
+        across = self.k * (length - self.rest) / length
+        along = n[:, :, None] * n[:, None, :]
+        return self.k * along + across[:, None, None] * (np.eye(2) - along)
+
+    def stiffness(self, q):
+        k = np.zeros((2 * self.nodes, 2 * self.nodes))
+        for bond, block in enumerate(self.blocks(q)):
+            ends = [node for node in (bond - 1, bond) if 0 <= node < self.nodes]
+            for i in ends:
+                for j in ends:
+                    k[2 * i : 2 * i + 2, 2 * j : 2 * j + 2] += block if i != j else -block
+        return k
+
+    def start(self):
+        q = np.column_stack((np.arange(1, self.nodes + 1.0), np.zeros(self.nodes)))
+        v = np.column_stack((0.1 * np.sin(np.arange(self.nodes)), np.cos(np.arange(self.nodes))))
+        return q, v
+
+    def scene(self):
+        """The same as a scene."""
+        q, v = self.start()
+        ends = [[0.0, 0.0]], [[self.nodes + 1.0, 0.0]]
+        return qddot.Scene(
+            positions=np.concatenate((ends[0], q, ends[1])),
+            velocities=np.concatenate(([[0.0, 0.0]], v, [[0.0, 0.0]])),
+            springs=[(i, i + 1) for i in range(self.nodes + 1)],
+            stiffness=self.k,
+            mass=1.0,
+            rest_length=self.rest,
+            pinned=[0, self.nodes + 1],
+        )
+
+    def system(self, **changes):
+        given = {"force": self.force, "potential": self.potential, "stiffness": self.stiffness}
+        return qddot.System(np.ones(self.nodes), dimension=2, **{**given, **changes})
+
+
+def library(source):
+    """A C library of that source, loaded by ctypes; it stays as long as the process."""
+    import ctypes
+
+    folder = tempfile.mkdtemp()
+    path = os.path.join(folder, "library.c")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(source)
+    made = os.path.join(folder, "library.so")
+    subprocess.run([os.environ.get("CC", "cc"), "-O2", "-shared", "-fPIC", path, "-o", made], check=True)
+    return ctypes.CDLL(made)
+
+
+DUFFING_C = """
+#include <stdint.h>
+void force(const double* q, double* f, int64_t n) {
+  for (int64_t i = 0; i < n; ++i) f[i] = -q[i] - q[i] * q[i] * q[i];
+}
+double potential(const double* q, int64_t n) {
+  double v = 0;
+  for (int64_t i = 0; i < n; ++i) v += q[i] * q[i] / 2 + q[i] * q[i] * q[i] * q[i] / 4;
+  return v;
+}
+"""

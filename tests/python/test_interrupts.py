@@ -1,0 +1,209 @@
+"""Ctrl-C, threads and processes."""
+
+import pickle
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+import unittest
+from multiprocessing import get_context
+
+import numpy as np
+
+import problems
+import qddot
+
+# What each script does until Ctrl-C comes, by itself for many minutes.
+ENDLESS = {
+    "run": "qddot.solve(cloth, 'verlet', step_size=1e-7, until=1e3)",
+    "implicit": "qddot.solve(cloth, 'implicit_midpoint', step_size=1e-6, until=1e3)",
+    "sundials": "qddot.solve(cloth, 'arkode_erk4', rtol=1e-14, until=1e3)",
+    "callable": "qddot.solve(system, 'verlet', step_size=1e-6, until=1e3, q0=[1.0])",
+    "looks": "qddot.solve(cloth, 'verlet', step_size=1e-7, until=1e3, save_at=np.linspace(0, 1e3, 9))",
+    "answer": "qddot.solve(qddot.scenes.lattice(until=400.0), accuracy=1e-8)",
+    "reference": "qddot.reference(qddot.scenes.lattice(until=50.0), seconds=600)",
+    "chart": "qddot.work_precision(cloth, 0.5, point_limit=600)",
+    "trend": "qddot.energy_trend(cloth, 'verlet', step_size=1e-4, until=1e5, seconds=600)",
+    "exchange": "qddot.exchange(qddot.scenes.fpu(), ['verlet'], [1e-4, 1e-5], until=1e4)",
+}
+
+
+def script(endless, before=""):
+    return textwrap.dedent(
+        """
+        import signal, sys
+        import numpy as np
+        import qddot
+        cloth = qddot.scenes.cloth(nodes=10)
+        system = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
+        {before}
+        print("ready", flush=True)
+        try:
+            answer = {endless}
+            print("ended", answer.outcome)
+        except KeyboardInterrupt:
+            print("interrupted")
+        # All goes on as if nothing had been.
+        again = qddot.solve(cloth, "verlet", step_size=1e-3, until=0.05)
+        assert again.outcome == "reached_end", again.outcome
+        assert qddot.reference(cloth, 0.05).certified.position < 1e-6
+        assert signal.getsignal(signal.SIGINT) is handler_before
+        """
+    ).format(endless=endless, before=before or "handler_before = signal.getsignal(signal.SIGINT)")
+
+
+def interrupted(text, wait=0.7):
+    """What the script prints that gets Ctrl-C a while after it is ready."""
+    with subprocess.Popen(
+        [sys.executable, "-c", text], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as process:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(wait)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=120)
+    return out, process.returncode
+
+
+class Interrupts(unittest.TestCase):
+    def test_control_c_ends_whatever_goes_on(self):
+        for name, endless in ENDLESS.items():
+            with self.subTest(name):
+                out, status = interrupted(script(endless))
+                self.assertEqual((out, status), ("interrupted\n", 0))
+
+    def test_a_handler_that_raises_something_else(self):
+        before = """
+def handler_before(*_):
+    raise LookupError("mine")
+signal.signal(signal.SIGINT, handler_before)
+"""
+        text = script(ENDLESS["run"], before).replace("except KeyboardInterrupt", "except LookupError")
+        self.assertEqual(interrupted(text), ("interrupted\n", 0))
+
+    def test_a_handler_that_raises_nothing_has_a_stopped_run(self):
+        before = """
+handler_before = lambda *_: None
+signal.signal(signal.SIGINT, handler_before)
+"""
+        out, status = interrupted(script(ENDLESS["run"], before))
+        self.assertEqual((out, status), ("ended over_budget\n", 0))
+
+    def test_two_interrupts_within_a_run_within_a_run(self):
+        before = """
+handler_before = signal.getsignal(signal.SIGINT)
+def force(q, f):
+    qddot.solve(cloth, "verlet", step_size=1e-7, until=1e3)
+system = qddot.System([1.0], force, check=False)
+"""
+        self.assertEqual(interrupted(script(ENDLESS["callable"], before)), ("interrupted\n", 0))
+
+
+class Threads(unittest.TestCase):
+    def test_two_solves_run_in_two_threads(self):
+        # Each waits in its first force for the other's; one after the other they would never meet.
+        meeting = threading.Barrier(2, timeout=60)
+
+        def force_of():
+            met = False
+
+            def force(q, f):
+                nonlocal met
+                if not met:
+                    meeting.wait()
+                met = True
+                f[:] = -q
+
+            return force
+
+        ends = {}
+
+        def work(name):
+            system = qddot.System(np.ones(3), force_of(), check=False)
+            ends[name] = qddot.solve(system, "verlet", step_size=0.01, until=10, q0=np.ones(3)).end.q
+
+        threads = [threading.Thread(target=work, args=(name,)) for name in "ab"]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertTrue(np.array_equal(ends["a"], ends["b"]))
+
+    def test_python_goes_on_beside_a_solve(self):
+        solution = []
+        cloth = qddot.scenes.cloth(nodes=10)
+        thread = threading.Thread(
+            target=lambda: solution.append(
+                qddot.solve(cloth, "verlet", step_size=1e-8, until=1e3, seconds=5)
+            )
+        )
+        thread.start()
+        for _ in range(100):
+            time.sleep(1e-4)
+        # With the GIL held, nothing above would have run before the five seconds were over.
+        self.assertTrue(thread.is_alive())
+        thread.join()
+        self.assertEqual(solution[0].outcome, "over_budget")
+
+    def test_one_system_in_many_threads(self):
+        chain = problems.Chain(4)
+        q0, v0 = chain.start()
+        system, ends = chain.system(), []
+
+        def work():
+            for _ in range(5):
+                run = dict(step_size=2e-3, until=0.2, q0=q0, v0=v0)
+                ends.append(qddot.solve(system, "implicit_midpoint", **run).end.q)
+
+        threads = [threading.Thread(target=work) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(ends), 20)
+        for end in ends:
+            self.assertTrue(np.array_equal(end, ends[0]))
+
+    def test_what_a_thread_raises_stays_there(self):
+        def force(q, f):
+            if threading.current_thread().name == "bad":
+                raise ZeroDivisionError
+            f[:] = -q
+
+        system, seen = qddot.System(np.ones(2), force), {}
+
+        def work():
+            try:
+                run = dict(step_size=0.01, until=5, q0=[1.0, 0.0])
+                seen[threading.current_thread().name] = qddot.solve(system, "verlet", **run).outcome
+            except ZeroDivisionError:
+                seen["bad"] = "raised"
+
+        threads = [threading.Thread(target=work, name=name) for name in ("good", "bad", "fine")]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(seen, {"good": "reached_end", "bad": "raised", "fine": "reached_end"})
+
+
+def end_of(scene):
+    return qddot.solve(scene, "verlet", step_size=1e-3, until=0.1)
+
+
+class Processes(unittest.TestCase):
+    def test_scenes_and_solutions_go_to_other_processes(self):
+        scene = problems.random_scene(5)
+        self.assertEqual(pickle.loads(pickle.dumps(scene)).content_hash(), scene.content_hash())
+        here = end_of(scene)
+        for way in ("fork", "spawn"):
+            with self.subTest(way), get_context(way).Pool(2) as pool:
+                for there in pool.map(end_of, [scene, scene]):
+                    self.assertTrue(np.array_equal(there.end.q, here.end.q))
+                    self.assertEqual(there.counts, here.counts)
+                    self.assertEqual(there.diagnosis(), "")
+
+
+if __name__ == "__main__":
+    unittest.main()

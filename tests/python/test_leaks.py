@@ -1,0 +1,79 @@
+"""Nothing is left over from many solves. With a number: that many of each, for the full test."""
+
+import gc
+import sys
+import unittest
+
+import numpy as np
+
+import problems
+import qddot
+
+COUNT = 4000
+# A page now and then is the allocator's; a leak of one array header alone is 100 bytes a solve.
+MOST_BYTES_A_SOLVE = 16
+
+
+def resident():
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * 4096
+
+
+def failing(q, f):
+    raise ArithmeticError("as it should")
+
+
+class Leaks(unittest.TestCase):
+    def hold(self, name, solve):
+        for _ in range(COUNT // 4):
+            solve()
+        gc.collect()
+        objects, before = len(gc.get_objects()), resident()
+        for _ in range(COUNT):
+            solve()
+        gc.collect()
+        growth = resident() - before
+        print(f"{name}: {COUNT} solves, {growth / COUNT:.1f} bytes each", file=sys.stderr)
+        self.assertLess(growth, MOST_BYTES_A_SOLVE * COUNT + 300_000, name)
+        self.assertLess(len(gc.get_objects()) - objects, 50, name)
+
+    def test_scenes(self):
+        scene = qddot.scenes.pair()
+        times = np.linspace(0, 0.01, 5)
+        run = dict(step_size=1e-3, until=0.01, save_at=times)
+        self.hold("a scene", lambda: qddot.solve(scene, "verlet", **run))
+        self.hold("scenes", lambda: qddot.solve(qddot.scenes.pair(), "implicit_euler", **run))
+
+    def test_systems(self):
+        q0 = np.ones(3)
+        forces = problems.duffing_force, problems.duffing_potential, problems.duffing_stiffness
+        system = qddot.System(np.ones(3), *forces)
+        run = dict(until=0.02, q0=q0)
+        self.hold("a system", lambda: qddot.solve(system, "dprkn8", rtol=1e-6, **run))
+        self.hold("K", lambda: qddot.solve(system, "semi_implicit_euler", step_size=5e-3, **run))
+        self.hold("SUNDIALS", lambda: qddot.solve(system, "cvode_bdf", rtol=1e-4, **run))
+        self.hold(
+            "systems",
+            lambda: qddot.solve(qddot.System(np.ones(3), *forces), "verlet", step_size=1e-2, **run),
+        )
+
+    def test_failures(self):
+        bad = qddot.System(np.ones(3), failing, check=False)
+
+        def raises():
+            try:
+                qddot.solve(bad, "verlet", step_size=0.1, until=1, q0=np.ones(3))
+            except ArithmeticError:
+                return
+            raise AssertionError("nothing was raised")
+
+        self.hold("what callables raise", raises)
+        stiff = qddot.scenes.oscillator()
+        self.hold("runs that fail", lambda: qddot.solve(stiff, "verlet", step_size=1, until=1e3))
+        self.hold("refusals", lambda: self.assertRaises(ValueError, qddot.solve, stiff, "none"))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and sys.argv[-1].isdigit():
+        COUNT = int(sys.argv.pop())
+    unittest.main()

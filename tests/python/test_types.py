@@ -1,0 +1,78 @@
+"""The stub is the extension's, and the layer is typed as it says."""
+
+import importlib.util
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import qddot
+
+PACKAGE = os.path.dirname(qddot.__file__)
+# What pybind11 gives every class, and no stub can say.
+ALLOWED = r"""
+qddot\._qddot\.(Model|Reference|Scene)
+qddot\._qddot\.(Model|Reference|Scene)\.__init__
+"""
+USER = """
+import numpy as np
+import qddot
+
+scene: qddot.Scene = qddot.scenes.cloth(nodes=5)
+solution = qddot.solve(scene, "verlet", step_size=1e-3, save_at=[0.0, 0.1])
+energy = solution.energy
+assert energy is not None
+total: float = float(energy.total[0]) + solution.counts.steps
+best = qddot.work_precision(scene, methods=["verlet"]).best(1e-4)
+name: str = best.method if best else ""
+system = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
+"""
+MISUSE = USER + "solution.energie\n"
+
+
+@unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+class Types(unittest.TestCase):
+    def run_in_package(self, *words):
+        with tempfile.TemporaryDirectory() as cache:
+            return subprocess.run(
+                [sys.executable, "-m", *words],
+                cwd=os.path.dirname(PACKAGE),
+                env={**os.environ, "MYPY_CACHE_DIR": cache},
+                capture_output=True,
+                text=True,
+            )
+
+    def test_the_stub_is_the_extensions(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".txt") as allowed:
+            allowed.write(ALLOWED)
+            allowed.flush()
+            done = self.run_in_package(
+                "mypy.stubtest", "qddot._qddot", "--allowlist", allowed.name, "--ignore-unused-allowlist"
+            )
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_the_layer_holds_its_types(self):
+        files = [name for name in os.listdir(PACKAGE) if name.endswith(".py")]
+        done = self.run_in_package("mypy", "--strict", *(os.path.join("qddot", f) for f in files))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_users_are_told_by_their_checker(self):
+        for text, status in ((USER, 0), (MISUSE, 1)):
+            with tempfile.NamedTemporaryFile("w", suffix=".py") as user:
+                user.write(text)
+                user.flush()
+                done = self.run_in_package("mypy", "--strict", user.name)
+                self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+
+
+class Names(unittest.TestCase):
+    def test_every_name_says_what_it_is(self):
+        for name in qddot.__all__:
+            self.assertTrue(hasattr(qddot, name), name)
+            if name != "__version__":
+                self.assertTrue(getattr(qddot, name).__doc__, name)
+
+
+if __name__ == "__main__":
+    unittest.main()
