@@ -170,8 +170,9 @@ py::dict trend_record(const Trend& t, const TrendScales& scales) {
 py::dict energy_trend_of(const Model& model, const std::string& name, const py::dict& given,
                          double until, double seconds) {
   DriftRun run;
+  const Options options = options_of(given);
   outside(1, [&](const std::stop_token&) {
-    run = energy_trend(*model.start, method(name), options_of(given), until, seconds);
+    run = energy_trend(*model.start, method(name), options, until, seconds);
     stop_if_interrupted();
   });
   std::vector<double> t, energy, error;
