@@ -3,24 +3,17 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <mutex>
 #include <omp.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <thread>
 #include <utility>
 
 namespace qddot::python {
 namespace {
 
 namespace py = pybind11;
-
-// What the handler of SIGINT wakes, and the one that it stands before. A handler may touch no more.
-std::atomic<sem_t*> woken = nullptr;
-struct sigaction pythons {};
-
-void on_interrupt(int signal) {
-  const int error = errno;
-  if (sem_t* semaphore = woken.load()) sem_post(semaphore);
-  pythons.sa_handler(signal);
-  errno = error;
-}
 
 // Whether Python's own handler answers SIGINT, so that it can be called by another.
 bool is_handled(const struct sigaction& action) {
@@ -33,44 +26,92 @@ bool is_main_thread() {
   return threading.attr("current_thread")().is(threading.attr("main_thread")());
 }
 
-thread_local std::exception_ptr* raised = nullptr;
-
 }  // namespace
+
+// The thread that a handler of SIGINT wakes, as that itself may call next to nothing. There is one
+// a process, and it never ends: to start one takes as long as a short run.
+class Watcher {
+ public:
+  static Watcher& here() {
+    // A process that was forked has no such thread.
+    [[maybe_unused]] static const int once =
+        pthread_atfork(nullptr, nullptr, [] { only = nullptr; });
+    if (!only) only = new Watcher;
+    return *only.load();
+  }
+
+  // Which one is stopped from now on; may be none. What came before stops nothing any more.
+  void watch(ControlC* run) {
+    const std::lock_guard lock(mutex_);
+    run_ = run;
+    has_come_ = false;
+  }
+  ControlC* watched() const { return run_; }
+
+  // Takes the place of Python's handler, or gives it back.
+  void stand_before(const struct sigaction& action) {
+    pythons = action;
+    struct sigaction own = action;
+    own.sa_handler = [](int signal) {
+      const int error = errno;
+      Watcher* watcher = only.load();
+      watcher->has_come_ = true;
+      sem_post(&watcher->wake_);
+      pythons.sa_handler(signal);
+      errno = error;
+    };
+    sigaction(SIGINT, &own, nullptr);
+  }
+  static void stand_back() { sigaction(SIGINT, &pythons, nullptr); }
+
+ private:
+  Watcher() {
+    sem_init(&wake_, 0, 0);
+    std::thread([this] {
+      for (;;) {
+        while (sem_wait(&wake_) != 0) {
+        }
+        const std::lock_guard lock(mutex_);
+        if (has_come_.exchange(false) && run_) run_->source_.request_stop();
+      }
+    }).detach();
+  }
+
+  static inline std::atomic<Watcher*> only = nullptr;
+  static inline struct sigaction pythons {};
+
+  std::mutex mutex_;
+  ControlC* run_ = nullptr;
+  std::atomic<bool> has_come_ = false;
+  sem_t wake_{};
+};
 
 ControlC::ControlC() {
   if (!is_main_thread()) return;
+  Watcher& watcher = Watcher::here();
+  outer_ = watcher.watched();
   struct sigaction now {};
-  outer_ = woken.load();
-  if (!outer_) {
-    if (sigaction(SIGINT, nullptr, &now) != 0 || !is_handled(now)) return;
-    pythons = now;
-  }
-  watches_ = true;
-  sem_init(&came_, 0, 0);
-  watcher_ = std::jthread([this](const std::stop_token& over) {
-    while (sem_wait(&came_) != 0) {
-    }
-    if (!over.stop_requested()) source_.request_stop();
-  });
-  woken = &came_;
-  if (outer_) return;
-  now.sa_handler = on_interrupt;
-  sigaction(SIGINT, &now, nullptr);
+  if (!outer_ && (sigaction(SIGINT, nullptr, &now) != 0 || !is_handled(now))) return;
+  is_watched_ = true;
+  watcher.watch(this);
+  if (!outer_) watcher.stand_before(now);
 }
 
 ControlC::~ControlC() {
-  if (!watches_) return;
-  if (!outer_) sigaction(SIGINT, &pythons, nullptr);
-  woken = outer_;
-  watcher_.request_stop();
-  sem_post(&came_);
-  watcher_.join();
-  sem_destroy(&came_);
+  if (!is_watched_) return;
+  if (!outer_) Watcher::stand_back();
+  Watcher::here().watch(outer_);
 }
 
 void ControlC::raise_what_came() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
+
+namespace {
+
+thread_local std::exception_ptr* raised = nullptr;
+
+}  // namespace
 
 Threads::Threads(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
 Threads::~Threads() { omp_set_num_threads(before_); }

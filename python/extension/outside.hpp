@@ -3,9 +3,7 @@
 #include <exception>
 #include <functional>
 #include <pybind11/pybind11.h>
-#include <semaphore.h>
 #include <stop_token>
-#include <thread>
 
 #include "qddot/measure/motion/interruption.hpp"
 
@@ -13,7 +11,7 @@ namespace qddot::python {
 
 // While this lives, Ctrl-C asks for a stop, if it is made in Python's main thread, which is the one
 // that Python answers signals in. The signal goes on to Python, which raises KeyboardInterrupt
-// where raise_what_came() is called.
+// where raise_what_came() is called. One within another's life stands before it.
 class ControlC {
  public:
   ControlC();  // holds the GIL
@@ -26,11 +24,11 @@ class ControlC {
   static void raise_what_came();
 
  private:
-  bool watches_ = false;
+  friend class Watcher;
+
+  bool is_watched_ = false;
   std::stop_source source_;
-  sem_t came_{};
-  sem_t* outer_ = nullptr;  // of a call that this one is within; may be none
-  std::jthread watcher_;
+  ControlC* outer_ = nullptr;  // may be none
 };
 
 // While this lives, forces and factorisations take so many threads where this one asks for them.

@@ -153,10 +153,11 @@ void OwnForces::force(const ConstVec& q, MutableVec f) const {
     call(std::get<py::object>(force_), "force", q, [&](const py::object& callable, py::object& x) {
       py::object view = views_.show(f.data(), true);
       try {
-        if (!callable(x, view).is_none())
+        // NumPy's functions return what they wrote into.
+        if (const py::object result = callable(x, view); !result.is_none() && !result.is(view))
           throw std::invalid_argument(
-              "force: it returned something; it writes into f and returns "
-              "nothing, as np.copyto(f, -q) does");
+              "force: it returned something else than f; it writes into f, as np.copyto(f, -q) "
+              "does");
       } catch (...) {
         Views::part(view);
         throw;

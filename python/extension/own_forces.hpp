@@ -36,7 +36,7 @@ class Views {
 
 // The forces of somebody who writes Python: f, and V and K where he has them, as callables or, of f
 // and V, as C functions. What a callable raises ends the run (see outside()). Callables:
-//   force(q, f)    writes f [N], returns nothing
+//   force(q, f)    writes f [N], returns nothing or f
 //   potential(q)   returns V [J]
 //   stiffness(q)   returns K [N/m], n x n and symmetric: dense, or a tuple (data, indices, indptr)
 //                  of its sorted columns

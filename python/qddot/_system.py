@@ -28,7 +28,7 @@ class System:
     mass [kg]: (n), or (nodes) and (nodes, dimension) where a dimension 1, 2 or 3 is given. q and f
     have the shape (n), or (nodes, dimension).
 
-    force(q, f) writes f [N] and returns nothing. potential(q) returns V [J]. stiffness(q) returns
+    force(q, f) writes f [N]. potential(q) returns V [J]. stiffness(q) returns
     K = df/dq [N/m], n x n and symmetric, as a scipy.sparse matrix or an array; mind the sign, many
     codes have -K. q and f are views of the solver's memory: q cannot be written, and neither may be
     kept beyond the call. force and potential may also be C functions (a Numba cfunc, a ctypes or

@@ -199,6 +199,10 @@ class OwnForces(unittest.TestCase):
         self.assertEqual(seen["kind"], (np.float64, np.float64))
         self.assertEqual(solution.q.shape, (1, 4, 3))
 
+    def test_functions_of_numpy_return_what_they_wrote(self):
+        system = qddot.System(np.ones(2), lambda q, f: np.negative(q, out=f))
+        qddot.solve(system, "verlet", step_size=0.1, until=1, q0=np.ones(2)).or_raise()
+
     def test_results_are_views_into_one_buffer(self):
         scene = qddot.scenes.cloth(nodes=4)
         solution = qddot.solve(scene, "verlet", step_size=1e-3, until=0.1, save_at=[0, 0.05, 0.1])
