@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import json
 import math
@@ -140,16 +141,25 @@ class WorkPrecision:
             file.write(data)
 
     def _repr_png_(self) -> bytes | None:
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "chart.png")
-            try:
-                self.draw(path)
-            except RuntimeError:
-                return None  # the table is there without matplotlib, too
-            with open(path, "rb") as file:
-                return file.read()
+        drawn: bytes | None = self.__dict__.get("_png")
+        if drawn is None:
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "chart.png")
+                try:
+                    self.draw(path)
+                except RuntimeError:
+                    return None  # the table is there without matplotlib, too
+                with open(path, "rb") as file:
+                    drawn = file.read()
+            object.__setattr__(self, "_png", drawn)
+        return drawn
 
     def _repr_html_(self) -> str:
+        drawn = self._repr_png_()
+        picture = ""
+        if drawn:  # notebooks show HTML in the place of a PNG
+            data = base64.b64encode(drawn).decode("ascii")
+            picture = f"<img style='width:100%;max-width:1100px' src='data:image/png;base64,{data}'>"
         head = "".join(f"<th>{name}</th>" for name in ("accuracy", "take", "at", "error", "time"))
         rows = []
         for row in self.front:
@@ -158,7 +168,7 @@ class WorkPrecision:
                 cells = (f"{row['accuracy']:.0e}", row["method"], knob,
                          f"{row['error_position']:.1e}", f"{row['time_s']:.3g} s")
                 rows.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
-        return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
+        return f"{picture}<table><tr>{head}</tr>{''.join(rows)}</table>"
 
 
 def _cell(value: Any) -> Any:

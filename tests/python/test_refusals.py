@@ -259,6 +259,7 @@ class Meaning(unittest.TestCase):
                 chart.draw(os.path.join(folder, "chart.pdf"))
         self.assertEqual(chart._repr_png_()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertIn("<table>", chart._repr_html_())
+        self.assertIn("data:image/png;base64,", chart._repr_html_())
 
     def test_advice(self):
         advices = qddot.advise(CLOTH, [1e-2, 1e-6], until=0.1)
