@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from html import escape
 from typing import Any, Sequence
 
 from numpy.typing import ArrayLike
@@ -42,7 +43,7 @@ class Advice:
     sundials: Candidate | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Advices:
     """Advice for each accuracy, and what the scene asks of a method: largest frequencies [rad/s] at
     the start and over the motion, Verlet's largest stable step [s], the horizon [s] of a chaotic
@@ -58,23 +59,32 @@ class Advices:
     runs: int
     seconds: float
 
-    def _repr_html_(self) -> str:
-        head = ("accuracy", "take", "at", "expected error", "expected time", "runner-up")
-        rows = []
+    def _rows(self) -> list[tuple[str, ...]]:
+        rows: list[tuple[str, ...]] = [("accuracy", "take", "at", "expected error", "expected time", "runner-up")]
         for advice in self.for_each:
-            cells = [f"{advice.accuracy:.0e}"]
-            if advice.take is None:
-                cells += ["-", advice.why, "", "", ""]
-            else:
-                take, margin = advice.take, advice.margin
-                cells += [take.method, f"{take.knob} = {take.value:.3g}", f"{take.error:.1e}"]
-                cells.append(f"{take.seconds:.2g} s")
-                next_best = advice.runner_up
-                many = math.isfinite(margin) and next_best is not None
-                cells.append(f"{next_best.method}, {margin:.2g} x" if many and next_best else "")
-            rows.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+            take, other = advice.take, advice.runner_up
+            if take is None:
+                rows.append((f"{advice.accuracy:.0e}", "-", advice.why, "", "", ""))
+                continue
+            margin = f"{advice.margin:.2g} x" if math.isfinite(advice.margin) else ""
+            rows.append((
+                f"{advice.accuracy:.0e}", take.method, f"{take.knob} = {take.value:.3g}",
+                f"{take.error:.1e}", f"{take.seconds:.2g} s",
+                f"{other.method}, {margin}" if other else "",
+            ))  # fmt: skip
+        return rows
+
+    def __repr__(self) -> str:
+        rows = self._rows()
+        widths = [max(map(len, column)) for column in zip(*rows)]
+        lines = ("  ".join(c.ljust(w) for c, w in zip(row, widths)).rstrip() for row in rows)
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        head, *rows = self._rows()
+        cells = [f"<tr>{''.join(f'<td>{escape(c)}</td>' for c in row)}</tr>" for row in rows]
         titles = "".join(f"<th>{title}</th>" for title in head)
-        return f"<table><tr>{titles}</tr>{''.join(rows)}</table>"
+        return f"<table><tr>{titles}</tr>{''.join(cells)}</table>"
 
 
 def advise(

@@ -26,7 +26,7 @@ class Errors:
     energy: float = float("nan")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Reference:
     """The motion at `until` [s], and how far it can be trusted: `certified` bounds its errors.
 
@@ -49,6 +49,10 @@ class Reference:
     divided_by: str
     _held: _qddot.Reference = field(repr=False, compare=False)
     _record: dict[str, Any] = field(repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        return (f"<qddot.Reference at {self.until:g} s, {len(self.q)} nodes: positions certified to "
+                f"{self.certified.position:.1e}>")
 
     def errors(self, motion: Solution | State | ArrayLike, v: ArrayLike | None = None) -> Errors:
         """The errors of a solution that ended at `until`, or of q and v of all nodes there, whoever

@@ -51,7 +51,7 @@ class State:
     v: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solution:
     """The motion that a method computed, at the times t of `save_at` that it reached, and at its end.
 

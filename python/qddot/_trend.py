@@ -12,7 +12,7 @@ from qddot._scene import Scene
 from qddot._solve import end_of
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class EnergyTrend:
     """The energy error of a run over time, taken apart.
 
@@ -33,6 +33,9 @@ class EnergyTrend:
     outcome: str
     t_reached: float
     seconds: float
+
+    def __repr__(self) -> str:
+        return f"<qddot.EnergyTrend {self.method}: {self.words}>"
 
 
 def energy_trend(

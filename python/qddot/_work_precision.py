@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import csv
 import json
 import math
@@ -54,7 +53,7 @@ class Point:
     outcome: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class WorkPrecision:
     """What every method takes and misses by, from coarse to fine, against a reference.
 
@@ -140,6 +139,11 @@ class WorkPrecision:
         with open(path, "wb") as file:
             file.write(data)
 
+    def __repr__(self) -> str:
+        methods = len(set(self.points["method"]))
+        return (f"<qddot.WorkPrecision {self.scene!r} to {self.reference.until:g} s: "
+                f"{len(self.points)} points of {methods} methods>")
+
     def _repr_png_(self) -> bytes | None:
         drawn: bytes | None = self.__dict__.get("_png")
         if drawn is None:
@@ -154,12 +158,9 @@ class WorkPrecision:
             object.__setattr__(self, "_png", drawn)
         return drawn
 
-    def _repr_html_(self) -> str:
-        drawn = self._repr_png_()
-        picture = ""
-        if drawn:  # notebooks show HTML in the place of a PNG
-            data = base64.b64encode(drawn).decode("ascii")
-            picture = f"<img style='width:100%;max-width:1100px' src='data:image/png;base64,{data}'>"
+    def _repr_html_(self) -> str | None:
+        if self._repr_png_():  # notebooks would show HTML in its place
+            return None
         head = "".join(f"<th>{name}</th>" for name in ("accuracy", "take", "at", "error", "time"))
         rows = []
         for row in self.front:
@@ -168,7 +169,7 @@ class WorkPrecision:
                 cells = (f"{row['accuracy']:.0e}", row["method"], knob,
                          f"{row['error_position']:.1e}", f"{row['time_s']:.3g} s")
                 rows.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
-        return f"{picture}<table><tr>{head}</tr>{''.join(rows)}</table>"
+        return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
 
 
 def _cell(value: Any) -> Any:
