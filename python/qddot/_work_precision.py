@@ -220,7 +220,7 @@ def work_precision(
     *,
     q0: ArrayLike | None = None,
     v0: ArrayLike | None = None,
-    point_limit: float = 10,
+    point_limit: float = 1,
     repeats: int = 5,
     reference: Reference | None = None,
     reference_seconds: float = 10,
