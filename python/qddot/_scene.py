@@ -1,9 +1,8 @@
-"""What is drawn: nodes, springs, gravity; and what is left of it to be integrated."""
+"""What is drawn: nodes, springs, gravity."""
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from typing import Any, Sequence
 
 import numpy as np
@@ -11,35 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from qddot import _qddot
 from qddot._arrays import Floats, floats, frozen, whole_numbers
-
-
-@dataclass(frozen=True)
-class Explanation:
-    """What is left of a scene to be integrated, what was left out of it and why.
-
-    `left_out` has pairs (reduction, sentence). `omega_max` [rad/s] is the largest natural frequency
-    at the start, at most `omega_bound`; `largest_stable_step` = 2/omega_max [s] is that of Verlet's
-    method. `unstable` is the number of directions in which the energy falls at the start, the
-    fastest of which grows as exp(growth t). print() it for all of that in sentences.
-    """
-
-    text: str
-    drawn_unknowns: int
-    unknowns: int
-    left_out: tuple[tuple[str, str], ...]
-    stiffness_is_constant: bool
-    omega_max: float
-    omega_bound: float
-    unstable: int
-    flat: int
-    growth: float
-
-    @property
-    def largest_stable_step(self) -> float:
-        return 2 / self.omega_max if self.omega_max > 0 else np.inf
-
-    def __str__(self) -> str:
-        return self.text.rstrip()
+from qddot._explanation import Explanation
+from qddot._mesh import mesh_toml
 
 
 class Scene:
@@ -134,6 +106,7 @@ class Scene:
     ) -> Scene:
         """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh): every edge is a spring at its own
         length. `pins`: boxes (min, max) whose nodes stay."""
+        path = os.path.abspath(os.fspath(file))
         numbers = {
             "stiffness": stiffness,
             "node_mass": node_mass,
@@ -141,20 +114,8 @@ class Scene:
             "bending_stiffness": bending_stiffness,
             "scale": scale,
         }
-        path = os.path.abspath(os.fspath(file))
-        quoted = path.replace("\\", "\\\\").replace('"', '\\"')
-        stem = os.path.splitext(os.path.basename(quoted))[0]
-        lines = [f'name = "{stem}"']
-        if until is not None:
-            lines.append(f"until = {float(until)!r}")
-        if gravity is not None:
-            lines.append(f"gravity = {[float(g) for g in gravity]!r}")
-        lines += ["[mesh]", f'file = "{quoted}"']
-        lines += [f"{k} = {float(v)!r}" for k, v in numbers.items() if v is not None]
-        for low, high in pins:
-            box = f"min = {[float(x) for x in low]!r}\nmax = {[float(x) for x in high]!r}"
-            lines += ["[[mesh.pin]]", box]
-        return cls._of(_qddot.Scene.parse("\n".join(lines) + "\n", path, os.path.dirname(path)))
+        text = mesh_toml(path, numbers, pins, gravity, until)
+        return cls._of(_qddot.Scene.parse(text, path, os.path.dirname(path)))
 
     name = property(lambda self: str(self._handle.name))
     dimension = property(lambda self: int(self._handle.dimension))

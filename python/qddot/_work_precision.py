@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import math
 import os
-import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass, field
@@ -16,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qddot import _qddot
+from qddot._chart_files import draw, save
 from qddot._methods import method as method_named
 from qddot._reference import Reference, held
 from qddot._scene import Scene
@@ -35,7 +33,6 @@ COLUMNS = (
     "timed_runs family order error_energy_max error_momentum_max error_modal_shares "
     "error_position_at_least error_position_at_most energy_growth stock_of"
 ).split()
-_drawing = os.path.join(os.path.dirname(__file__), "drawing")
 
 
 @dataclass(frozen=True)
@@ -87,57 +84,15 @@ class WorkPrecision:
     def save(self, folder: str | os.PathLike[str]) -> None:
         """Writes points.csv, front.csv and reference.json into the folder, as the program
         work_precision does, which its pictures are drawn from."""
-        os.makedirs(folder, exist_ok=True)
-        for name, rows in (("points", self.points), ("front", self.front)):
-            with open(os.path.join(folder, f"{name}.csv"), "w", newline="", encoding="utf-8") as file:
-                writer = csv.writer(file, lineterminator="\n")
-                writer.writerow(rows.dtype.names or ())
-                writer.writerows([_cell(value) for value in row.tolist()] for row in rows)
-        with open(os.path.join(folder, "reference.json"), "w", encoding="utf-8") as file:
-            json.dump(self._reference_record(), file, indent=1)
-
-    def _reference_record(self) -> dict[str, Any]:
-        record = self.reference._record
-        parts = record["parts"]
-        return {
-            "scene": self.scene,
-            "until": record["until"],
-            "certified_position": record["certified"]["position"],
-            "certified_velocity": record["certified"]["velocity"],
-            "certified_energy": record["certified"]["energy"],
-            "made_by": record["made_by"],
-            "chaotic": record["chaotic"],
-            "rounding_effect": record["rounding_effect"],
-            "beyond_horizon": record["beyond_horizon"],
-            "horizon": _finite(record["horizon"]),
-            "lyapunov": record["lyapunov"],
-            "modal_shares_floor": record["modal_shares_floor"],
-            "only_symmetric": record["only_symmetric"],
-            "out_of_symmetry": {"horizon": _finite(record.get("symmetric_until", math.inf))},
-            "scales": {"displacement": record["displacement"], "parts": parts},
-        }
+        tables = {"points": self.points, "front": self.front}
+        save(folder, tables, self.scene, self.reference._record)
 
     def draw(self, path: str | os.PathLike[str]) -> None:
         """Draws the chart into a PNG or SVG file. Raises RuntimeError where matplotlib is missing."""
-        ending = os.path.splitext(os.fspath(path))[1]
-        if ending not in (".png", ".svg"):
-            raise ValueError(f"{os.fspath(path)}: allowed are the endings .png and .svg")
         with tempfile.TemporaryDirectory() as parent:
             folder = os.path.join(parent, "chart")
             self.save(folder)
-            script = os.path.join(_drawing, "work_precision.py")
-            done = subprocess.run(
-                [sys.executable, script, folder],
-                env={**os.environ, "PYTHONPATH": _drawing, "MPLBACKEND": "Agg"},
-                capture_output=True,
-                text=True,
-            )
-            if done.returncode != 0:
-                raise RuntimeError(f"the chart cannot be drawn: {done.stderr.strip()[-300:]}")
-            with open(os.path.join(folder, f"chart{ending}"), "rb") as drawn:
-                data = drawn.read()
-        with open(path, "wb") as file:
-            file.write(data)
+            draw(folder, path)
 
     def __repr__(self) -> str:
         methods = len(set(self.points["method"]))
@@ -170,16 +125,6 @@ class WorkPrecision:
                          f"{row['error_position']:.1e}", f"{row['time_s']:.3g} s")
                 rows.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
         return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
-
-
-def _cell(value: Any) -> Any:
-    if isinstance(value, float):
-        return repr(value) if math.isfinite(value) else ""
-    return value
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def _table(names: Sequence[str], records: list[dict[str, Any]]) -> NDArray[Any]:
@@ -294,46 +239,3 @@ def _front(made: dict[str, Any]) -> NDArray[Any]:
             }
         )
     return _table(names, rows)
-
-
-@dataclass(frozen=True)
-class Convergence:
-    """Errors of a method at h, h/2, h/4, ... [s], and the order that each halving shows: log2 of the
-    ratio of errors, no number where one of them did not come to the end or is near what the reference
-    certifies."""
-
-    method: str
-    step_size: NDArray[np.float64]
-    error_position: NDArray[np.float64]
-    error_velocity: NDArray[np.float64]
-    order: NDArray[np.float64]
-
-
-def convergence(
-    of: Scene | System,
-    method: str,
-    step_size: float,
-    halvings: int = 6,
-    *,
-    until: float | None = None,
-    q0: ArrayLike | None = None,
-    v0: ArrayLike | None = None,
-    reference: Reference | None = None,
-) -> Convergence:
-    """The observed order of convergence of a method of fixed steps, from `step_size` [s] on."""
-    from qddot._reference import reference as make_reference
-    from qddot._solve import solve
-
-    exact = reference or make_reference(of, until, q0=q0, v0=v0)
-    steps = step_size / 2.0 ** np.arange(halvings + 1)
-    q, v = np.full(len(steps), np.nan), np.full(len(steps), np.nan)
-    for i, h in enumerate(steps):
-        solution = solve(of, method, step_size=float(h), until=exact.until, q0=q0, v0=v0)
-        if solution.success:
-            errors = exact.errors(solution)
-            q[i], v[i] = errors.position, errors.velocity
-    # Twenty times what is certified is an error of 0.07 in the order.
-    known = np.where(q > 20 * exact.certified.position, q, np.nan)
-    order = np.full(len(steps), np.nan)
-    order[1:] = np.log2(known[:-1] / known[1:])
-    return Convergence(method, steps, q, v, order)

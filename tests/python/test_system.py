@@ -261,6 +261,27 @@ class OwnForces(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, r"entry \(1, 0\).*pattern="):
             qddot.solve(grows, "implicit_euler", step_size=0.1, until=1, q0=[1.0, 0.5])
 
+    def test_small_things_are_looked_at_by_their_own_size(self):
+        # Atoms, 1e-10 m apart, in SI units: V = e ((s/r)^12 - 2 (s/r)^6).
+        e, s = 1e-21, 3e-10
+
+        def force(q, f):
+            d = q[1] - q[0]
+            r = np.linalg.norm(d)
+            f[0] = 12 * e / r**2 * ((s / r) ** 6 - (s / r) ** 12) * d
+            f[1] = -f[0]
+
+        def potential(q):
+            p = (s / np.linalg.norm(q[1] - q[0])) ** 6
+            return e * (p * p - 2 * p)
+
+        atoms = qddot.System([6e-26, 6e-26], force, potential, dimension=3, pattern="dense")
+        q0 = np.array([[0.0, 0.0, 0.0], [3.3e-10, 0.0, 0.0]])
+        a = qddot.solve(atoms, "blanes_moan4", step_size=2e-15, until=2e-12, q0=q0).or_raise()
+        b = qddot.solve(atoms, "implicit_midpoint", step_size=2e-15, until=2e-12, q0=q0).or_raise()
+        self.assertLess(abs(a.energy.total[0] / potential(q0) - 1), 1e-6)
+        self.assertLess(np.max(np.abs(a.end.q - b.end.q)), 1e-3 * s)
+
     def test_velocities_are_refused_by_what_would_ignore_them(self):
         with self.assertRaisesRegex(ValueError, r"force\(q, f\).*velocity"):
             qddot.System([1.0], lambda q, v, f: np.copyto(f, -q - v))

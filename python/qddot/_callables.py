@@ -1,0 +1,52 @@
+"""Callables and C functions that a System is made of."""
+
+from __future__ import annotations
+
+import ctypes
+import inspect
+from typing import Any
+
+
+def require_arguments(function: Any, name: str, count: int) -> None:
+    """A sentence for a callable that takes something else than q, and f."""
+    if not callable(function):
+        raise ValueError(f"{name}: it is neither a callable nor a C function (a Numba cfunc, a ctypes "
+                         "or cffi pointer)")
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):
+        return
+    try:
+        signature.bind(*range(count))
+    except TypeError:
+        takes = "(q, f)" if count == 2 else "(q)"
+        raise ValueError(
+            f"{name}: it takes {signature}; it is called as {name}{takes}. Forces that depend on the "
+            "velocity or on time are not modelled, and no method would look at them"
+        ) from None
+
+
+def callable_or_address(function: Any, name: str, count: int) -> Any:
+    """The callable, or the address of a C function."""
+    if function is None:
+        return None
+    if hasattr(function, "address") and hasattr(function, "native_name"):  # Numba's
+        expected = "(float64*, float64*, int64) -> none" if count == 2 else "(float64*, int64) -> float64"
+        signature = str(getattr(function, "_sig", expected))
+        if signature != expected:
+            raise ValueError(f"{name}: the cfunc is {signature}; allowed is {expected}")
+        return int(function.address)
+    if isinstance(function, ctypes._CFuncPtr):  # type: ignore[attr-defined]
+        address = ctypes.cast(function, ctypes.c_void_p).value
+        if not address:
+            raise ValueError(f"{name}: the C function is a null pointer")
+        return address
+    if type(function).__module__ == "_cffi_backend":
+        import _cffi_backend  # type: ignore[import]
+
+        address = int(_cffi_backend.FFI().cast("intptr_t", function))
+        if not address:
+            raise ValueError(f"{name}: the C function is a null pointer")
+        return address
+    require_arguments(function, name, count)
+    return function
