@@ -15,10 +15,10 @@ using py::arg;
 
 // Arrays of the caller's that a run fills at the times that it is looked at: positions and
 // velocities (2, times, nodes, dimension), energies (3, times).
-class Filling {
+class Frames {
  public:
-  Filling(const ReducedScene& model, std::vector<double> times, py::array_t<double>& motion,
-          std::optional<py::array_t<double>>& energies)
+  Frames(const ReducedScene& model, std::vector<double> times, py::array_t<double>& motion,
+         std::optional<py::array_t<double>>& energies)
       : model_(model),
         times_(std::move(times)),
         motion_(motion.mutable_data()),
@@ -62,24 +62,24 @@ py::dict end_of(const ReducedScene& model, const State& state) {
                   arg("v") = array_of(nodes, &Node::velocity, d));
 }
 
-// One run of a method. The arrays are as Filling has them.
+// One run of a method. The arrays are as Frames has them.
 py::dict run(const Model& model, const std::string& name, const py::dict& given, double until,
              const std::vector<double>& times, py::array_t<double> motion,
              std::optional<py::array_t<double>> energies, std::optional<double> most_seconds,
              int threads) {
   Simulation simulation(model.reduced, method(name), options_of(given));
-  Filling filling(*model.reduced, times, motion, energies);
+  Frames frames(*model.reduced, times, motion, energies);
   Summary summary;
   double seconds = 0;
   outside(threads, [&](const std::stop_token& stop) {
     std::optional<Deadline> deadline;
     if (most_seconds) deadline.emplace(*most_seconds);
     const auto begin = std::chrono::steady_clock::now();
-    summary = simulation.advance(until, filling.observer(), deadline ? deadline->token() : stop);
+    summary = simulation.advance(until, frames.observer(), deadline ? deadline->token() : stop);
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   });
   return py::dict(arg("summary") = record_of(summary), arg("seconds") = seconds,
-                  arg("seen") = filling.seen(),
+                  arg("seen") = frames.seen(),
                   arg("end") = end_of(*model.reduced, simulation.state()),
                   arg("growth") = growth_warning(method(name), summary));
 }
