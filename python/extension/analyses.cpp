@@ -3,6 +3,7 @@
 
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
+#include "python/extension/words.hpp"
 #include "qddot/analysis/equilibrium.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/natural_modes.hpp"
@@ -47,7 +48,7 @@ py::dict equilibrium(const Model& model, double length) {
     energy = scene->potential({0, rest.q, Vec::Zero(rest.q.size())});
   });
   const auto nodes = scene->expand({0, rest.q, Vec::Zero(rest.q.size())});
-  return py::dict(arg("outcome") = name_of(rest.outcome), arg("message") = rest.message,
+  return py::dict(arg("outcome") = name_of(rest.outcome), arg("message") = in_python(rest.message),
                   arg("positions") = array_of(nodes, &Node::position, scene->dimension()),
                   arg("potential") = energy, arg("residual") = rest.residual,
                   arg("smallest_eigenvalue") = rest.smallest_eigenvalue,

@@ -2,6 +2,7 @@
 
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
+#include "python/extension/words.hpp"
 #include "qddot/measure/advice/advise.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/reference/reference_words.hpp"
@@ -143,7 +144,7 @@ py::dict advise_on(const Model& model, double until, const std::vector<double>& 
           [&](const std::stop_token&) { all = advise(*model.reduced, until, accuracies, what); });
   py::list each;
   for (const Advice& advice : all.for_each) {
-    each.append(py::dict(arg("accuracy") = advice.accuracy, arg("why") = advice.why,
+    each.append(py::dict(arg("accuracy") = advice.accuracy, arg("why") = in_python(advice.why),
                          arg("is_seen") = advice.is_seen, arg("margin") = advice.margin(),
                          arg("take") = candidate(advice.take),
                          arg("runner_up") = candidate(advice.runner_up),

@@ -1,5 +1,6 @@
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
+#include "python/extension/words.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/model/differenced_stiffness.hpp"
 #include "qddot/scene/explain.hpp"
@@ -110,7 +111,7 @@ py::dict explanation_of(const Model& model) {
   py::list findings;
   for (const Finding& finding : e.findings)
     findings.append(py::make_tuple(std::string(name(finding.reduction)), finding.what));
-  return py::dict(arg("text") = words, arg("drawn_unknowns") = e.drawn_unknowns,
+  return py::dict(arg("text") = in_python(words), arg("drawn_unknowns") = e.drawn_unknowns,
                   arg("unknowns") = e.unknowns, arg("left_out") = findings,
                   arg("stiffness_is_constant") = e.stiffness_is_constant,
                   arg("omega_max") = e.omega_max, arg("omega_bound") = e.omega_bound,

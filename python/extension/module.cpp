@@ -1,17 +1,40 @@
 // The private module _qddot: what the typed layer in python/qddot calls. It takes and gives plain
 // data and NumPy arrays; scenes, models and references are held by it.
 #include "python/extension/bindings.hpp"
+#include "python/extension/words.hpp"
 #include "qddot/measure/reference/no_reference.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
+namespace qddot::python {
+namespace {
+
+// A class of exceptions of the module's own; it lives as long as the process.
+template <class Thrown>
+void add_exception(py::module_& module, const char* name, PyObject* base, const char* doc) {
+  static PyObject* type = nullptr;
+  type = PyErr_NewExceptionWithDoc((std::string("qddot.") + name).c_str(), doc, base, nullptr);
+  if (!type) throw py::error_already_set();
+  module.attr(name) = py::reinterpret_borrow<py::object>(type);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Thrown& error) {
+      PyErr_SetString(type, in_python(error.what()).c_str());
+    }
+  });
+}
+
+}  // namespace
+}  // namespace qddot::python
+
 PYBIND11_MODULE(_qddot, module) {
-  namespace py = pybind11;
   using namespace qddot;
-  py::register_exception<InvalidInput>(module, "InvalidInput", PyExc_ValueError).attr("__doc__") =
-      "A scene that cannot be; says where, what and what is allowed.";
-  py::register_exception<measure::NoReference>(module, "NoReference", PyExc_RuntimeError)
-      .attr("__doc__") = "No reference can be made of a motion; says why.";
   module.attr("__version__") = QDDOT_VERSION;
+  python::add_exception<InvalidInput>(
+      module, "InvalidInput", PyExc_ValueError,
+      "A scene that cannot be; says where, what and what is allowed.");
+  python::add_exception<measure::NoReference>(module, "NoReference", PyExc_RuntimeError,
+                                              "No reference can be made of a motion; says why.");
   python::add_methods(module);
   python::add_scenes(module);
   python::add_models(module);

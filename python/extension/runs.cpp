@@ -2,6 +2,7 @@
 
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
+#include "python/extension/words.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/simulation.hpp"
@@ -81,7 +82,7 @@ py::dict run(const Model& model, const std::string& name, const py::dict& given,
   return py::dict(arg("summary") = record_of(summary), arg("seconds") = seconds,
                   arg("seen") = frames.seen(),
                   arg("end") = end_of(*model.reduced, simulation.state()),
-                  arg("growth") = growth_warning(method(name), summary));
+                  arg("growth") = in_python(growth_warning(method(name), summary)));
 }
 
 // The motion to an accuracy.
@@ -91,7 +92,7 @@ py::dict answer(const Model& model, double until, double accuracy, const std::st
   if (most_seconds) wanted.seconds = *most_seconds;
   Answer found;
   outside(threads, [&](const std::stop_token&) { found = solve(*model.reduced, until, wanted); });
-  py::dict record(arg("is_reached") = found.is_reached, arg("why") = found.why,
+  py::dict record(arg("is_reached") = found.is_reached, arg("why") = in_python(found.why),
                   arg("error_estimate") = found.error_estimate,
                   arg("error_estimate_kind") = name(found.error_estimate_kind),
                   arg("advised_by") = found.advised_by, arg("horizon") = found.horizon,
@@ -122,7 +123,7 @@ std::string why_it_failed(const Model& model, const std::string& name, const py:
                 ? step_warning(chosen, options, *model.reduced)
                 : diagnosis(chosen, options, *model.reduced, until, summary, seconds);
   });
-  return words;
+  return in_python(words);
 }
 
 }  // namespace
@@ -147,7 +148,7 @@ py::dict record_of(const Counts& c) {
 
 py::dict record_of(const Summary& s) {
   return py::dict(arg("outcome") = std::string(name(s.outcome)), arg("t_reached") = s.t_reached,
-                  arg("message") = s.message, arg("energy_growth") = s.energy_growth,
+                  arg("message") = in_python(s.message), arg("energy_growth") = s.energy_growth,
                   arg("counts") = record_of(s.counts));
 }
 

@@ -230,6 +230,17 @@ class Meaning(unittest.TestCase):
         stopped = qddot.solve(CLOTH, "verlet", step_size=1e-7, until=1e3, seconds=0.1)
         self.assertEqual(stopped.outcome, "over_budget")
 
+    def test_options_are_spelled_as_here(self):
+        stiff = qddot.solve(CLOTH, "verlet", step_size=0.05, until=10)
+        early = qddot.solve(qddot.scenes.cloth(nodes=8), accuracy=1e-6, until=30)
+        buckled = qddot.scenes.strut().explain()
+        for words in (stiff.message, stiff.diagnosis(), early.message, str(buckled)):
+            self.assertNotIn("--", words)
+        self.assertIn("accuracy_of", early.message)
+        self.assertIn("keep=dimension,mirror", str(buckled))
+        with self.assertRaisesRegex(qddot.NoReference, r"\(until\)"):
+            qddot.reference(qddot.scenes.lattice(), 1e4, seconds=0.1)
+
     def test_answers_that_cannot_be_had_are_solutions(self):
         chaotic = qddot.solve(qddot.scenes.cloth(nodes=8), accuracy=1e-6, until=30)
         self.assertFalse(chaotic.success)
