@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
 #include "python/extension/words.hpp"
@@ -76,11 +78,11 @@ Vec unknowns(const Model& model, const Doubles& q) {
   return vec_of(q);
 }
 
-// Calls back nobody but the system itself, whose own callables hold the GIL.
+// What a force does not write stays no number.
 py::array_t<double> force_at(const Model& model, const Doubles& q) {
   const Vec x = unknowns(model, q);
-  Vec f(x.size());
-  model.reduced->system().force(x, f);
+  Vec f = Vec::Constant(x.size(), std::numeric_limits<double>::quiet_NaN());
+  inside_python([&] { model.reduced->system().force(x, f); });
   return array_of(f);
 }
 
@@ -89,7 +91,7 @@ py::tuple stiffness_at(const Model& model, const Doubles& q) {
   const System& system = model.reduced->system();
   const Vec x = unknowns(model, q);
   SymmetricMatrix k = system.stiffness_pattern();
-  system.stiffness(x, k);
+  inside_python([&] { system.stiffness(x, k); });
   k.makeCompressed();
   const auto copied = [](const auto* from, Index count) {
     py::array_t<std::decay_t<decltype(*from)>> array(count);
@@ -142,7 +144,10 @@ void add_models(py::module_& module) {
   model.def("force", &force_at);
   model.def("stiffness", &stiffness_at);
   model.def("potential", [](const Model& self, const Doubles& q) {
-    return self.reduced->system().potential(unknowns(self, q));
+    const Vec x = unknowns(self, q);
+    double v = 0;
+    inside_python([&] { v = self.reduced->system().potential(x); });
+    return v;
   });
   // All nodes of the scene where the unknowns are q and v: positions and velocities.
   model.def("nodes_at", [](const Model& self, const Doubles& q, const Doubles& v, double t) {

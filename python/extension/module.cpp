@@ -1,6 +1,7 @@
 // The private module _qddot: what the typed layer in python/qddot calls. It takes and gives plain
 // data and NumPy arrays; scenes, models and references are held by it.
 #include "python/extension/bindings.hpp"
+#include "python/extension/outside.hpp"
 #include "python/extension/words.hpp"
 #include "qddot/measure/reference/no_reference.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -28,6 +29,7 @@ void add_exception(py::module_& module, const char* name, PyObject* base, const 
 }  // namespace qddot::python
 
 PYBIND11_MODULE(_qddot, module) {
+  namespace py = pybind11;
   using namespace qddot;
   module.attr("__version__") = QDDOT_VERSION;
   python::add_exception<InvalidInput>(
@@ -35,6 +37,9 @@ PYBIND11_MODULE(_qddot, module) {
       "A scene that cannot be; says where, what and what is allowed.");
   python::add_exception<measure::NoReference>(module, "NoReference", PyExc_RuntimeError,
                                               "No reference can be made of a motion; says why.");
+  python::prepare_for_forks();
+  // Before the interpreter exits, work ends: no thread that does some would get the GIL back.
+  py::module_::import("atexit").attr("register")(py::cpp_function(&python::close_outside));
   python::add_methods(module);
   python::add_scenes(module);
   python::add_models(module);

@@ -2,11 +2,17 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <condition_variable>
 #include <csignal>
 #include <mutex>
+#include <new>
 #include <omp.h>
+#include <optional>
 #include <pthread.h>
 #include <semaphore.h>
+#include <set>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -40,6 +46,9 @@ class Watcher {
     return *only.load();
   }
 
+  // A process that was forked has no such thread.
+  static void forget() { only = nullptr; }
+
   // Which one is stopped from now on; may be none. What came before stops nothing any more.
   void watch(ControlC* run) {
     const std::lock_guard lock(mutex_);
@@ -54,9 +63,10 @@ class Watcher {
     struct sigaction own = action;
     own.sa_handler = [](int signal) {
       const int error = errno;
-      Watcher* watcher = only.load();
-      watcher->has_come_ = true;
-      sem_post(&watcher->wake_);
+      if (Watcher* watcher = only.load()) {  // none in a process that was forked meanwhile
+        watcher->has_come_ = true;
+        sem_post(&watcher->wake_);
+      }
       pythons.sa_handler(signal);
       errno = error;
     };
@@ -111,7 +121,70 @@ namespace {
 
 thread_local std::exception_ptr* raised = nullptr;
 
+// All work that goes on outside Python.
+class Work {
+ public:
+  // Throws std::runtime_error where the interpreter is about to exit.
+  explicit Work(const std::stop_source& source) : source_(source) {
+    const std::lock_guard lock(mutex);
+    if (is_closed) throw std::runtime_error("the interpreter exits, and no more work begins");
+    going_on.insert(this);
+  }
+  ~Work() {
+    const std::lock_guard lock(mutex);
+    going_on.erase(this);
+    one_less.notify_all();
+  }
+  Work(const Work&) = delete;
+  Work& operator=(const Work&) = delete;
+
+  // A process that was forked has none of the other threads, which may have held the lock.
+  static void forget() {
+    new (&mutex) std::mutex;
+    going_on.clear();
+  }
+
+  // Waits some seconds for all of it.
+  static void end_all() {
+    std::unique_lock lock(mutex);
+    is_closed = true;
+    for (Work* work : going_on) work->source_.request_stop();
+    one_less.wait_for(lock, std::chrono::seconds(10), [] { return going_on.empty(); });
+  }
+
+ private:
+  static inline std::mutex mutex;
+  static inline std::condition_variable one_less;
+  static inline std::set<Work*> going_on;
+  static inline bool is_closed = false;
+
+  std::stop_source source_;
+};
+
 }  // namespace
+
+void prepare_for_forks() {
+  pthread_atfork(nullptr, nullptr, [] {
+    Watcher::forget();
+    Work::forget();
+  });
+}
+
+void close_outside() {
+  const py::gil_scoped_release released;
+  Work::end_all();
+}
+
+void inside_python(const std::function<void()>& work) {
+  std::exception_ptr* const outer = std::exchange(raised, nullptr);
+  try {
+    work();
+  } catch (...) {
+    raised = outer;
+    throw;
+  }
+  raised = outer;
+}
 
 Threads::Threads(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
 Threads::~Threads() { omp_set_num_threads(before_); }
@@ -125,6 +198,7 @@ void outside(int threads, const std::function<void(std::stop_token)>& work) {
   {
     const ControlC control_c;
     const Threads some(threads);
+    std::optional<Work> going_on(control_c.source());
     std::exception_ptr* const outer = std::exchange(raised, &thrown);
     {
       const py::gil_scoped_release released;
@@ -136,6 +210,7 @@ void outside(int threads, const std::function<void(std::stop_token)>& work) {
       }
     }
     raised = outer;
+    going_on.reset();
   }
   try {
     if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));

@@ -19,6 +19,7 @@ class ControlC {
   ControlC(const ControlC&) = delete;
   ControlC& operator=(const ControlC&) = delete;
 
+  const std::stop_source& source() const { return source_; }
   std::stop_token stop() const { return source_.get_token(); }
   // Throws what Python's handlers of signals raise; holds the GIL.
   static void raise_what_came();
@@ -43,9 +44,20 @@ class Threads {
   int before_;
 };
 
+// Lets forked processes begin anew: to be called once.
+void prepare_for_forks();
+
+// Ends all work that goes on outside Python, and waits for it: to be called when the interpreter is
+// about to exit, after which nobody gets the GIL back. No more work begins.
+void close_outside();
+
 // What a callable raised within outside(), to be raised again at its end even where a library took
 // it for a failure of its own.
 void remember(std::exception_ptr thrown);
+
+// Lets the work call callables from within Python, with the GIL; what they raise is nobody's but
+// the caller's.
+void inside_python(const std::function<void()>& work);
 
 // Does the work without the GIL, on so many threads, so that other threads of Python go on. Ctrl-C
 // ends it (see OwnInterruption), and is raised then; so is what a callable raised.

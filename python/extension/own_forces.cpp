@@ -73,6 +73,13 @@ void fill_columns(const py::tuple& columns, SymmetricMatrix& k) {
   const auto rows = columns[1].cast<Indices>(), first = columns[2].cast<Indices>();
   if (first.size() != k.cols() + 1)
     require_shape(fmt::format("it has {} columns", first.size() - 1), k.cols());
+  const std::int64_t entries = std::min(data.size(), rows.size());
+  bool ascends = first.at(0) >= 0;
+  for (Index j = 0; j < k.cols(); ++j) ascends = ascends && first.at(j) <= first.at(j + 1);
+  if (!ascends || first.at(k.cols()) > entries)
+    throw std::invalid_argument(
+        "stiffness: its sparse matrix is broken: indptr does not ascend "
+        "within its entries");
   Filling filling(k);
   for (Index j = 0; j < k.cols(); ++j) {
     filling.begin(j);
@@ -168,6 +175,7 @@ void OwnForces::force(const ConstVec& q, MutableVec f) const {
 }
 
 double OwnForces::potential(const ConstVec& q) const {
+  if (!has_potential()) throw std::logic_error("the System has no potential");
   if (const auto* c = std::get_if<CPotential>(&potential_)) return (*c)(q.data(), q.size());
   double v = 0;
   inside([&] {

@@ -63,25 +63,37 @@ py::dict end_of(const ReducedScene& model, const State& state) {
                   arg("v") = array_of(nodes, &Node::velocity, d));
 }
 
+// Kinetic, potential and their sum [J]; None of a system without V.
+py::object energies_of(const ReducedScene& model, const State& state) {
+  if (!model.system().has_potential()) return py::none();
+  const double kinetic = model.kinetic(state);
+  double potential = 0;
+  inside_python([&] { potential = model.potential(state); });
+  return py::make_tuple(kinetic, potential, kinetic + potential);
+}
+
 // One run of a method. The arrays are as Frames has them.
 py::dict run(const Model& model, const std::string& name, const py::dict& given, double until,
              const std::vector<double>& times, py::array_t<double> motion,
              std::optional<py::array_t<double>> energies, std::optional<double> most_seconds,
              int threads) {
-  Simulation simulation(model.reduced, method(name), options_of(given));
+  const Options options = options_of(given);
+  std::optional<Simulation> simulation;
   Frames frames(*model.reduced, times, motion, energies);
   Summary summary;
   double seconds = 0;
   outside(threads, [&](const std::stop_token& stop) {
+    simulation.emplace(model.reduced, method(name), options);
     std::optional<Deadline> deadline;
     if (most_seconds) deadline.emplace(*most_seconds);
     const auto begin = std::chrono::steady_clock::now();
-    summary = simulation.advance(until, frames.observer(), deadline ? deadline->token() : stop);
+    summary = simulation->advance(until, frames.observer(), deadline ? deadline->token() : stop);
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   });
   return py::dict(arg("summary") = record_of(summary), arg("seconds") = seconds,
                   arg("seen") = frames.seen(),
-                  arg("end") = end_of(*model.reduced, simulation.state()),
+                  arg("end") = end_of(*model.reduced, simulation->state()),
+                  arg("energies") = energies_of(*model.reduced, simulation->state()),
                   arg("growth") = in_python(growth_warning(method(name), summary)));
 }
 
@@ -103,11 +115,7 @@ py::dict answer(const Model& model, double until, double accuracy, const std::st
   record["method"] = found.method->name;
   record["value"] = found.value;
   record["end"] = end_of(*model.reduced, found.end);
-  if (model.reduced->system().has_potential()) {
-    const double kinetic = model.reduced->kinetic(found.end);
-    const double potential = model.reduced->potential(found.end);
-    record["energies"] = py::make_tuple(kinetic, potential, kinetic + potential);
-  }
+  record["energies"] = energies_of(*model.reduced, found.end);
   return record;
 }
 

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any, Sequence
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from qddot import _qddot
+from qddot._arrays import number
 from qddot._scene import Scene
 from qddot._solve import end_of, model_of, require_measurable
 from qddot._system import System
@@ -99,13 +101,13 @@ def advise(
     """Which method comes to each accuracy in the least time, found out in at most half a second or
     twice the run that is advised."""
     require_measurable(of, "advise")
-    asked = [accuracies] if isinstance(accuracies, (int, float)) else list(accuracies)
+    asked = [number(a, "accuracy") for a in np.atleast_1d(np.asarray(accuracies, dtype=object))]
     for accuracy in asked:
         if not 1e-14 <= accuracy < 1:
             raise ValueError(f"accuracy {accuracy} is not allowed; it is a relative error from 1e-14 "
                              "to below 1")
     record = _qddot.advise(
-        model_of(of, q0, v0), end_of(of, until), [float(a) for a in asked], accuracy_of
+        model_of(of, q0, v0), end_of(of, until), asked, accuracy_of
     )
     record["for_each"] = [_advice(one) for one in record["for_each"]]
     return Advices(**record)

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qddot import _qddot
-from qddot._arrays import Floats
+from qddot._arrays import Floats, count as whole_number, number
+from qddot._methods import method as method_named, options_for
 from qddot._scene import Scene
 from qddot._solve import model_of
 from qddot._system import System
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Equilibrium:
     """A stable rest, downhill from the start: all nodes' positions [m], V there [J].
 
@@ -35,7 +36,7 @@ class Equilibrium:
     iterations: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Modes:
     """The lowest natural modes about the start, by rank.
 
@@ -87,6 +88,10 @@ def equilibrium(
     if isinstance(of, Scene):
         start = _qddot.model_of(of._handle, None, [])
     else:
+        if not of.has_potential:
+            raise ValueError("equilibrium: the System has no V, which it goes downhill on; give it a "
+                             "potential")
+        require_stiffness(of, "equilibrium")
         start = model_of(of, q0)
     record = _qddot.equilibrium(start, length)
     record["positions"] = _shaped(of, record["positions"])
@@ -102,8 +107,8 @@ def modes(
 ) -> Modes:
     """The `count` lowest modes of a scene where its motion starts (or at its equilibrium), in all
     directions in which its nodes may move; of a System at q0."""
-    if count < 1:
-        raise ValueError(f"count {count} is not allowed; it is 1 or more")
+    count = whole_number(count, "count")
+    require_stiffness(of, "modes")
     if at_equilibrium:
         if isinstance(of, Scene):
             of = of.replace(starts_at_equilibrium=True)
@@ -117,7 +122,9 @@ def modes(
 
 def linear_step(method: str, h_omega: float, **options: Any) -> LinearStep:
     """What the method does to a vibration in a step of h w; options are those of solve()."""
-    record = _qddot.linear_step(method, float(h_omega), options)
+    chosen = method_named(method)
+    given = options_for(chosen, {**options, chosen.knob: 1.0})
+    record = _qddot.linear_step(method, number(h_omega, "h_omega"), given)
     record["roots"] = tuple(record["roots"])
     return LinearStep(**record)
 
@@ -127,12 +134,19 @@ def stability_limit(
 ) -> StabilityLimit:
     """The method's limit of h w, by theory and found by bisection; and the step that it is on a scene,
     or a System at q0, where w is the largest natural frequency of the start."""
-    predicted, measured = _qddot.stability_limit(method)
+    predicted, measured = _qddot.stability_limit(method_named(method).name)
     step = None
     if of is not None:
+        require_stiffness(of, "stability_limit")
         omega = _qddot.largest_frequency(model_of(of, q0))
         step = predicted / omega if omega > 0 else np.inf
     return StabilityLimit(method, predicted, measured, step)
+
+
+def require_stiffness(of: Scene | System, what: str) -> None:
+    """A sentence for a System without K."""
+    if isinstance(of, System) and not of.has_stiffness:
+        raise ValueError(f"{what}: the System has no K; give it its stiffness, or a pattern of it")
 
 
 def _shaped(of: Scene | System, nodes: Floats) -> Floats:

@@ -13,11 +13,15 @@ A = TypeVar("A", bound="np.ndarray[Any, Any]")
 
 def floats(value: ArrayLike, name: str, one: bool = False) -> Floats:
     """Numbers in C order; a scalar is an array of one where that may be."""
+    require_unmasked(value, name)
     try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
+        given = np.asarray(value)
+        if given.dtype.kind not in "iufO":
+            raise TypeError(f"its entries are {given.dtype}")
+        array = np.ascontiguousarray(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name}: it is no array of numbers ({error})") from None
-    return array.reshape(-1) if one and np.ndim(value) < 2 else array
+        raise ValueError(f"{name}: it is no array of real numbers ({error})") from None
+    return array.reshape(-1) if one and given.ndim < 2 else array
 
 
 def whole_numbers(value: ArrayLike, name: str) -> NDArray[np.int64]:
@@ -27,7 +31,35 @@ def whole_numbers(value: ArrayLike, name: str) -> NDArray[np.int64]:
         return np.zeros(array.shape, dtype=np.int64)
     if array.dtype.kind not in "iuf" or not np.all(array == np.floor(array)):
         raise ValueError(f"{name}: it has entries that are no whole numbers")
+    require_unmasked(value, name)
     return np.ascontiguousarray(array, dtype=np.int64)
+
+
+def require_unmasked(value: ArrayLike, name: str) -> None:
+    """A sentence for a masked array, whose mask would be lost."""
+    if np.any(getattr(value, "mask", False)):
+        raise ValueError(f"{name}: some of its entries are masked; allowed are numbers alone")
+
+
+def number(value: Any, name: str) -> float:
+    """One real number."""
+    try:
+        if np.ndim(value) == 0 and not isinstance(value, (str, bytes, bool, complex)):
+            return float(value)
+    except (TypeError, ValueError):
+        pass
+    raise ValueError(f"{name}: {value!r} is no number")
+
+
+def count(value: Any, name: str, least: int = 1, most: int | None = None) -> int:
+    """One whole number within bounds."""
+    x = number(value, name)
+    if not np.isfinite(x) or x != int(x):
+        raise ValueError(f"{name}: {value!r} is no whole number")
+    if x < least or (most is not None and x > most):
+        bounds = f"{least} or more" if most is None else f"from {least} to {most}"
+        raise ValueError(f"{name} {value} is not allowed; it is {bounds}")
+    return int(x)
 
 
 def frozen(array: A) -> A:

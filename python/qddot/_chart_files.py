@@ -34,7 +34,7 @@ def save(
 
 def draw(folder: str, path: str | os.PathLike[str]) -> None:
     """Draws the chart whose files are in the folder into a PNG or SVG file."""
-    ending = os.path.splitext(os.fspath(path))[1]
+    ending = os.path.splitext(os.fspath(path))[1].lower()
     if ending not in (".png", ".svg"):
         raise ValueError(f"{os.fspath(path)}: allowed are the endings .png and .svg")
     done = subprocess.run(

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qddot._arrays import Floats
+from qddot._arrays import Floats, count, number
 from qddot._reference import Reference, reference as make_reference
 from qddot._scene import Scene
 from qddot._solve import solve
 from qddot._system import System
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Convergence:
     """Errors of a method at h, h/2, h/4, ... [s], and the order that each halving shows: log2 of the
     ratio of errors, no number where one of them did not come to the end or is near what the reference
@@ -40,7 +40,10 @@ def convergence(
 ) -> Convergence:
     """The observed order of convergence of a method of fixed steps, from `step_size` [s] on."""
     exact = reference or make_reference(of, until, q0=q0, v0=v0)
-    steps = step_size / 2.0 ** np.arange(halvings + 1)
+    exact.require(of, q0, v0)
+    if until is not None and until != exact.until:
+        raise ValueError(f"reference: it is that of {exact.until:g} s, and until is {until:g} s")
+    steps = number(step_size, "step_size") / 2.0 ** np.arange(count(halvings, "halvings") + 1)
     q, v = np.full(len(steps), np.nan), np.full(len(steps), np.nan)
     for i, h in enumerate(steps):
         solution = solve(of, method, step_size=float(h), until=exact.until, q0=q0, v0=v0)

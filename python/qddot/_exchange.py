@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import Any, Sequence
 
 from qddot import _qddot
-from qddot._arrays import Floats
+from qddot._arrays import Floats, number
 from qddot._methods import method as method_named
 from qddot._scene import Scene
-from qddot._solve import end_of
+from qddot._solve import end_of, seconds_of
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ExchangeRun:
     """One method at one step size. energies: (times, stiff springs), the oscillatory energy of each
     [J]. tempo: how fast they exchange it beside the reference, misfit what is left of the difference
@@ -32,7 +32,7 @@ class ExchangeRun:
     outcome: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Exchange:
     """How methods exchange the energy of stiff springs. omega [rad/s] is these springs' highest
     frequency, certified what the reference may be off by, in parts of their energy."""
@@ -54,12 +54,15 @@ def exchange(
     """Follows the energies of the stiff springs (Scene.stiff_above) by each method at each step h with
     h w as given, w the springs' highest frequency; seen about `every` [s], a thousandth of the time
     where not given."""
+    if not isinstance(of, Scene):
+        raise TypeError("exchange is for a qddot.Scene, whose springs may be stiff")
     for name in methods:
         method_named(name)
-    steps = [float(x) for x in h_omega]
+    between = None if every is None else seconds_of(every, "every")
+    steps = [number(x, "h_omega") for x in h_omega]
     if not all(0 < x < float("inf") for x in steps):
         raise ValueError("h_omega: its numbers are finite and above 0")
-    made = _qddot.exchange(of._model(), list(methods), steps, end_of(of, until), every)
+    made = _qddot.exchange(of._model(), list(methods), steps, end_of(of, until), between)
     return Exchange(
         made["omega"], made["certified"], _run(made["reference"]), [_run(r) for r in made["runs"]]
     )

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, Callable
+
+import numpy as np
 
 from qddot import _qddot
+from qddot._arrays import count, number
 
 
 @dataclass(frozen=True)
@@ -49,16 +52,42 @@ def methods() -> list[Method]:
 
 def method(name: str) -> Method:
     """The method of that name; a ValueError that names all there are where there is none."""
-    found = _all().get(name)
+    found = _all().get(name) if isinstance(name, str) else None
     if found is None:
         raise ValueError(f"{name!r} is no method; there are {', '.join(_all())}")
     return found
 
 
+def _whole(value: Any, name: str) -> int:
+    return count(value, name, 0)
+
+
+def _flag(value: Any, name: str) -> bool:
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    raise ValueError(f"{name}: {value!r} is neither True nor False")
+
+
+def _word(value: Any, name: str) -> str:
+    if isinstance(value, str):
+        return value
+    raise ValueError(f"{name}: {value!r} is no name")
+
+
+# Options that are no real numbers.
+_OPTIONS: dict[str, Callable[[Any, str], Any]] = {
+    "max_order": _whole,
+    "iterations": _whole,
+    "stability_detection": _flag,
+    "compensated": _flag,
+    "solver": _word,
+}
+
+
 def options_for(chosen: Method, given: dict[str, Any]) -> dict[str, Any]:
     """The options that were given, as the method takes them; a ValueError for those it ignores and
     where its knob is missing."""
-    options = {name: value for name, value in given.items() if value is not None}
+    options = {n: _OPTIONS.get(n, number)(value, n) for n, value in given.items() if value is not None}
     other = "rtol" if chosen.knob == "step_size" else "step_size"
     for name in (other, *(["atol"] if chosen.knob == "step_size" else [])):
         if name in options:

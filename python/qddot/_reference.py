@@ -12,7 +12,7 @@ from qddot import _qddot
 from qddot._arrays import Floats, floats
 from qddot._scene import Scene
 from qddot._solution import Solution, State
-from qddot._solve import end_of, model_of, require_measurable
+from qddot._solve import end_of, model_of, require_measurable, seconds_of
 from qddot._system import System
 
 
@@ -26,7 +26,7 @@ class Errors:
     energy: float = float("nan")
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Reference:
     """The motion at `until` [s], and how far it can be trusted: `certified` bounds its errors.
 
@@ -48,11 +48,18 @@ class Reference:
     beyond_horizon: bool
     divided_by: str
     _held: _qddot.Reference = field(repr=False, compare=False)
+    _of: Scene | System = field(repr=False, compare=False)  # whose callables it may call
+    _motion: tuple[Any, ...] = field(repr=False, compare=False)
     _record: dict[str, Any] = field(repr=False, compare=False)
 
     def __repr__(self) -> str:
         return (f"<qddot.Reference at {self.until:g} s, {len(self.q)} nodes: positions certified to "
                 f"{self.certified.position:.1e}>")
+
+    def require(self, of: Scene | System, q0: ArrayLike | None, v0: ArrayLike | None) -> None:
+        """A sentence where it is the reference of another motion."""
+        if self._motion != motion_of(of, q0, v0):
+            raise ValueError("reference: it is that of another scene, System or start")
 
     def errors(self, motion: Solution | State | ArrayLike, v: ArrayLike | None = None) -> Errors:
         """The errors of a solution that ended at `until`, or of q and v of all nodes there, whoever
@@ -65,6 +72,10 @@ class Reference:
             q, v = state.q, state.v
         else:
             q = floats(state, "q")
+        for name, array in (("q", q), ("v", v)):
+            if array is not None and np.shape(array) != self.q.shape:
+                raise ValueError(f"errors: {name} has the shape {np.shape(array)}; allowed is that of all "
+                                 f"nodes, {self.q.shape}")
         velocities = np.zeros_like(q) if v is None else floats(v, "v")
         position, velocity = self._held.errors(q, velocities)
         return Errors(position, velocity if v is not None else float("nan"))
@@ -81,11 +92,24 @@ def reference(
     """A certified motion, made in about so many seconds at most by two unlike ways. Raises NoReference
     where either never reaches the end."""
     require_measurable(of, "reference")
-    end = end_of(of, until)
-    return held(of, _qddot.reference(model_of(of, q0, v0), end, seconds))
+    end, limit = end_of(of, until), seconds_of(seconds, "seconds")
+    model = model_of(of, q0, v0)
+    if np.any(model.mass == 0):
+        raise ValueError("reference: some unknowns have no mass; all need one above 0")
+    return held(of, q0, v0, _qddot.reference(model, end, limit))
 
 
-def held(of: Scene | System, handle: _qddot.Reference) -> Reference:
+def motion_of(of: Scene | System, q0: ArrayLike | None, v0: ArrayLike | None) -> tuple[Any, ...]:
+    """What tells one motion from another."""
+    if isinstance(of, Scene):
+        return (of.content_hash(),)
+    start = (None if x is None else floats(x, "start").tobytes() for x in (q0, v0))
+    return (id(of), *start)
+
+
+def held(
+    of: Scene | System, q0: ArrayLike | None, v0: ArrayLike | None, handle: _qddot.Reference
+) -> Reference:
     """The same as a dataclass."""
     record, end = handle.record(), handle.end()
     flat = isinstance(of, System) and of.dimension is None
@@ -98,6 +122,8 @@ def held(of: Scene | System, handle: _qddot.Reference) -> Reference:
         v=end["v"].reshape(-1) if flat else end["v"],
         certified=Errors(certified["position"], certified["velocity"], certified["energy"]),
         _held=handle,
+        _of=of,
+        _motion=motion_of(of, q0, v0),
         _record=record,
         **{name: record[name] for name in names},
     )

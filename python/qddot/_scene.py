@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qddot import _qddot
-from qddot._arrays import Floats, floats, frozen, whole_numbers
+from qddot._arrays import Floats, floats, frozen, number, whole_numbers
 from qddot._explanation import Explanation
 from qddot._mesh import mesh_toml
 
@@ -48,24 +48,34 @@ class Scene:
         stiff_above: float | None = None,
         starts_at_equilibrium: bool = False,
     ) -> None:
+        places = floats(positions, "positions")
+        if velocities is not None and np.shape(velocities) != places.shape:
+            raise ValueError(f"velocities: their shape is {np.shape(velocities)}; allowed is that of "
+                             f"the positions, {places.shape}")
         held = np.asarray(pinned)
         if held.dtype == bool:
+            if held.shape != places.shape[:1]:
+                raise ValueError(f"pinned: the mask's shape is {held.shape}; allowed is a value for "
+                                 f"each of the {len(places)} nodes")
             held = np.flatnonzero(held)
+        held = whole_numbers(held, "pinned")
+        if held.ndim != 1 or len(np.unique(held)) != held.size:
+            raise ValueError("pinned: allowed are the numbers of nodes, each once, or a mask of bool")
         self._hold(
             _qddot.Scene.from_arrays(
-                floats(positions, "positions"),
+                places,
                 whole_numbers(springs, "springs"),
                 floats(mass, "mass", one=True),
                 floats(stiffness, "stiffness", one=True),
-                whole_numbers(held, "pinned"),
+                held,
                 None if gravity is None else floats(gravity, "gravity"),
                 None if velocities is None else floats(velocities, "velocities"),
                 None if rest_length is None else floats(rest_length, "rest_length", one=True),
                 None if quartic is None else floats(quartic, "quartic", one=True),
-                name,
-                until,
-                stiff_above,
-                starts_at_equilibrium,
+                str(name),
+                None if until is None else number(until, "until"),
+                None if stiff_above is None else number(stiff_above, "stiff_above"),
+                bool(starts_at_equilibrium),
             )
         )
 
@@ -238,6 +248,12 @@ class Scene:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (Scene.from_toml, (self.to_toml(),))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scene) and self.content_hash() == other.content_hash()
+
+    def __hash__(self) -> int:
+        return hash(self.content_hash())
 
     def __repr__(self) -> str:
         nodes, springs = len(self.mass), len(self.stiffness)

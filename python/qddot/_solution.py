@@ -16,6 +16,9 @@ class RunFailed(RuntimeError):
         super().__init__(solution.message)
         self.solution = solution
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (RunFailed, (self.solution,))
+
 
 @dataclass(frozen=True)
 class Counts:
@@ -33,7 +36,7 @@ class Counts:
     stability_limited_steps: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Energy:
     """Energies [J] at the times of a solution."""
 
@@ -42,7 +45,7 @@ class Energy:
     total: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class State:
     """Positions [m] and velocities [m/s] of all nodes at time t [s]."""
 
@@ -51,9 +54,10 @@ class State:
     v: Floats
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Solution:
-    """The motion that a method computed, at the times t of `save_at` that it reached, and at its end.
+    """The motion that a method computed, at the times t of `save_at` that it reached (at its end alone
+    where none were asked for), and at its end.
 
     q, v: (times, nodes, dimension), or (times, n) of a System without a dimension; views into one
     buffer. energy is None for a System without a potential. outcome is "reached_end" or says why
@@ -100,7 +104,7 @@ class Solution:
     def diagnosis(self, seconds: float = 5) -> str:
         """Why the run failed and what would have held, found out by trying for some seconds; or, of
         one that did not fail, what is wrong with its steps all the same. Empty where nothing is to
-        be said."""
+        be said, and for a System without V or K."""
         return self._diagnose(seconds) if self._diagnose else ""
 
     def __getstate__(self) -> dict[str, Any]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import dataclass, replace
 from typing import Any, Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from qddot import _qddot
-from qddot._arrays import Floats, floats
+from qddot._arrays import Floats, count, floats, number
 from qddot._methods import Method, method as method_named, options_for
 from qddot._scene import Scene
 from qddot._solution import Counts, Energy, Solution, State
@@ -43,12 +44,12 @@ def model_of(
 def end_of(of: Scene | System, until: float | None) -> float:
     """The time to run to: that asked for, or the scene's own."""
     own = of.until if isinstance(of, Scene) else None
-    end = own if until is None else until
-    if end is None:
+    if own is None and until is None:
         raise ValueError("until is missing; it is the time to run to in s, above 0")
+    end = number(own if until is None else until, "until")
     if not (math.isfinite(end) and end > 0):
-        raise ValueError(f"until {end} is not allowed; it is the time to run to in s, above 0")
-    return float(end)
+        raise ValueError(f"until {end:g} is not allowed; it is the time to run to in s, above 0")
+    return end
 
 
 def require_measurable(of: Scene | System, what: str) -> None:
@@ -90,8 +91,8 @@ def solve(
     scene's own sizes); or, with `accuracy`, a relative error of the positions at the end ("path": at
     all times, "energy"), by whatever method takes the least time for it, with its error bounded.
 
-    save_at: times [s], ascending, from 0 to `until`, at which q and v are returned; the end alone
-    where not given. Methods of fixed steps take the same steps with it and without; SUNDIALS' adaptive
+    save_at: times [s], ascending, from 0 to `until`, at which q and v are returned; where it is not
+    given, they are those of the state that was reached. Methods of fixed steps take the same steps with it and without; SUNDIALS' adaptive
     ones land on these times. `seconds`: the run is stopped after so many. `keep`: reductions that are
     not made. The other options are for the methods that name them (Method.takes).
 
@@ -105,11 +106,10 @@ def solve(
         spectral_radius=spectral_radius, solver=solver, compensated=compensated,
     )
     end = end_of(of, until)
-    times = _times(save_at, end)
-    if not threads >= 1:
-        raise ValueError(f"threads {threads} is not allowed; it is 1 or more")
-    if seconds is not None and not seconds > 0:
-        raise ValueError(f"seconds {seconds} is not allowed; it is above 0")
+    times = None if save_at is None else _times(save_at, end)
+    threads = count(threads, "threads", 1, 256)
+    if seconds is not None:
+        seconds = seconds_of(seconds, "seconds")
     if (method is None) == (accuracy is None):
         raise ValueError("solve takes a method, or an accuracy that it finds one for: one of both")
     if accuracy is not None:
@@ -118,105 +118,162 @@ def solve(
             raise ValueError(f"{superfluous[0]} is not for accuracy, which chooses the method and "
                              "its knob: leave out one of both")
         require_measurable(of, "accuracy")
-        model = model_of(of, q0, v0, None, keep)
-        return _answer(of, model, end, times, accuracy, accuracy_of, seconds, threads)
+        accuracy = number(accuracy, "accuracy")
+        if not isinstance(accuracy_of, str):
+            raise ValueError(f"accuracy_of: {accuracy_of!r}; allowed are positions, path and energy")
+        start = _Start(of, q0, v0, tuple(keep))
+        return _answer(start, end, times, accuracy, accuracy_of, seconds, threads)
     assert method is not None
     chosen = method_named(method)
     options = options_for(chosen, given)
-    model = model_of(of, q0, v0, chosen, keep)
-    return _run(of, model, chosen, options, end, times, seconds, threads)
+    if isinstance(of, System):
+        require_offered(of, chosen)
+    return _run(_Start(of, q0, v0, tuple(keep)), chosen, options, end, times, seconds, threads)
 
 
-def _times(save_at: ArrayLike | None, end: float) -> list[float]:
-    if save_at is None:
-        return [end]
-    times = floats(save_at, "save_at", one=True).reshape(-1)
+@dataclass(frozen=True)
+class _Start:
+    """What is run, and from where."""
+
+    of: Scene | System
+    q0: ArrayLike | None
+    v0: ArrayLike | None
+    keep: tuple[str, ...]
+
+    def model(self, chosen: Method | None = None) -> _qddot.Model:
+        return model_of(self.of, self.q0, self.v0, chosen, self.keep)
+
+
+def require_offered(of: System, chosen: Method) -> None:
+    """A sentence for a method that needs what the System does not compute."""
+    others = {
+        "constant_stiffness": "a K that is the same everywhere",
+        "split_forces": "stiff springs",
+        "discrete_gradient": "the discrete gradient of springs",
+        "laplacian": "the matrix of springs of rest length zero",
+    }
+    for need in chosen.needs:
+        if need in others:
+            raise ValueError(f"{chosen.name} needs {others[need]}, which a System does not offer: "
+                             "take another method, or a Scene")
+    if "stiffness" in chosen.needs and not of.has_stiffness:
+        raise ValueError(f"{chosen.name} needs K: give the System its stiffness, or a pattern by which "
+                         "it is made of differences of the force; or take an explicit method")
+
+
+def seconds_of(value: object, name: str) -> float:
+    """A wall time above 0."""
+    x = number(value, name)
+    if not x > 0:
+        raise ValueError(f"{name} {value} is not allowed; it is a number of seconds above 0")
+    return x
+
+
+def _times(save_at: ArrayLike, end: float) -> list[float]:
+    times = floats(save_at, "save_at", one=True).reshape(-1).copy()
+    # What np.arange makes of the end may be some roundings beyond it.
+    times[(times > end) & (times <= end * (1 + 1e-14))] = end
     if times.size and not (np.all(np.diff(times) >= 0) and times[0] >= 0 and times[-1] <= end):
-        raise ValueError(f"save_at: its times must ascend from 0 to until = {end:g} s")
+        raise ValueError(f"save_at: its times must ascend from 0 to until = {end!r} s, and they go from "
+                         f"{float(times[0])!r} to {float(times[-1])!r}")
     return [float(t) for t in times]
 
 
 def _run(
-    of: Scene | System, model: _qddot.Model, chosen: Method, options: dict[str, Any], end: float,
-    times: list[float], seconds: float | None, threads: int,
+    start: _Start, chosen: Method, options: dict[str, Any], end: float, times: list[float] | None,
+    seconds: float | None, threads: int,
 ) -> Solution:
-    shape = (model.nodes, model.dimension)
-    motion = np.empty((2, len(times), *shape))
-    energies = np.empty((3, len(times))) if model.has_potential else None
-    record = _qddot.run(model, chosen.name, options, end, times, motion, energies, seconds, threads)
+    model = start.model(chosen)
+    looks = [] if times is None else times
+    motion = np.empty((2, len(looks), model.nodes, model.dimension))
+    energies = np.empty((3, len(looks))) if model.has_potential else None
+    record = _qddot.run(model, chosen.name, options, end, looks, motion, energies, seconds, threads)
     if record["growth"] and record["summary"]["outcome"] == "reached_end":
         warnings.warn(record["growth"], RuntimeWarning, stacklevel=3)
-    seen = record["seen"]
-    return _solution(of, record, chosen.name, chosen.knob, options[chosen.knob], times[:seen],
-                     motion[:, :seen], None if energies is None else energies[:, :seen],
-                     State(**record["end"]), _diagnosis(model, chosen, options, end), {})
+    state, seen = State(**record["end"]), record["seen"]
+    about = dict(method=chosen.name, knob=chosen.knob, value=float(options[chosen.knob]),
+                 seconds=record["seconds"], _diagnose=_diagnosis(start, chosen, options, end))
+    if times is None:
+        return _at_end(start.of, record, state, about)
+    energy = None if energies is None else Energy(*energies[:, :seen])
+    return _solution(start.of, record, times[:seen], motion[:, :seen], energy, state, about)
 
 
 def _diagnosis(
-    model: _qddot.Model, chosen: Method, options: dict[str, Any], end: float
+    start: _Start, chosen: Method, options: dict[str, Any], end: float
 ) -> Callable[[float], str]:
-    return lambda wait: _qddot.why_it_failed(model, chosen.name, options, end, wait)
+    def diagnose(seconds: float) -> str:
+        of = start.of
+        if isinstance(of, System) and not (of.has_potential and of.has_stiffness):
+            return ""  # limits of steps are those of K, and energies tell where a run went wrong
+        return _qddot.why_it_failed(start.model(chosen), chosen.name, options, end, seconds)
+
+    return diagnose
+
+
+def _at_end(
+    of: Scene | System, record: dict[str, Any], state: State, about: dict[str, Any]
+) -> Solution:
+    """The solution that has the state at its end alone."""
+    motion = np.stack((state.q, state.v))[:, None]
+    energy = None
+    if record.get("energies"):
+        energy = Energy(*np.array(record["energies"])[:, None])
+    return _solution(of, record, [state.t], motion, energy, state, about)
 
 
 def _solution(
-    of: Scene | System, record: dict[str, Any], method: str, knob: str, value: float,
-    times: list[float], motion: Floats, energies: Floats | None, end: State,
-    diagnose: Callable[[float], str] | None, about: dict[str, Any],
+    of: Scene | System, record: dict[str, Any], times: list[float], motion: Floats,
+    energy: Energy | None, end: State, about: dict[str, Any],
 ) -> Solution:
     if isinstance(of, System) and of.dimension is None:  # which has unknowns, and no nodes
-        motion = motion.reshape(2, len(times), -1)
+        motion = motion.reshape(2, len(times), of.mass.size)
         end = State(end.t, end.q.reshape(-1), end.v.reshape(-1))
     summary = record["summary"]
     return Solution(
-        method=method,
-        knob=knob,
-        value=float(value),
         t=np.array(times, dtype=float),
         q=motion[0],
         v=motion[1],
-        energy=None if energies is None else Energy(*energies),
+        energy=energy,
         end=end,
         outcome=summary["outcome"],
         message=record.get("why") or summary["message"],
         t_reached=summary["t_reached"],
         counts=Counts(**summary["counts"]),
-        seconds=record["seconds"],
         energy_growth=summary["energy_growth"],
-        _diagnose=diagnose,
         **about,
     )
 
 
 def _answer(
-    of: Scene | System, model: _qddot.Model, end: float, times: list[float], accuracy: float,
-    accuracy_of: str, seconds: float | None, threads: int,
+    start: _Start, end: float, times: list[float] | None, accuracy: float, accuracy_of: str,
+    seconds: float | None, threads: int,
 ) -> Solution:
-    record = _qddot.answer(model, end, float(accuracy), accuracy_of, seconds, threads)
-    about = dict(
-        accuracy=float(accuracy),
+    model = start.model()
+    record = _qddot.answer(model, end, accuracy, accuracy_of, seconds, threads)
+    about: dict[str, Any] = dict(
+        accuracy=accuracy,
         is_reached=record["is_reached"],
         error_estimate=record["error_estimate"],
         error_estimate_kind=record["error_estimate_kind"],
         horizon=record["horizon"],
         runs=record["runs"],
         seconds_in_all=record["seconds_in_all"],
+        seconds=record["seconds"],
     )
     if "method" not in record:  # no run was begun
-        empty = np.empty((2, 0, model.nodes, model.dimension))
-        start = State(0.0, *model.nodes_at(model.q, model.v, 0.0))
-        return _solution(of, record, "", "", math.nan, [], empty, None, start, None, about)
+        state = State(0.0, *model.nodes_at(model.q, model.v, 0.0))
+        about.update(method="", knob="", value=math.nan)
+        return _at_end(start.of, record, state, about)
     chosen = method_named(record["method"])
     options = {chosen.knob: record["value"]}
-    if times == [end] and record["is_reached"]:
-        state = record["end"]
-        motion = np.stack((state["q"], state["v"]))[:, None]
-        energies = np.array(record["energies"])[:, None] if model.has_potential else None
-        return _solution(of, record, chosen.name, chosen.knob, record["value"], times, motion,
-                         energies, State(**state), _diagnosis(model, chosen, options, end), about)
+    about.update(method=chosen.name, knob=chosen.knob, value=record["value"])
+    if times is None:
+        about["_diagnose"] = _diagnosis(start, chosen, options, end)
+        return _at_end(start.of, record, State(**record["end"]), about)
     # The chosen run once more, seen on its way; it ends at the same place but for methods that land
     # on the times.
-    run = _run(of, model, chosen, options, end, times, None, threads)
-    changes = {**run.__dict__, **about, "seconds": record["seconds"]}
-    if record["why"]:
-        changes["message"] = record["why"]
-    return Solution(**changes)
+    left = None if seconds is None else max(seconds - record["seconds_in_all"], 1e-3)
+    run = _run(start, chosen, options, end, times, left, threads)
+    message = record["why"] or run.message
+    return replace(run, **{**about, "message": message})

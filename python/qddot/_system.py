@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qddot import _qddot
-from qddot._arrays import Floats, floats
+from qddot._arrays import Floats, floats, frozen, whole_numbers
 from qddot._callables import callable_or_address, require_arguments
 from qddot._derivatives import check
 
@@ -23,8 +23,7 @@ class System:
     mass [kg]: (n), or (nodes) and (nodes, dimension) where a dimension 1, 2 or 3 is given. q and f
     have the shape (n), or (nodes, dimension).
 
-    force(q, f) writes f [N]. potential(q) returns V [J]. stiffness(q) returns
-    K = df/dq [N/m], n x n and symmetric, as a scipy.sparse matrix or an array; mind the sign, many
+    force(q, f) writes f [N]. potential(q) returns V [J]. stiffness(q) returns K = df/dq [N/m], n x n and symmetric, as a scipy.sparse matrix or an array; mind the sign, many
     codes have -K. q and f are views of the solver's memory: q cannot be written, and neither may be
     kept beyond the call. force and potential may also be C functions (a Numba cfunc, a ctypes or
     cffi pointer), which cost no more than those of qddot:
@@ -37,12 +36,11 @@ class System:
     "dense") by which K is made of differences of f: implicit methods, SUNDIALS', references, answers
     to an accuracy.
 
-    `length` [m]: a small length of the motion, for these differences; the largest coordinate of the
-    start where not given, or 1 m where that is 0. With `check` the first start is looked at: f must be finite there, -dV/dq and K what differences of V and f say. Forces that
-    depend on the velocity or on time are not modelled: a force that takes them is refused.
+    `length` [m]: a small length of the motion, for these differences; where not given, how far the
+    start spreads. With `check` the system is looked at beside its first start: f must be finite, -dV/dq,
+    and K what differences of f say. Forces that depend on the velocity or on time are not modelled: a
+    force that takes them is refused.
     """
-
-    mass: Floats
 
     def __init__(
         self,
@@ -68,8 +66,8 @@ class System:
             raise ValueError("mass: allowed are finite numbers of at least 0 in kg, one or more")
         if length is not None and not (np.isfinite(length) and length > 0):
             raise ValueError(f"length {length} is not allowed; it is a length in m above 0")
-        self.mass = m
-        self.dimension = dimension
+        self._mass = frozen(m.copy())
+        self._dimension = dimension
         self._length = length
         self._force = callable_or_address(force, "force", 2)
         self._potential = callable_or_address(potential, "potential", 1)
@@ -79,6 +77,16 @@ class System:
         self._kept_alive = (force, potential)
         self._pattern: Pattern | None = None if pattern is None else self._pairs(pattern)
         self._must_check = check
+
+    @property
+    def mass(self) -> Floats:
+        """[kg], in the shape of q and f."""
+        return self._mass
+
+    @property
+    def dimension(self) -> int | None:
+        """How many coordinates a node has; None where there are no nodes."""
+        return self._dimension
 
     @property
     def has_potential(self) -> bool:
@@ -110,10 +118,13 @@ class System:
             shape, rows, columns = coo.shape, coo.row, coo.col
         else:
             array = np.asarray(pattern)
-            if array.ndim == 2 and array.shape[1] == 2 and array.shape != (2, 2):
-                shape, (rows, columns) = (n, n), array.T
+            if array.ndim != 2 or array.dtype.kind not in "biuf":
+                raise ValueError(f"pattern: it is no matrix and no table of pairs (m, 2), but of shape "
+                                 f"{array.shape}")
+            if array.shape[1] == 2 and array.shape != (2, 2):
+                shape, (rows, columns) = (n, n), whole_numbers(array, "pattern").T
             elif array.shape == (2, 2) and n != 2 and len(self.mass) != 2:
-                shape, (rows, columns) = (n, n), array.T
+                shape, (rows, columns) = (n, n), whole_numbers(array, "pattern").T
             else:
                 shape, (rows, columns) = array.shape, np.nonzero(array)
         if shape == (n, n):
@@ -150,12 +161,12 @@ class System:
         q = self._numbers(q0, "q0")
         v = np.zeros_like(q) if v0 is None else self._numbers(v0, "v0")
         if self._length is None:
-            self._length = float(np.max(np.abs(q))) or 1.0
+            self._length = _size_of(q)
         if self._stiffness is not None and self._pattern is None:
             self._pattern = self._pattern_near(q)
         model = self._made(q, v)
         if self._must_check:
-            check(model, q, self._length, self._stiffness is not None)
+            check(model, self._length, self._stiffness is not None)
             self._must_check = False
         return model
 
@@ -178,6 +189,8 @@ class System:
         if value is None:
             raise ValueError(f"{name} is missing; a System starts there, {self.mass.shape} numbers")
         array = floats(value, name)
+        if not np.all(np.isfinite(array)):
+            raise ValueError(f"{name}: some of its entries are not finite")
         if array.shape != self.mass.shape:
             raise ValueError(f"{name}: its shape is {array.shape}; allowed is {self.mass.shape}, that "
                              "of the masses")
@@ -195,3 +208,16 @@ class System:
             rows.append(np.asarray(k[1], dtype=np.int64))
             columns.append(np.repeat(np.arange(q.size, dtype=np.int64), np.diff(k[2])))
         return np.concatenate(rows), np.concatenate(columns)
+
+    def __repr__(self) -> str:
+        offered = ["force"]
+        offered += ["potential"] if self.has_potential else []
+        offered += ["stiffness"] if self._stiffness is not None else []
+        offered += ["pattern"] if self._stiffness is None and self.has_stiffness else []
+        return f"<qddot.System of {self.mass.size} unknowns: {', '.join(offered)}>"
+
+
+def _size_of(q: Floats) -> float:
+    """How far the start spreads, wherever it is; of one number its own size; else 1."""
+    spread = float(np.max(np.ptp(q, axis=0))) if len(q) > 1 else 0.0
+    return spread or float(np.max(np.abs(q))) or 1.0

@@ -9,10 +9,10 @@ from qddot import _qddot
 from qddot._arrays import Floats
 from qddot._methods import method as method_named, options_for
 from qddot._scene import Scene
-from qddot._solve import end_of
+from qddot._solve import end_of, seconds_of
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class EnergyTrend:
     """The energy error of a run over time, taken apart.
 
@@ -56,7 +56,7 @@ def energy_trend(
     given = options_for(chosen, {"step_size": step_size, "rtol": rtol, **options})
     if chosen.knob == "rtol":
         given.pop("step_size", None)
-    record = _qddot.energy_trend(of._model(), chosen.name, given, end_of(of, until), seconds)
+    record = _qddot.energy_trend(of._model(), chosen.name, given, end_of(of, until), seconds_of(seconds, "seconds"))
     return EnergyTrend(
         method=chosen.name,
         t=record["t"],

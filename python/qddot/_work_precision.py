@@ -14,10 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from qddot import _qddot
 from qddot._chart_files import draw, save
+from qddot._arrays import count
 from qddot._methods import method as method_named
-from qddot._reference import Reference, held
+from qddot._reference import Reference, reference as make_reference
 from qddot._scene import Scene
-from qddot._solve import end_of, model_of, require_measurable
+from qddot._solve import end_of, require_measurable, require_offered, seconds_of
 from qddot._system import System
 
 _text = ("scene", "method", "knob", "outcome", "family", "stock_of")
@@ -50,7 +51,7 @@ class Point:
     outcome: str
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class WorkPrecision:
     """What every method takes and misses by, from coarse to fine, against a reference.
 
@@ -181,14 +182,15 @@ def work_precision(
     if isinstance(methods, str):
         raise ValueError(f"methods: {methods!r} is one word; it is a list of names")
     for name in methods:
-        method_named(name)
+        chosen = method_named(name)
+        if isinstance(of, System):
+            require_offered(of, chosen)
     end = end_of(of, until)
-    if reference is None:
-        handle = _qddot.reference(model_of(of, q0, v0), end, reference_seconds)
-    elif reference.until != end:
-        raise ValueError(f"reference: it is that of {reference.until:g} s, and until is {end:g} s")
-    else:
-        handle = reference._held
+    limit, repeats = seconds_of(point_limit, "point_limit"), count(repeats, "repeats", 1, 1000)
+    exact = reference or make_reference(of, end, q0=q0, v0=v0, seconds=reference_seconds)
+    exact.require(of, q0, v0)
+    if exact.until != end:
+        raise ValueError(f"reference: it is that of {exact.until:g} s, and until is {end:g} s")
     line = _Progress() if progress is True else None
     see = line if line else progress if callable(progress) else None
 
@@ -197,10 +199,10 @@ def work_precision(
         at_most = record["error_position"] + certified
         see(Point(**{name: record.get(name, at_most) for name in Point.__dataclass_fields__}))
 
-    certified = float(handle.record()["certified"]["position"])
+    certified = exact.certified.position
     try:
         made = _qddot.work_precision(
-            handle, list(methods), point_limit, repeats, {}, report if see else None
+            exact._held, list(methods), limit, repeats, {}, report if see else None
         )
     finally:
         if line:
@@ -210,7 +212,7 @@ def work_precision(
         record["scene"] = scene
         record["knob"] = str(record["knob"])
     points = _table(COLUMNS, made["points"])
-    return WorkPrecision(held(of, handle), points, _front(made), scene)
+    return WorkPrecision(exact, points, _front(made), scene)
 
 
 def _front(made: dict[str, Any]) -> NDArray[Any]:

@@ -192,7 +192,62 @@ def end_of(scene):
     return qddot.solve(scene, "verlet", step_size=1e-3, until=0.1)
 
 
+def failing(scene):
+    qddot.solve(scene, "verlet", step_size=1.0, until=1e3).or_raise()
+
+
 class Processes(unittest.TestCase):
+    def test_failures_come_from_other_processes(self):
+        with get_context("fork").Pool(1) as pool:
+            with self.assertRaises(qddot.RunFailed) as raised:
+                pool.map(failing, [qddot.scenes.oscillator()])
+        self.assertEqual(raised.exception.solution.outcome, "diverged")
+
+    def test_control_c_in_a_process_that_was_forked_within_a_run(self):
+        code = """
+import os, signal
+import numpy as np
+import qddot
+def force(q, f):
+    f[:] = -q
+    if os.fork() == 0:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            for _ in range(1000): pass
+        except KeyboardInterrupt:
+            os._exit(7)
+        os._exit(8)
+    _, status = os.wait()
+    print(os.waitstatus_to_exitcode(status), flush=True)
+qddot.solve(qddot.System([1.0], force, check=False), "verlet", step_size=1.0, until=1, q0=[1.0])
+"""
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+        self.assertEqual(set(done.stdout.split()), {"7"}, done.stderr)
+        self.assertEqual(done.returncode, 0)
+
+    def test_the_interpreter_exits_while_threads_solve(self):
+        for run in (
+            "qddot.solve(cloth, 'verlet', step_size=1e-7, until=1e3)",
+            "qddot.solve(system, 'verlet', step_size=1e-6, until=1e3, q0=[1.0])",
+            "[qddot.solve(cloth, 'verlet', step_size=1e-3, until=0.01) for _ in range(10**6)]",
+        ):
+            code = f"""
+import threading, time
+import numpy as np
+import qddot
+cloth = qddot.scenes.cloth(nodes=5)
+system = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
+threading.Thread(target=lambda: {run}, daemon=True).start()
+time.sleep(0.3)
+print("exits")
+"""
+            with self.subTest(run):
+                for _ in range(3):
+                    done = subprocess.run(
+                        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60
+                    )
+                    self.assertEqual((done.stdout, done.returncode), ("exits\n", 0), done.stderr)
+
     def test_scenes_and_solutions_go_to_other_processes(self):
         scene = problems.random_scene(5)
         self.assertEqual(pickle.loads(pickle.dumps(scene)).content_hash(), scene.content_hash())

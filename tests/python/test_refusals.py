@@ -111,8 +111,52 @@ REFUSALS = {
     r"pattern: entry \(9, 0\)": lambda: qddot.solve(
         system(pattern=[[9, 0]]), "verlet", step_size=1, until=1, q0=[1, 2]
     ),
+    "mass: .* masked": lambda: scene(mass=np.ma.array([1.0, 1.0], mask=[0, 1])),
+    "positions: .* real numbers": lambda: scene(positions=np.array([[0j], [1.0]])),
+    "mass: .* real numbers": lambda: scene(mass=np.array([True, False])),
+    "velocities: their shape is .2, 1. *|velocities: their shape": lambda: scene(velocities=[[1.0, 2.0]]),
+    r"pinned: the mask's shape is \(3,\)": lambda: scene(pinned=[True, False, True]),
+    "pinned: allowed are .* each once": lambda: scene(pinned=[0, 0]),
+    "until: 'late' is no number": lambda: qddot.solve(CLOTH, "verlet", step_size=1, until="late"),
+    "step_size: 'x' is no number": lambda: qddot.solve(CLOTH, "verlet", step_size="x"),
+    "rtol: None|rtol is missing": lambda: qddot.solve(CLOTH, "ida", rtol=None),
+    "max_order: 2.5 is no whole number": lambda: qddot.solve(CLOTH, "cvode_bdf", rtol=1e-3, max_order=2.5),
+    "compensated: 1 is neither": lambda: qddot.solve(CLOTH, "verlet", step_size=1e-3, compensated=1),
+    "threads: 2.5": lambda: qddot.solve(CLOTH, "verlet", step_size=1e-3, threads=2.5),
+    "threads 100000 .* from 1 to 256": lambda: qddot.solve(
+        CLOTH, "verlet", step_size=1e-3, threads=100000
+    ),
+    "accuracy_of: None": lambda: qddot.solve(CLOTH, accuracy=1e-3, accuracy_of=None),
+    "seconds nan": lambda: qddot.solve(CLOTH, "verlet", step_size=1e-3, seconds=np.nan),
+    "repeats 0": lambda: qddot.work_precision(CLOTH, 0.01, ["verlet"], repeats=0),
+    "point_limit -1": lambda: qddot.work_precision(CLOTH, 0.01, ["verlet"], point_limit=-1),
+    "q0: some of its entries are not finite": lambda: qddot.solve(
+        system(), "verlet", step_size=1, until=1, q0=[1, np.nan]
+    ),
+    r"pattern: it is no matrix .* \(0,\)": lambda: system(pattern=[]),
+    "pattern: it has entries that are no whole": lambda: system(pattern=[[0.5, 0], [1, 1], [0, 1]]),
+    "implicit_euler needs K: .*pattern": lambda: qddot.solve(
+        system(), "implicit_euler", step_size=1, until=1, q0=[1, 2]
+    ),
+    "discrete_gradient needs the discrete gradient": lambda: qddot.solve(
+        system(), "discrete_gradient", step_size=1, until=1, q0=[1, 2]
+    ),
+    "foo is not for verlet": lambda: qddot.linear_step("verlet", 1.0, foo=1),
+    "equilibrium: the System has no V": lambda: qddot.equilibrium(system(pattern="dense"), [1, 2]),
+    "modes: the System has no K": lambda: qddot.modes(system(), 1, [1, 2]),
+    "every 0": lambda: qddot.exchange(qddot.scenes.fpu(), ["verlet"], until=1, every=0),
+    "reference: it is that of another": lambda: qddot.convergence(
+        qddot.scenes.cloth(nodes=5), "verlet", 1e-3, reference=qddot.reference(CLOTH, 0.01)
+    ),
+    "reference: some unknowns have no mass": lambda: qddot.reference(
+        qddot.Scene(
+            [[0.0, 0.0], [1.0, 0.0], [2.0, 0.1]], [[0, 1], [1, 2]], stiffness=10.0, mass=[1.0, 0.0, 1.0],
+            pinned=[0],
+        ).replace(rest_length=0.5, quartic=[0.0, 1.0]),
+        1.0,
+    ),
     "count 0": lambda: qddot.modes(CLOTH, 0),
-    "rk5 is no method": lambda: qddot.linear_step("rk5", 0.1),
+    "'rk5' is no method": lambda: qddot.linear_step("rk5", 0.1),
     "chooses its steps": lambda: qddot.stability_limit("ida"),
     "methods: 'verlet' is one word": lambda: qddot.work_precision(CLOTH, 0.1, "verlet"),
     "accuracy 2": lambda: qddot.advise(CLOTH, 2, until=0.1),
@@ -130,6 +174,37 @@ class Refusals(unittest.TestCase):
                     call()
                 self.assertNotIn("\n", str(raised.exception))
                 self.assertLess(len(str(raised.exception)), 1200)
+
+    def test_what_is_wrong_alone_beside_the_start(self):
+        q0 = [0.0, 0.0]
+        for force in (lambda q, f: np.copyto(f, -2 * q), lambda q, f: np.copyto(f, q)):
+            bad = system(force=force, potential=lambda q: q @ q / 2)
+            with self.assertRaisesRegex(ValueError, "potential: beside the start"):
+                qddot.solve(bad, "verlet", step_size=0.1, until=1, q0=q0)
+
+        def unwritten(q, f):
+            f = -q  # noqa: F841, which is the mistake
+
+        with self.assertRaisesRegex(ValueError, r"force: f\[0\] is nan .*is it written there"):
+            qddot.solve(system(force=unwritten), "rk4", step_size=0.1, until=1, q0=q0)
+        nan = system(potential=lambda q: np.nan)
+        with self.assertRaisesRegex(ValueError, "potential: beside"):
+            qddot.solve(nan, "verlet", step_size=0.1, until=1, q0=q0)
+        chain = problems.Chain(4)
+        with self.assertRaisesRegex(ValueError, "pattern: .* lacks entries"):
+            start = chain.start()[0]
+            qddot.modes(chain.system(stiffness=None, pattern=np.eye(4)), 2, start)
+        one_of_many = np.ones(100)
+        one_of_many[37] = 1.5
+        wrong = qddot.System(np.ones(100), lambda q, f: np.copyto(f, -one_of_many * q), lambda q: q @ q / 2)
+        with self.assertRaisesRegex(ValueError, "potential: beside"):
+            qddot.solve(wrong, "verlet", step_size=0.1, until=1, q0=np.ones(100))
+        # A kink at the start itself is nobody's mistake.
+        contact = qddot.System(
+            [1.0], lambda q, f: np.copyto(f, np.where(q < 0, -1e3 * q, 0.0) - 1.0),
+            lambda q: float(np.where(q < 0, 500 * q**2, 0.0).sum() + q.sum()),
+        )  # fmt: skip
+        qddot.solve(contact, "verlet", step_size=1e-3, until=0.1, q0=[0.0]).or_raise()
 
     def test_other_things_are_type_errors(self):
         with self.assertRaisesRegex(TypeError, "neither a qddot.Scene nor a qddot.System"):
@@ -294,7 +369,7 @@ class Meaning(unittest.TestCase):
         # Over the largest displacement of the motion, which the reference says.
         scale = float(exact.divided_by.split("node, ")[1].split(" m")[0])
         self.assertAlmostEqual(exact.errors(q, v).position, 1e-3 / scale, delta=1e-2 * 1e-3 / scale)
-        with self.assertRaisesRegex(ValueError, "errors: 6 positions"):
+        with self.assertRaisesRegex(ValueError, r"errors: q has the shape \(3, 2\)"):
             exact.errors(q[:3], v)
         with self.assertRaisesRegex(ValueError, "ends at t = 0.2"):
             exact.errors(qddot.solve(scene, "verlet", step_size=1e-3, until=0.2))

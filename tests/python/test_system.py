@@ -4,6 +4,7 @@ import gc
 import traceback
 import unittest
 import warnings
+import weakref
 
 import numpy as np
 import scipy.sparse
@@ -214,6 +215,87 @@ class OwnForces(unittest.TestCase):
         # The way back from what is left of a scene takes some roundings.
         self.assertLess(np.max(np.abs(solution.q[0] - scene.positions)), 1e-15)
 
+    def test_without_times_the_state_that_was_reached_is_returned(self):
+        system = qddot.System([1.0], problems.duffing_force, problems.duffing_potential)
+        failed = qddot.solve(system, "verlet", step_size=10.0, q0=[1e3], until=1e3)
+        self.assertEqual(failed.outcome, "diverged")
+        self.assertEqual(failed.q.shape, (1, 1))
+        self.assertEqual(failed.t[0], failed.t_reached)
+        none = qddot.solve(system, "verlet", step_size=0.1, q0=[1.0], until=1.0, save_at=[])
+        self.assertEqual((none.q.shape, len(none.energy.total)), ((0, 1), 0))
+        times = np.arange(0, 0.31, 0.1)  # whose last is a rounding beyond 0.3
+        self.assertGreater(times[-1], 0.3)
+        seen = qddot.solve(system, "verlet", step_size=0.1, q0=[1.0], until=0.3, save_at=times)
+        self.assertEqual(seen.t[-1], 0.3)
+
+    def test_a_system_is_what_it_was_made_of(self):
+        mass = np.ones(1)
+        system = qddot.System(mass, lambda q, f: np.copyto(f, -q))
+        run = dict(step_size=0.01, until=1.0, q0=[1.0])
+        before = qddot.solve(system, "verlet", **run).end.q
+        mass[:] = 100
+        self.assertTrue(np.array_equal(qddot.solve(system, "verlet", **run).end.q, before))
+        with self.assertRaises(AttributeError):
+            system.mass = mass
+        with self.assertRaises(ValueError):
+            system.mass[0] = 2
+
+    def test_a_callable_may_catch_what_a_run_within_it_raises(self):
+        def bad(q, f):
+            raise RuntimeError("inner")
+
+        inner, caught = qddot.System([1.0], bad), []
+
+        def outer(q, f):
+            try:
+                qddot.solve(inner, "rk4", step_size=0.1, q0=[1.0], until=1.0)
+            except RuntimeError:
+                caught.append(1)
+            np.copyto(f, -q)
+
+        for check in (True, False):
+            system = qddot.System([1.0], outer, check=check)
+            solution = qddot.solve(system, "rk4", step_size=0.1, q0=[1.0], until=1.0)
+            self.assertEqual(solution.outcome, "reached_end")
+        self.assertGreater(len(caught), 40)
+
+    def test_broken_matrices_are_refused(self):
+        k = scipy.sparse.csr_matrix(np.array([[-1.0, 0.5], [0.5, -1.0]]))
+        k.indptr[1] = -5
+        k.has_sorted_indices = k.has_canonical_format = True
+        system = qddot.System(np.ones(2), lambda q, f: np.copyto(f, -q), None, lambda q: k, "dense")
+        with self.assertRaisesRegex(ValueError, "indptr"):
+            qddot.solve(system, "implicit_euler", step_size=0.1, q0=[1.0, 2.0], until=1.0)
+
+    def test_cycles_are_collected(self):
+        class Owner:
+            def __init__(self):
+                self.system = qddot.System(np.ones(3), self.force)
+                self.solution = qddot.solve(self.system, "verlet", step_size=0.1, until=1, q0=np.ones(3))
+
+            def force(self, q, f):
+                f[:] = -q
+
+        owner = weakref.ref(Owner())
+        gc.collect()
+        self.assertIsNone(owner())
+
+    def test_a_solution_keeps_what_its_diagnosis_calls(self):
+        def made():
+            import ctypes
+
+            kind = ctypes.CFUNCTYPE(None, ctypes.POINTER(ctypes.c_double),
+                                    ctypes.POINTER(ctypes.c_double), ctypes.c_int64)  # fmt: skip
+            force = kind(lambda q, f, n: f.__setitem__(0, -q[0]))
+            return qddot.System([1.0], force, lambda q: q @ q / 2, pattern="dense")
+
+        failed = qddot.solve(made(), "verlet", step_size=10.0, q0=[1.0], until=1e4)
+        gc.collect()
+        self.assertEqual(failed.outcome, "diverged")
+        self.assertIn("verlet", failed.diagnosis())
+        plain = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
+        self.assertEqual(qddot.solve(plain, "verlet", step_size=10.0, q0=[1.0], until=1e4).diagnosis(), "")
+
     def test_what_is_kept_is_refused(self):
         kept = []
 
@@ -243,7 +325,7 @@ class OwnForces(unittest.TestCase):
         cases = {
             "f is -dV/dq": of(good, lambda q: -problems.duffing_potential(q)),
             "stiffness.*the other sign": of(good, None, lambda q: -problems.duffing_stiffness(q)),
-            "stiffness: it is not df/dq": of(good, None, lambda q: 2 * problems.duffing_stiffness(q)),
+            "stiffness: beside the start it is not df/dq": of(good, None, lambda q: 2 * problems.duffing_stiffness(q)),
             "stiffness: .*allowed is 2 x 2": of(good, None, lambda q: np.eye(3)),
             "force: it returned something": of(lambda q, f: -q),
             "is it written": of(lambda q, f: f.fill(np.nan)),
