@@ -23,6 +23,23 @@ std::vector<Vec> burst(const ReducedScene& model, const State& from, double h) {
   return q;
 }
 
+// Adds the squares of the k-th differences of bursts along the path; how many came to their end.
+int add_bursts(const ReducedScene& model, const std::vector<State>& path, double h, int bursts,
+               std::array<double, OwnFrequencies::highest_order + 2>& squares) {
+  int taken = 0;
+  for (int i = 0; i < bursts; ++i) {
+    const auto place = static_cast<std::size_t>(i) * path.size() / static_cast<std::size_t>(bursts);
+    std::vector<Vec> q = burst(model, place == 0 ? model.initial() : path[place - 1], h);
+    if (q.size() < burst_steps + 1) continue;
+    ++taken;
+    for (std::size_t k = 1; k < squares.size(); ++k) {
+      for (std::size_t j = 0; j + k < q.size(); ++j) q[j] = q[j + 1] - q[j];
+      squares[k] += std::pow(q[0].lpNorm<Eigen::Infinity>(), 2);
+    }
+  }
+  return taken;
+}
+
 // k-th differences of rounded positions have variances of C(2k, k) times the positions'. From where
 // the squares of differences are no larger than that, they go on falling as those before did.
 void leave_out_rounding(std::array<double, OwnFrequencies::highest_order + 2>& squares,
@@ -49,23 +66,20 @@ double OwnFrequencies::at(int order) const {
 
 OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<State>& path,
                                double w_max, int bursts) {
-  const double h = burst_h_omega / w_max;
-  const Vec& start = model.initial().q;
+  // A motion that begins where forces hardly change may come to where they do, and bursts fail.
+  constexpr int most_attempts = 8;
+  constexpr double shorter = 4;
   std::array<double, OwnFrequencies::highest_order + 2> squares{};  // of the k-th differences
+  double h = burst_h_omega / w_max;
+  int taken = 0;
+  for (int attempt = 0; attempt < most_attempts && taken == 0; ++attempt) {
+    if (attempt > 0) h /= shorter;
+    taken = add_bursts(model, path, h, bursts, squares);
+  }
+  const Vec& start = model.initial().q;
   double farthest = 0;
   for (const State& state : path)
     farthest = std::max(farthest, (state.q - start).lpNorm<Eigen::Infinity>());
-  int taken = 0;
-  for (int i = 0; i < bursts; ++i) {
-    const auto place = static_cast<std::size_t>(i) * path.size() / static_cast<std::size_t>(bursts);
-    std::vector<Vec> q = burst(model, place == 0 ? model.initial() : path[place - 1], h);
-    if (q.size() < burst_steps + 1) continue;
-    ++taken;
-    for (std::size_t k = 1; k < squares.size(); ++k) {
-      for (std::size_t j = 0; j + k < q.size(); ++j) q[j] = q[j + 1] - q[j];
-      squares[k] += std::pow(q[0].lpNorm<Eigen::Infinity>(), 2);
-    }
-  }
   OwnFrequencies own;
   if (taken == 0 || farthest == 0 || squares[1] == 0) return own;
   for (double& square : squares) square /= taken;

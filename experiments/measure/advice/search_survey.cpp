@@ -62,7 +62,11 @@ bool Search::survey(double accuracy) {
   const ReducedScene& model = stage_.model();
   const double until = stage_.until();
   if (model.system().has_massless()) return true;
+  // Where the forces push away from the start more than they pull back, the motion is as fast as
+  // their bound says, and nothing vibrates.
+  constexpr double hardly_vibrates = 0.1;
   w_start_ = frequency_at_start(model, until, bound_of_w_);
+  if (w_start_ < hardly_vibrates * bound_of_w_) w_start_ = bound_of_w_;
   // An eigenproblem of a few unknowns takes no time.
   constexpr double not_worth_a_search = 1e-4;
   const double exactly = seconds_of_exact(model);
@@ -77,20 +81,25 @@ bool Search::survey(double accuracy) {
 bool Search::survey_by_verlet() {
   const ReducedScene& model = stage_.model();
   const double until = stage_.until();
-  constexpr double below_limit = 0.9, shorter = 0.75;
-  constexpr int most_attempts = 6;
+  constexpr double below_limit = 0.9, shorter = 0.75, much_shorter = 0.5;
+  // More where none holds, as where the motion comes to be much faster than its start.
+  constexpr int most_attempts = 6, most_of_all = 16;
   const double looks = static_cast<double>(stage_.times().size());
   double steps = std::max(8.0, std::ceil(until * w_start_ / (2 * below_limit)));
   Trial* first = nullptr;
-  for (int attempt = 0; attempt < most_attempts; ++attempt, steps = steps / shorter) {
+  for (int attempt = 0; attempt < most_of_all; ++attempt) {
+    if (attempt > 0) steps /= attempt < most_attempts ? shorter : much_shorter;
     steps = looks * std::ceil(steps / looks);
     first = &run(*find_method("verlet"), until / steps, limit_);
     // More of this are not worth much time: what is chaotic stays so.
     constexpr double grows = 10, long_enough = 0.3;
     const Outcome outcome = first->summary.outcome;
     if (outcome == Outcome::over_budget || outcome == Outcome::went_slack) return false;
-    if (!first->reached_end()) continue;
-    if (first->summary.energy_growth < grows || seconds_since(begin_) > long_enough) break;
+    const bool is_long = seconds_since(begin_) > long_enough;
+    if (first->reached_end()
+            ? first->summary.energy_growth < grows || is_long || attempt + 1 >= most_attempts
+            : is_long && attempt + 1 >= most_attempts)
+      break;
   }
   if (!first->reached_end()) return false;
   // The bound may grow more than w_max does. Steps that held for so long were not far beyond their
