@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from qddot import _qddot
 from qddot._arrays import number
 from qddot._scene import Scene
-from qddot._solve import end_of, model_of, require_measurable
+from qddot._starts import end_of, model_of, require_measurable
 from qddot._system import System
 
 

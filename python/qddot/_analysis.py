@@ -12,7 +12,7 @@ from qddot import _qddot
 from qddot._arrays import Floats, count as whole_number, number
 from qddot._methods import method as method_named, options_for
 from qddot._scene import Scene
-from qddot._solve import model_of
+from qddot._starts import model_of
 from qddot._system import System
 
 

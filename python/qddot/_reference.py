@@ -12,7 +12,7 @@ from qddot import _qddot
 from qddot._arrays import Floats, floats
 from qddot._scene import Scene
 from qddot._solution import Solution, State
-from qddot._solve import end_of, model_of, require_measurable, seconds_of
+from qddot._starts import end_of, model_of, require_measurable, seconds_of
 from qddot._system import System
 
 

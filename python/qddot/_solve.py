@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Callable, Sequence
 
 import numpy as np
@@ -15,50 +15,8 @@ from qddot._arrays import Floats, count, floats, number
 from qddot._methods import Method, method as method_named, options_for
 from qddot._scene import Scene
 from qddot._solution import Counts, Energy, Solution, State
+from qddot._starts import Start, end_of, require_measurable, require_offered, seconds_of
 from qddot._system import System
-
-
-def model_of(
-    of: Scene | System,
-    q0: ArrayLike | None = None,
-    v0: ArrayLike | None = None,
-    chosen: Method | None = None,
-    keep: Sequence[str] = (),
-) -> _qddot.Model:
-    """What is run: of a scene what is left of it, of a System itself from that start."""
-    if isinstance(of, System):
-        if keep:
-            raise ValueError("keep: it is for scenes; nothing is left out of a System")
-        return of._model(q0, v0)
-    if not isinstance(of, Scene):
-        raise TypeError(f"{type(of).__name__} is neither a qddot.Scene nor a qddot.System")
-    for name, value in (("q0", q0), ("v0", v0)):
-        if value is not None:
-            other = "positions" if name == "q0" else "velocities"
-            raise ValueError(f"{name} is for a System; a scene starts as it is drawn, and "
-                             f"scene.replace({other}=...) as you like")
-    accepts = chosen is not None and "accepts_massless" in chosen.traits
-    return of._model(chosen.name if chosen else None, accepts, keep)
-
-
-def end_of(of: Scene | System, until: float | None) -> float:
-    """The time to run to: that asked for, or the scene's own."""
-    own = of.until if isinstance(of, Scene) else None
-    if own is None and until is None:
-        raise ValueError("until is missing; it is the time to run to in s, above 0")
-    end = number(own if until is None else until, "until")
-    if not (math.isfinite(end) and end > 0):
-        raise ValueError(f"until {end:g} is not allowed; it is the time to run to in s, above 0")
-    return end
-
-
-def require_measurable(of: Scene | System, what: str) -> None:
-    """A sentence for a System that has not what references and answers take."""
-    if isinstance(of, System) and not (of.has_potential and of.has_stiffness):
-        missing = "a potential" if not of.has_potential else "a stiffness, or a pattern of it"
-        raise ValueError(f"{what}: the System has no V and K, of which its reference is made; give "
-                         f"it {missing}" if not of.has_potential else
-                         f"{what}: the System has no K, which its reference takes; give it {missing}")
 
 
 def solve(
@@ -92,9 +50,10 @@ def solve(
     all times, "energy"), by whatever method takes the least time for it, with its error bounded.
 
     save_at: times [s], ascending, from 0 to `until`, at which q and v are returned; where it is not
-    given, they are those of the state that was reached. Methods of fixed steps take the same steps with it and without; SUNDIALS' adaptive
-    ones land on these times. `seconds`: the run is stopped after so many. `keep`: reductions that are
-    not made. The other options are for the methods that name them (Method.takes).
+    given, they are those of the state that was reached. Methods of fixed steps take the same steps with
+    it and without; SUNDIALS' adaptive ones land on these times. `seconds`: the run is stopped after so
+    many. `keep`: reductions that are not made. The other options are for the methods that name them
+    (Method.takes).
 
     The GIL is free meanwhile, and Ctrl-C stops the run. A run that fails is a Solution with an
     outcome. Raises ValueError, in a sentence, for what cannot be asked for; and what a callable of a
@@ -121,52 +80,14 @@ def solve(
         accuracy = number(accuracy, "accuracy")
         if not isinstance(accuracy_of, str):
             raise ValueError(f"accuracy_of: {accuracy_of!r}; allowed are positions, path and energy")
-        start = _Start(of, q0, v0, tuple(keep))
+        start = Start(of, q0, v0, tuple(keep))
         return _answer(start, end, times, accuracy, accuracy_of, seconds, threads)
     assert method is not None
     chosen = method_named(method)
     options = options_for(chosen, given)
     if isinstance(of, System):
         require_offered(of, chosen)
-    return _run(_Start(of, q0, v0, tuple(keep)), chosen, options, end, times, seconds, threads)
-
-
-@dataclass(frozen=True)
-class _Start:
-    """What is run, and from where."""
-
-    of: Scene | System
-    q0: ArrayLike | None
-    v0: ArrayLike | None
-    keep: tuple[str, ...]
-
-    def model(self, chosen: Method | None = None) -> _qddot.Model:
-        return model_of(self.of, self.q0, self.v0, chosen, self.keep)
-
-
-def require_offered(of: System, chosen: Method) -> None:
-    """A sentence for a method that needs what the System does not compute."""
-    others = {
-        "constant_stiffness": "a K that is the same everywhere",
-        "split_forces": "stiff springs",
-        "discrete_gradient": "the discrete gradient of springs",
-        "laplacian": "the matrix of springs of rest length zero",
-    }
-    for need in chosen.needs:
-        if need in others:
-            raise ValueError(f"{chosen.name} needs {others[need]}, which a System does not offer: "
-                             "take another method, or a Scene")
-    if "stiffness" in chosen.needs and not of.has_stiffness:
-        raise ValueError(f"{chosen.name} needs K: give the System its stiffness, or a pattern by which "
-                         "it is made of differences of the force; or take an explicit method")
-
-
-def seconds_of(value: object, name: str) -> float:
-    """A wall time above 0."""
-    x = number(value, name)
-    if not x > 0:
-        raise ValueError(f"{name} {value} is not allowed; it is a number of seconds above 0")
-    return x
+    return _run(Start(of, q0, v0, tuple(keep)), chosen, options, end, times, seconds, threads)
 
 
 def _times(save_at: ArrayLike, end: float) -> list[float]:
@@ -180,7 +101,7 @@ def _times(save_at: ArrayLike, end: float) -> list[float]:
 
 
 def _run(
-    start: _Start, chosen: Method, options: dict[str, Any], end: float, times: list[float] | None,
+    start: Start, chosen: Method, options: dict[str, Any], end: float, times: list[float] | None,
     seconds: float | None, threads: int,
 ) -> Solution:
     model = start.model(chosen)
@@ -200,7 +121,7 @@ def _run(
 
 
 def _diagnosis(
-    start: _Start, chosen: Method, options: dict[str, Any], end: float
+    start: Start, chosen: Method, options: dict[str, Any], end: float
 ) -> Callable[[float], str]:
     def diagnose(seconds: float) -> str:
         of = start.of
@@ -246,7 +167,7 @@ def _solution(
 
 
 def _answer(
-    start: _Start, end: float, times: list[float] | None, accuracy: float, accuracy_of: str,
+    start: Start, end: float, times: list[float] | None, accuracy: float, accuracy_of: str,
     seconds: float | None, threads: int,
 ) -> Solution:
     model = start.model()

@@ -9,7 +9,7 @@ from qddot import _qddot
 from qddot._arrays import Floats
 from qddot._methods import method as method_named, options_for
 from qddot._scene import Scene
-from qddot._solve import end_of, seconds_of
+from qddot._starts import end_of, seconds_of
 
 
 @dataclass(frozen=True, repr=False, eq=False)
