@@ -219,7 +219,11 @@ def main():
     parser.add_argument("--out", required=True, help="the folder for the results")
     parser.add_argument("--point-limit", type=float, default=3, help="seconds that a run may take")
     parser.add_argument("--repeats", type=int, default=3, help="how often a run is timed at most")
+    parser.add_argument("--problems", default="planet,cloth", help="which of planet and cloth")
     options = parser.parse_args()
+    chosen = options.problems.split(",")
+    if not set(chosen) <= {"planet", "cloth"}:
+        parser.error(f"--problems {options.problems}: allowed are planet and cloth")
     if options.repeats < 1 or not options.point_limit > 0:
         parser.error("--repeats is 1 or more, and --point-limit above 0")
     os.makedirs(options.out, exist_ok=True)
@@ -228,6 +232,8 @@ def main():
     cloth = own_forces.Cloth(scene, "cloth")
     runs = []
     for p, of, longest in ((planet, None, 0.05), (cloth, scene, 2.1 / scene.explain().omega_max)):
+        if p.name not in chosen:
+            continue
         system = qddot.System(
             p.mass, written(p.force), p.potential, p.stiffness, dimension=p.dimension
         )
@@ -248,7 +254,7 @@ def main():
     for problem, accuracy, whose, way, method, at, ratio, lines, _ in rows:
         print(f"{problem:<7} {accuracy:7.0e}  {whose:<14} {way:<10} {method:<14} {at:10.3g} s "
               f"{ratio:9.3g} x  {lines} lines")  # fmt: skip
-    costs = callbacks(options)
+    costs = callbacks(options) if "cloth" in chosen else []
     write(os.path.join(options.out, "callbacks.csv"), ["unknowns", "force", "step_s"], costs)
     for unknowns, whose, seconds in costs:
         print(f"{unknowns:>6} unknowns, {whose:<40} {seconds * 1e6:10.3g} us a step")

@@ -1,10 +1,13 @@
 """The code that pages and the notebook show does what it says."""
 
 import contextlib
+import csv
 import io
 import json
 import os
 import re
+import subprocess
+import sys
 import tempfile
 import unittest
 import warnings
@@ -64,6 +67,29 @@ class Samples(unittest.TestCase):
         for cell in cells:
             for output in cell.get("outputs", []):
                 self.assertNotEqual(output["output_type"], "error")
+
+
+class BesideSciPy(unittest.TestCase):
+    def test_a_small_study_is_measured_and_drawn(self):
+        study = ROOT / "experiments/beside_scipy"
+        with tempfile.TemporaryDirectory() as folder:
+            words = ["--problems", "planet", "--point-limit", "0.01", "--repeats", "1", "--out", folder]
+            done = subprocess.run(
+                [sys.executable, "-B", study / "measure.py", *words], capture_output=True, text=True
+            )
+            self.assertEqual(done.returncode, 0, done.stderr)
+            with open(os.path.join(folder, "runs.csv"), encoding="utf-8", newline="") as file:
+                runs = list(csv.DictReader(file))
+            ways = {(run["force"], run["way"]) for run in runs}
+            self.assertLessEqual({("own f", "solve_ivp"), ("own f", "qddot")}, ways)
+            self.assertTrue(all(0 < float(run["error_position"]) <= 3 for run in runs))
+            done = subprocess.run(
+                [sys.executable, "-B", study / "beside_scipy.py", folder],
+                env={**os.environ, "PYTHONPATH": str(ROOT / "experiments/plot")},
+                capture_output=True, text=True,
+            )  # fmt: skip
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertGreater(os.path.getsize(os.path.join(folder, "beside_scipy.png")), 10_000)
 
 
 if __name__ == "__main__":
