@@ -95,7 +95,9 @@ def sweep(p, exact, way, options):
     for value in values:
         times = []
         try:
-            while len(times) < options.repeats and (len(times) < 1 or sum(times) < options.point_limit):
+            while len(times) < options.repeats and (
+                len(times) < 1 or sum(times) < options.point_limit
+            ):
                 begin = time.perf_counter()
                 q, v, forces = run(value)
                 times.append(time.perf_counter() - begin)
@@ -175,12 +177,16 @@ def callbacks(options):
 
         def by(force, p=p, steps=steps):
             system = qddot.System(p.mass, force, dimension=3, check=False)
-            run = lambda n: qddot.solve(system, "verlet", step_size=h, until=n * h, q0=p.q0)  # noqa: E731
+            run = lambda n: qddot.solve(
+                system, "verlet", step_size=h, until=n * h, q0=p.q0
+            )  # noqa: E731
             return min(run(steps).seconds for _ in range(options.repeats)) / steps
 
         def by_scene(steps=steps, scene=scene):
             keep = ["dimension", "mirror", "constant_stiffness"]
-            run = lambda n: qddot.solve(scene, "verlet", step_size=h, until=n * h, keep=keep)  # noqa: E731
+            run = lambda n: qddot.solve(
+                scene, "verlet", step_size=h, until=n * h, keep=keep
+            )  # noqa: E731
             return min(run(steps).seconds for _ in range(options.repeats)) / steps
 
         def by_loop(p=p, steps=steps):
@@ -247,7 +253,9 @@ def main():
                 last = mine[-1]
                 print(f"  {way[0]:<14} {way[1]:<10} {way[2]:<14} {len(mine):>2} runs, to "
                       f"{last['error_position']:.1e} in {last['time_s']:.3g} s", flush=True)  # fmt: skip
-    write(os.path.join(options.out, "runs.csv"), list(runs[0]), [list(run.values()) for run in runs])
+    write(
+        os.path.join(options.out, "runs.csv"), list(runs[0]), [list(run.values()) for run in runs]
+    )
     rows = table(runs)
     header = ["problem", "accuracy", "force", "way", "method", "time_s", "ratio", "lines", "remark"]
     write(os.path.join(options.out, "times.csv"), header, rows)

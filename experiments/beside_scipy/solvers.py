@@ -28,7 +28,8 @@ def jacobian(p):
     inverse = sp.diags(1 / np.repeat(p.mass, p.q0.shape[1]))
     eye = sp.identity(p.q0.size, format="csc")
     return lambda t, y: sp.bmat(
-        [[None, eye], [inverse @ p.stiffness(y[: p.q0.size].reshape(p.q0.shape)), None]], format="csc"
+        [[None, eye], [inverse @ p.stiffness(y[: p.q0.size].reshape(p.q0.shape)), None]],
+        format="csc",
     )
 
 

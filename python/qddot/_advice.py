@@ -62,7 +62,9 @@ class Advices:
     seconds: float
 
     def _rows(self) -> list[tuple[str, ...]]:
-        rows: list[tuple[str, ...]] = [("accuracy", "take", "at", "expected error", "expected time", "runner-up")]
+        rows: list[tuple[str, ...]] = [
+            ("accuracy", "take", "at", "expected error", "expected time", "runner-up")
+        ]
         for advice in self.for_each:
             take, other = advice.take, advice.runner_up
             if take is None:
@@ -104,11 +106,11 @@ def advise(
     asked = [number(a, "accuracy") for a in np.atleast_1d(np.asarray(accuracies, dtype=object))]
     for accuracy in asked:
         if not 1e-14 <= accuracy < 1:
-            raise ValueError(f"accuracy {accuracy} is not allowed; it is a relative error from 1e-14 "
-                             "to below 1")
-    record = _qddot.advise(
-        model_of(of, q0, v0), end_of(of, until), asked, accuracy_of
-    )
+            raise ValueError(
+                f"accuracy {accuracy} is not allowed; it is a relative error from 1e-14 "
+                "to below 1"
+            )
+    record = _qddot.advise(model_of(of, q0, v0), end_of(of, until), asked, accuracy_of)
     record["for_each"] = [_advice(one) for one in record["for_each"]]
     return Advices(**record)
 

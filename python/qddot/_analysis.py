@@ -89,8 +89,10 @@ def equilibrium(
         start = _qddot.model_of(of._handle, None, [])
     else:
         if not of.has_potential:
-            raise ValueError("equilibrium: the System has no V, which it goes downhill on; give it a "
-                             "potential")
+            raise ValueError(
+                "equilibrium: the System has no V, which it goes downhill on; give it a "
+                "potential"
+            )
         require_stiffness(of, "equilibrium")
         start = model_of(of, q0)
     record = _qddot.equilibrium(start, length)

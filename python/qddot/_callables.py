@@ -10,8 +10,10 @@ from typing import Any
 def require_arguments(function: Any, name: str, count: int) -> None:
     """A sentence for a callable that takes something else than q, and f."""
     if not callable(function):
-        raise ValueError(f"{name}: it is neither a callable nor a C function (a Numba cfunc, a ctypes "
-                         "or cffi pointer)")
+        raise ValueError(
+            f"{name}: it is neither a callable nor a C function (a Numba cfunc, a ctypes "
+            "or cffi pointer)"
+        )
     try:
         signature = inspect.signature(function)
     except (TypeError, ValueError):
@@ -36,7 +38,9 @@ def callable_or_address(function: Any, name: str, count: int) -> Any:
         else "double (const double* q, int64_t n)"
     )
     if hasattr(function, "address") and hasattr(function, "native_name"):  # Numba's
-        expected = "(float64*, float64*, int64) -> none" if count == 2 else "(float64*, int64) -> float64"
+        expected = (
+            "(float64*, float64*, int64) -> none" if count == 2 else "(float64*, int64) -> float64"
+        )
         signature = str(getattr(function, "_sig", expected))
         if signature != expected:
             raise ValueError(f"{name}: the cfunc is {signature}; allowed is {expected}")

@@ -27,8 +27,10 @@ def check(model: _qddot.Model, length: float, has_own_stiffness: bool) -> None:
     if not np.all(np.isfinite(f)):
         # Of a callable, a number that it did not write is found so as well.
         i = int(np.flatnonzero(~np.isfinite(f))[0])
-        raise ValueError(f"force: f[{i}] is {f[i]} at the start; is it written there, as by "
-                         "np.copyto(f, ...)?")
+        raise ValueError(
+            f"force: f[{i}] is {f[i]} at the start; is it written there, as by "
+            "np.copyto(f, ...)?"
+        )
     random = np.random.default_rng(1)
     x = start + 1e-3 * length * random.uniform(-1, 1, start.size)
     if not np.all(np.isfinite(model.force(x))):
@@ -58,8 +60,10 @@ def _check_energy(model: _qddot.Model, x: Floats, u: Floats, d: float) -> None:
     size += (abs(fall) + abs(work)) / 2
     rounding = ROUNDING * (abs(model.potential(x)) + d * float(np.max(np.abs(ahead)))) / d
     if not abs(fall - work) <= TOLERANCE * size + rounding:
-        raise ValueError(f"potential: beside the start it falls by {fall:.6g} J/m where the force does "
-                         f"{work:.6g} J/m; f is -dV/dq {AS_IT_IS}")
+        raise ValueError(
+            f"potential: beside the start it falls by {fall:.6g} J/m where the force does "
+            f"{work:.6g} J/m; f is -dV/dq {AS_IT_IS}"
+        )
 
 
 def _check_stiffness(
@@ -72,11 +76,15 @@ def _check_stiffness(
     if np.max(np.abs(k - change)) <= size:
         return
     if not has_own_stiffness:
-        raise ValueError("pattern: the K that is made by it is not df/dq; it lacks entries, or `length` "
-                         f"is no small length of the motion {AS_IT_IS}")
+        raise ValueError(
+            "pattern: the K that is made by it is not df/dq; it lacks entries, or `length` "
+            f"is no small length of the motion {AS_IT_IS}"
+        )
     sign = "; it is that with the other sign" if np.max(np.abs(k + change)) <= size else ""
-    raise ValueError("stiffness: beside the start it is not df/dq, as differences of the force say"
-                     f"{sign} {AS_IT_IS}")
+    raise ValueError(
+        "stiffness: beside the start it is not df/dq, as differences of the force say"
+        f"{sign} {AS_IT_IS}"
+    )
 
 
 def _times(model: _qddot.Model, x: Floats, u: Floats) -> Floats:

@@ -87,7 +87,9 @@ _OPTIONS: dict[str, Callable[[Any, str], Any]] = {
 def options_for(chosen: Method, given: dict[str, Any]) -> dict[str, Any]:
     """The options that were given, as the method takes them; a ValueError for those it ignores and
     where its knob is missing."""
-    options = {n: _OPTIONS.get(n, number)(value, n) for n, value in given.items() if value is not None}
+    options = {
+        n: _OPTIONS.get(n, number)(value, n) for n, value in given.items() if value is not None
+    }
     other = "rtol" if chosen.knob == "step_size" else "step_size"
     for name in (other, *(["atol"] if chosen.knob == "step_size" else [])):
         if name in options:

@@ -53,8 +53,10 @@ class Reference:
     _record: dict[str, Any] = field(repr=False, compare=False)
 
     def __repr__(self) -> str:
-        return (f"<qddot.Reference at {self.until:g} s, {len(self.q)} nodes: positions certified to "
-                f"{self.certified.position:.1e}>")
+        return (
+            f"<qddot.Reference at {self.until:g} s, {len(self.q)} nodes: positions certified to "
+            f"{self.certified.position:.1e}>"
+        )
 
     def require(self, of: Scene | System, q0: ArrayLike | None, v0: ArrayLike | None) -> None:
         """A sentence where it is the reference of another motion."""
@@ -67,15 +69,19 @@ class Reference:
         state = motion.end if isinstance(motion, Solution) else motion
         if isinstance(state, State):
             if state.t != self.until:
-                raise ValueError(f"the motion ends at t = {state.t:g} s, and the reference is that of "
-                                 f"{self.until:g} s")
+                raise ValueError(
+                    f"the motion ends at t = {state.t:g} s, and the reference is that of "
+                    f"{self.until:g} s"
+                )
             q, v = state.q, state.v
         else:
             q = floats(state, "q")
         for name, array in (("q", q), ("v", v)):
             if array is not None and np.shape(array) != self.q.shape:
-                raise ValueError(f"errors: {name} has the shape {np.shape(array)}; allowed is that of all "
-                                 f"nodes, {self.q.shape}")
+                raise ValueError(
+                    f"errors: {name} has the shape {np.shape(array)}; allowed is that of all "
+                    f"nodes, {self.q.shape}"
+                )
         velocities = np.zeros_like(q) if v is None else floats(v, "v")
         position, velocity = self._held.errors(q, velocities)
         return Errors(position, velocity if v is not None else float("nan"))

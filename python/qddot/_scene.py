@@ -50,17 +50,23 @@ class Scene:
     ) -> None:
         places = floats(positions, "positions")
         if velocities is not None and np.shape(velocities) != places.shape:
-            raise ValueError(f"velocities: their shape is {np.shape(velocities)}; allowed is that of "
-                             f"the positions, {places.shape}")
+            raise ValueError(
+                f"velocities: their shape is {np.shape(velocities)}; allowed is that of "
+                f"the positions, {places.shape}"
+            )
         held = np.asarray(pinned)
         if held.dtype == bool:
             if held.shape != places.shape[:1]:
-                raise ValueError(f"pinned: the mask's shape is {held.shape}; allowed is a value for "
-                                 f"each of the {len(places)} nodes")
+                raise ValueError(
+                    f"pinned: the mask's shape is {held.shape}; allowed is a value for "
+                    f"each of the {len(places)} nodes"
+                )
             held = np.flatnonzero(held)
         held = whole_numbers(held, "pinned")
         if held.ndim != 1 or len(np.unique(held)) != held.size:
-            raise ValueError("pinned: allowed are the numbers of nodes, each once, or a mask of bool")
+            raise ValueError(
+                "pinned: allowed are the numbers of nodes, each once, or a mask of bool"
+            )
         self._hold(
             _qddot.Scene.from_arrays(
                 places,

@@ -60,9 +60,16 @@ def solve(
     System raises.
     """
     given = dict(
-        step_size=step_size, rtol=rtol, atol=atol, max_order=max_order, iterations=iterations,
-        stability_detection=stability_detection, solve_tolerance=solve_tolerance,
-        spectral_radius=spectral_radius, solver=solver, compensated=compensated,
+        step_size=step_size,
+        rtol=rtol,
+        atol=atol,
+        max_order=max_order,
+        iterations=iterations,
+        stability_detection=stability_detection,
+        solve_tolerance=solve_tolerance,
+        spectral_radius=spectral_radius,
+        solver=solver,
+        compensated=compensated,
     )
     end = end_of(of, until)
     times = None if save_at is None else _times(save_at, end)
@@ -74,12 +81,16 @@ def solve(
     if accuracy is not None:
         superfluous = [name for name, value in given.items() if value is not None]
         if superfluous:
-            raise ValueError(f"{superfluous[0]} is not for accuracy, which chooses the method and "
-                             "its knob: leave out one of both")
+            raise ValueError(
+                f"{superfluous[0]} is not for accuracy, which chooses the method and "
+                "its knob: leave out one of both"
+            )
         require_measurable(of, "accuracy")
         accuracy = number(accuracy, "accuracy")
         if not isinstance(accuracy_of, str):
-            raise ValueError(f"accuracy_of: {accuracy_of!r}; allowed are positions, path and energy")
+            raise ValueError(
+                f"accuracy_of: {accuracy_of!r}; allowed are positions, path and energy"
+            )
         start = Start(of, q0, v0, tuple(keep))
         return _answer(start, end, times, accuracy, accuracy_of, seconds, threads)
     assert method is not None
@@ -95,14 +106,21 @@ def _times(save_at: ArrayLike, end: float) -> list[float]:
     # What np.arange makes of the end may be some roundings beyond it.
     times[(times > end) & (times <= end * (1 + 1e-14))] = end
     if times.size and not (np.all(np.diff(times) >= 0) and times[0] >= 0 and times[-1] <= end):
-        raise ValueError(f"save_at: its times must ascend from 0 to until = {end!r} s, and they go from "
-                         f"{float(times[0])!r} to {float(times[-1])!r}")
+        raise ValueError(
+            f"save_at: its times must ascend from 0 to until = {end!r} s, and they go from "
+            f"{float(times[0])!r} to {float(times[-1])!r}"
+        )
     return [float(t) for t in times]
 
 
 def _run(
-    start: Start, chosen: Method, options: dict[str, Any], end: float, times: list[float] | None,
-    seconds: float | None, threads: int,
+    start: Start,
+    chosen: Method,
+    options: dict[str, Any],
+    end: float,
+    times: list[float] | None,
+    seconds: float | None,
+    threads: int,
 ) -> Solution:
     model = start.model(chosen)
     looks = [] if times is None else times
@@ -112,8 +130,13 @@ def _run(
     if record["growth"] and record["summary"]["outcome"] == "reached_end":
         warnings.warn(record["growth"], RuntimeWarning, stacklevel=3)
     state, seen = State(**record["end"]), record["seen"]
-    about = dict(method=chosen.name, knob=chosen.knob, value=float(options[chosen.knob]),
-                 seconds=record["seconds"], _diagnose=_diagnosis(start, chosen, options, end))
+    about = dict(
+        method=chosen.name,
+        knob=chosen.knob,
+        value=float(options[chosen.knob]),
+        seconds=record["seconds"],
+        _diagnose=_diagnosis(start, chosen, options, end),
+    )
     if times is None:
         return _at_end(start.of, record, state, about)
     energy = None if energies is None else Energy(*energies[:, :seen])
@@ -144,8 +167,13 @@ def _at_end(
 
 
 def _solution(
-    of: Scene | System, record: dict[str, Any], times: list[float], motion: Floats,
-    energy: Energy | None, end: State, about: dict[str, Any],
+    of: Scene | System,
+    record: dict[str, Any],
+    times: list[float],
+    motion: Floats,
+    energy: Energy | None,
+    end: State,
+    about: dict[str, Any],
 ) -> Solution:
     if isinstance(of, System) and of.dimension is None:  # which has unknowns, and no nodes
         motion = motion.reshape(2, len(times), of.mass.size)
@@ -167,8 +195,13 @@ def _solution(
 
 
 def _answer(
-    start: Start, end: float, times: list[float] | None, accuracy: float, accuracy_of: str,
-    seconds: float | None, threads: int,
+    start: Start,
+    end: float,
+    times: list[float] | None,
+    accuracy: float,
+    accuracy_of: str,
+    seconds: float | None,
+    threads: int,
 ) -> Solution:
     model = start.model()
     record = _qddot.answer(model, end, accuracy, accuracy_of, seconds, threads)

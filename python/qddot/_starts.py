@@ -33,8 +33,10 @@ def model_of(
     for name, value in (("q0", q0), ("v0", v0)):
         if value is not None:
             other = "positions" if name == "q0" else "velocities"
-            raise ValueError(f"{name} is for a System; a scene starts as it is drawn, and "
-                             f"scene.replace({other}=...) as you like")
+            raise ValueError(
+                f"{name} is for a System; a scene starts as it is drawn, and "
+                f"scene.replace({other}=...) as you like"
+            )
     accepts = chosen is not None and "accepts_massless" in chosen.traits
     return of._model(chosen.name if chosen else None, accepts, keep)
 
@@ -54,8 +56,10 @@ def require_measurable(of: Scene | System, what: str) -> None:
     """A sentence for a System that has not what references and answers take."""
     if not isinstance(of, System):
         return
-    for has, missing in ((of.has_potential, "a potential"), (of.has_stiffness, "a stiffness, or a "
-                                                             "pattern of it")):
+    for has, missing in (
+        (of.has_potential, "a potential"),
+        (of.has_stiffness, "a stiffness, or a " "pattern of it"),
+    ):
         if not has:
             raise ValueError(f"{what}: a System must have V and K for this; give it {missing}")
 
@@ -70,11 +74,15 @@ def require_offered(of: System, chosen: Method) -> None:
     }
     for need in chosen.needs:
         if need in others:
-            raise ValueError(f"{chosen.name} needs {others[need]}, which a System does not offer: "
-                             "take another method, or a Scene")
+            raise ValueError(
+                f"{chosen.name} needs {others[need]}, which a System does not offer: "
+                "take another method, or a Scene"
+            )
     if "stiffness" in chosen.needs and not of.has_stiffness:
-        raise ValueError(f"{chosen.name} needs K: give the System its stiffness, or a pattern by which "
-                         "it is made of differences of the force; or take an explicit method")
+        raise ValueError(
+            f"{chosen.name} needs K: give the System its stiffness, or a pattern by which "
+            "it is made of differences of the force; or take an explicit method"
+        )
 
 
 def seconds_of(value: object, name: str) -> float:

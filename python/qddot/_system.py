@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     Pattern = tuple[NDArray[np.int64], NDArray[np.int64]]
 
+
 class System:
     """Forces of one's own: M q'' = f(q), with f = -dV/dq.
 
@@ -60,8 +61,10 @@ class System:
         if dimension is not None and m.ndim == 1:
             m = np.repeat(m[:, None], dimension, axis=1)
         if m.ndim != (1 if dimension is None else 2) or m.shape[1:] not in ((), (dimension,)):
-            raise ValueError(f"mass: its shape is {m.shape}; allowed are (n), or (nodes) and (nodes, "
-                             "dimension) with a dimension")
+            raise ValueError(
+                f"mass: its shape is {m.shape}; allowed are (n), or (nodes) and (nodes, "
+                "dimension) with a dimension"
+            )
         if not np.all(np.isfinite(m)) or np.any(m < 0) or m.size == 0:
             raise ValueError("mass: allowed are finite numbers of at least 0 in kg, one or more")
         if length is not None and not (np.isfinite(length) and length > 0):
@@ -104,7 +107,9 @@ class System:
         beyond = (rows < 0) | (rows >= n) | (columns < 0) | (columns >= n)
         if np.any(beyond):
             i = int(np.flatnonzero(beyond)[0])
-            raise ValueError(f"pattern: entry ({rows[i]}, {columns[i]}) is not among the {n} unknowns")
+            raise ValueError(
+                f"pattern: entry ({rows[i]}, {columns[i]}) is not among the {n} unknowns"
+            )
         return rows.astype(np.int64), columns.astype(np.int64)
 
     def _entries(self, pattern: Any) -> Pattern:
@@ -119,8 +124,10 @@ class System:
         else:
             array = np.asarray(pattern)
             if array.ndim != 2 or array.dtype.kind not in "biuf":
-                raise ValueError(f"pattern: it is no matrix and no table of pairs (m, 2), but of shape "
-                                 f"{array.shape}")
+                raise ValueError(
+                    f"pattern: it is no matrix and no table of pairs (m, 2), but of shape "
+                    f"{array.shape}"
+                )
             if array.shape[1] == 2 and array.shape != (2, 2):
                 shape, (rows, columns) = (n, n), whole_numbers(array, "pattern").T
             elif array.shape == (2, 2) and n != 2 and len(self.mass) != 2:
@@ -152,8 +159,10 @@ class System:
             k = k.copy()
             k.sum_duplicates()
         if k.shape != (q.size, q.size):
-            raise ValueError(f"stiffness: it returned {k.shape[0]} x {k.shape[1]} numbers; allowed "
-                             f"is {q.size} x {q.size}")
+            raise ValueError(
+                f"stiffness: it returned {k.shape[0]} x {k.shape[1]} numbers; allowed "
+                f"is {q.size} x {q.size}"
+            )
         return k.data, k.indices, k.indptr
 
     def _model(self, q0: ArrayLike | None, v0: ArrayLike | None) -> _qddot.Model:
@@ -192,8 +201,10 @@ class System:
         if not np.all(np.isfinite(array)):
             raise ValueError(f"{name}: some of its entries are not finite")
         if array.shape != self.mass.shape:
-            raise ValueError(f"{name}: its shape is {array.shape}; allowed is {self.mass.shape}, that "
-                             "of the masses")
+            raise ValueError(
+                f"{name}: its shape is {array.shape}; allowed is {self.mass.shape}, that "
+                "of the masses"
+            )
         return array
 
     def _pattern_near(self, q: Floats) -> Pattern:

@@ -56,7 +56,9 @@ def energy_trend(
     given = options_for(chosen, {"step_size": step_size, "rtol": rtol, **options})
     if chosen.knob == "rtol":
         given.pop("step_size", None)
-    record = _qddot.energy_trend(of._model(), chosen.name, given, end_of(of, until), seconds_of(seconds, "seconds"))
+    record = _qddot.energy_trend(
+        of._model(), chosen.name, given, end_of(of, until), seconds_of(seconds, "seconds")
+    )
     return EnergyTrend(
         method=chosen.name,
         t=record["t"],

@@ -97,8 +97,10 @@ class WorkPrecision:
 
     def __repr__(self) -> str:
         methods = len(set(self.points["method"]))
-        return (f"<qddot.WorkPrecision {self.scene!r} to {self.reference.until:g} s: "
-                f"{len(self.points)} points of {methods} methods>")
+        return (
+            f"<qddot.WorkPrecision {self.scene!r} to {self.reference.until:g} s: "
+            f"{len(self.points)} points of {methods} methods>"
+        )
 
     def _repr_png_(self) -> bytes | None:
         drawn: bytes | None = self.__dict__.get("_png")
@@ -122,8 +124,13 @@ class WorkPrecision:
         for row in self.front:
             if row["method"]:
                 knob = f"{row['knob']} = {row['value']:.3g}"
-                cells = (f"{row['accuracy']:.0e}", row["method"], knob,
-                         f"{row['error_position']:.1e}", f"{row['time_s']:.3g} s")
+                cells = (
+                    f"{row['accuracy']:.0e}",
+                    row["method"],
+                    knob,
+                    f"{row['error_position']:.1e}",
+                    f"{row['time_s']:.3g} s",
+                )
                 rows.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
         return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
 
@@ -226,8 +233,13 @@ def _front(made: dict[str, Any]) -> NDArray[Any]:
             made["points"][row[which]] if row[which] is not None else None
             for which in ("fastest", "hand_written", "sundials")
         )
-        nothing = {"method": "", "knob": "", "value": math.nan, "error_position": math.nan,
-                   "time_s": math.nan}
+        nothing = {
+            "method": "",
+            "knob": "",
+            "value": math.nan,
+            "error_position": math.nan,
+            "time_s": math.nan,
+        }
         best, own, sundials = best or nothing, own or nothing, sundials or nothing
         rows.append(
             {

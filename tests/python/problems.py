@@ -14,7 +14,9 @@ BIN = os.environ.get("QDDOT_BIN", "")
 
 def run_program(name, *words):
     """Runs a program; its standard output and error, and its status."""
-    done = subprocess.run([os.path.join(BIN, name), *map(str, words)], capture_output=True, text=True)
+    done = subprocess.run(
+        [os.path.join(BIN, name), *map(str, words)], capture_output=True, text=True
+    )
     return done.stdout, done.stderr, done.returncode
 
 
@@ -135,7 +137,9 @@ def library(source):
     with open(path, "w", encoding="utf-8") as file:
         file.write(source)
     made = os.path.join(folder, "library.so")
-    subprocess.run([os.environ.get("CC", "cc"), "-O2", "-shared", "-fPIC", path, "-o", made], check=True)
+    subprocess.run(
+        [os.environ.get("CC", "cc"), "-O2", "-shared", "-fPIC", path, "-o", made], check=True
+    )
     return ctypes.CDLL(made)
 
 

@@ -44,7 +44,11 @@ class Bits(unittest.TestCase):
     def test_runs(self):
         until, every = 0.1, 0.02
         drawn = [problems.random_scene(1), problems.random_scene(2, dimension=2)]
-        for scene in (*drawn, qddot.scenes.cloth(nodes=6), qddot.scenes.lattice(nodes_x=3, nodes_y=3, nodes_z=4, stiffness=100.0)):
+        for scene in (
+            *drawn,
+            qddot.scenes.cloth(nodes=6),
+            qddot.scenes.lattice(nodes_x=3, nodes_y=3, nodes_z=4, stiffness=100.0),
+        ):
             scene.save(self.path("scene.toml"))
             for method, options in METHODS.items():
                 with self.subTest(scene=scene.name, method=method):
@@ -136,7 +140,11 @@ class Bits(unittest.TestCase):
         compared = 0
         for i, method in enumerate(table["method"]):
             row = mine.get((method, table["value"][i]))
-            if row is None or row["outcome"] != "reached_end" or table["outcome"][i] != "reached_end":
+            if (
+                row is None
+                or row["outcome"] != "reached_end"
+                or table["outcome"][i] != "reached_end"
+            ):
                 continue  # which rungs are taken near a limit, and how far down, depends on time
             compared += 1
             for name in ("error_position", "error_velocity", "error_energy", "error_momentum_max"):
@@ -147,7 +155,16 @@ class Bits(unittest.TestCase):
         self.assertGreater(compared, 20)
 
     def test_exchange(self):
-        words = ("--methods", "verlet,trbdf2", "--h-omega", "0.5", "--until", 20, "--out", self.folder)
+        words = (
+            "--methods",
+            "verlet,trbdf2",
+            "--h-omega",
+            "0.5",
+            "--until",
+            20,
+            "--out",
+            self.folder,
+        )
         self.assertEqual(problems.run_program("exchange", "--scene", "fpu", *words)[2], 0)
         table = problems.read_table(self.path("exchange.csv"))
         made = qddot.exchange(qddot.scenes.fpu(), ["verlet", "trbdf2"], [0.5], until=20)

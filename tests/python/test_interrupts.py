@@ -31,8 +31,7 @@ ENDLESS = {
 
 
 def script(endless, before=""):
-    return textwrap.dedent(
-        """
+    return textwrap.dedent("""
         import signal, sys
         import numpy as np
         import qddot
@@ -50,8 +49,9 @@ def script(endless, before=""):
         assert again.outcome == "reached_end", again.outcome
         assert qddot.reference(cloth, 0.05).certified.position < 1e-6
         assert signal.getsignal(signal.SIGINT) is handler_before
-        """
-    ).format(endless=endless, before=before or "handler_before = signal.getsignal(signal.SIGINT)")
+        """).format(
+        endless=endless, before=before or "handler_before = signal.getsignal(signal.SIGINT)"
+    )
 
 
 def interrupted(text, wait=0.7):
@@ -79,7 +79,9 @@ def handler_before(*_):
     raise LookupError("mine")
 signal.signal(signal.SIGINT, handler_before)
 """
-        text = script(ENDLESS["run"], before).replace("except KeyboardInterrupt", "except LookupError")
+        text = script(ENDLESS["run"], before).replace(
+            "except KeyboardInterrupt", "except LookupError"
+        )
         self.assertEqual(interrupted(text), ("interrupted\n", 0))
 
     def test_a_handler_that_raises_nothing_has_a_stopped_run(self):
@@ -121,7 +123,9 @@ class Threads(unittest.TestCase):
 
         def work(name):
             system = qddot.System(np.ones(3), force_of(), check=False)
-            ends[name] = qddot.solve(system, "verlet", step_size=0.01, until=10, q0=np.ones(3)).end.q
+            ends[name] = qddot.solve(
+                system, "verlet", step_size=0.01, until=10, q0=np.ones(3)
+            ).end.q
 
         threads = [threading.Thread(target=work, args=(name,)) for name in "ab"]
         for thread in threads:
@@ -221,7 +225,9 @@ def force(q, f):
     print(os.waitstatus_to_exitcode(status), flush=True)
 qddot.solve(qddot.System([1.0], force, check=False), "verlet", step_size=1.0, until=1, q0=[1.0])
 """
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+        done = subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, timeout=60
+        )
         self.assertEqual(set(done.stdout.split()), {"7"}, done.stderr)
         self.assertEqual(done.returncode, 0)
 

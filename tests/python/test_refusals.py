@@ -40,9 +40,7 @@ REFUSALS = {
     "until": lambda: scene(until=-1.0),
     "replace: weight is none of": lambda: scene().replace(weight=1),
     "nowhere.toml": lambda: qddot.Scene.load("nowhere.toml"),
-    "colour": lambda: qddot.Scene.from_toml(
-        'colour = 1\n[generator]\nkind = "cloth"\n'
-    ),
+    "colour": lambda: qddot.Scene.from_toml('colour = 1\n[generator]\nkind = "cloth"\n'),
     "nowhere.obj": lambda: qddot.Scene.from_mesh("nowhere.obj", stiffness=1, node_mass=1),
     "nodes = 1 is not allowed": lambda: qddot.scenes.cloth(nodes=1),
     "size is not a parameter": lambda: qddot.scenes.cloth(size=3),
@@ -86,9 +84,7 @@ REFUSALS = {
     "accuracy_of: all; allowed are positions": lambda: qddot.solve(
         CLOTH, accuracy=1e-3, accuracy_of="all"
     ),
-    "names no stiff springs": lambda: qddot.solve(
-        CLOTH, "arkode_mri3", step_size=1e-3
-    ),
+    "names no stiff springs": lambda: qddot.solve(CLOTH, "arkode_mri3", step_size=1e-3),
     "exact: .*K changes": lambda: qddot.solve(CLOTH, "exact", step_size=1e-3),
     "q0 is missing": lambda: qddot.solve(system(), "verlet", step_size=1, until=1),
     r"q0: its shape is \(3,\)": lambda: qddot.solve(
@@ -114,14 +110,20 @@ REFUSALS = {
     "mass: .* masked": lambda: scene(mass=np.ma.array([1.0, 1.0], mask=[0, 1])),
     "positions: .* real numbers": lambda: scene(positions=np.array([[0j], [1.0]])),
     "mass: .* real numbers": lambda: scene(mass=np.array([True, False])),
-    "velocities: their shape is .2, 1. *|velocities: their shape": lambda: scene(velocities=[[1.0, 2.0]]),
+    "velocities: their shape is .2, 1. *|velocities: their shape": lambda: scene(
+        velocities=[[1.0, 2.0]]
+    ),
     r"pinned: the mask's shape is \(3,\)": lambda: scene(pinned=[True, False, True]),
     "pinned: allowed are .* each once": lambda: scene(pinned=[0, 0]),
     "until: 'late' is no number": lambda: qddot.solve(CLOTH, "verlet", step_size=1, until="late"),
     "step_size: 'x' is no number": lambda: qddot.solve(CLOTH, "verlet", step_size="x"),
     "rtol: None|rtol is missing": lambda: qddot.solve(CLOTH, "ida", rtol=None),
-    "max_order: 2.5 is no whole number": lambda: qddot.solve(CLOTH, "cvode_bdf", rtol=1e-3, max_order=2.5),
-    "compensated: 1 is neither": lambda: qddot.solve(CLOTH, "verlet", step_size=1e-3, compensated=1),
+    "max_order: 2.5 is no whole number": lambda: qddot.solve(
+        CLOTH, "cvode_bdf", rtol=1e-3, max_order=2.5
+    ),
+    "compensated: 1 is neither": lambda: qddot.solve(
+        CLOTH, "verlet", step_size=1e-3, compensated=1
+    ),
     "threads: 2.5": lambda: qddot.solve(CLOTH, "verlet", step_size=1e-3, threads=2.5),
     "threads 100000 .* from 1 to 256": lambda: qddot.solve(
         CLOTH, "verlet", step_size=1e-3, threads=100000
@@ -150,7 +152,10 @@ REFUSALS = {
     ),
     "reference: some unknowns have no mass": lambda: qddot.reference(
         qddot.Scene(
-            [[0.0, 0.0], [1.0, 0.0], [2.0, 0.1]], [[0, 1], [1, 2]], stiffness=10.0, mass=[1.0, 0.0, 1.0],
+            [[0.0, 0.0], [1.0, 0.0], [2.0, 0.1]],
+            [[0, 1], [1, 2]],
+            stiffness=10.0,
+            mass=[1.0, 0.0, 1.0],
             pinned=[0],
         ).replace(rest_length=0.5, quartic=[0.0, 1.0]),
         1.0,
@@ -196,7 +201,9 @@ class Refusals(unittest.TestCase):
             qddot.modes(chain.system(stiffness=None, pattern=np.eye(4)), 2, start)
         one_of_many = np.ones(100)
         one_of_many[37] = 1.5
-        wrong = qddot.System(np.ones(100), lambda q, f: np.copyto(f, -one_of_many * q), lambda q: q @ q / 2)
+        wrong = qddot.System(
+            np.ones(100), lambda q, f: np.copyto(f, -one_of_many * q), lambda q: q @ q / 2
+        )
         with self.assertRaisesRegex(ValueError, "potential: beside"):
             qddot.solve(wrong, "verlet", step_size=0.1, until=1, q0=np.ones(100))
         # A kink at the start itself is nobody's mistake.
@@ -222,7 +229,15 @@ class Meaning(unittest.TestCase):
             path = os.path.join(folder, "given.toml")
             given.save(path)
             read = qddot.Scene.load(path)
-        for name in ("positions", "velocities", "mass", "pinned", "springs", "stiffness", "rest_length"):
+        for name in (
+            "positions",
+            "velocities",
+            "mass",
+            "pinned",
+            "springs",
+            "stiffness",
+            "rest_length",
+        ):
             self.assertTrue(np.array_equal(getattr(given, name), getattr(read, name)), name)
             with self.assertRaises(ValueError):
                 getattr(given, name)[0] = 0
@@ -292,7 +307,9 @@ class Meaning(unittest.TestCase):
         self.assertAlmostEqual(limit.measured, limit.predicted, delta=1e-9)
 
     def test_failures_are_solutions(self):
-        failed = qddot.solve(CLOTH, "verlet", step_size=0.05, until=10, save_at=np.linspace(0, 10, 11))
+        failed = qddot.solve(
+            CLOTH, "verlet", step_size=0.05, until=10, save_at=np.linspace(0, 10, 11)
+        )
         self.assertFalse(failed.success)
         self.assertEqual(failed.outcome, "diverged")
         self.assertTrue(failed.message)
@@ -338,7 +355,9 @@ class Meaning(unittest.TestCase):
         self.assertTrue(all(point.method == "verlet" for point in seen) and len(seen) > 5)
         with tempfile.TemporaryDirectory() as folder:
             chart.save(folder)
-            self.assertEqual(sorted(os.listdir(folder)), ["front.csv", "points.csv", "reference.json"])
+            self.assertEqual(
+                sorted(os.listdir(folder)), ["front.csv", "points.csv", "reference.json"]
+            )
             table = problems.read_table(os.path.join(folder, "points.csv"))
             self.assertTrue(np.array_equal(table["time_s"], chart.points["time_s"], equal_nan=True))
             chart.draw(os.path.join(folder, "chart.svg"))

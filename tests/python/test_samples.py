@@ -73,7 +73,16 @@ class BesideSciPy(unittest.TestCase):
     def test_a_small_study_is_measured_and_drawn(self):
         study = ROOT / "experiments/beside_scipy"
         with tempfile.TemporaryDirectory() as folder:
-            words = ["--problems", "planet", "--point-limit", "0.01", "--repeats", "1", "--out", folder]
+            words = [
+                "--problems",
+                "planet",
+                "--point-limit",
+                "0.01",
+                "--repeats",
+                "1",
+                "--out",
+                folder,
+            ]
             done = subprocess.run(
                 [sys.executable, "-B", study / "measure.py", *words], capture_output=True, text=True
             )

@@ -57,7 +57,9 @@ class OwnForces(unittest.TestCase):
         library = problems.library(problems.DUFFING_C)
         library.potential.restype = ctypes.c_double
         ffi = cffi.FFI()
-        ffi.cdef("void force(const double*, double*, int64_t); double potential(const double*, int64_t);")
+        ffi.cdef(
+            "void force(const double*, double*, int64_t); double potential(const double*, int64_t);"
+        )
         other = ffi.dlopen(library._name)
         cases = {
             "ctypes": (library.force, library.potential),
@@ -99,7 +101,9 @@ class OwnForces(unittest.TestCase):
             with self.subTest(name):
                 solution = qddot.solve(qddot.System(np.ones(3), f, v), "dprkn8", **run)
                 self.assertTrue(np.array_equal(solution.end.q, expected.end.q))
-                self.assertAlmostEqual(solution.energy.total[0], expected.energy.total[0], delta=1e-14)
+                self.assertAlmostEqual(
+                    solution.energy.total[0], expected.energy.total[0], delta=1e-14
+                )
                 dense = qddot.System(np.ones(3), f, v, pattern=np.eye(3))
                 self.assertEqual(
                     qddot.solve(dense, "implicit_midpoint", step_size=0.01, q0=q0, until=1).outcome,
@@ -110,9 +114,14 @@ class OwnForces(unittest.TestCase):
         q0, knobs = np.array([1.0, 0.5]), {"step_size": {"step_size": 1e-2}, "rtol": {"rtol": 1e-5}}
         systems = {
             "force": qddot.System(np.ones(2), problems.duffing_force),
-            "potential": qddot.System(np.ones(2), problems.duffing_force, problems.duffing_potential),
+            "potential": qddot.System(
+                np.ones(2), problems.duffing_force, problems.duffing_potential
+            ),
             "stiffness": qddot.System(
-                np.ones(2), problems.duffing_force, problems.duffing_potential, problems.duffing_stiffness
+                np.ones(2),
+                problems.duffing_force,
+                problems.duffing_potential,
+                problems.duffing_stiffness,
             ),
             "pattern": qddot.System(np.ones(2), problems.duffing_force, pattern=np.eye(2)),
         }
@@ -131,7 +140,9 @@ class OwnForces(unittest.TestCase):
         for what, call in {
             "accuracy": lambda s: qddot.solve(s, accuracy=1e-3, until=1.0, q0=q0),
             "reference": lambda s: qddot.reference(s, 1.0, q0=q0),
-            "work_precision": lambda s: qddot.work_precision(s, 1.0, ["verlet"], q0=q0, point_limit=0.1),
+            "work_precision": lambda s: qddot.work_precision(
+                s, 1.0, ["verlet"], q0=q0, point_limit=0.1
+            ),
             "advise": lambda s: qddot.advise(s, 1e-3, until=1.0, q0=q0),
         }.items():
             with self.subTest(what):
@@ -151,7 +162,14 @@ class OwnForces(unittest.TestCase):
             return qddot.solve(system, "implicit_midpoint", **run).or_raise().end.q
 
         expected = solved(dense)
-        for form in ("csr_matrix", "csc_matrix", "coo_matrix", "lil_matrix", "csr_array", "bsr_matrix"):
+        for form in (
+            "csr_matrix",
+            "csc_matrix",
+            "coo_matrix",
+            "lil_matrix",
+            "csr_array",
+            "bsr_matrix",
+        ):
             with self.subTest(form):
                 make = getattr(scipy.sparse, form)
                 system = chain.system(stiffness=lambda q, make=make: make(chain.stiffness(q)))
@@ -166,19 +184,28 @@ class OwnForces(unittest.TestCase):
         kept.has_canonical_format = False
         before = kept.indices.copy()
         system = chain.system(stiffness=lambda q: kept, check=False)
-        qddot.solve(system, "semi_implicit_euler", step_size=1e-3, until=0.01, q0=q0, v0=v0).or_raise()
+        qddot.solve(
+            system, "semi_implicit_euler", step_size=1e-3, until=0.01, q0=q0, v0=v0
+        ).or_raise()
         self.assertTrue(np.array_equal(kept.indices, before))
 
         # By differences, good to some 1e-10 of the largest entries; its pattern by nodes or unknowns.
         nodes = scipy.sparse.diags([1, 1, 1], [-1, 0, 1], (6, 6))
         unknowns = np.kron(nodes.toarray(), np.ones((2, 2)))
         pairs = np.argwhere(unknowns)
-        for name, pattern in {"nodes": nodes, "unknowns": unknowns, "pairs": pairs, "all": "dense"}.items():
+        for name, pattern in {
+            "nodes": nodes,
+            "unknowns": unknowns,
+            "pairs": pairs,
+            "all": "dense",
+        }.items():
             with self.subTest(name):
                 system = chain.system(stiffness=None, pattern=pattern)
                 self.assertLess(np.max(np.abs(solved(system) - expected)), 1e-9)
         stencil = chain.system(stiffness=None, pattern=nodes)
-        counts = qddot.solve(stencil, "implicit_midpoint", step_size=5e-3, until=SECONDS, q0=q0, v0=v0).counts
+        counts = qddot.solve(
+            stencil, "implicit_midpoint", step_size=5e-3, until=SECONDS, q0=q0, v0=v0
+        ).counts
         self.assertGreater(counts.stiffness_evaluations, 0)
 
     def test_calls_see_the_solvers_memory(self):
@@ -271,7 +298,9 @@ class OwnForces(unittest.TestCase):
         class Owner:
             def __init__(self):
                 self.system = qddot.System(np.ones(3), self.force)
-                self.solution = qddot.solve(self.system, "verlet", step_size=0.1, until=1, q0=np.ones(3))
+                self.solution = qddot.solve(
+                    self.system, "verlet", step_size=0.1, until=1, q0=np.ones(3)
+                )
 
             def force(self, q, f):
                 f[:] = -q
@@ -294,7 +323,9 @@ class OwnForces(unittest.TestCase):
         self.assertEqual(failed.outcome, "diverged")
         self.assertIn("verlet", failed.diagnosis())
         plain = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
-        self.assertEqual(qddot.solve(plain, "verlet", step_size=10.0, q0=[1.0], until=1e4).diagnosis(), "")
+        self.assertEqual(
+            qddot.solve(plain, "verlet", step_size=10.0, q0=[1.0], until=1e4).diagnosis(), ""
+        )
 
     def test_what_is_kept_is_refused(self):
         kept = []
@@ -310,7 +341,9 @@ class OwnForces(unittest.TestCase):
         for force, name in ((keeps_q, "q"), (keeps_part, "f")):
             with self.subTest(name):
                 system = qddot.System(np.ones(2), force, check=False)
-                with self.assertRaisesRegex(RuntimeError, rf"force: it kept {name} .*{name}\.copy\(\)"):
+                with self.assertRaisesRegex(
+                    RuntimeError, rf"force: it kept {name} .*{name}\.copy\(\)"
+                ):
                     qddot.solve(system, "verlet", step_size=0.1, until=1, q0=[1.0, 2.0])
         # What was kept whole has become a copy, which nobody else writes to.
         self.assertTrue(np.array_equal(kept[0], [1.0, 2.0]) and kept[0].base is not None)
@@ -325,7 +358,9 @@ class OwnForces(unittest.TestCase):
         cases = {
             "f is -dV/dq": of(good, lambda q: -problems.duffing_potential(q)),
             "stiffness.*the other sign": of(good, None, lambda q: -problems.duffing_stiffness(q)),
-            "stiffness: beside the start it is not df/dq": of(good, None, lambda q: 2 * problems.duffing_stiffness(q)),
+            "stiffness: beside the start it is not df/dq": of(
+                good, None, lambda q: 2 * problems.duffing_stiffness(q)
+            ),
             "stiffness: .*allowed is 2 x 2": of(good, None, lambda q: np.eye(3)),
             "force: it returned something": of(lambda q, f: -q),
             "is it written": of(lambda q, f: f.fill(np.nan)),
@@ -397,7 +432,15 @@ class OwnForces(unittest.TestCase):
             raise Mine("in K")
 
         system = qddot.System(np.ones(2), force, problems.duffing_potential, pattern="dense")
-        for method in ("verlet", "rk4", "implicit_midpoint", "arkode_erk4", "arkode_dirk4", "cvode_bdf", "ida"):
+        for method in (
+            "verlet",
+            "rk4",
+            "implicit_midpoint",
+            "arkode_erk4",
+            "arkode_dirk4",
+            "cvode_bdf",
+            "ida",
+        ):
             with self.subTest(method):
                 calls = 0
                 knob = "step_size" if qddot.method(method).knob == "step_size" else "rtol"
@@ -411,7 +454,9 @@ class OwnForces(unittest.TestCase):
                 self.assertEqual(names[-1], "force")
                 # Nothing is damaged: the same system runs on.
                 self.assertEqual(qddot.solve(system, method, **run).outcome, "reached_end")
-        bad = qddot.System(np.ones(2), problems.duffing_force, None, inner, pattern="dense", check=False)
+        bad = qddot.System(
+            np.ones(2), problems.duffing_force, None, inner, pattern="dense", check=False
+        )
         with self.assertRaisesRegex(Mine, "in K"):
             qddot.solve(bad, "arkode_dirk4", rtol=1e-4, until=1.0, q0=[1.0, 0.5])
         # Within a study that makes many runs, too.
@@ -473,7 +518,9 @@ class OwnForces(unittest.TestCase):
             f[:] = -end
 
         outer = qddot.System([1.0], force)
-        self.assertEqual(qddot.solve(outer, "verlet", step_size=0.1, until=1, q0=[1.0]).outcome, "reached_end")
+        self.assertEqual(
+            qddot.solve(outer, "verlet", step_size=0.1, until=1, q0=[1.0]).outcome, "reached_end"
+        )
 
     def test_own_systems_are_measured(self):
         chain = problems.Chain(4)
@@ -494,7 +541,9 @@ class OwnForces(unittest.TestCase):
         self.assertTrue(np.allclose(w[4:], exact, rtol=1e-9))
         limit = qddot.stability_limit("verlet", system, q0)
         self.assertAlmostEqual(limit.step_size, 2 / exact[-1], delta=1e-3 * limit.step_size)
-        order = qddot.convergence(system, "blanes_moan4", 0.02, 5, until=1.0, reference=a, **start).order
+        order = qddot.convergence(
+            system, "blanes_moan4", 0.02, 5, until=1.0, reference=a, **start
+        ).order
         # The last errors are within 20 times of what the reference certifies.
         self.assertLess(np.max(np.abs(order[np.isfinite(order)] - 4)), 0.1)
         self.assertGreater(np.count_nonzero(np.isfinite(order)), 2)

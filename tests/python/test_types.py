@@ -48,7 +48,11 @@ class Types(unittest.TestCase):
             allowed.write(ALLOWED)
             allowed.flush()
             done = self.run_in_package(
-                "mypy.stubtest", "qddot._qddot", "--allowlist", allowed.name, "--ignore-unused-allowlist"
+                "mypy.stubtest",
+                "qddot._qddot",
+                "--allowlist",
+                allowed.name,
+                "--ignore-unused-allowlist",
             )
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
