@@ -33,7 +33,7 @@ import solvers
 import qddot
 
 ACCURACIES = (1e-2, 1e-4, 1e-6, 1e-8)
-# Of each kind: explicit of fixed steps, of order 2 to 8, and adaptive ones.
+# Explicit methods of fixed steps, of order 2 to 8, and adaptive ones.
 OWN = {
     "verlet": (2, "step_size"), "blanes_moan4": (4, "step_size"), "symmetric6": (6, "step_size"),
     "symmetric8": (8, "step_size"), "dprkn8": (8, "rtol"), "dprkn12": (12, "rtol"),
@@ -140,7 +140,7 @@ def table(runs):
                 for run in runs:
                     if run["problem"] != problem or run["force"] != whose:
                         continue
-                    # Of the module, the best of its methods; solve_ivp's stand by themselves.
+                    # The module's best method counts; solve_ivp's methods stand by themselves.
                     is_choice = run["method"] == "accuracy="
                     by = run["way"] == "qddot" and not is_choice
                     key = (run["way"], "best method" if by else run["method"])

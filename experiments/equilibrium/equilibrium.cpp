@@ -32,18 +32,6 @@ void declare(CommandLine& line, Arguments& a) {
                   "velocities of zero: node,x,y,z,vx,vy,vz");
 }
 
-const char* name(Equilibrium::Outcome outcome) {
-  switch (outcome) {
-    case Equilibrium::Outcome::reached:
-      return "reached";
-    case Equilibrium::Outcome::unbounded:
-      return "unbounded";
-    case Equilibrium::Outcome::not_converged:
-      break;
-  }
-  return "not_converged";
-}
-
 int equilibrium(const CommandLine& line, const Arguments& a,
                 const std::vector<std::string>& command_line) {
   require_given(a.scene, "--scene", "a generator's name or a scene file");

@@ -23,18 +23,6 @@ std::shared_ptr<const ReducedScene> all_directions(const Model& model) {
   return std::make_shared<const ReducedScene>(*model.start, Reductions::all_directions());
 }
 
-const char* name_of(Equilibrium::Outcome outcome) {
-  switch (outcome) {
-    case Equilibrium::Outcome::reached:
-      return "reached";
-    case Equilibrium::Outcome::unbounded:
-      return "unbounded";
-    case Equilibrium::Outcome::not_converged:
-      break;
-  }
-  return "not_converged";
-}
-
 // Where the model comes to rest, downhill from its start; `length` [m] is the size of an own
 // system.
 py::dict equilibrium(const Model& model, double length) {
@@ -48,7 +36,7 @@ py::dict equilibrium(const Model& model, double length) {
     energy = scene->potential({0, rest.q, Vec::Zero(rest.q.size())});
   });
   const auto nodes = scene->expand({0, rest.q, Vec::Zero(rest.q.size())});
-  return py::dict(arg("outcome") = name_of(rest.outcome), arg("message") = in_python(rest.message),
+  return py::dict(arg("outcome") = name(rest.outcome), arg("message") = in_python(rest.message),
                   arg("positions") = array_of(nodes, &Node::position, scene->dimension()),
                   arg("potential") = energy, arg("residual") = rest.residual,
                   arg("smallest_eigenvalue") = rest.smallest_eigenvalue,

@@ -29,7 +29,7 @@ class Filling {
  public:
   explicit Filling(SymmetricMatrix& k) : k_(k) { k.coeffs().setZero(); }
 
-  // Of a column, rows ascending.
+  // Starts a column, whose rows ascend.
   void begin(Index column) {
     column_ = column;
     at_ = k_.outerIndexPtr()[column];

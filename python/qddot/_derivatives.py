@@ -25,7 +25,7 @@ def check(model: _qddot.Model, length: float, has_own_stiffness: bool) -> None:
     start = model.q
     f = model.force(start)
     if not np.all(np.isfinite(f)):
-        # Of a callable, a number that it did not write is found so as well.
+        # A number that a callable did not write is found so as well.
         i = int(np.flatnonzero(~np.isfinite(f))[0])
         raise ValueError(
             f"force: f[{i}] is {f[i]} at the start; is it written there, as by "

@@ -23,6 +23,19 @@ struct Equilibrium {
   int iterations = 0;  // Newton's steps and escapes from saddles
 };
 
+// As tables have it: "reached", "unbounded", "not_converged".
+constexpr const char* name(Equilibrium::Outcome outcome) {
+  switch (outcome) {
+    case Equilibrium::Outcome::reached:
+      return "reached";
+    case Equilibrium::Outcome::unbounded:
+      return "unbounded";
+    case Equilibrium::Outcome::not_converged:
+      break;
+  }
+  return "not_converged";
+}
+
 // A stable rest of f(q) = 0: a minimum of V, downhill from `start` (n). `length` [m] > 0 is the
 // size of the scene, by which steps are bounded.
 //

@@ -10,7 +10,7 @@ import numpy as np
 import problems
 import qddot
 
-# Of each way there is to step: explicit, symplectic, Nystrom, multistep, implicit, split, SUNDIALS'.
+# A method of each way to step: explicit, symplectic, Nystrom, multistep, implicit, SUNDIALS'.
 METHODS = {
     "verlet": {"step_size": 1e-3},
     "blanes_moan6": {"step_size": 2e-3},

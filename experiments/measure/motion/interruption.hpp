@@ -32,8 +32,8 @@ void stop_if_interrupted();
 // Whether somebody has learned of the interruption by one of these two.
 bool is_interruption_noticed();
 
-// Ends the work of one thread: while this lives, interruption() and interrupted() of the thread that
-// made it are those of `stop`, in the place of the process's.
+// Ends the work of one thread: while this lives, interruption() and interrupted() of the thread
+// that made it are those of `stop`, in the place of the process's.
 class OwnInterruption {
  public:
   OwnInterruption(std::stop_token stop, Interruption why);
