@@ -47,6 +47,9 @@ MAY_SEE = {
     VECTORS: {"src/model/kernels"},
     "src/algebra/multifrontal/vectors": {VECTORS, "src/algebra/multifrontal"},
     "experiments/measure/speed/vectors": {VECTORS, "experiments/measure/speed"},
+    # Those that write motions.
+    "experiments/simulate": COMMAND | {"experiments/motion"},
+    "experiments/motions": COMMAND | {"experiments/motion"},
     # A peer is SUNDIALS by itself, whose handles are there.
     "experiments/bench": COMMAND | {"integrators/sundials"},
 }

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "qddot/scene/reduce/reduced_scene.hpp"
+
+namespace qddot::motion {
+
+// What a motion says beside the positions, where its format has room for more.
+struct Fields {
+  bool velocity = true;        // [m/s], of each node
+  bool kinetic_energy = true;  // [J], of each node
+  bool strain = true;          // of each spring, see strain.hpp
+};
+
+// A motion in a file that others open: all nodes of a scene, pinned ones too, frame after frame in
+// 32-bit floats, and what joins them. Its files appear together on commit(), or not at all.
+class MotionFile {
+ public:
+  virtual ~MotionFile() = default;
+  // Adds the frame of this state at its time. `reference`: the state of the same scene with which
+  // the distance of each node [m] is taken, where the file was opened for one. False where a number
+  // is not finite or beyond 32-bit floats: the motion ends before that frame, and takes no more.
+  // Throws CannotWrite.
+  virtual bool add(const State& state, const State* reference = nullptr) = 0;
+  // Writes all that is left, and the sidecar. `origin`: how the motion was made (see
+  // provenance.hpp). Throws CannotWrite.
+  virtual void complete(const nlohmann::json& origin) = 0;
+  // Lets all files appear, after complete().
+  virtual void commit() = 0;
+};
+
+// All files that a motion at this path consists of, the path first. Throws InvalidInput where its
+// ending names no format; `option` is what the sentence calls the path.
+std::vector<std::string> files_of_motion(const std::string& path, const std::string& option);
+
+// Opens the files of a motion in the format that the path's ending names: .vtkhdf (with an .xdmf
+// beside it) or .pc2 (with an .obj). `start`: the scene as its motion starts; `scene`: that scene
+// reduced, which must outlive the file; `has_reference`: whether add gets one. Throws InvalidInput
+// for another ending, where a file cannot be written, or where the format cannot count the scene's
+// nodes.
+std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& start,
+                                        const ReducedScene& scene, bool has_reference = false,
+                                        const Fields& fields = {});
+
+}  // namespace qddot::motion
