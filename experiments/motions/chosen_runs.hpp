@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "qddot/measure/speed/front.hpp"
+
+namespace qddot::motions {
+
+using namespace measure;
+
+// A run whose motion is worth keeping, and what it shows.
+struct ChosenRun {
+  const Point* point = nullptr;
+  std::string why;  // for people: "fastest at 1e-4", "coarsest run", "diverged"
+};
+
+// All points that can be shown, the most telling first: the fastest at each accuracy; the fastest
+// of the other family there; the coarsest run of each method and its first failure; then the rest
+// as they come. Runs that took too long are none. `front`: what fastest_at_each_accuracy says of
+// the points. Pointers into `points`.
+std::vector<ChosenRun> chosen_runs(const std::vector<Point>& points,
+                                   const std::vector<FrontRow>& front);
+
+}  // namespace qddot::motions

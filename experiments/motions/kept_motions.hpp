@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/csv.hpp"
+#include "experiments/motion/motion_file.hpp"
+#include "experiments/motions/chosen_runs.hpp"
+#include "experiments/motions/reference_motion.hpp"
+
+namespace qddot::motions {
+
+// The motions of one scene in a folder: motions/*.vtkhdf, and the tables motions.csv and
+// motions_energy.csv, which appear at the end.
+class KeptMotions {
+ public:
+  // Throws InvalidInput where the folder cannot be written. The scene must outlive it; `start` is
+  // that scene as its motion starts, `times` [s] are those that are seen, the start first, and
+  // `origin` says how each motion was made (see provenance.hpp).
+  KeptMotions(const std::string& folder, const Scene& start, const ReducedScene& scene,
+              std::vector<double> times, const nlohmann::json& origin);
+
+  // Keeps the motion that all others are compared with, before any of them.
+  void add_reference(const ReferenceMotion& motion);
+  // Makes the run once more, up to so many `seconds`, and keeps its motion. Throws Interrupted.
+  void add(const ChosenRun& run, const Options& options, const Reference& reference,
+           double seconds);
+  // How many runs beside the reference, and how many bytes of files.
+  std::size_t runs() const { return runs_; }
+  double bytes() const { return bytes_; }
+  // Lets the tables appear, and removes the motions of an earlier motions.csv that are not in it.
+  void finish(const nlohmann::json& origin);
+
+ private:
+  // Writes the motion's file and its energies. Returns its path in the folder.
+  std::string write(const std::string& name, const std::vector<State>& states, bool is_reference);
+  double largest_distance(const std::vector<State>& states, const Reference& reference) const;
+
+  std::string folder_;
+  const Scene& start_;
+  const ReducedScene& scene_;
+  std::vector<double> times_;
+  std::vector<State> reference_;  // none where nobody knows it
+  std::vector<std::string> earlier_, files_;
+  command::CsvFile table_, energy_;
+  nlohmann::json origin_;
+  std::size_t runs_ = 0;
+  double bytes_ = 0;
+};
+
+}  // namespace qddot::motions

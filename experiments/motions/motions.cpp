@@ -1,0 +1,160 @@
+// How do the runs of a work-precision chart move, beside the reference?
+//
+//   work_precision --scene cloth --out results/cloth
+//   motions --scene cloth --out results/cloth
+//
+//  1. The folder's points.csv says which runs there are; the options that they were measured with
+//     come from its sidecar. The most telling come first: the fastest at each accuracy, those of
+//     the other family, the coarsest run of each method and its first failure, then the rest.
+//  2. The reference's motion is that of a fast and very accurate run, compared with the reference
+//     at the end. Each run is made once more, seen at the same times; and once unseen, timed by
+//     phase: forces, stiffness matrices, factorisations, solves.
+//  3. motions/METHOD_VALUE.vtkhdf holds a motion, with each node's distance from the reference;
+//     motions.csv lists them, motions_energy.csv has their energies. A run that fails has a motion
+//     up to where it did.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/columns.hpp"
+#include "experiments/command/csv.hpp"
+#include "experiments/command/entry.hpp"
+#include "experiments/command/interruptible.hpp"
+#include "experiments/command/measured_points.hpp"
+#include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/reference_file.hpp"
+#include "experiments/command/scene_choice.hpp"
+#include "experiments/motion/motion_file.hpp"
+#include "experiments/motions/chosen_runs.hpp"
+#include "experiments/motions/kept_motions.hpp"
+#include "experiments/motions/reference_motion.hpp"
+#include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/speed/front.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::motions {
+
+using namespace measure;
+using namespace command;
+namespace {
+
+// Bytes of motions, and seconds of runs, that a folder gets unless more runs are asked for.
+constexpr double most_bytes = 256e6, most_seconds = 60;
+// Frames times nodes that a motion has unless more frames are asked for.
+constexpr double most_positions = 6e5;
+constexpr int fewest_frames = 20, usual_frames = 100, largest_count = 10000;
+constexpr double longest_run = 10;          // [s]
+constexpr double longest_reference = 30;    // [s]
+constexpr double patience_with_a_run = 30;  // [s], after an interruption
+
+struct Arguments {
+  SceneChoice scene;
+  std::string out;
+  int frames = 0, runs = 0;
+};
+
+void declare(CommandLine& line, Arguments& a) {
+  line.add_option("--scene", a.scene.name, "a generator's name or a scene file");
+  line.add_option("--frames", a.frames,
+                  "how many times are seen after the start (default: 100, fewer of large scenes)")
+      .take_last();
+  line.add_option("--runs", a.runs,
+                  "how many runs, the most telling first (default: as many as 256 MB and a minute "
+                  "hold)")
+      .take_last();
+  line.add_option("--out", a.out,
+                  "the folder of work_precision's points.csv, for motions.csv and motions/");
+}
+
+// 0 and the ends of so many equal parts of the time.
+std::vector<double> frame_times(double until, int frames) {
+  std::vector<double> times;
+  for (int i = 0; i <= frames; ++i) times.push_back(i == frames ? until : until * i / frames);
+  return times;
+}
+
+int usual_number_of_frames(std::size_t nodes) {
+  const double fit = most_positions / static_cast<double>(std::max<std::size_t>(nodes, 1));
+  return static_cast<int>(std::clamp<double>(fit, fewest_frames, usual_frames));
+}
+
+int motions(const CommandLine& line, Arguments& a, const std::vector<std::string>& command_line) {
+  require_given(a.out, "--out", "the folder that work_precision wrote points.csv into");
+  if (line.has("--frames")) require_within(a.frames, 1, largest_count, "--frames");
+  if (line.has("--runs")) require_within(a.runs, 1, largest_count, "--runs");
+  const Scene drawn = load(a.scene);
+  const MeasuredPoints study = measured_points(a.out);
+  if (study.scene_hash != content_hash(drawn)) {
+    throw InvalidInput(fmt::format(
+        "--scene {}: {}/points.csv is of another scene, or of what this one was before it changed; "
+        "work_precision measures this one",
+        a.scene.name, a.out));
+  }
+  a.scene.no_reduce = study.no_reduce;
+  const Scene start = started(drawn, a.scene);
+  const ReducedScene scene(start, reductions_of(a.scene));
+  nlohmann::json origin = provenance(command_line, drawn, start, scene);
+  origin["until"] = study.until;
+  origin["study"] = study.key;
+  const Reference reference = reference_for(drawn, start, scene, study.until, a.out, origin);
+  const auto front = fastest_at_each_accuracy(study.points, reference);
+  auto runs = chosen_runs(study.points, front);
+  if (line.has("--runs") && std::ssize(runs) > a.runs)
+    runs.resize(static_cast<std::size_t>(a.runs));
+
+  const auto times = frame_times(
+      study.until, line.has("--frames") ? a.frames : usual_number_of_frames(start.nodes.size()));
+  KeptMotions kept(a.out, start, scene, times, origin);
+  wait_for_answer(patience_with_a_run);
+  std::optional<Interruption> why;
+  try {
+    show_progress("making the reference's motion ...");
+    const auto moves =
+        reference_motion(times, scene, reference, study.points, study.options, longest_reference);
+    if (moves) kept.add_reference(*moves);
+    const auto begin = std::chrono::steady_clock::now();
+    for (const ChosenRun& run : runs) {
+      if (!line.has("--runs") &&
+          (kept.bytes() > most_bytes || seconds_since(begin) > most_seconds)) {
+        break;
+      }
+      show_progress(describe(*run.point));
+      kept.add(run, study.options, reference, longest_run);
+    }
+  } catch (const Interrupted&) {
+    why = interrupted();
+  }
+  show_progress("");
+  origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
+  origin["displacement"] = reference.scales.displacement;
+  origin["runs_left_out"] = runs.size() - kept.runs();
+  kept.finish(origin);
+  fmt::print("{}: {} of {} runs, {} frames each, {:.3g} MB in {}/motions\n",
+             in_one_line(drawn.name), kept.runs(), runs.size(), times.size(), 1e-6 * kept.bytes(),
+             a.out);
+  if (!why) return done;
+  fmt::print(stderr, "motions: interrupted by {}: {} of {} runs are kept\n", why->by, kept.runs(),
+             runs.size());
+  return why->status;
+}
+
+}  // namespace
+}  // namespace qddot::motions
+
+int main(int argc, char** argv) {
+  using namespace qddot::motions;
+  return qddot::command::enter<Arguments>(
+      {.name = "motions",
+       .summary = "Keeps the motions of the runs of a work-precision chart, beside the reference.",
+       .has_threads = true},
+      declare, motions, argc, argv);
+}
