@@ -95,9 +95,9 @@ int advice(const CommandLine& line, const Arguments& a,
   CsvFile worth_csv(a.out + "/worth.csv", {"figure", "value", "cases", "meaning"});
 
   std::vector<CaseResult> results(static_cast<std::size_t>(a.cases));
-  std::size_t finished = 0;
   study.measure([&] {
     std::exception_ptr error;
+    progress().begin(results.size());
 #pragma omp parallel for schedule(dynamic) num_threads(a.jobs)
     for (std::size_t i = 0; i < results.size(); ++i) {
       const auto number = static_cast<std::uint64_t>(a.first) + i;
@@ -108,7 +108,7 @@ int advice(const CommandLine& line, const Arguments& a,
 #pragma omp critical
         {
           results[i] = result_from(record);
-          show_progress(fmt::format("{} of {} cases", ++finished, a.cases));
+          progress().finish(fmt::format("case {}", number));
         }
       } catch (...) {
 #pragma omp critical
@@ -118,7 +118,6 @@ int advice(const CommandLine& line, const Arguments& a,
     if (error) std::rethrow_exception(error);
   });
   std::erase_if(results, [](const CaseResult& result) { return result.name.empty(); });
-  show_progress("");
   for (const CaseResult& result : results) case_columns().write_row(cases_csv, result);
   fmt::print("{:<24} {:>8} {:>6}  {}\n", "figure", "value", "cases", "of what");
   for (const Figure& figure : worth_of(results)) {

@@ -26,6 +26,7 @@
 #include "experiments/command/csv.hpp"
 #include "experiments/command/entry.hpp"
 #include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/scene_choice.hpp"
 #include "qddot/scene/explain.hpp"
@@ -179,7 +180,9 @@ int answer(const CommandLine& line, const Arguments& a,
     require_folder(a.out);
     csv = std::make_unique<CsvFile>(a.out + "/advice.csv", advice_columns().header());
   }
+  progress().stage("looking for the fastest methods");
   const Advices all = measure::advise(scene, until, a.accuracies, of);
+  progress().wipe();
   print_scene(all, start, scene, until);
   print_advice(all, a, until);
   if (csv) {

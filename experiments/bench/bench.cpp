@@ -131,18 +131,23 @@ std::string force_library() {
 // Points that are pieces of the study.
 Recall recall_by(Study& study, std::string prefix) {
   return [&study, prefix = std::move(prefix)](const std::string& name, const auto& take) {
+    progress().now_at(name);
     return study.piece(prefix + name, [&] { return nlohmann::json(take()); })
         .template get<Measured>();
   };
 }
 
+std::size_t forces_of(const std::vector<Peer*>& peers) {
+  std::size_t count = 0;
+  for (const Peer* peer : peers) count += peer->forces().size();
+  return count;
+}
+
 // Adds the sweeps to `sweeps` as they come.
 void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
                 const std::vector<Peer*>& peers, const Arguments& a, std::vector<Sweep>& sweeps) {
-  const auto report = [](const Measured& p) {
-    show_progress(fmt::format("{} ({}) {:.1e}: {} {:.1e} in {:.3g} s", p.solver, p.force, p.value,
-                              name(p.outcome), p.error, p.seconds));
-  };
+  const auto report = [](const Measured&) {};  // recall has said it before
+  progress().begin(2 * a.methods.size() + forces_of(peers));
   for (const bool smallest : {true, false}) {
     const Recall recall = recall_by(study, prefix + (smallest ? "reduced " : "as drawn "));
     Pace own = a.pace;
@@ -150,6 +155,7 @@ void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
     for (const std::string& method : a.methods) {
       const auto solver = our_method(method, smallest);
       sweeps.push_back(sweep(*solver, ForceKind::ours, problem, own, recall, report));
+      progress().finish(method + " is done");
       Sweep& last = sweeps.back();
       last.is_ours = true;
       last.is_smallest = smallest;
@@ -168,6 +174,7 @@ void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
   for (Peer* peer : peers) {
     for (const ForceKind force : peer->forces()) {
       sweeps.push_back(sweep(*peer, force, problem, theirs, recall, report));
+      progress().finish(peer->name() + " is done");
     }
   }
 }
@@ -188,7 +195,7 @@ void compare_steps(Study& study, const std::string& prefix, const Entry& entry,
   for (Peer* peer : peers) {
     if (peer->twin().empty()) continue;
     for (const bool smallest : {true, false}) {
-      show_progress(fmt::format("{} beside {} ...", peer->name(), peer->twin()));
+      progress().stage(fmt::format("{} beside {}", peer->name(), peer->twin()));
       const std::string piece =
           fmt::format("{}{} beside {} {}", prefix, peer->name(), peer->twin(), smallest);
       const auto same = study
@@ -198,7 +205,7 @@ void compare_steps(Study& study, const std::string& prefix, const Entry& entry,
                                                                       pace.repeats, pace.limit));
                                    })
                             .get<SameSteps>();
-      show_progress("");
+      progress().wipe();
       same_steps_row(table, entry.drawn.name, entry.until, same);
       print_same_steps(entry.drawn.name, entry.until, same);
     }
@@ -211,7 +218,7 @@ void compare(Study& study, const Entry& entry, const std::vector<Peer*>& peers, 
   const Scene start = started(entry.drawn, entry.choice);
   const std::string folder = fmt::format("{}/{}_{:g}", a.out, entry.drawn.name, entry.until);
   require_folder(folder);
-  show_progress("making the reference ...");
+  progress().stage("making the reference");
   const Problem problem(entry.drawn, start, entry.until, folder, origin);
   std::vector<Sweep> sweeps;
   const std::string prefix = fmt::format("{} {:.17g} ", content_hash(entry.drawn), entry.until);
@@ -221,7 +228,7 @@ void compare(Study& study, const Entry& entry, const std::vector<Peer*>& peers, 
   } catch (const Interrupted&) {
     end = std::current_exception();
   }
-  show_progress("");
+  progress().wipe();
   for (const Sweep& sweep : sweeps) {
     for (const Measured& point : sweep.points) {
       point_row(tables.points, entry.drawn.name, entry.until, sweep, point);

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/command/progress.hpp"
 #include "experiments/command/unfinished.hpp"
 
 namespace qddot::command {
@@ -128,6 +129,8 @@ void Interruptible::watch() {
     patience = shared().patience;
   }
   interrupt(*why);
+  // Here, as a second signal ends the process before anybody else could.
+  progress().close();
   const double answered_by = now() + patience;
   for (;;) {
     const bool is_answered = is_interruption_noticed() || shared().is_over;

@@ -13,6 +13,7 @@
 #include "experiments/command/interruptible.hpp"
 #include "experiments/command/memory.hpp"
 #include "experiments/command/overwriting.hpp"
+#include "experiments/command/progress.hpp"
 #include "experiments/command/whole_file.hpp"
 #include "qddot/measure/reference/no_reference.hpp"
 #include "qddot/model/kernels/level.hpp"
@@ -24,6 +25,7 @@ using namespace measure;
 namespace {
 
 int complain(const CommandLine& line, const std::string& sentence, int status) {
+  progress().wipe();
   fmt::print(stderr, "{}: {}\n", line.program(), in_one_line(sentence));
   return status;
 }
@@ -37,9 +39,13 @@ struct EveryProgram {
     line.add_option("--time-limit", seconds,
                     "seconds after which the program ends in order, with what it has")
         .take_last();
+    line.add_option("--progress", form, "how stderr says how far it is, one of auto, plain, none")
+        .take_last()
+        .capture_default_str();
   }
   void apply(const CommandLine& line, Interruptible& run) const {
     if (force) allow_replacing();
+    start_progress(line.program(), form);
     if (!line.has("--time-limit")) return;
     require_positive(seconds, "--time-limit", "the seconds that the program may take");
     run.end_after(seconds);
@@ -47,6 +53,7 @@ struct EveryProgram {
 
   bool force = false;
   double seconds = 0;
+  std::string form = "auto";
 };
 
 }  // namespace
@@ -75,7 +82,9 @@ int run_program(CommandLine& line, int argc, char** argv, const std::function<in
     Interruptible run(line.program());
     if (const auto status = line.parse(argc, argv)) return *status;
     options.apply(line, run);
-    return body();
+    const int status = body();
+    progress().wipe();
+    return status;
   } catch (const Interrupted& error) {
     return complain(line, error.what(), error.status);
   } catch (const CannotWrite& error) {

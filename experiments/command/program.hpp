@@ -14,11 +14,11 @@ enum ExitStatus { done = 0, failed = 1, bad_input = 2, end_not_reached = 3 };
 // The text in one line without control characters, whatever names it holds.
 std::string in_one_line(const std::string& text);
 
-// Parses the command line into what `line` binds, and --force, --time-limit and --version, and runs
-// `body`, which SIGINT, SIGTERM and the time limit interrupt (see interruptible.hpp). --help prints
-// and returns 0. Prints one sentence, "program: ...", and returns bad_input for a wrong option or
-// an InvalidInput, end_not_reached for what cannot be written (CannotWrite) or has no reference,
-// 130 for a signal, and failed for any other exception.
+// Parses the command line into what `line` binds, and --force, --time-limit, --progress and
+// --version, and runs `body`, which SIGINT, SIGTERM and the time limit interrupt (see
+// interruptible.hpp). --help prints and returns 0. Prints one sentence, "program: ...", and returns
+// bad_input for a wrong option or an InvalidInput, end_not_reached for what cannot be written
+// (CannotWrite) or has no reference, 130 for a signal, and failed for any other exception.
 int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& body);
 
 // Adds --threads: the cores that forces, stiffness and factorisations of one run may use, 1 unless

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/whole_file.hpp"
 #include "qddot/measure/motion/duration.hpp"
@@ -152,6 +153,7 @@ std::optional<Reference> stored(const nlohmann::json& json, const ReducedScene& 
 }
 
 void say_expected(double seconds) {
+  progress().wipe();
   fmt::print(stderr, "making the reference takes some {}\n", duration_in_words(seconds));
 }
 
@@ -243,6 +245,7 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
   const bool is_of_others = found.is_object() && found.value("key", nlohmann::json()) != key;
   WholeFile whole(file);
   if (!found.is_null() && !is_of_others) {
+    progress().wipe();
     fmt::print(stderr,
                "{}: it is not as it was written (its checksum or its numbers are wrong): the "
                "reference is made anew\n",

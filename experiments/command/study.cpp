@@ -24,8 +24,8 @@ constexpr double patience_with_a_step = 30;
 
 // What the user asked for, but for where results go and how the program is to be run.
 nlohmann::json options_of(const CommandLine& line) {
-  constexpr std::array other = {"--out",        "--scene", "--resume", "--force",
-                                "--time-limit", "--help",  "--version"};
+  constexpr std::array other = {"--out",        "--scene",    "--resume", "--force",
+                                "--time-limit", "--progress", "--help",   "--version"};
   nlohmann::json options = nlohmann::json::object();
   for (const auto& [name, values] : line.given()) {
     if (std::ranges::find(other, name) == other.end()) options[name] = values;
@@ -103,8 +103,8 @@ void Study::measure(const std::function<void()>& body) {
     body();
   } catch (const Interrupted&) {
     why_ = interrupted();
-    show_progress("");
   }
+  progress().wipe();
 }
 
 void Study::complete(CsvFile& table, nlohmann::json origin, int status) {

@@ -43,7 +43,8 @@ class Study {
   // program is to end; what was made meanwhile counts for nothing. Thread-safe.
   nlohmann::json piece(const std::string& name, const std::function<nlohmann::json()>& make);
 
-  // Runs `body`, which makes pieces and ends early where the program is to end.
+  // Runs `body`, which makes pieces and ends early where the program is to end. Takes the line of
+  // the progress away.
   void measure(const std::function<void()>& body);
 
   // Completes a table, whose sidecar says that it is of this study, and in `interrupted` by what

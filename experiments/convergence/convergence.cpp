@@ -13,6 +13,7 @@
 //     to the order of the method as h -> 0. It is left empty where it would say something else: of
 //     errors above a tenth or within twenty times of what the reference certifies or the method
 //     rounds, and where the next order observed (or the one before) is more than a half away.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -24,6 +25,7 @@
 #include "experiments/command/entry.hpp"
 #include "experiments/command/point_record.hpp"
 #include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/reference_file.hpp"
 #include "experiments/command/scene_choice.hpp"
@@ -32,6 +34,7 @@
 #include "qddot/measure/motion/resolved_frequency.hpp"
 #include "qddot/measure/reference/reference_words.hpp"
 #include "qddot/measure/speed/measurement.hpp"
+#include "qddot/measure/speed/sweep_bound.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::convergence {
@@ -106,6 +109,17 @@ std::vector<Point> halvings(const Method& method, const ReducedScene& scene, dou
   return points;
 }
 
+// The most seconds that halvings() takes: a run that ends within the budget may take all of it, and
+// each that is half as many steps half as long, but that Newton's iterations may be ten times as
+// many; then there is the one that is stopped.
+double halvings_at_most(const Method& method, const Effort& effort) {
+  double seconds = effort.seconds;
+  double run = effort.seconds * (method.is(Trait::implicit) ? 10 : 1);
+  for (int halving = 0; halving <= most_halvings; ++halving, run /= 2)
+    seconds += point_seconds_at_most(std::min(run, effort.seconds), effort);
+  return seconds;
+}
+
 void tabulate(Csv& csv, const Method& method, double until, const Reference& reference,
               const std::vector<Point>& points) {
   std::vector<double> errors;
@@ -144,7 +158,9 @@ int convergence(const CommandLine& line, const Arguments& a,
   CsvFile csv(a.out + "/order.csv",
               {"method", "h", "error_position", "error_velocity", "observed_order"});
   study.measure([&] {
+    progress().stage("making the reference");
     const Reference reference = reference_for(drawn, start, scene, until, a.out, origin);
+    progress().wipe();
     fmt::print("{} to t = {:g} s; reference certified to {:.1e}\n{}\n\n", drawn.name, until,
                reference.certified.position, what_divides(reference));
     const std::string symmetry = symmetry_in_words(reference);
@@ -161,9 +177,24 @@ int convergence(const CommandLine& line, const Arguments& a,
     }
     fmt::print("{:<20} {:>5}  {:>10}  {:>10}  {:>8}\n", "method", "order", "h in s", "error",
                "observed");
-    const Effort effort{.seconds = longest_run, .repeats = 1, .recall = points_of(study)};
-    for (const Method* method : selected)
-      tabulate(csv, *method, until, reference, halvings(*method, scene, until, reference, effort));
+    Effort effort{.seconds = longest_run, .repeats = 1};
+    const auto recall = points_of(study);
+    effort.recall = [&](const Method& method, double h, const Effort::Take& take) {
+      progress().now_at(fmt::format("{} h = {:.3g}", method.name, h));
+      return recall(method, h, take);
+    };
+    progress().begin(selected.size());
+    double left = 0;  // [s]
+    for (const Method* method : selected) left += halvings_at_most(*method, effort);
+    for (const Method* method : selected) {
+      progress().left_at_most(left);
+      const auto points = halvings(*method, scene, until, reference, effort);
+      left -= halvings_at_most(*method, effort);
+      progress().left_at_most(left);
+      progress().finish(method->name + " is done");
+      progress().wipe();
+      tabulate(csv, *method, until, reference, points);
+    }
     fmt::print(
         "\n-: no order, since one of the errors is above {:g} or within {:g} times of the "
         "reference's own\n   or of rounding, or the orders observed beside it are more than {:g} "

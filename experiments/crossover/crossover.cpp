@@ -48,6 +48,7 @@
 #include "experiments/command/reference_file.hpp"
 #include "experiments/command/scene_choice.hpp"
 #include "experiments/command/study.hpp"
+#include "experiments/command/sweep_progress.hpp"
 #include "experiments/crossover/pruning.hpp"
 #include "experiments/crossover/stiff_scenes.hpp"
 #include "qddot/measure/motion/interruption.hpp"
@@ -123,6 +124,7 @@ struct RatioStudy {
   std::optional<Reference> reference{};  // none could be made
   std::vector<Point> points{};
   std::vector<Placing> placings{};
+  bool is_last = false;
 };
 
 std::vector<RatioStudy> ratio_studies(const Arguments& a, const StiffFamily& family, double until) {
@@ -133,6 +135,7 @@ std::vector<RatioStudy> ratio_studies(const Arguments& a, const StiffFamily& fam
     one.scene = std::make_unique<ReducedScene>(one.drawn);
     all.push_back(std::move(one));
   }
+  all.back().is_last = true;
   return all;
 }
 
@@ -185,21 +188,27 @@ class Sweeps {
  private:
   void sweep_all(Study& study, const RatioStudy& one, double until, Pruning& pruning,
                  std::map<const Method*, std::vector<Point>>& points) {
-    for (const Method* method : methods_) {
-      if (!applies_to(*method, one.scene->system())) continue;
+    std::vector<const Method*> fitting = methods_;
+    std::erase_if(fitting, [&](const Method* m) { return !applies_to(*m, one.scene->system()); });
+    // Of ratios whose references are still to be made nobody knows how long they take.
+    std::optional<SweepBound> bound;
+    if (one.is_last) bound.emplace(*one.scene, until, effort_);
+    SweepProgress shown(fitting, std::move(bound), fmt::format("ratio {:g}: ", one.ratio));
+    for (const Method* method : fitting) {
       Effort effort = effort_;
       effort.seconds = std::min(effort.seconds, pruning.seconds_of_interest());
-      effort.recall = points_of(study, fmt::format("{:.17g} ", one.ratio));
+      effort.recall = shown.seen(points_of(study, fmt::format("{:.17g} ", one.ratio)));
       std::vector<Point>& own = points[method];
       sweep(
           *method, *one.scene, until, *one.reference, effort,
           [&](const Point& point) {
             pruning.take(point);
             own.push_back(point);
-            show_progress(fmt::format("ratio {:g}: {}", one.ratio, describe(point)));
+            shown.take(point);
           },
           [&](const Point& point) { return pruning.is_over(point); });
       std::ranges::sort(own, std::ranges::greater(), &Point::value);
+      shown.finish();
     }
   }
 
@@ -287,14 +296,14 @@ bool measure_ratio(Study& study, const std::string& out,
                    RatioStudy& one) {
   const std::string folder = fmt::format("{}/ratio_{:.9g}", out, one.ratio);
   require_folder(folder);
-  show_progress(fmt::format("ratio {:g}: making the reference ...", one.ratio));
+  progress().stage(fmt::format("ratio {:g}: making the reference", one.ratio));
   const auto origin = provenance(command_line, one.drawn, one.drawn, *one.scene);
   bool has_reference = true;
   try {
     one.reference = reference_for(one.drawn, one.drawn, *one.scene, until, folder, origin, needed);
     sweeps.measure(study, one, until);
   } catch (const NoReference& error) {
-    show_progress("");
+    progress().wipe();
     fmt::print(stderr, "crossover: ratio {:g}: {}; its cells are left empty\n", one.ratio,
                error.what());
     has_reference = false;
@@ -334,7 +343,6 @@ int crossover(const CommandLine& line, Arguments a, const std::vector<std::strin
       ++complete;
     }
   });
-  show_progress("");
   const nlohmann::json origin = origin_of(command_line, a.family, until, all);
   for (const RatioStudy& one : all) tabulate(winners, of_kinds, points, one, competing);
   // What no method could win yet is not said to be lost.

@@ -19,6 +19,7 @@
 #include <cmath>
 #include <exception>
 #include <map>
+#include <omp.h>
 #include <optional>
 
 #include <fmt/format.h>
@@ -33,6 +34,7 @@
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/scene_choice.hpp"
+#include "experiments/command/shared_seconds.hpp"
 #include "experiments/command/study.hpp"
 #include "experiments/energy_drift/drift_record.hpp"
 #include "experiments/energy_drift/drift_tables.hpp"
@@ -144,12 +146,38 @@ std::vector<Job> jobs_of(const Arguments& a, double step_size, const ReducedScen
   return jobs;
 }
 
+// What is left of the jobs, for the user.
+class JobsLeft {
+ public:
+  explicit JobsLeft(std::vector<Job> jobs) : jobs_(std::move(jobs)) {
+    progress().begin(jobs_.size());
+  }
+
+  void finish(std::size_t job, const std::string& what) {
+    jobs_[job].seconds = 0;
+    double sum = 0, longest = 0;
+    for (const Job& one : jobs_) {
+      // A run is stopped when its time is up; what is made of it then is short.
+      const double seconds = one.seconds > 0 ? one.seconds + analysis : 0;
+      sum += seconds;
+      longest = std::max(longest, seconds);
+    }
+    progress().left_at_most(shared_seconds_at_most(sum, longest, omp_get_max_threads()));
+    progress().finish(what);
+  }
+
+ private:
+  static constexpr double analysis = 1;  // [s], of the trends of a run
+
+  std::vector<Job> jobs_;
+};
+
 // The runs that were made before the program is to end, in the order of the jobs.
 std::vector<DriftRun> run_all(Study& study, const std::vector<Job>& jobs, const Arguments& a,
                               const ReducedScene& scene, const Momenta& momenta,
                               const MotionScales& scales, const Course& course) {
   std::vector<std::optional<DriftRun>> runs(jobs.size());
-  std::size_t finished = 0;
+  JobsLeft left(jobs);
   std::exception_ptr trouble;
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t i = 0; i < jobs.size(); ++i) {
@@ -162,9 +190,8 @@ std::vector<DriftRun> run_all(Study& study, const std::vector<Job>& jobs, const 
                                    {course.step_size, course.until, jobs[i].seconds}));
       }));
 #pragma omp critical
-      show_progress(fmt::format("{} of {} runs: {} {:.3g}: {}", ++finished, jobs.size(),
-                                jobs[i].method->name, jobs[i].value,
-                                verdict_name(runs[i]->energy.verdict)));
+      left.finish(i, fmt::format("{} {:.3g}: {}", jobs[i].method->name, jobs[i].value,
+                                 verdict_name(runs[i]->energy.verdict)));
     } catch (const Interrupted&) {
       // The run is missing.
     } catch (...) {
@@ -172,7 +199,7 @@ std::vector<DriftRun> run_all(Study& study, const std::vector<Job>& jobs, const 
       trouble = std::current_exception();
     }
   }
-  show_progress("");
+  progress().wipe();
   if (trouble) std::rethrow_exception(trouble);
   std::vector<DriftRun> made;
   for (auto& run : runs) {
@@ -261,7 +288,7 @@ int energy_drift(const CommandLine& line, const Arguments& a,
   MotionScales scales{};
   std::vector<DriftRun> runs;
   study.measure([&] {
-    show_progress("measuring the scales of the motion ...");
+    progress().stage("measuring the scales of the motion");
     scales = motion_scales(scene, momenta, course.until);
     stop_if_interrupted();
     runs = run_all(study, jobs, a, scene, momenta, scales, course);

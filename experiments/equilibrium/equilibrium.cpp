@@ -12,6 +12,7 @@
 #include "experiments/command/entry.hpp"
 #include "experiments/command/node_table.hpp"
 #include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/scene_choice.hpp"
 #include "qddot/scene/settle.hpp"
@@ -43,7 +44,9 @@ int equilibrium(const CommandLine& line, const Arguments& a,
     csv = std::make_unique<CsvFile>(a.final_path, node_header(drawn.dimension, {}));
   }
 
+  progress().stage("finding the equilibrium");
   const Equilibrium rest = equilibrium_of(scene);
+  progress().wipe();
   if (csv) {
     const auto nodes = scene.expand({0, rest.q, Vec::Zero(rest.q.size())});
     for (std::size_t i = 0; i < nodes.size(); ++i) write_node(*csv, i, nodes[i], drawn.dimension);

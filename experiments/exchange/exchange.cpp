@@ -235,23 +235,29 @@ int exchange(const CommandLine& line, const Arguments& a,
   origin["until"] = excitation.until;
   origin["window"] = excitation.window;
   study.measure([&] {
+    progress().stage("making the reference");
     const CertifiedCourse reference =
         certified_course(excitation, [&](const std::string& name, const auto& make) {
           return run_of(study.piece(name, [&] { return record_of(make()); }));
         });
     origin["certified"] = reference.certified;
+    progress().wipe();
     Reporter report(drawn.name, excitation, reference, courses, table);
     report("reference", reference.h, CertifiedCourse::h_omega, reference.run);
+    progress().begin(selected.size());
     for (const Method* method : selected) {
       for (const double h_omega : a.h_omega) {
         const double h = h_omega / excitation.omega;
-        show_progress(fmt::format("{} at h w = {:g}", method->name, h_omega));
+        progress().now_at(fmt::format("{} at h w = {:g}", method->name, h_omega));
         const auto times = multiples_near(excitation.every, h, excitation.until);
-        report(method->name, h, h_omega,
-               run_of(study.piece(fmt::format("{} {:.17g}", method->name, h), [&] {
-                 return record_of(exchange_run(excitation, *method, h, times));
-               })));
+        const ExchangeRun result =
+            run_of(study.piece(fmt::format("{} {:.17g}", method->name, h), [&] {
+              return record_of(exchange_run(excitation, *method, h, times));
+            }));
+        progress().wipe();
+        report(method->name, h, h_omega, result);
       }
+      progress().finish(method->name + " is done");
     }
   });
   return study.finish({&courses, &table}, origin, done);

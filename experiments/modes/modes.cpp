@@ -17,6 +17,7 @@
 #include "experiments/command/csv.hpp"
 #include "experiments/command/entry.hpp"
 #include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/scene_choice.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
@@ -139,6 +140,7 @@ int modes(const CommandLine&, const Arguments& a, const std::vector<std::string>
   }
   const Scene drawn = load(a.scene);
   const bool at_equilibrium = is_at_equilibrium(a, drawn);
+  if (at_equilibrium) progress().stage("finding the equilibrium");
   const ReducedScene scene(at_equilibrium ? settled(drawn, a.scene) : drawn,
                            Reductions::all_directions());
   require_folder(a.out);
@@ -148,8 +150,10 @@ int modes(const CommandLine&, const Arguments& a, const std::vector<std::string>
 
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
+  progress().stage("finding the modes");
   const Spectrum spectrum(scene, a.count);
   const double lanczos = largest_frequency(system, q), bound = frequency_bound(system, q);
+  progress().wipe();
   const Index shown = std::min<Index>(a.count, spectrum.lowest.squares.size());
   write_spectrum(table, spectrum);
   write_shapes(shapes, scene, spectrum.lowest.shapes.leftCols(shown));

@@ -245,7 +245,6 @@ int scaling(const CommandLine& line, const Arguments& a,
     for (std::size_t i = 0; i < a.scenes.size(); ++i)
       run.measure(study, find_sized_scenes(a.scenes[i]), sizes_of(a), methods[i]);
   });
-  show_progress("");
 
   const double peak = peak_flops(look_for_peak);
   write_costs(costs, run);

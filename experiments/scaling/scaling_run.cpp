@@ -95,6 +95,7 @@ std::string SolvedMethod::name() const {
 
 void ScalingRun::measure(Study& study, const SizedScenes& scenes, const std::vector<double>& sizes,
                          std::vector<SolvedMethod> methods) {
+  progress().begin(sizes.size());
   for (const double size : sizes) {
     if (methods.empty()) return;
     const nlohmann::json piece =
@@ -113,6 +114,7 @@ void ScalingRun::measure(Study& study, const SizedScenes& scenes, const std::vec
     append(piece.at("sizes"), sizes_);
     append(piece.at("left_out"), left_out_);
     has_failed_ = piece.at("has_failed");
+    progress().finish(at(scenes.name, std::round(size)));
     if (!piece.at("measured")) return;
     const std::vector<std::string> fitting = piece.at("methods");
     std::erase_if(methods, [&](const SolvedMethod& solved) {
@@ -124,7 +126,7 @@ void ScalingRun::measure(Study& study, const SizedScenes& scenes, const std::vec
 bool ScalingRun::measure_size(const SizedScenes& scenes, double size,
                               std::vector<SolvedMethod>& methods) {
   if (!fits(scenes, "", phases_before, size, passing_memory)) return false;
-  show_progress(at(scenes.name, std::round(size)));
+  progress().now_at(at(scenes.name, std::round(size)));
   std::optional<Scene> drawn;
   std::optional<ReducedScene> reduced;
   const Making drawing = make(drawn, [&] { return scenes.draw(size); });
@@ -155,7 +157,7 @@ void ScalingRun::measure_methods(const SizedScenes& scenes, const ReducedScene& 
     if (!implicit && stable == 0) {
       stable = 1 / frequency_bound(scene.system(), scene.initial().q);
     }
-    show_progress(at(fmt::format("{}, {}", scenes.name, solved.name()), nodes));
+    progress().now_at(at(fmt::format("{}, {}", scenes.name, solved.name()), nodes));
     try {
       measure_method(solved, scene, implicit ? limits_.step_size : stable);
     } catch (const Interrupted&) {

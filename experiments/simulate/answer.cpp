@@ -9,6 +9,7 @@
 #include "experiments/command/accuracy_choice.hpp"
 #include "experiments/command/interruptible.hpp"
 #include "experiments/command/program.hpp"
+#include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/simulate/outputs.hpp"
 #include "experiments/simulate/written_scene.hpp"
@@ -106,7 +107,9 @@ int answer(const CommandLine& line, Arguments& a, const std::vector<std::string>
   Outputs output(a, scene, until);
   written_scene.commit(drawn);
   wait_for_answer(patience);
+  progress().stage("looking for the fastest run");
   const Answer answer = solve(scene, until, {.accuracy = a.accuracy, .of = of});
+  progress().wipe();
   const auto why = answer.is_reached ? std::nullopt : interrupted();
   if (!answer.method) {  // no run was begun
     fmt::print(stderr, "simulate: {}\n", answer.why);

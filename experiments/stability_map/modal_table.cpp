@@ -64,11 +64,11 @@ void tabulate_modes(Csv& csv, const std::vector<const Method*>& methods, const R
     if (!has_linear_step(*method) || !applies_to(*method, rest.system())) continue;
     for (const Mode& mode : modes) rows.push_back({method, &mode});
   }
+  progress().begin(rows.size());
 #pragma omp parallel for schedule(dynamic)
   for (Row& row : rows) {
     fill(row, rest, h);
-#pragma omp critical
-    show_progress(fmt::format("{} in mode {}", row.method->name, row.mode->rank));
+    progress().finish(fmt::format("{} in mode {}", row.method->name, row.mode->rank));
   }
   for (const Row& row : rows) {
     csv.row(

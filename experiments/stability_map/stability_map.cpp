@@ -19,6 +19,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <omp.h>
 #include <optional>
 #include <stdexcept>
 
@@ -33,6 +34,7 @@
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/scene_choice.hpp"
+#include "experiments/command/shared_seconds.hpp"
 #include "experiments/command/study.hpp"
 #include "experiments/stability_map/amplitude_rows.hpp"
 #include "experiments/stability_map/chosen_steps.hpp"
@@ -146,13 +148,16 @@ struct Limit {
 
 void add_limits(Study& study, const std::vector<const Method*>& methods,
                 std::vector<Limit>& limits) {
-  for (const Method* method : methods) {
-    if (!has_linear_step(*method)) continue;
-    show_progress("limit of " + method->name);
+  std::vector<const Method*> linear = methods;
+  std::erase_if(linear, [](const Method* method) { return !has_linear_step(*method); });
+  progress().begin(linear.size());
+  for (const Method* method : linear) {
+    progress().now_at("limit of " + method->name);
     const nlohmann::json limit = study.piece("limit " + method->name, [&] {
       return nlohmann::json{linear_limit(*method), measured_limit(*method)};
     });
     limits.push_back({method, limit.at(0), limit.at(1)});
+    progress().finish("limit of " + method->name + " is found");
   }
 }
 
@@ -177,14 +182,16 @@ void tabulate_linear(Csv& csv, const std::vector<const Method*>& methods) {
 }
 
 void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>& methods) {
-  for (const Method* method : methods) {
-    if (method->knob != Knob::rtol || method->asks(Need::split_forces) ||
-        !method->stock_of.empty()) {
-      continue;
-    }
+  std::vector<const Method*> adaptive = methods;
+  std::erase_if(adaptive, [](const Method* method) {
+    return method->knob != Knob::rtol || method->asks(Need::split_forces) ||
+           !method->stock_of.empty();
+  });
+  progress().begin(adaptive.size());
+  for (const Method* method : adaptive) {
     for (const double rtol : tolerances) {
       for (const double omega : fast_frequencies) {
-        show_progress(fmt::format("steps of {} at rtol {:g}", method->name, rtol));
+        progress().now_at(fmt::format("steps of {} at rtol {:g}", method->name, rtol));
         const auto row =
             study.piece(fmt::format("steps {} {:g} {:g}", method->name, rtol, omega), [&] {
               const ChosenSteps s = chosen_steps(*method, rtol, omega);
@@ -197,6 +204,7 @@ void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>&
         csv.rows(row.get<std::string>());
       }
     }
+    progress().finish("steps of " + method->name + " are measured");
   }
 }
 
@@ -233,6 +241,16 @@ std::vector<Cell> cells_of(const Arguments& a, const std::vector<const Method*>&
 }
 
 using Fates = std::vector<std::optional<RunOutcome>>;
+
+Fates map_of(Study& study, const std::vector<Cell>& cells, const MapSettings& settings) {
+  progress().begin(cells.size());
+  return run_outcomes(study, cells, settings, [&](std::size_t count) {
+    const auto left = static_cast<double>(cells.size() - count);
+    progress().left_at_most(
+        shared_seconds_at_most(left * settings.seconds, settings.seconds, omp_get_max_threads()));
+    progress().finish("runs of the map");
+  });
+}
 
 void tabulate(Csv& csv, const std::vector<Cell>& cells, const Fates& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -341,14 +359,11 @@ int stability_map(const CommandLine& line, const Arguments& a,
       modal_csv.rows(modes.get<std::string>());
     }
     cells = cells_of(a, followed(a, methods), rows);
-    all = run_outcomes(study, cells, {until, a.tolerated, a.cell_limit}, [&](std::size_t count) {
-      show_progress(fmt::format("map: {} of {} runs", count, cells.size()));
-    });
+    all = map_of(study, cells, {until, a.tolerated, a.cell_limit});
     if (std::ranges::any_of(all, [](const auto& result) { return !result; })) stop_if_interrupted();
   });
   tabulate(limits_csv, limits, omega_max);
   tabulate(map_csv, cells, all);
-  show_progress("");
 
   nlohmann::json origin = provenance(command_line, drawn, start, scene);
   origin["until"] = until;

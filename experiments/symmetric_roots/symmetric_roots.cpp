@@ -117,6 +117,7 @@ std::vector<Point> sampled_points(int steps, const Arguments& a, const OrbitSwin
   std::vector<Point> points;
   for (int i = 1; i <= pairs * a.samples; ++i) {
     stop_if_interrupted();
+    progress().now_at(fmt::format("formulas of {} steps, {} of {}", steps, i, pairs * a.samples));
     const std::vector<double> cosines = sampled_cosines(i, pairs);
     points.push_back(point_of(formula_of_cosines(cosines), cosines, "", a.at, orbit));
   }
@@ -180,10 +181,11 @@ int symmetric_roots(const CommandLine&, const Arguments& a,
   write(table, named);
   for (const Point& point : named) print(point.method, point);
   std::vector<Point> sampled;
+  progress().begin((most_steps - least_steps) / 2 + 1);
   for (int steps = least_steps; steps <= most_steps; steps += 2) {
-    show_progress(fmt::format("formulas of {} steps", steps));
     const std::vector<Point> points = sampled_points(steps, a, orbit);
-    show_progress("");
+    progress().finish(fmt::format("formulas of {} steps are done", steps));
+    progress().wipe();
     write(table, points);
     print_largest(steps, points);
     sampled.insert(sampled.end(), points.begin(), points.end());

@@ -193,10 +193,12 @@ int verdicts(const CommandLine& line, const Arguments& a,
              a.seeds, "kind", "right", "uncertain", "wrong", "verdicts");
   std::vector<Tally> tallies;
   study.measure([&] {
+    progress().begin(kinds.size());
     for (const SyntheticKind& kind : kinds) {
-      show_progress(kind.name);
+      progress().now_at(kind.name);
       const Tally own = study.piece(kind.name, [&] { return nlohmann::json(tally(kind, a)); });
-      show_progress("");
+      progress().finish(kind.name);
+      progress().wipe();
       print(kind, own, a.seeds);
       tabulate(confusion, coverage, kind, own, a.seeds);
       tallies.push_back(own);

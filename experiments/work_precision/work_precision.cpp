@@ -33,6 +33,7 @@
 #include "experiments/command/reference_file.hpp"
 #include "experiments/command/scene_choice.hpp"
 #include "experiments/command/study.hpp"
+#include "experiments/command/sweep_progress.hpp"
 #include "experiments/work_precision/front_table.hpp"
 #include "qddot/measure/speed/front.hpp"
 #include "qddot/measure/speed/judgement.hpp"
@@ -118,21 +119,22 @@ int work_precision(const CommandLine& line, const Arguments& a,
   std::optional<Reference> reference;
   std::vector<std::vector<Point>> taken;  // by method
   study.measure([&] {
-    show_progress("making the reference ...");
+    progress().stage("making the reference");
     reference = reference_for(drawn, start, scene, until, a.out, origin);
     const Watch watch(start, scene, until, *reference);
     Effort effort = a.effort;
     effort.watch = &watch;
-    effort.recall = points_of(study);
+    SweepProgress shown(selected, SweepBound(scene, until, effort));
+    effort.recall = shown.seen(points_of(study));
     for (const Method* method : selected) {
       taken.emplace_back();
       sweep(*method, scene, until, *reference, effort, [&](const Point& point) {
-        show_progress(describe(point));
+        shown.take(point);
         taken.back().push_back(point);
       });
+      shown.finish();
     }
   });
-  show_progress("");
 
   if (reference) {
     const std::vector<Point> points = from_coarse_to_fine(taken);

@@ -22,6 +22,7 @@ SENSIBLE = {
     "--cell-limit": (2e-3, 1e-2),
     "--method-limit": (5e-3, 3e-2),
     "--time-limit": (5e-3, 0.5),
+    "--progress": ["auto", "plain", "none"],
     "--memory-limit": (0.05, 2),
     "--nodes": ["3", "4", "5"],
     "--stiffness": (10, 1e4),
