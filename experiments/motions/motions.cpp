@@ -22,7 +22,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/columns.hpp"
+#include "experiments/command/accuracy_choice.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/entry.hpp"
 #include "experiments/command/interruptible.hpp"
@@ -87,6 +87,24 @@ int usual_number_of_frames(std::size_t nodes) {
   return static_cast<int>(std::clamp<double>(fit, fewest_frames, usual_frames));
 }
 
+// Keeps the runs, the most telling first, until they are enough.
+void keep(const std::vector<ChosenRun>& runs, bool all, const Options& options,
+          const Reference& reference, KeptMotions& kept) {
+  progress().begin(runs.size());
+  const auto begin = std::chrono::steady_clock::now();
+  for (const ChosenRun& run : runs) {
+    const double left = most_seconds - seconds_since(begin);
+    if (!all && (kept.bytes() > most_bytes || left < 0)) return;
+    // The last run is begun before the time is over, and made twice.
+    if (!all) progress().left_at_most(left + 2 * longest_run);
+    const Method& method = *run.point->method;
+    const std::string words = method.name + " " + knob_in_words(method, run.point->value);
+    progress().now_at(words);
+    kept.add(run, options, reference, longest_run);
+    progress().finish(words);
+  }
+}
+
 int motions(const CommandLine& line, Arguments& a, const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder that work_precision wrote points.csv into");
   if (line.has("--frames")) require_within(a.frames, 1, largest_count, "--frames");
@@ -117,23 +135,15 @@ int motions(const CommandLine& line, Arguments& a, const std::vector<std::string
   wait_for_answer(patience_with_a_run);
   std::optional<Interruption> why;
   try {
-    show_progress("making the reference's motion ...");
+    progress().stage("making the reference's motion");
     const auto moves =
         reference_motion(times, scene, reference, study.points, study.options, longest_reference);
     if (moves) kept.add_reference(*moves);
-    const auto begin = std::chrono::steady_clock::now();
-    for (const ChosenRun& run : runs) {
-      if (!line.has("--runs") &&
-          (kept.bytes() > most_bytes || seconds_since(begin) > most_seconds)) {
-        break;
-      }
-      show_progress(describe(*run.point));
-      kept.add(run, study.options, reference, longest_run);
-    }
+    keep(runs, line.has("--runs"), study.options, reference, kept);
   } catch (const Interrupted&) {
     why = interrupted();
   }
-  show_progress("");
+  progress().wipe();
   origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
   origin["displacement"] = reference.scales.displacement;
   origin["runs_left_out"] = runs.size() - kept.runs();
