@@ -30,6 +30,8 @@ class Run:
     counts: bool = True
     # What the error is at least and at most, where the reference has an error of its own.
     known: tuple | None = None
+    # How many linear systems it solved; 0 where the table does not say.
+    solves: float = 0.0
 
     @property
     def is_measured(self):
@@ -129,9 +131,9 @@ def parse(path, line, row, column, required):
 
 def read_runs(path, column="error_position"):
     """All runs in the order of the file, with the error of one column."""
-    texts = ("scene", "method", "family", "knob", "outcome")
+    texts = ("scene", "method", "knob", "outcome")
     bounds = (f"{column}_at_least", f"{column}_at_most")
-    has_bounds = set(bounds) <= set(read_header(path))
+    header = set(read_header(path))
     runs = []
     for line, row in read_rows(path, (*texts, "value", column, "time_s")):
         if not all(row[name] for name in ("method", "knob", "outcome")):
@@ -139,13 +141,17 @@ def read_runs(path, column="error_position"):
         runs.append(
             Run(
                 **{name: row[name] for name in texts},
+                family=row.get("family") or "",
                 stock_of=row.get("stock_of") or "",
                 value=parse(path, line, row, "value", True),
                 error=parse(path, line, row, column, False),
                 time=parse(path, line, row, "time_s", False),
-                known=tuple(parse(path, line, row, name, False) for name in bounds)
-                if has_bounds
-                else None,
+                known=(
+                    tuple(parse(path, line, row, name, False) for name in bounds)
+                    if header.issuperset(bounds)
+                    else None
+                ),
+                solves=parse(path, line, row, "solves", False) if "solves" in header else 0.0,
             )
         )
     return runs
@@ -173,9 +179,7 @@ def fastest_at_each_accuracy(runs):
     """The points of the front at 1e-1, ... 1e-9."""
     points = []
     for accuracy in (10.0**-digit for digit in range(1, 10)):
-        good = [
-            run for run in runs if run.counts and not run.failure and run.bound <= accuracy
-        ]
+        good = [run for run in runs if run.counts and not run.failure and run.bound <= accuracy]
         if good:
             best = min(good, key=lambda run: run.time)
             points.append(FrontPoint(accuracy, best.method, best.error, best.time))

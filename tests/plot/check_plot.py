@@ -12,6 +12,7 @@ import failures
 import labels
 import measurements
 import names
+import prominent
 import style
 from measurements import BadInput, Run
 
@@ -56,6 +57,13 @@ class Tables(unittest.TestCase):
         (run,) = self.runs(header + "s,verlet,hand-written,step_size,1e-4,reached_end,2e-3,0.5\n")
         self.assertEqual(run.stock_of, "")
 
+    def test_a_table_need_not_say_the_families_or_solves_of_methods(self):
+        (run,) = self.runs(
+            "scene,method,knob,value,outcome,error_position,time_s\n"
+            "s,verlet,step_size,1e-4,reached_end,2e-3,0.5\n"
+        )
+        self.assertEqual((run.family, run.solves), ("", 0))
+
     def test_what_is_no_point_says_why(self):
         row = "s,verlet,hand-written,,step_size,1e-3,{}\n"
         ends = {
@@ -77,9 +85,7 @@ class Tables(unittest.TestCase):
             self.refusal(HEADER + row.format("-1")),
             "FILE, line 2: value must be a positive number.",
         )
-        self.assertEqual(
-            self.refusal(HEADER.replace(",time_s", "")), "FILE has no column time_s."
-        )
+        self.assertEqual(self.refusal(HEADER.replace(",time_s", "")), "FILE has no column time_s.")
         self.assertEqual(
             self.refusal(HEADER + "s,,hand-written,,step_size,1,reached_end,1,1\n"),
             "FILE, line 2: method, knob and outcome must not be empty.",
@@ -129,6 +135,51 @@ class Front(unittest.TestCase):
         self.assertAlmostEqual(high, 1e-3 / half)
         self.assertAlmostEqual(low, high)
         self.assertAlmostEqual(bottom, 1e-5 / half)
+
+
+class Prominent(unittest.TestCase):
+    """The methods that stand out."""
+
+    def strong(self, runs):
+        """Their names, with the front that these runs make."""
+        return prominent.strong_methods(runs, measurements.fastest_at_each_accuracy(runs))
+
+    def crowd(self, count=20):
+        """Methods that are slower than all others, with a point each."""
+        return [a_run(f"slow{i}", error=5e-2, time=100 + i) for i in range(count)]
+
+    def test_the_front_and_then_the_best_of_each_kind(self):
+        runs = [
+            *self.crowd(),
+            a_run("fine", error=1e-8, time=2),
+            a_run("coarse", error=1e-3, time=1),
+            a_run("solving", error=1e-3, time=40, solves=10),
+            a_run("solving_slowly", error=1e-3, time=41, solves=10),
+            a_run("bdf", error=1e-5, time=9, family="sundials", solves=10),
+            a_run("erk", error=1e-7, time=8, family="sundials"),
+            a_run("bdf_klu", error=1e-5, time=10, family="sundials", stock_of="bdf", solves=9),
+        ]
+        # The best of SUNDIALS comes before what solves linear systems in either family.
+        expected = ["coarse", "fine", "erk", "bdf_klu", "solving", "bdf"]
+        self.assertEqual(self.strong(runs), expected)
+
+    def test_at_most_a_dozen(self):
+        # Nine methods on the front and a best of each of six families more.
+        runs = [a_run(f"front{i}", error=5 * 0.1**i, time=i) for i in range(2, 11)]
+        runs += [a_run(f"f{i}", error=1e-2, time=50, family=f"family{i}") for i in range(6)]
+        strong = self.strong(runs)
+        self.assertEqual(len(strong), prominent.MOST)
+        self.assertEqual(strong[:10], [f"front{i}" for i in range(2, 11)] + ["f0"])
+
+    def test_of_few_methods_all(self):
+        runs = [a_run(f"m{i}", error=0.5, time=1 + i) for i in range(prominent.MOST)]
+        runs.append(a_run("failed", outcome="diverged"))
+        self.assertEqual(set(self.strong(runs)), {f"m{i}" for i in range(prominent.MOST)})
+
+    def test_where_none_is_accurate_the_smallest_error(self):
+        runs = [a_run(f"m{i}", error=2 - 0.05 * i, time=1 + i) for i in range(20)]
+        self.assertEqual(self.strong(runs), ["m19"])
+        self.assertEqual(self.strong([a_run(outcome="diverged")]), [])
 
 
 class Looks(unittest.TestCase):

@@ -1,0 +1,47 @@
+"""Which methods of a work-precision study stand out: those that a reader would choose between."""
+
+from measurements import fastest_at_each_accuracy
+
+MOST = 12
+
+
+def best(runs):
+    """The method that is the fastest of these runs at most of the accuracies 1e-1, ... 1e-9; where
+    none reaches the first, the one of the smallest error; None where no run is a point."""
+    fastest = [point.method for point in fastest_at_each_accuracy(runs)]
+    if fastest:
+        return max(fastest, key=fastest.count)
+    good = [run for run in runs if not run.failure]
+    return min(good, key=lambda run: run.bound).method if good else None
+
+
+def kinds(runs):
+    """The runs by what is worth telling apart, what matters most first: the families, the stock
+    ways, then in each family the methods that solve linear systems and those that do not."""
+    solving = {run.method for run in runs if run.solves > 0}
+    own = [run for run in runs if not run.stock_of]
+    groups = {}
+    for run in own:
+        groups.setdefault((0, run.family), []).append(run)
+    groups[1, "stock"] = [run for run in runs if run.stock_of]
+    for run in own:
+        groups.setdefault((2, run.family, run.method in solving), []).append(run)
+    return [groups[key] for key in sorted(groups, key=lambda key: key[0])]
+
+
+def strong_methods(runs, front):
+    """The names of the methods that stand out, at most MOST: those of the front, the coarsest
+    accuracy first, then the best of each kind that has none among them.
+
+    runs: measurements.Run of one study; front: its measurements.FrontPoint. Where no more than
+    MOST methods have a point at all, these are all of them.
+    """
+    strong = list(dict.fromkeys(point.method for point in front))
+    for kind in kinds(runs):
+        method = best(kind)
+        if method and not any(run.method in strong for run in kind):
+            strong.append(method)
+    drawn = list(dict.fromkeys(run.method for run in runs if not run.failure))
+    if len(drawn) <= MOST:
+        strong += [method for method in drawn if method not in strong]
+    return strong[:MOST]
