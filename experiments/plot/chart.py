@@ -13,33 +13,31 @@ from style import FAINT, FRONT, power_of_ten, seconds, widened
 FONT_SIZE = 9.5
 FRONT_INK = 0.5
 BELOW_TICKS = -28
-# Methods that are nowhere nearer to the front than this, where errors are small enough to matter,
-# stay in the background of a crowded chart.
-NEAR = 3.0
-MATTERS = 0.1
-CROWD = 24
-BACKGROUND = 0.3
 
 
 class Chart:
-    """The runs of one experiment in axes of error and time."""
+    """The runs of one experiment in axes of error and time, each as an emphasis strokes it."""
 
-    def __init__(self, axes, view, looks):
+    def __init__(self, axes, view, emphasis):
         self.axes = axes
         self.view = view
         self.sweeps = measurements.sweeps(view.runs)
         self.good = [run for run in view.runs if not run.failure]
-        self.looks = looks
+        self.looks = emphasis.looks
+        self.strokes = {
+            (sweep[0].method, sweep[0].knob): emphasis.stroke(view, sweep) for sweep in self.sweeps
+        }
+        self.smallest = view.smallest
         self.set_limits()
         self.style_axes()
-        self.crowded = len(self.sweeps) > CROWD
+
+    def stroke(self, sweep):
+        """How the line of a sweep is drawn."""
+        return self.strokes[sweep[0].method, sweep[0].knob]
 
     def set_limits(self):
         """The ranges of error and time; the floor is in them where the errors come
         near."""
-        # An error below the floor is not known to be that small.
-        measured = [run.error for run in self.good if run.error > 0]
-        self.smallest = self.view.floor or min(measured, default=1e-16)
         errors = [self.position(run)[0] for run in self.good] or [1e-9, 1.0]
         times = [run.time for run in self.good] or [1e-3, 1.0]
         self.floor_visible = bool(self.view.floor) and min(errors) < 1e3 * self.view.floor
@@ -79,7 +77,7 @@ class Chart:
 
     def position(self, run):
         """Where a run is drawn: one below the floor stands on it."""
-        return max(run.error, self.smallest), run.time
+        return self.view.drawn_error(run), run.time
 
     def draw(self):
         """Draws everything; the labels come last, when all they must not hide is known."""
@@ -161,20 +159,6 @@ class Chart:
                 corners.append((error, time))
         return corners + [(self.axes.get_xlim()[1], corners[-1][1])] if corners else []
 
-    def is_near(self, sweep):
-        """Whether some run of the sweep, of an error that matters, takes no more than NEAR times as
-        long as the fastest with that error or a smaller one."""
-        points = [self.position(run) for run in sweep if not run.failure]
-        return any(
-            error <= MATTERS
-            and time <= NEAR * min(other for e, other in map(self.position, self.good) if e <= error)
-            for error, time in points
-        )
-
-    def strength(self, sweep):
-        """How strongly a line is drawn."""
-        return BACKGROUND if self.crowded and not self.is_near(sweep) else 1.0
-
     def draw_front(self):
         """The front as a wide stroke under the lines."""
         corners = self.front_corners()
@@ -197,19 +181,11 @@ class Chart:
 
     def draw_sweep(self, sweep):
         """The line of one method, a hairline where runs between its points failed."""
-        look = self.looks[sweep[0].method]
-        strength = self.strength(sweep)
-        style = {"color": look.color, "alpha": strength}
+        stroke = self.stroke(sweep)
+        style = {"color": stroke.color, "alpha": stroke.alpha}
         pieces = list(self.pieces(sweep))
         for piece in pieces:
-            self.axes.plot(
-                *zip(*piece),
-                linestyle=look.family.line,
-                linewidth=look.family.width * (0.6 + 0.4 * strength),
-                zorder=2.5 + 0.5 * strength,
-                **style,
-                **look.marker_style(),
-            )
+            self.axes.plot(*zip(*piece), **stroke.line, **style, **stroke.marker)
         for before, after in zip(pieces, pieces[1:]):
             self.axes.plot(*zip(before[-1], after[0]), linewidth=0.6, zorder=2, **style)
         self.draw_doubts(sweep, style)
@@ -233,12 +209,13 @@ class Chart:
         for start, end in zip(corners, corners[1:]):
             ink.add_line(start, end, FRONT_INK)
         for sweep in self.sweeps:
+            weight = self.stroke(sweep).ink
             for piece in self.pieces(sweep):
                 points = [self.pixels(position) for position in piece]
                 for point in points:
-                    ink.add_marker(point)
+                    ink.add_marker(point, weight)
                 for start, end in zip(points, points[1:]):
-                    ink.add_line(start, end)
+                    ink.add_line(start, end, weight)
         return ink
 
     def label_of(self, sweep):
@@ -254,8 +231,9 @@ class Chart:
         return left, box.y0 + 3, box.x1 - 3, box.y1 - 3
 
     def draw_labels(self):
-        """Names the lines at one of their ends."""
-        lines = [sweep for sweep in self.sweeps if any(not run.failure for run in sweep)]
+        """Names the lines that have a label at one of their ends."""
+        named = [sweep for sweep in self.sweeps if self.stroke(sweep).label_size]
+        lines = [sweep for sweep in named if any(not run.failure for run in sweep)]
         ends, texts = [], []
         for sweep in lines:
             good = [self.position(run) for run in sweep if not run.failure]
@@ -272,14 +250,14 @@ class Chart:
     def draw_label(self, sweep, end):
         """The name of a line on one of its ends, not yet in its place."""
         look = self.looks[sweep[0].method]
-        strength = self.strength(sweep)
+        stroke = self.stroke(sweep)
         return self.axes.annotate(
             self.label_of(sweep),
             end,
             (0, 0),
             textcoords="offset points",
-            size=FONT_SIZE if strength == 1 else 0.8 * FONT_SIZE,
-            alpha=1 if strength == 1 else 0.75,
+            size=stroke.label_size,
+            alpha=stroke.label_alpha,
             color=look.text_color,
             ha="center",
             va="center",
@@ -288,7 +266,7 @@ class Chart:
             arrowprops={
                 "arrowstyle": "-",
                 "color": look.color,
-                "alpha": strength,
+                "alpha": stroke.alpha,
                 "linewidth": 0.8,
                 "shrinkA": 0,
                 "shrinkB": 4,

@@ -32,10 +32,10 @@ class Ink:
         column = np.clip(((x - self.left) / CELL).astype(int), 0, self.cells.shape[1] - 1)
         return row, column
 
-    def add_marker(self, center):
+    def add_marker(self, center, weight=1.0):
         """Inks the place of one marker: its cell and those around."""
         x, y = (pixel + CELL * np.arange(-1, 2) for pixel in center)
-        self.cells[np.ix_(*self.index(x, y))] += MARKER_INK
+        self.cells[np.ix_(*self.index(x, y))] += weight * MARKER_INK
 
     def add_line(self, start, end, weight=1.0):
         """Inks a straight line."""

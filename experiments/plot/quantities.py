@@ -2,6 +2,7 @@
 
 import os
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import measurements
 from style import number
@@ -61,6 +62,16 @@ class View:
     floor_words: str = ""
     chaotic_below: float | None = None
 
+    @cached_property
+    def smallest(self):
+        """The least error that is drawn: one below the floor is not known to be that small."""
+        measured = [run.error for run in self.runs if not run.failure and run.error > 0]
+        return self.floor or min(measured, default=1e-16)
+
+    def drawn_error(self, run):
+        """The error at which a run is drawn: one below the floor stands on it."""
+        return max(run.error, self.smallest)
+
 
 def lengths(displacements):
     """The numbers that belong to the subtitle of the position error."""
@@ -99,7 +110,5 @@ def view(directory, quantity, reference):
     if quantity is ENERGY and reference.modal_floor and MODES.column in header:
         modes = measurements.read_runs(path, MODES.column)
         limit = MOST_OF_CHANCE * reference.modal_floor
-        runs = [
-            replace(run, counts=not other.error > limit) for run, other in zip(runs, modes)
-        ]
+        runs = [replace(run, counts=not other.error > limit) for run, other in zip(runs, modes)]
     return View(quantity, runs, measurements.fastest_at_each_accuracy(runs))

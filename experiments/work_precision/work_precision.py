@@ -1,8 +1,10 @@
 """Draws the work-precision chart of one experiment: time of a run against error reached.
 
-Call: work_precision.py DIR. Reads points.csv, front.csv and, if there, reference.json in DIR and
-writes there, as .png and .svg, chart: over the position error or, where the end is beyond the
+Call: work_precision.py DIR [--all]. Reads points.csv, front.csv and, if there, reference.json in DIR
+and writes there, as .png and .svg, chart: over the position error or, where the end is beyond the
 horizon of a chaotic motion, over what then means something; and chart_energy, over the energy error.
+At most a dozen methods stand out, others are pale and failures are counted; --all names every method
+and shows which of its runs failed.
 """
 
 import math
@@ -11,14 +13,16 @@ import sys
 
 from matplotlib.lines import Line2D
 
+import causes
 import failures
 import measurements
 import quantities
 from band import draw_band
-from chart import BACKGROUND, MATTERS, NEAR, Chart
+from chart import Chart
+from emphasis import Everything, Prominent
 from names import shown
 from sheet import Sheet
-from style import FAINT, assign_looks, number, seconds, use_style
+from style import FAINT, number, seconds, use_style
 
 WIDTH = 10.0
 MARGIN = 0.15
@@ -34,12 +38,12 @@ AXIS_TEXT = 0.68
 ROOMY_METHODS = 16
 
 
-def axes_height(runs):
-    """The height of the main axes in inches: crowded charts need room for their labels."""
+def axes_height(runs, emphasis):
+    """The height of the main axes in inches: many labels need room."""
     if all(run.failure for run in runs):
         return 3.4
-    methods = len({run.method for run in runs})
-    return 4.35 + 0.08 * max(0, methods - ROOMY_METHODS)
+    labelled = len({run.method for run in runs}.intersection(emphasis.shown))
+    return 4.35 + 0.08 * max(0, labelled - ROOMY_METHODS)
 
 
 def draw_header(sheet, scene, quantity, reference, sentences):
@@ -109,13 +113,14 @@ def key_line(family):
     )
 
 
-def draw_key(sheet, top, looks, crowded):
-    """How the lines of each family look, and those in the background."""
-    lines = [key_line(family) for family in dict.fromkeys(look.family for look in looks.values())]
-    if crowded:
-        words = f"faint: never within {NEAR:g} × the fastest at errors below {MATTERS:g}"
-        faint = {"color": FAINT, "alpha": BACKGROUND, "linewidth": 1.2, "marker": "o"}
-        lines.append(Line2D([], [], label=words, **faint))
+def draw_key(sheet, top, emphasis):
+    """How the lines of each family look, and those that stand back."""
+    families = dict.fromkeys(emphasis.looks[method].family for method in emphasis.shown)
+    lines = [key_line(family) for family in families]
+    rest = emphasis.rest()
+    if rest:
+        words, style = rest
+        lines.append(Line2D([], [], label=words, **style))
     sheet.figure.legend(
         handles=lines,
         loc="center left",
@@ -130,16 +135,15 @@ def draw_key(sheet, top, looks, crowded):
     )
 
 
-def draw_panel(sheet, top, view, looks):
-    """The axes of one view and, where it has a front, the band above; whether some lines stand
-    back."""
+def draw_panel(sheet, top, view, emphasis):
+    """The axes of one view and, where it has a front, the band above."""
     width = WIDTH - LEFT - RIGHT
-    axes = sheet.axes(LEFT, top + band_height(view), width, axes_height(view.runs))
-    chart = Chart(axes, view, looks)
-    chart.draw()
+    height = axes_height(view.runs, emphasis)
+    axes = sheet.axes(LEFT, top + band_height(view), width, height)
+    Chart(axes, view, emphasis).draw()
     if view.front:
-        draw_band(sheet, (LEFT, top, width, BAND), view.front, axes.get_xlim(), view.floor, looks)
-    return chart.crowded
+        band = (LEFT, top, width, BAND)
+        draw_band(sheet, band, view.front, axes.get_xlim(), view.floor, emphasis.looks)
 
 
 def band_height(view):
@@ -147,31 +151,35 @@ def band_height(view):
     return BAND + BAND_GAP if view.front else 0.0
 
 
-def panel_height(view):
+def panel_height(view, emphasis):
     """The height in inches of a view's axes with their band and numbers."""
-    return band_height(view) + axes_height(view.runs) + AXIS_TEXT
+    return band_height(view) + axes_height(view.runs, emphasis) + AXIS_TEXT
 
 
-def draw(views, reference, interruption, fallback_scene):
-    """The whole picture of one view and more below it as a sheet."""
+def draw(views, reference, interruption, fallback_scene, everything):
+    """The whole picture of one view and more below it as a sheet; of every method, or with those
+    that stand out."""
     main, *more = views
-    looks = assign_looks({run.method: (run.family, run.stock_of) for run in main.runs})
+    emphasis = Everything(main) if everything else Prominent(main)
+    strip = failures if everything else causes
     failed = failures.failing(measurements.sweeps(main.runs))
     sentences = warnings(reference, interruption)
     header = HEADER + HORIZON * len(sentences)
-    strip_top = header + sum(map(panel_height, views)) + HEADING * len(more)
-    sheet = Sheet(WIDTH, strip_top + failures.strip_height(failed))
+    panels = sum(panel_height(view, emphasis) for view in views)
+    strip_top = header + panels + HEADING * len(more)
+    sheet = Sheet(WIDTH, strip_top + strip.strip_height(failed))
     scene = reference.scene or (main.runs[0].scene if main.runs else "") or fallback_scene
     draw_header(sheet, shown(scene), main.quantity, reference, sentences)
-    draw_key(sheet, header - KEY, looks, draw_panel(sheet, header, main, looks))
-    top = header + panel_height(main)
+    draw_panel(sheet, header, main, emphasis)
+    draw_key(sheet, header - KEY, emphasis)
+    top = header + panel_height(main, emphasis)
     for view in more:
         sheet.rule(top)
         sheet.text(MARGIN, top + HEADING / 2, view.quantity.subtitle, size=10, va="center")
-        draw_panel(sheet, top + HEADING, view, looks)
-        top += HEADING + panel_height(view)
+        draw_panel(sheet, top + HEADING, view, emphasis)
+        top += HEADING + panel_height(view, emphasis)
     if failed:
-        failures.draw_strip(sheet, strip_top, failed, looks)
+        strip.draw_strip(sheet, strip_top, failed, emphasis.looks)
     return sheet
 
 
@@ -191,17 +199,19 @@ def pictures(directory, reference):
 
 def main(arguments):
     """Draws the charts of the directory named on the command line; returns the exit status."""
-    if len(arguments) != 1:
-        print("Usage: work_precision.py DIR", file=sys.stderr)
+    everything = "--all" in arguments
+    directories = [word for word in arguments if word != "--all"]
+    if len(directories) != 1 or directories[0].startswith("-"):
+        print("Usage: work_precision.py DIR [--all]", file=sys.stderr)
         return 2
-    directory = arguments[0]
+    directory = directories[0]
     use_style()
     try:
         reference = measurements.read_reference(os.path.join(directory, "reference.json"))
         interruption = measurements.interrupted_by(os.path.join(directory, "points.csv"))
         for name, views in pictures(directory, reference):
             folder = os.path.basename(os.path.abspath(directory))
-            sheet = draw(views, reference, interruption, folder)
+            sheet = draw(views, reference, interruption, folder, everything)
             for extension in ("png", "svg"):
                 sheet.save(os.path.join(directory, f"{name}.{extension}"))
     except measurements.BadInput as error:

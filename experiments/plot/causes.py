@@ -1,0 +1,114 @@
+"""The strip under a work-precision chart that says, cause by cause, how many methods have runs which
+are no points of it, and where."""
+
+from failures import FONT_SIZE, KNOBS, TITLE
+from style import FAINT, number
+
+LINE = 0.2
+FOOT = 0.1
+# Rarer causes share one line.
+MOST_CAUSES = 4
+MARGIN = 0.15
+COUNT_AT = 1.75
+WHERE_AT = 2.75
+
+
+def is_point(sweep):
+    """Whether a sweep has a run that is a point of the chart."""
+    return any(not run.failure for run in sweep)
+
+
+def threshold(sweep, cause):
+    """From where on a sweep fails, where runs of this cause are at one end of it: ("≥", value) or
+    ("≤", value); ("", value) where good runs are on both sides."""
+    values = [run.value for run in sweep if run.failure == cause]
+    good = [run.value for run in sweep if not run.failure]
+    if min(values) > max(good):
+        return "≥", min(values)
+    if max(values) < min(good):
+        return "≤", max(values)
+    return "", values[0]
+
+
+def where(groups, cause, named):
+    """In words, at which values of the knobs methods with some points fail for a cause: the least
+    and the largest of their limits, with or without the methods' names."""
+    ends = {}
+    for knob, group in groups.items():
+        symbol = KNOBS.get(knob, ("", knob))[1]
+        for sweep in group:
+            if is_point(sweep) and any(run.failure == cause for run in sweep):
+                sign, value = threshold(sweep, cause)
+                ends.setdefault((symbol, sign), []).append((value, sweep[0].method))
+
+    def limit(value, method):
+        return f"{number(value)} ({method})" if named else number(value)
+
+    parts = []
+    for (symbol, sign), limits in ends.items():
+        low, high = min(limits), max(limits)
+        words = (
+            limit(*low) if number(low[0]) == number(high[0]) else f"{limit(*low)} to {limit(*high)}"
+        )
+        parts.append(f"{symbol} {sign} {words}" if sign else f"some {symbol} between")
+    return "; ".join(parts)
+
+
+def listed(names, count):
+    """The first names of a list, and how many more there are."""
+    more = len(names) - count
+    return ", ".join(names[:count]) + (f" and {more} more" if more else "")
+
+
+def lines(groups):
+    """The lines of the strip: the cause, the names of its methods and what is said of it, in words
+    from the fullest to the shortest."""
+    sweeps = [sweep for group in groups.values() for sweep in group]
+    methods = {}
+    for sweep in sweeps:
+        for run in sweep:
+            methods.setdefault(run.failure, {})[sweep[0].method] = None
+    drawn = methods.pop("", {})
+    causes = sorted(methods, key=lambda cause: -len(methods[cause]))
+    found = []
+    absent = [name for name in dict.fromkeys(s[0].method for s in sweeps) if name not in drawn]
+    if absent:
+        found.append(
+            ("no point at all", absent, [listed(absent, n) for n in range(len(absent), 0, -1)])
+        )
+    for cause in causes[:MOST_CAUSES]:
+        found.append(
+            (cause, list(methods[cause]), [where(groups, cause, named) for named in (True, False)])
+        )
+    others = causes[MOST_CAUSES:]
+    if others:
+        names = dict.fromkeys(name for cause in others for name in methods[cause])
+        found.append(("other causes", list(names), [", ".join(others), ""]))
+    return found
+
+
+def strip_height(groups):
+    """The height of the strip in inches."""
+    return TITLE + LINE * len(lines(groups)) + FOOT if groups else 0.0
+
+
+def draw_strip(sheet, top, groups, looks):
+    """The whole strip, its upper edge at `top` inches under the upper edge of the sheet; `looks` has
+    all methods of the study."""
+    sheet.rule(top)
+    sheet.text(MARGIN, top + 0.2, "Runs without a point above", size=10, weight="bold", va="center")
+    failing = len({sweep[0].method for group in groups.values() for sweep in group})
+    note = f"of {failing} of {len(looks)} methods; --all shows each"
+    edge = {"size": FONT_SIZE, "color": FAINT, "ha": "right", "va": "center"}
+    sheet.text(sheet.width - MARGIN, top + 0.2, note, **edge)
+    for line, (cause, names, words) in enumerate(lines(groups)):
+        middle = top + TITLE + LINE * (line + 0.5)
+        style = {"size": FONT_SIZE, "va": "center"}
+        sheet.text(MARGIN, middle, cause, **style)
+        count = f"{len(names)} method" + ("s" if len(names) > 1 else "")
+        sheet.text(COUNT_AT, middle, count, **style)
+        text = sheet.text(WHERE_AT, middle, "", **style, color=FAINT)
+        for choice in words:
+            text.set_text(choice)
+            if WHERE_AT + sheet.text_width(text) < sheet.width - MARGIN:
+                break
