@@ -60,6 +60,16 @@ def listed(names, count):
     return ", ".join(names[:count]) + (f" and {more} more" if more else "")
 
 
+def shortening(names):
+    """Lists of fewer and fewer of the names, from all to the first."""
+    return [listed(names, count) for count in range(len(names), 0, -1)]
+
+
+def counted(methods):
+    """How many methods these are, in words."""
+    return f"{len(methods)} method" + ("s" if len(methods) > 1 else "")
+
+
 def lines(groups):
     """The lines of the strip: the cause, the names of its methods and what is said of it, in words
     from the fullest to the shortest."""
@@ -73,17 +83,15 @@ def lines(groups):
     found = []
     absent = [name for name in dict.fromkeys(s[0].method for s in sweeps) if name not in drawn]
     if absent:
-        found.append(
-            ("no point at all", absent, [listed(absent, n) for n in range(len(absent), 0, -1)])
-        )
+        found.append(("no point at all", absent, shortening(absent)))
     for cause in causes[:MOST_CAUSES]:
-        found.append(
-            (cause, list(methods[cause]), [where(groups, cause, named) for named in (True, False)])
-        )
+        names = list(methods[cause])
+        words = [where(groups, cause, named) for named in (True, False)]
+        found.append((cause, names, words if words[0] else shortening(names)))
     others = causes[MOST_CAUSES:]
     if others:
         names = dict.fromkeys(name for cause in others for name in methods[cause])
-        found.append(("other causes", list(names), [", ".join(others), ""]))
+        found.append(("other causes", list(names), shortening(others)))
     return found
 
 
@@ -98,15 +106,14 @@ def draw_strip(sheet, top, groups, looks):
     sheet.rule(top)
     sheet.text(MARGIN, top + 0.2, "Runs without a point above", size=10, weight="bold", va="center")
     failing = len({sweep[0].method for group in groups.values() for sweep in group})
-    note = f"of {failing} of {len(looks)} methods; --all shows each"
+    note = f"{failing} of {counted(looks)}; --all shows each"
     edge = {"size": FONT_SIZE, "color": FAINT, "ha": "right", "va": "center"}
     sheet.text(sheet.width - MARGIN, top + 0.2, note, **edge)
     for line, (cause, names, words) in enumerate(lines(groups)):
         middle = top + TITLE + LINE * (line + 0.5)
         style = {"size": FONT_SIZE, "va": "center"}
         sheet.text(MARGIN, middle, cause, **style)
-        count = f"{len(names)} method" + ("s" if len(names) > 1 else "")
-        sheet.text(COUNT_AT, middle, count, **style)
+        sheet.text(COUNT_AT, middle, counted(names), **style)
         text = sheet.text(WHERE_AT, middle, "", **style, color=FAINT)
         for choice in words:
             text.set_text(choice)

@@ -60,7 +60,8 @@ def identities(runs):
 class Everything:
     """Every line in its colour and with its name; faint where a crowded chart has nearer ones."""
 
-    def __init__(self, main):
+    def __init__(self, views):
+        main = views[0]
         self.looks = assign_looks(identities(main.runs))
         self.shown = list(self.looks)
         self.crowded = self.is_crowded(main)
@@ -94,9 +95,11 @@ def is_near(view, sweep):
 
 
 class Prominent:
-    """The methods that stand out in full colour and with their names, all others as a pale cloud."""
+    """The methods that stand out in the first of the views in full colour and with their names, all
+    others as a pale cloud."""
 
-    def __init__(self, main):
+    def __init__(self, views):
+        main = views[0]
         known = identities(main.runs)
         strong = strong_methods(main.runs, main.front)
         self.shown = [method for method in known if method in strong]
@@ -105,7 +108,7 @@ class Prominent:
         first = [method for method in known if method in strong or method in owners]
         order = dict.fromkeys([*first, *known])
         self.looks = assign_looks({method: known[method] for method in order})
-        drawn = {run.method for run in main.runs if not run.failure}
+        drawn = {run.method for view in views for run in view.runs if not run.failure}
         self.pale = len(drawn.difference(strong))
 
     def stroke(self, view, sweep):

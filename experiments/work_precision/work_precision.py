@@ -160,7 +160,7 @@ def draw(views, reference, interruption, fallback_scene, everything):
     """The whole picture of one view and more below it as a sheet; of every method, or with those
     that stand out."""
     main, *more = views
-    emphasis = Everything(main) if everything else Prominent(main)
+    emphasis = Everything(views) if everything else Prominent(views)
     strip = failures if everything else causes
     failed = failures.failing(measurements.sweeps(main.runs))
     sentences = warnings(reference, interruption)
