@@ -21,7 +21,7 @@ LEFT, COLUMN, ROW, GAP = 1.93, 0.76, 0.66, 0.06
 RIGHT = LEFT + COLUMN * len(EXPONENTS) + 0.14
 TOP, FOOT = 1.66, 0.62
 TINT = 0.26
-NAME_SIZES, TIME_SIZE, FACT_SIZE = (9.5, 9, 8.5, 8, 7.5), 8.5, 8.5
+NAME_SIZES, TIME_SIZE, FACT_SIZE = (10.5, 10, 9.5, 9, 8.5, 8, 7.5), 8.5, 8.5
 
 # Warm kinds take forces alone; cool ones treat stiff springs apart or solve linear systems.
 COLORS = {
@@ -43,7 +43,7 @@ def broken(name):
 
 def draw_name(sheet, middle, top, room, method, color):
     """The name of a method, centred in a cell: in one line or two, as large as the room lets it be."""
-    style = {"color": color, "ha": "center", "va": "center", "weight": "bold", "linespacing": 1.05}
+    style = {"color": color, "ha": "center", "va": "center", "linespacing": 1.05}
     text = sheet.text(middle, top + 0.24, method, **style)
     for size in NAME_SIZES:
         for words in (method, broken(method)):

@@ -8,11 +8,14 @@ import unittest
 from pathlib import Path
 
 import band
+import causes
+import emphasis
 import failures
 import labels
 import measurements
 import names
 import prominent
+import quantities
 import style
 from measurements import BadInput, Run
 
@@ -180,6 +183,105 @@ class Prominent(unittest.TestCase):
         runs = [a_run(f"m{i}", error=2 - 0.05 * i, time=1 + i) for i in range(20)]
         self.assertEqual(self.strong(runs), ["m19"])
         self.assertEqual(self.strong([a_run(outcome="diverged")]), [])
+
+
+class Emphasis(unittest.TestCase):
+    """How strongly lines are drawn."""
+
+    def view(self, count):
+        """A view of one fast method and many slow ones."""
+        runs = [
+            a_run("fast", error=1e-6),
+            *(a_run(f"m{i}", 1e-3, 1e-2, 9 + i) for i in range(count)),
+        ]
+        return quantities.View(
+            quantities.POSITION, runs, measurements.fastest_at_each_accuracy(runs)
+        )
+
+    def strokes(self, kind, count):
+        """The strokes of its lines by method."""
+        view = self.view(count)
+        chosen = kind([view])
+        return {s[0].method: chosen.stroke(view, s) for s in measurements.sweeps(view.runs)}
+
+    def test_what_stands_out_has_full_colour_and_a_name_and_the_rest_is_pale(self):
+        strokes = self.strokes(emphasis.Prominent, 40)
+        named = {method for method, stroke in strokes.items() if stroke.label_size}
+        self.assertEqual(named, {"fast"})
+        self.assertEqual(strokes["fast"].color, style.WARM[0])
+        # On white, the contrast of what is pale is small.
+        self.assertGreater(min(style.to_rgb(strokes["m3"].color)), 0.7)
+        self.assertLess(strokes["m3"].line["linewidth"], strokes["fast"].line["linewidth"])
+
+    def test_of_all_methods_each_has_a_name_and_far_ones_are_faint_in_a_crowd(self):
+        for count, far in ((40, emphasis.BACKGROUND), (emphasis.CROWD - 1, 1.0)):
+            strokes = self.strokes(emphasis.Everything, count)
+            self.assertTrue(all(stroke.label_size for stroke in strokes.values()))
+            self.assertEqual((strokes["fast"].alpha, strokes["m3"].alpha), (1.0, far))
+
+    def test_the_key_counts_pale_lines_of_all_panels(self):
+        view, more = self.view(15), self.view(20)
+        words, _ = emphasis.Prominent([view, more]).rest()
+        self.assertEqual(words, "pale: 20 other methods (--all names them)")
+        self.assertIsNone(emphasis.Prominent([self.view(3)]).rest())
+
+    def test_a_stock_way_that_stands_out_is_dotted_without_its_method(self):
+        own = a_run("bdf", 1e-3, 0.5, 30, family="sundials")
+        stock = a_run("bdf_klu", 1e-3, 1e-2, 30, family="sundials", stock_of="bdf")
+        erk = a_run("erk", 1e-3, 1e-2, 20, family="sundials")
+        runs = [*self.view(20).runs, own, stock, erk]
+        view = quantities.View(quantities.POSITION, runs, [])
+        chosen = emphasis.Prominent([view])
+        self.assertIn("bdf_klu", chosen.shown)
+        self.assertNotIn("bdf", chosen.shown)
+        self.assertEqual(chosen.looks["bdf_klu"].family, style.STOCK)
+
+
+class Causes(unittest.TestCase):
+    """The strip of failures, by cause."""
+
+    def sweep(self, method, outcomes, knob="step_size"):
+        """The runs of a method at 1e-4, 1e-3, ...; None reached its end."""
+        return [
+            a_run(method, 10.0 ** (i - 4), knob=knob, outcome=outcome or "reached_end")
+            for i, outcome in enumerate(outcomes)
+        ]
+
+    def lines(self, *sweeps):
+        """The lines of the strip as (cause, number of methods, fullest words)."""
+        found = causes.lines(failures.failing(sweeps))
+        return [(cause, len(names), words[0]) for cause, names, words in found]
+
+    def test_limits_from_the_least_to_the_largest(self):
+        found = self.lines(
+            self.sweep("a", ["over_budget", None, None, "diverged"]),
+            self.sweep("b", [None, None, "diverged", "diverged"]),
+            self.sweep("c", [None, "newton_failed", None, None], "rtol"),
+            self.sweep("good", [None, None]),
+        )
+        expected = [
+            ("diverged", 2, "h ≥ 1e-2 (b) to 0.1 (a)"),
+            ("over budget", 1, "h ≤ 1e-4 (a)"),
+            ("Newton failed", 1, "some rtol between"),
+        ]
+        self.assertEqual(found, expected)
+
+    def test_methods_without_a_point_are_named(self):
+        found = self.lines(self.sweep("a", ["diverged"] * 2), self.sweep("b", ["diverged"] * 2))
+        expected = [("no point at all", 2, "a, b"), ("diverged", 2, "a, b")]
+        self.assertEqual(found, expected)
+        self.assertEqual(
+            causes.shortening(["a", "b", "c"])[1:], ["a, b and 1 more", "a and 2 more"]
+        )
+
+    def test_the_strip_is_low_whatever_failed(self):
+        sweeps = [self.sweep(f"m{i}", [f"cause_{i % 9}", None, f"end_{i}"]) for i in range(60)]
+        sweeps += [self.sweep(f"none{i}", ["lost", "lost"]) for i in range(60)]
+        height = causes.strip_height(failures.failing(sweeps))
+        # Six lines and a title; 4 cm are 1.57 in, and without a limit it would be 15 in.
+        self.assertLess(height, 1.7)
+        self.assertEqual(self.lines(*sweeps)[-1][0], "other causes")
+        self.assertEqual(causes.strip_height({}), 0)
 
 
 class Looks(unittest.TestCase):
