@@ -208,10 +208,11 @@ class Emphasis(unittest.TestCase):
         strokes = self.strokes(emphasis.Prominent, 40)
         named = {method for method, stroke in strokes.items() if stroke.label_size}
         self.assertEqual(named, {"fast"})
-        self.assertEqual(strokes["fast"].color, style.WARM[0])
+        fast = strokes["fast"]
+        self.assertEqual((fast.color, fast.alpha, fast.label_alpha), (style.WARM[0], 1, 1))
         # On white, the contrast of what is pale is small.
         self.assertGreater(min(style.to_rgb(strokes["m3"].color)), 0.7)
-        self.assertLess(strokes["m3"].line["linewidth"], strokes["fast"].line["linewidth"])
+        self.assertLess(strokes["m3"].line["linewidth"], fast.line["linewidth"])
 
     def test_of_all_methods_each_has_a_name_and_far_ones_are_faint_in_a_crowd(self):
         for count, far in ((40, emphasis.BACKGROUND), (emphasis.CROWD - 1, 1.0)):
