@@ -42,13 +42,17 @@ std::string sidecar_of(const std::string& path) {
   return (path.ends_with(".csv") ? path.substr(0, path.size() - 4) : path) + ".json";
 }
 
+std::string text_of_sidecar(const nlohmann::json& origin) {
+  // A path in a command line may hold bytes that are no UTF-8.
+  return origin.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
 CsvFile::CsvFile(const std::string& path, const std::vector<std::string>& header)
     : Csv(header), file_(path, std::string(text()), sidecar_of(path)), sidecar_(sidecar_of(path)) {}
 
 void CsvFile::complete(const nlohmann::json& origin) {
   flush();
-  // A path in a command line may hold bytes that are no UTF-8.
-  sidecar_.write(origin.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  sidecar_.write(text_of_sidecar(origin));
   file_.complete();
   sidecar_.complete();
 }

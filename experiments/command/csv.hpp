@@ -54,6 +54,9 @@ class Csv {
 // The sidecar X.json of a table X.csv.
 std::string sidecar_of(const std::string& path);
 
+// The text of a sidecar that says how a result was made (see provenance.hpp).
+std::string text_of_sidecar(const nlohmann::json& origin);
+
 // A Csv that goes to a file X.csv as it grows, and appears there on commit(), together with its
 // sidecar X.json. Throws InvalidInput at once if either place cannot be written.
 class CsvFile : public Csv {

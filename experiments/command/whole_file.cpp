@@ -40,6 +40,12 @@ void WholeFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno);
 }
 
+void WholeFile::overwrite_beginning(std::string_view text) {
+  if (std::fseek(file_, 0, SEEK_SET) != 0) fail(errno);
+  write(text);
+  if (std::fseek(file_, 0, SEEK_END) != 0) fail(errno);
+}
+
 void WholeFile::complete() {
   if (!file_) return;
   lock_ = ::dup(::fileno(file_));

@@ -26,8 +26,12 @@ class WholeFile {
   WholeFile& operator=(const WholeFile&) = delete;
 
   const std::string& path() const { return path_; }
+  // The name that it is written under, for a library that opens files itself.
+  const std::string& unfinished_path() const { return beside_; }
   // All throw CannotWrite.
   void write(std::string_view text);
+  // Puts this in the place of the first bytes of what was written; what comes goes on at the end.
+  void overwrite_beginning(std::string_view text);
   // Nothing more is to be written: the disk holds it all.
   void complete();
   // Gives it its name, after complete().

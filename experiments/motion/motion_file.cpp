@@ -1,26 +1,61 @@
 #include "experiments/motion/motion_file.hpp"
 
+#include <array>
+#include <utility>
+
 #include <fmt/format.h>
 
-#include "experiments/command/csv.hpp"
+#include "experiments/motion/frame.hpp"
+#include "experiments/motion/pc2_file.hpp"
+#include "experiments/motion/vtkhdf_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::motion {
+namespace {
+
+bool is_pc2(const std::string& path) { return path.ends_with(".pc2"); }
+
+}  // namespace
 
 std::vector<std::string> files_of_motion(const std::string& path, const std::string& option) {
-  const auto with = [&](std::size_t ending, const char* other) {
-    return path.substr(0, path.size() - ending) + other;
-  };
-  if (path.ends_with(".vtkhdf")) return {path, with(7, ".xdmf"), with(7, ".json")};
-  if (path.ends_with(".pc2")) return {path, with(4, ".obj"), with(4, ".json")};
-  throw InvalidInput(
-      fmt::format("{} {}: the ending names no format; allowed are .vtkhdf and .pc2", option, path));
+  const std::string_view ending = is_pc2(path) ? ".pc2" : ".vtkhdf";
+  if (!path.ends_with(ending))
+    throw InvalidInput(fmt::format(
+        "{} {}: the ending names no format; allowed are .vtkhdf and .pc2", option, path));
+  const std::string stem = path.substr(0, path.size() - ending.size());
+  return {path, stem + (is_pc2(path) ? ".obj" : ".xdmf"), stem + ".json"};
 }
 
-std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene&, const ReducedScene&,
-                                        bool, const Fields&) {
-  files_of_motion(path, "--motion");
-  throw InvalidInput(fmt::format("--motion {}: motions cannot be written yet", path));
+Fields fields_named(const std::vector<std::string>& names, const std::string& path,
+                    const std::string& option) {
+  if (is_pc2(path))
+    throw InvalidInput(fmt::format("{} is not for {}: a .pc2 holds positions alone", option, path));
+  Fields fields{.velocity = false, .kinetic_energy = false, .strain = false};
+  const std::array all = {std::pair("velocity", &Fields::velocity),
+                          std::pair("kinetic_energy", &Fields::kinetic_energy),
+                          std::pair("strain", &Fields::strain)};
+  for (const std::string& name : names) {
+    bool is_known = names.size() == 1 && name == "none";
+    for (const auto& [known, field] : all) {
+      if (name == known) is_known = fields.*field = true;
+    }
+    if (!is_known)
+      throw InvalidInput(fmt::format(
+          "{}: {} is not a field; allowed are velocity, kinetic_energy and strain, or none alone",
+          option, name));
+  }
+  return fields;
+}
+
+std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& start,
+                                        const ReducedScene& scene, bool has_reference,
+                                        const Fields& fields) {
+  files_of_motion(path, "motion");
+  if (!Framing(start, scene, fields).of(scene.initial(), nullptr))
+    throw InvalidInput(fmt::format(
+        "{}: the scene starts with numbers beyond 32-bit floats, which end at 3.4e38", path));
+  if (is_pc2(path)) return open_pc2(path, start, scene);
+  return open_vtkhdf(path, start, scene, has_reference, fields);
 }
 
 }  // namespace qddot::motion

@@ -104,7 +104,7 @@ int answer(const CommandLine& line, Arguments& a, const std::vector<std::string>
   const ReducedScene scene(start, reductions_of(a.scene));
 
   WrittenScene written_scene(a.written_scene_path);
-  Outputs output(a, scene, until);
+  Outputs output(a, start, scene, until);
   written_scene.commit(drawn);
   wait_for_answer(patience);
   progress().stage("looking for the fastest run");

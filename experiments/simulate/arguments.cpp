@@ -14,6 +14,7 @@
 #include "experiments/command/csv.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/program.hpp"
+#include "experiments/motion/motion_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::simulate {
@@ -35,6 +36,13 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--final", a.final_path, "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
   line.add_option("--trajectory", a.trajectory_path, "CSV of all nodes over time: t,node,x,...");
   line.add_option("--energy", a.energy_path, "CSV of t,kinetic,potential,total");
+  line.add_option("--motion", a.motion_path,
+                  "all nodes over time in 32-bit floats, with springs and faces: .vtkhdf for "
+                  "ParaView, h5py and MATLAB (with an .xdmf), .pc2 for Blender (with an .obj)");
+  line.add_option("--motion-fields", a.motion_fields,
+                  "a,b,... that a .vtkhdf has beside positions, of velocity, kinetic_energy, "
+                  "strain, or none (default: all)")
+      .delimiter(',');
   line.add_option(
       "--write-scene", a.written_scene_path,
       "TOML of the scene as nodes and springs, to the last bit; without --method nothing "
@@ -42,7 +50,7 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--every", a.every,
                   "the time between samples in s, which change no steps of fixed size. Stands "
                   "behind the output it "
-                  "is for, or once for both")
+                  "is for, or once for all")
       .take_each();
   line.add_flag("--explain", a.explain,
                 "say what need not be integrated of the scene and why, and run nothing");
@@ -57,19 +65,20 @@ void assign_every(const CommandLine& line, Arguments& a) {
   for (const std::string& name : line.order()) {
     if (name == "--trajectory") owner = &a.trajectory_every;
     if (name == "--energy") owner = &a.energy_every;
+    if (name == "--motion") owner = &a.motion_every;
     if (name == "--every") {
       require_positive(a.every[next], "--every", "the time between samples in s");
       if (a.every.size() > 1 && (!owner || *owner != 0)) {
         throw InvalidInput(
-            fmt::format("--every {}: of several, each stands behind the --trajectory "
-                        "or --energy that it is for, one for each",
+            fmt::format("--every {}: of several, each stands behind the --trajectory, "
+                        "--energy or --motion that it is for, one for each",
                         a.every[next]));
       }
       if (owner) *owner = a.every[next];
       ++next;
     }
   }
-  if (a.every.size() == 1) a.trajectory_every = a.energy_every = a.every[0];
+  if (a.every.size() == 1) a.trajectory_every = a.energy_every = a.motion_every = a.every[0];
   const auto require = [](const std::string& path, double every, const char* option) {
     if (!path.empty() && every == 0) {
       throw InvalidInput(
@@ -80,25 +89,35 @@ void assign_every(const CommandLine& line, Arguments& a) {
   };
   require(a.trajectory_path, a.trajectory_every, "--trajectory");
   require(a.energy_path, a.energy_every, "--energy");
-  if (!a.every.empty() && a.trajectory_path.empty() && a.energy_path.empty()) {
-    throw InvalidInput("--every is given without --trajectory or --energy, which it belongs to");
+  require(a.motion_path, a.motion_every, "--motion");
+  if (!a.every.empty() && a.trajectory_path.empty() && a.energy_path.empty() &&
+      a.motion_path.empty()) {
+    throw InvalidInput(
+        "--every is given without --trajectory, --energy or --motion, which it belongs to");
   }
 }
 
 void require_distinct_outputs(const CommandLine& line, const Arguments& a) {
   std::set<std::filesystem::path> taken;
+  const auto take = [&](const char* option, const std::string& path,
+                        const std::vector<std::string>& files) {
+    for (const std::string& file : files) {
+      if (taken.insert(std::filesystem::absolute(file).lexically_normal()).second) continue;
+      throw InvalidInput(
+          fmt::format("{} {}: another output or its sidecar goes to {}; allowed is a file for each",
+                      option, path, file));
+    }
+  };
   for (const auto& [option, path] :
        {std::pair("--final", a.final_path), std::pair("--trajectory", a.trajectory_path),
         std::pair("--energy", a.energy_path)}) {
     if (!line.has(option)) continue;
     require_given(path, option, "the name of a CSV file");
-    for (const std::string& file : {path, sidecar_of(path)}) {
-      if (taken.insert(std::filesystem::absolute(file).lexically_normal()).second) continue;
-      throw InvalidInput(
-          fmt::format("{} {}: another output or its sidecar goes to {}; allowed is a "
-                      "file for each",
-                      option, path, file));
-    }
+    take(option, path, {path, sidecar_of(path)});
+  }
+  if (line.has("--motion")) {
+    require_given(a.motion_path, "--motion", "the name of a .vtkhdf or .pc2 file");
+    take("--motion", a.motion_path, motion::files_of_motion(a.motion_path, "--motion"));
   }
   if (!line.has("--write-scene")) return;
   require_given(a.written_scene_path, "--write-scene", "the name of a TOML file");
@@ -111,8 +130,9 @@ void require_distinct_outputs(const CommandLine& line, const Arguments& a) {
 
 bool only_writes_scene(const CommandLine& line) {
   const auto given = [&](const char* option) { return line.has(option); };
-  constexpr std::array of_a_run = {"--method", "--accuracy", "--step-size",  "--rtol",   "--atol",
-                                   "--until",  "--final",    "--trajectory", "--energy", "--every"};
+  constexpr std::array of_a_run = {"--method", "--accuracy", "--step-size",     "--rtol",
+                                   "--atol",   "--until",    "--final",         "--trajectory",
+                                   "--energy", "--motion",   "--motion-fields", "--every"};
   return given("--write-scene") && std::ranges::none_of(of_a_run, given);
 }
 

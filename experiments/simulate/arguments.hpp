@@ -14,11 +14,13 @@ using namespace command;
 // What simulate takes on its command line.
 struct Arguments {
   SceneChoice scene;
-  std::string method, accuracy_of, final_path, trajectory_path, energy_path, written_scene_path;
+  std::string method, accuracy_of, final_path, trajectory_path, energy_path, written_scene_path,
+      motion_path;
   double accuracy = 0, step_size = 0, rtol = 0, atol = 0, until = 0, trajectory_every = 0,
-         energy_every = 0;
+         energy_every = 0, motion_every = 0;
   Options options;
   std::vector<double> every;
+  std::vector<std::string> motion_fields;
   bool list_methods = false, list_scenes = false, csv = false, explain = false;
 };
 
@@ -26,7 +28,7 @@ void declare(CommandLine& line, Arguments& a);
 
 // These throw InvalidInput where options do not go together.
 
-// Gives each --every to the output option before it; the only one belongs to both outputs.
+// Gives each --every to the output option before it; the only one belongs to all of them.
 void assign_every(const CommandLine& line, Arguments& a);
 
 // Asks for a file for each output.

@@ -11,10 +11,11 @@ namespace qddot::simulate {
 
 using namespace measure;
 
-Outputs::Outputs(const Arguments& a, const ReducedScene& scene, double until)
+Outputs::Outputs(const Arguments& a, const Scene& start, const ReducedScene& scene, double until)
     : scene_(scene),
       trajectory_times_(samples(a.trajectory_every, until)),
-      energy_times_(samples(a.energy_every, until)) {
+      energy_times_(samples(a.energy_every, until)),
+      motion_times_(samples(a.motion_every, until)) {
   const int d = scene.dimension();
   if (!a.final_path.empty()) {
     final_ = std::make_unique<CsvFile>(a.final_path, node_header(d, {}));
@@ -26,11 +27,18 @@ Outputs::Outputs(const Arguments& a, const ReducedScene& scene, double until)
     energy_ = std::make_unique<CsvFile>(
         a.energy_path, std::vector<std::string>{"t", "kinetic", "potential", "total"});
   }
-  if (trajectory_ || energy_) behind_.emplace([this](const State& state) { see(state); });
+  if (!a.motion_path.empty()) {
+    const motion::Fields fields =
+        a.motion_fields.empty()
+            ? motion::Fields{}
+            : motion::fields_named(a.motion_fields, a.motion_path, "--motion-fields");
+    motion_ = motion::open_motion(a.motion_path, start, scene, false, fields);
+  }
+  if (looks_on_the_way()) behind_.emplace([this](const State& state) { see(state); });
 }
 
 Observer Outputs::observer() {
-  return {merged(trajectory_times_, energy_times_),
+  return {merged(merged(trajectory_times_, energy_times_), motion_times_),
           [this](const State& state) { behind_->see(state); }};
 }
 
@@ -49,6 +57,7 @@ void Outputs::see(const State& state) {
     energy_->row(state.t, kinetic, potential, kinetic + potential);
     energy_->flush_if_large();
   }
+  if (motion_ && is_sample(motion_times_, state.t)) motion_->add(state);
 }
 
 void Outputs::finish(const State& state, const nlohmann::json& origin) {
@@ -63,9 +72,11 @@ void Outputs::finish(const State& state, const nlohmann::json& origin) {
   for (CsvFile* file : files) {
     if (file) file->complete(origin);
   }
+  if (motion_) motion_->complete(origin);
   for (CsvFile* file : files) {
     if (file) file->commit();
   }
+  if (motion_) motion_->commit();
 }
 
 }  // namespace qddot::simulate

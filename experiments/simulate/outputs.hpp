@@ -7,17 +7,20 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "experiments/command/csv.hpp"
+#include "experiments/motion/motion_file.hpp"
 #include "experiments/simulate/arguments.hpp"
 #include "experiments/simulate/background_observer.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot::simulate {
 
-// The tables that a run writes: all nodes at its end, all nodes over time, the energy over time.
+// The tables that a run writes: all nodes at its end, all nodes over time, as a table or as a
+// motion that others open, the energy over time.
 class Outputs {
  public:
   // Throws InvalidInput where a file cannot be written. The scene must outlive it.
-  Outputs(const Arguments& a, const ReducedScene& scene, double until);
+  // `start`: the scene that `scene` was reduced from.
+  Outputs(const Arguments& a, const Scene& start, const ReducedScene& scene, double until);
 
   // Asks for the times of the samples.
   Observer observer();
@@ -25,15 +28,16 @@ class Outputs {
   void see(const State& state);
 
   // Whether anything is asked for that is seen on the way.
-  bool looks_on_the_way() const { return trajectory_ || energy_; }
-  bool is_asked_for() const { return final_ || trajectory_ || energy_; }
+  bool looks_on_the_way() const { return trajectory_ || energy_ || motion_; }
+  bool is_asked_for() const { return final_ || looks_on_the_way(); }
   // Lets all files appear. `state`: the end; `origin`: how it was made (see provenance.hpp).
   void finish(const State& state, const nlohmann::json& origin);
 
  private:
   const ReducedScene& scene_;
-  std::vector<double> trajectory_times_, energy_times_;
+  std::vector<double> trajectory_times_, energy_times_, motion_times_;
   std::unique_ptr<CsvFile> final_, trajectory_, energy_;
+  std::unique_ptr<motion::MotionFile> motion_;
   std::optional<BackgroundObserver> behind_;  // writes while the run goes on
 };
 

@@ -4,6 +4,7 @@
 //   simulate --scene cloth --method verlet --step-size 5e-4 --until 0.1 --final end.csv
 //   simulate --scene cloth --method arkode_dirk4 --rtol 1e-5 --trajectory path.csv --every 0.01
 //   simulate --scene cloth --accuracy 1e-4 --final end.csv
+//   simulate --scene cloth --accuracy 1e-4 --motion cloth.vtkhdf --every 0.001
 //   simulate --scene cloth --write-scene cloth.toml
 //   simulate --scene cloth --explain
 //   simulate --list-methods
@@ -109,7 +110,7 @@ int simulate(const CommandLine& line, Arguments& a, const std::vector<std::strin
   require_atol(scaled);
 
   WrittenScene written_scene(a.written_scene_path);
-  Outputs output(a, scene, until);
+  Outputs output(a, start, scene, until);
   written_scene.commit(drawn);
   State state = scene.initial();
   output.see(state);

@@ -1,5 +1,6 @@
 #include "qddot/scene/scene.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -11,8 +12,8 @@
 namespace qddot {
 namespace {
 
-// One entry of a scene, so that a refusal can name it: `index` of the nodes or springs, or the
-// scene itself where `list` is empty.
+// One entry of a scene, so that a refusal can name it: `index` of the nodes, springs or faces, or
+// the scene itself where `list` is empty.
 struct Entry {
   const std::string& source;
   const char* list = "";
@@ -65,6 +66,15 @@ void check_spring(const Entry& entry, const Spring& spring, const std::vector<No
                              spring.law.rest_length, i, j));
 }
 
+void check_face(const Entry& entry, const std::array<std::size_t, 3>& face, std::size_t nodes) {
+  const auto [i, j, k] = face;
+  if (std::max({i, j, k}) >= nodes || i == j || j == k || k == i)
+    entry.refuse(
+        "nodes",
+        fmt::format("[{}, {}, {}] is not allowed; allowed are three different nodes from 0 to {}",
+                    i, j, k, nodes - 1));
+}
+
 // 64-bit FNV-1a.
 class Hash {
  public:
@@ -99,6 +109,8 @@ void validate(const Scene& scene, const std::string& source) {
     check_node({source, "nodes", i}, scene.nodes[i]);
   for (std::size_t i = 0; i < scene.springs.size(); ++i)
     check_spring({source, "springs", i}, scene.springs[i], scene.nodes);
+  for (std::size_t i = 0; i < scene.faces.size(); ++i)
+    check_face({source, "faces", i}, scene.faces[i], scene.nodes.size());
 }
 
 std::string content_hash(const Scene& scene) {

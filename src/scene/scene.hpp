@@ -29,7 +29,8 @@ struct Spring {
   bool stiff = false;
 };
 
-// What the user drew: nodes, springs, gravity; nothing derived and nothing left out.
+// What the user drew: nodes, springs, gravity; nothing derived and nothing left out, but for the
+// faces between them, which are for pictures.
 struct Scene {
   std::string name{};
   int dimension = 3;                                  // 1, 2 or 3
@@ -37,6 +38,8 @@ struct Scene {
   std::optional<double> until{};                      // [s], the end time if none is asked for
   std::vector<Node> nodes{};
   std::vector<Spring> springs{};
+  // Triangles of a surface, by the indices of their three nodes. Changes no motion.
+  std::vector<std::array<std::size_t, 3>> faces{};
   // Whether its motion begins with the nodes not where they are drawn but at the stable equilibrium
   // that is reached from there, with the velocities as drawn.
   bool starts_at_equilibrium = false;
@@ -56,7 +59,8 @@ inline bool is_stiff(const SpringLaw& law, std::optional<double> stiff_above) {
 // unless every number is finite, dimension is 1, 2 or 3, masses, stiffnesses and rest lengths are
 // not negative, `until` and `stiff_above` are above 0, each spring joins two different existing
 // nodes, and no spring with rest_length > 0 starts with coincident ends (its direction would be
-// undefined).
+// undefined), and each face has three different existing
+// nodes.
 void validate(const Scene& scene, const std::string& source);
 
 // Hash of everything in the scene that decides its motion, its name left out; the same on every

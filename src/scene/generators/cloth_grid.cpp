@@ -56,6 +56,14 @@ Scene draw_cloth(const GeneratorValues& p) {
       join(i, j, i, j + 2, p.at("bending_stiffness"));
     }
   }
+  scene.faces.reserve(2 * static_cast<std::size_t>(count - 1) *
+                      static_cast<std::size_t>(count - 1));
+  for (int i = 0; i + 1 < count; ++i) {
+    for (int j = 0; j + 1 < count; ++j) {
+      scene.faces.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1)});
+      scene.faces.push_back({node(i, j), node(i + 1, j + 1), node(i, j + 1)});
+    }
+  }
   return scene;
 }
 

@@ -38,6 +38,46 @@ void keep_distinct(std::vector<std::array<std::size_t, 2>>& edges) {
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 }
 
+using Face = std::array<std::size_t, 3>;
+
+Face sorted(Face face) {
+  std::sort(face.begin(), face.end());
+  return face;
+}
+
+// Appends the sides that one tetrahedron alone has.
+void add_boundary(Mesh& mesh) {
+  std::vector<std::pair<Face, Face>> sides;  // sorted, and as seen from outside
+  for (const auto& [a, b, c, d] : mesh.tetrahedra) {
+    for (const Face& side : {Face{a, c, b}, Face{a, b, d}, Face{a, d, c}, Face{b, c, d}})
+      sides.emplace_back(sorted(side), side);
+  }
+  std::stable_sort(sides.begin(), sides.end(),
+                   [](const auto& x, const auto& y) { return x.first < y.first; });
+  for (auto first = sides.begin(); first != sides.end();) {
+    const auto last = std::find_if(first, sides.end(),
+                                   [&](const auto& side) { return side.first != first->first; });
+    if (last - first == 1) mesh.faces.push_back(first->second);
+    first = last;
+  }
+}
+
+// Leaves out faces that name a corner twice, and all but the first of the same three corners.
+void keep_distinct_faces(std::vector<Face>& faces) {
+  std::erase_if(faces, [](const Face& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
+  std::vector<std::pair<Face, std::size_t>> order;
+  for (std::size_t i = 0; i < faces.size(); ++i) order.emplace_back(sorted(faces[i]), i);
+  std::sort(order.begin(), order.end());
+  std::vector<bool> is_repeated(faces.size(), false);
+  for (std::size_t k = 1; k < order.size(); ++k)
+    is_repeated[order[k].second] = order[k].first == order[k - 1].first;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (!is_repeated[i]) faces[kept++] = faces[i];
+  }
+  faces.resize(kept);
+}
+
 }  // namespace
 
 std::string_view Words::in_line() {
@@ -90,6 +130,8 @@ Mesh parse_mesh(const std::string& text, const std::filesystem::path& file) {
   if (mesh.vertices.empty())
     throw InvalidInput(fmt::format("{}: it has no vertices; allowed are meshes with some", name));
   keep_distinct(mesh.edges);
+  add_boundary(mesh);
+  keep_distinct_faces(mesh.faces);
   return mesh;
 }
 

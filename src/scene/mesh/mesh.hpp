@@ -11,12 +11,16 @@
 
 namespace qddot::mesh {
 
-// Vertices, distinct edges and triangles of a surface or volume mesh. Vertices without an edge are
-// kept.
+// Vertices, distinct edges, triangles and faces of a surface or volume mesh. Vertices without an
+// edge are kept.
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;              // [m] as in the file
   std::vector<std::array<std::size_t, 2>> edges;      // each once, smaller index first, sorted
   std::vector<std::array<std::size_t, 3>> triangles;  // as in the file; no larger polygon is cut up
+  std::vector<std::array<std::size_t, 4>> tetrahedra;  // as in the file
+  // What can be seen of it, each triangle once: triangles and larger polygons, cut up, and the
+  // triangles that one tetrahedron alone has, which face outwards where it has a positive volume.
+  std::vector<std::array<std::size_t, 3>> faces;
 };
 
 // Reads a Wavefront .obj (polygonal faces of the forms a, a/b, a//c, a/b/c and lines, negative

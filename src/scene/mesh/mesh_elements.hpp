@@ -30,7 +30,14 @@ inline constexpr std::array<Element, 8> elements{{
 }};
 inline constexpr std::size_t most_corners = 8;
 
-// Appends the edges of an element with these vertices, and the triangle if it is one.
+// Appends the triangles between the first corner of a polygon and each edge opposite to it.
+inline void add_polygon(std::span<const std::size_t> corners, Mesh& mesh) {
+  for (std::size_t k = 2; k < corners.size(); ++k)
+    mesh.faces.push_back({corners[0], corners[k - 1], corners[k]});
+}
+
+// Appends the edges of an element with these vertices, and the triangle or the tetrahedron if it
+// is one, and its faces if it is a polygon.
 inline void add_element(const Element& element, std::span<const std::size_t> corners, Mesh& mesh) {
   const auto corner_at = [&](std::size_t k) {
     return corners[std::size_t(element.edges[k] - '0')];
@@ -38,6 +45,9 @@ inline void add_element(const Element& element, std::span<const std::size_t> cor
   for (std::size_t k = 0; k < element.edges.size(); k += 3)
     mesh.edges.push_back({corner_at(k), corner_at(k + 1)});
   if (element.corners == 3) mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+  if (element.dimension == 2) add_polygon(corners.first(element.corners), mesh);
+  if (element.name == "tetrahedron")
+    mesh.tetrahedra.push_back({corners[0], corners[1], corners[2], corners[3]});
 }
 
 }  // namespace qddot::mesh

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "qddot/scene/mesh/mesh_elements.hpp"
 #include "qddot/scene/mesh/mesh_formats.hpp"
 
 namespace qddot::mesh {
@@ -30,6 +31,7 @@ void add_face(Words& words, bool closed, Mesh& mesh) {
     mesh.edges.push_back({corners[i - 1], corners[i]});
   if (!closed) return;
   mesh.edges.push_back({corners.back(), corners.front()});
+  add_polygon(corners, mesh);
   if (corners.size() == 3) mesh.triangles.push_back({corners[0], corners[1], corners[2]});
 }
 

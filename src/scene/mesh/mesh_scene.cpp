@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -80,6 +81,7 @@ std::size_t leave_out_unused(Mesh& mesh) {
     return std::ranges::any_of(corners, [&](std::size_t corner) { return !is_used[corner]; });
   });
   renumber(mesh.triangles);
+  renumber(mesh.faces);  // whose corners are three, so that an edge ends at each
   return unused;
 }
 
@@ -141,6 +143,7 @@ void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const
     scene.nodes.push_back({.position = scale * vertex, .mass = mass});
   add_springs(mesh.edges, stiffness, scene);
   add_springs(bending, bending_stiffness, scene);
+  scene.faces = std::move(mesh.faces);
   for (const TomlTable& box : table.tables("pin")) pin(box, scene.nodes);
 }
 

@@ -1,0 +1,33 @@
+#include "experiments/motion/cells.hpp"
+
+namespace qddot::motion {
+
+Cells cells_of(const Scene& scene) {
+  Cells cells;
+  std::vector<bool> is_joined(scene.nodes.size(), false);
+  for (const Spring& spring : scene.springs) {
+    cells.lines.push_back(spring.nodes);
+    for (const std::size_t node : spring.nodes) is_joined[node] = true;
+  }
+  cells.triangles = scene.faces;
+  for (const auto& face : scene.faces) {
+    for (const std::size_t node : face) is_joined[node] = true;
+  }
+  for (std::size_t i = 0; i < is_joined.size(); ++i) {
+    if (!is_joined[i]) cells.points.push_back(i);
+  }
+  return cells;
+}
+
+std::vector<double> strain_lengths(const Scene& start) {
+  std::vector<double> lengths;
+  lengths.reserve(start.springs.size());
+  for (const auto& [nodes, law, holds, stiff] : start.springs) {
+    const auto& from = start.nodes[nodes[0]].position;
+    const auto& to = start.nodes[nodes[1]].position;
+    lengths.push_back(law.rest_length > 0 ? law.rest_length : (to - from).norm());
+  }
+  return lengths;
+}
+
+}  // namespace qddot::motion

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "experiments/motion/motion_file.hpp"
+
+namespace qddot::motion {
+
+// How many bits behind the first one a field keeps: a rounding of 2^-8, which is the step of a
+// colour scale of 256 shades. The zeros behind them are what makes files small.
+constexpr int kept_bits = 7;
+
+// The nearest of the numbers with so many bits; halves go to the even one.
+float rounded(float value);
+
+// The numbers of one frame, as a file holds them: node after node, x, y and z of each.
+struct Frame {
+  double time = 0;               // [s]
+  std::vector<float> positions;  // [m], to the last bit of a 32-bit float
+  // Rounded to kept_bits; empty where they are not asked for.
+  std::vector<float> velocities;        // [m/s]
+  std::vector<float> kinetic_energies;  // [J]
+  std::vector<float> distances;         // [m], to the reference
+  std::vector<float> strains;           // of all cells (see cells.hpp), zero but for springs
+};
+
+// Makes the frames of one scene.
+class Framing {
+ public:
+  // `scene` must outlive it. `wanted`: what frames have beside positions.
+  Framing(const Scene& start, const ReducedScene& scene, const Fields& wanted);
+
+  // The frame of that state, with distances where there is a reference; it is overwritten by the
+  // next. None where a number is not finite or beyond 32-bit floats.
+  const Frame* of(const State& state, const State* reference);
+
+ private:
+  bool take_nodes(const std::vector<Node>& nodes);
+  bool take_strains(const std::vector<Node>& nodes);
+
+  const ReducedScene& scene_;
+  Fields wanted_;
+  std::vector<double> masses_;  // [kg], zero where pinned
+  std::vector<std::array<std::size_t, 2>> springs_;
+  std::vector<double> lengths_;
+  std::size_t first_line_, cells_;
+  Frame frame_;
+};
+
+}  // namespace qddot::motion

@@ -1,0 +1,224 @@
+#include "experiments/motion/vtkhdf_file.hpp"
+
+#include <array>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/csv.hpp"
+#include "experiments/command/whole_file.hpp"
+#include "experiments/motion/cells.hpp"
+#include "experiments/motion/frame.hpp"
+#include "experiments/motion/hdf5.hpp"
+#include "experiments/motion/row_stream.hpp"
+#include "experiments/motion/xdmf.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::motion {
+namespace {
+
+using command::CannotWrite;
+using command::WholeFile;
+using hdf5::Handle;
+using Numbers = std::vector<std::int64_t>;
+
+constexpr std::size_t kinds = 4;  // of cells: vertices, lines, polygons and strips
+
+// One kind of cells, each of `corners` nodes.
+void write_cells(const Handle& root, const std::string& kind, const Numbers& nodes,
+                 std::size_t corners) {
+  const Handle group = hdf5::new_group(root, kind);
+  Numbers offsets;
+  for (std::size_t k = 0; k <= nodes.size(); k += corners) offsets.push_back(std::int64_t(k));
+  hdf5::write(group, "NumberOfCells", Numbers{std::int64_t(nodes.size() / corners)});
+  hdf5::write(group, "NumberOfConnectivityIds", Numbers{std::int64_t(nodes.size())});
+  hdf5::write(group, "Connectivity", nodes);
+  hdf5::write(group, "Offsets", offsets);
+}
+
+template <class Lists>
+Numbers joined(const Lists& lists) {
+  Numbers all;
+  for (const auto& nodes : lists) all.insert(all.end(), nodes.begin(), nodes.end());
+  return all;
+}
+
+// The cells as XDMF mixes them: each its kind, with the number of nodes where that is open.
+Numbers mixed(const Cells& cells) {
+  constexpr std::int64_t point = 1, line = 2, triangle = 4;
+  Numbers all;
+  for (const std::size_t node : cells.points) all.insert(all.end(), {point, 1, std::int64_t(node)});
+  for (const auto& [a, b] : cells.lines)
+    all.insert(all.end(), {line, 2, std::int64_t(a), std::int64_t(b)});
+  for (const auto& [a, b, c] : cells.triangles)
+    all.insert(all.end(), {triangle, std::int64_t(a), std::int64_t(b), std::int64_t(c)});
+  return all;
+}
+
+// A field of the frames and where it goes.
+struct Stream {
+  std::string name;
+  const std::vector<float> Frame::*numbers;
+  bool is_of_cells;
+  std::size_t rows, columns;  // of a frame
+  RowStream out;
+};
+
+class VtkhdfFile final : public MotionFile {
+ public:
+  VtkhdfFile(const std::vector<std::string>& files, const Scene& start, const ReducedScene& scene,
+             bool has_reference, const Fields& fields)
+      : framing_(start, scene, fields),
+        file_(files[0], {}, files[2]),
+        xdmf_(files[1], xdmf_beginning),
+        sidecar_(files[2]),
+        has_reference_(has_reference) {
+    trying([&] {
+      const Cells cells = cells_of(start);
+      hdf5_ = hdf5::new_file(file_.unfinished_path());
+      root_ = hdf5::new_group(hdf5_, "VTKHDF");
+      frames_ = hdf5::new_group(hdf5_, "Frames");
+      write_topology(cells, start.nodes.size());
+      open_streams(start.nodes.size(), cells.count(), fields);
+    });
+  }
+
+  bool add(const State& state, const State* reference) override {
+    const Frame* frame =
+        has_ended_ ? nullptr : framing_.of(state, has_reference_ ? reference : nullptr);
+    if (!frame) {
+      has_ended_ = true;
+      return false;
+    }
+    trying([&] {
+      for (Stream& stream : streams_) stream.out.append(frame->*stream.numbers);
+      times_.push_back(frame->time);
+      if (write_full(outs())) hdf5::checked(H5Fflush(hdf5_.id(), H5F_SCOPE_LOCAL));
+    });
+    return true;
+  }
+
+  void complete(const nlohmann::json& origin) override {
+    trying([&] {
+      for (Stream& stream : streams_) stream.out.complete();
+      write_full(outs());
+      write_steps();
+      for (std::size_t k = 0; k < times_.size(); ++k) {
+        const Handle frame = hdf5::new_group(frames_, frame_name(k));
+        for (const Stream& stream : streams_) stream.out.show_frame(frame, stream.name, k);
+      }
+      streams_.clear();
+      for (Handle* handle : {&fields_of_cells_, &fields_of_nodes_, &frames_, &root_, &hdf5_})
+        handle->close();
+    });
+    xdmf_.write(xdmf_text(about_, times_));
+    sidecar_.write(command::text_of_sidecar(origin));
+    for (WholeFile* file : {&file_, &xdmf_, &sidecar_}) file->complete();
+  }
+
+  void commit() override {
+    for (WholeFile* file : {&file_, &xdmf_, &sidecar_}) file->commit();
+  }
+
+ private:
+  template <class Call>
+  void trying(const Call& call) {
+    try {
+      call();
+    } catch (const hdf5::Failure& failure) {
+      throw CannotWrite(fmt::format("{}: cannot be written: {}", file_.path(), failure.what()));
+    }
+  }
+
+  std::vector<RowStream*> outs() {
+    std::vector<RowStream*> all;
+    for (Stream& stream : streams_) all.push_back(&stream.out);
+    return all;
+  }
+
+  // What is the same in all frames.
+  void write_topology(const Cells& cells, std::size_t nodes) {
+    hdf5::write_attribute(root_, "Version", Numbers{2, 0});
+    hdf5::write_attribute(root_, "Type", std::string("PolyData"));
+    hdf5::write(root_, "NumberOfPoints", Numbers{std::int64_t(nodes)});
+    write_cells(root_, "Vertices", {cells.points.begin(), cells.points.end()}, 1);
+    write_cells(root_, "Lines", joined(cells.lines), 2);
+    write_cells(root_, "Polygons", joined(cells.triangles), 3);
+    write_cells(root_, "Strips", {}, 1);
+    const Numbers numbers = mixed(cells);
+    hdf5::write(frames_, "cells", numbers);
+    about_ = {.file = std::filesystem::path(file_.path()).filename().string(),
+              .nodes = nodes,
+              .cells = cells.count(),
+              .cell_numbers = numbers.size(),
+              .fields = {}};
+  }
+
+  void open_streams(std::size_t nodes, std::size_t cells, const Fields& fields) {
+    fields_of_nodes_ = hdf5::new_group(root_, "PointData");
+    fields_of_cells_ = hdf5::new_group(root_, "CellData");
+    const auto open = [&](bool is_wanted, const Handle& group, const char* name,
+                          const std::vector<float> Frame::*numbers, std::size_t rows,
+                          std::size_t columns) {
+      if (!is_wanted) return;
+      const bool is_of_cells = &group == &fields_of_cells_;
+      streams_.push_back(
+          {name, numbers, is_of_cells, rows, columns, RowStream(group, name, rows, columns)});
+      if (&group != &root_) about_.fields.push_back({name, rows, columns, is_of_cells});
+    };
+    open(true, root_, "Points", &Frame::positions, nodes, 3);
+    open(fields.velocity, fields_of_nodes_, "velocity", &Frame::velocities, nodes, 3);
+    open(fields.kinetic_energy, fields_of_nodes_, "kinetic_energy", &Frame::kinetic_energies, nodes,
+         1);
+    open(has_reference_, fields_of_nodes_, "distance_to_reference", &Frame::distances, nodes, 1);
+    open(fields.strain, fields_of_cells_, "strain", &Frame::strains, cells, 1);
+  }
+
+  // Where each frame begins in the datasets: topology is there once, all else frame after frame.
+  void write_steps() {
+    const std::size_t count = times_.size();
+    const Handle steps = hdf5::new_group(root_, "Steps");
+    hdf5::write_attribute(steps, "NSteps", std::int64_t(count));
+    hdf5::write(steps, "Values", times_);
+    hdf5::write(steps, "PartOffsets", Numbers(count, 0));
+    hdf5::write(steps, "NumberOfParts", Numbers(count, 1));
+    hdf5::write(steps, "CellOffsets", Numbers(count * kinds, 0), kinds);
+    hdf5::write(steps, "ConnectivityIdOffsets", Numbers(count * kinds, 0), kinds);
+    const Handle of_nodes = hdf5::new_group(steps, "PointDataOffsets");
+    const Handle of_cells = hdf5::new_group(steps, "CellDataOffsets");
+    for (const Stream& stream : streams_) {
+      Numbers starts;
+      for (std::size_t k = 0; k < count; ++k) starts.push_back(std::int64_t(k * stream.rows));
+      if (stream.name == "Points")
+        hdf5::write(steps, "PointOffsets", starts);
+      else
+        hdf5::write(stream.is_of_cells ? of_cells : of_nodes, stream.name, starts);
+    }
+  }
+
+  Framing framing_;
+  WholeFile file_, xdmf_, sidecar_;
+  bool has_reference_, has_ended_ = false;
+  Handle hdf5_, root_, frames_, fields_of_nodes_, fields_of_cells_;
+  std::vector<Stream> streams_;  // after the file, so that they are closed before
+  std::vector<double> times_;    // [s]
+  XdmfFields about_{};
+};
+
+}  // namespace
+
+std::unique_ptr<MotionFile> open_vtkhdf(const std::string& path, const Scene& start,
+                                        const ReducedScene& scene, bool has_reference,
+                                        const Fields& fields) {
+  if (!can_be_named(std::filesystem::path(path).filename().string()))
+    throw InvalidInput(
+        fmt::format("{}: the .xdmf beside it cannot name that file; allowed are names in UTF-8 "
+                    "without control characters and colons",
+                    path));
+  return std::make_unique<VtkhdfFile>(files_of_motion(path, "motion"), start, scene, has_reference,
+                                      fields);
+}
+
+}  // namespace qddot::motion

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace qddot::motion {
+
+// What an .xdmf says of the file beside it, whose datasets it names: /Frames/cells and, of each
+// frame, /Frames/NUMBER/NAME with Points and the fields.
+struct XdmfFields {
+  struct Field {
+    std::string name;
+    std::size_t rows, columns;
+    bool is_of_cells;
+  };
+  std::string file;  // without its folder
+  std::size_t nodes, cells, cell_numbers;
+  std::vector<Field> fields;
+};
+
+// How every .xdmf of qddot's begins.
+extern const std::string xdmf_beginning;
+
+// The name of a frame's group.
+std::string frame_name(std::size_t frame);
+
+// The text of an XDMF 3 file of frames at these times [s]: one whole dataset for each of geometry
+// and fields, no part of one, which ParaView 5.11's own reader would show empty.
+std::string xdmf_text(const XdmfFields& about, const std::vector<double>& times);
+
+// Whether XML and XDMF can name that file: UTF-8 without control characters and colons.
+bool can_be_named(const std::string& file);
+
+}  // namespace qddot::motion
