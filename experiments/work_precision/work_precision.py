@@ -22,7 +22,7 @@ from chart import Chart
 from emphasis import Everything, Prominent
 from names import shown
 from sheet import Sheet
-from style import FAINT, number, seconds, use_style
+from style import FAINT, STOCK, number, seconds, use_style
 
 WIDTH = 10.0
 MARGIN = 0.15
@@ -116,7 +116,7 @@ def key_line(family):
 def draw_key(sheet, top, emphasis):
     """How the lines of each family look, and those that stand back."""
     families = dict.fromkeys(emphasis.looks[method].family for method in emphasis.shown)
-    lines = [key_line(family) for family in families]
+    lines = [key_line(family) for family in sorted(families, key=lambda family: family is STOCK)]
     rest = emphasis.rest()
     if rest:
         words, style = rest
