@@ -47,9 +47,10 @@ def where(groups, cause, named):
     parts = []
     for (symbol, sign), limits in ends.items():
         low, high = min(limits), max(limits)
-        words = (
-            limit(*low) if number(low[0]) == number(high[0]) else f"{limit(*low)} to {limit(*high)}"
-        )
+        if number(low[0]) != number(high[0]):
+            words = f"{limit(*low)} to {limit(*high)}"
+        else:  # no single method's, unless there is only one
+            words = limit(*low) if len(limits) == 1 else number(low[0])
         parts.append(f"{symbol} {sign} {words}" if sign else f"some {symbol} between")
     return "; ".join(parts)
 

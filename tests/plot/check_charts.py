@@ -95,7 +95,7 @@ class Charts(HandMade):
             self.assertIn("pale: 14 other methods (--all names them)", texts)
             self.assertIn("its stock way, KLU", texts)
             self.assertIn("18 of 18 methods; --all shows each", texts)
-            self.assertIn("h ≥ 0.1 (bdf)", texts)  # one limit for all: the first by name
+            self.assertIn("h ≥ 0.1", texts)  # one limit for all
 
     def test_all_names_every_method_and_shows_each_failure(self):
         self.write(crowd(21))
