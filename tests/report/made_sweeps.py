@@ -1,0 +1,203 @@
+"""Points of a work-precision chart made up by formula: errors c h^p and times that go with 1/h."""
+
+import csv
+import json
+from dataclasses import dataclass
+
+CERTIFIED = 4e-13
+UNTIL = 0.5
+
+COLUMNS = (
+    "scene,method,knob,value,outcome,t_reached,error_position,error_velocity,error_energy,time_s,"
+    "time_min_s,setup_s,steps,rejected,force_evaluations,stiffness_evaluations,factorizations,"
+    "solves,newton_iterations,indefinite_factorizations,order_mean,order_reductions,"
+    "stability_limited_steps,timed_runs,family,order,error_energy_max,error_momentum_max,"
+    "error_modal_shares,error_position_at_least,error_position_at_most,energy_growth,stock_of"
+).split(",")
+
+FRONT_COLUMNS = (
+    "scene,accuracy,method,knob,value,error_position,time_s,judged_by,stability_margin"
+).split(",")
+
+OUTCOMES = {
+    "diverged": "the motion grew without bound: take a smaller step or an implicit method",
+    "newton_failed": "the nonlinear solve of a step did not converge: take a smaller step",
+    "over_budget": "the run was stopped because its time was up",
+}
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method of the made chart: its error is `constant` times its knob to the power `order`, and
+    a step takes `cost` seconds; steps above `limit` diverge."""
+
+    name: str
+    family: str
+    order: int
+    knob: str
+    constant: float
+    cost: float
+    limit: float
+    summary: str
+    stock_of: str = ""
+
+
+METHODS = (
+    Method("explicit_euler", "hand-written", 1, "step_size", 90.0, 1.0e-6, 1e-3, "forward Euler"),
+    Method("verlet", "hand-written", 2, "step_size", 2e3, 1.0e-6, 1e-2, "velocity Verlet"),
+    Method("rk4", "hand-written", 4, "step_size", 8e4, 4.2e-6, 2e-2, "classical Runge-Kutta"),
+    Method("symmetric4", "hand-written", 4, "step_size", 5e5, 1.1e-6, 9e-3, "symmetric multistep"),
+    Method("symmetric8", "hand-written", 8, "step_size", 6e13, 1.3e-6, 5e-3, "eight, <b>bold</b>"),
+    Method("kahan_li8", "hand-written", 8, "step_size", 2e9, 1.7e-5, 2e-2, "composed to order 8"),
+    Method("implicit_euler", "hand-written", 1, "step_size", 40.0, 3e-5, 1.0, "backward Euler"),
+    Method("bdf2", "hand-written", 2, "step_size", 6e2, 2e-5, 1.0, "two-step BDF"),
+    Method("ida", "sundials", 5, "rtol", 30.0, 4e-5, 1.0, "SUNDIALS IDA, BDF of order 1 to 5"),
+    Method("ida_klu", "sundials", 5, "rtol", 30.0, 7e-5, 1.0, "IDA, stock KLU", "ida"),
+    Method("arkode_erk4", "sundials", 4, "rtol", 6.0, 9e-6, 1.0, "ARKODE, explicit of order 4"),
+    Method("arkode_erk8", "sundials", 8, "rtol", 2.0, 2.2e-5, 1.0, "ARKODE, explicit of order 8"),
+)
+STEP_SIZES = [2e-2 / 2**k for k in range(12)]
+TOLERANCES = [10.0**-k for k in range(1, 12)]
+
+
+def points(scene):
+    """The rows of points.csv, each a dict of its columns' cells."""
+    rows = []
+    for method in METHODS:
+        adaptive = method.knob == "rtol"
+        for value in TOLERANCES if adaptive else STEP_SIZES:
+            rows.append(point(scene, method, value, adaptive))
+    return rows
+
+
+def point(scene, method, value, adaptive):
+    """One row of points.csv."""
+    steps = round(UNTIL * 300 * value ** (-1 / method.order)) if adaptive else round(UNTIL / value)
+    error = method.constant * value ** (1 if adaptive else method.order)
+    error += 3e-15 * steps**0.5
+    row = dict.fromkeys(COLUMNS, "")
+    row |= {"scene": scene, "method": method.name, "knob": method.knob, "value": value}
+    row |= {"family": method.family, "order": method.order, "stock_of": method.stock_of}
+    row |= {"steps": steps, "rejected": steps // 9 if adaptive else 0}
+    row |= {"force_evaluations": max(1, method.order // 2) * steps, "factorizations": 0}
+    row |= {"energy_growth": 1, "timed_runs": 5, "outcome": "reached_end", "t_reached": UNTIL}
+    if value > method.limit:
+        share = 0.05 + 0.4 * method.limit / value
+        row |= {"outcome": "diverged", "t_reached": share * UNTIL, "energy_growth": 1e300}
+        row["timed_runs"] = 0
+    elif method.name == "implicit_euler" and value == STEP_SIZES[0]:
+        row |= {"outcome": "newton_failed", "t_reached": 0.3 * UNTIL, "timed_runs": 0}
+    elif steps * method.cost > 0.05:
+        row |= {"outcome": "over_budget", "t_reached": 0.6 * UNTIL, "timed_runs": 0}
+    else:
+        time = steps * method.cost
+        row |= {"error_position": error, "error_velocity": 2 * error, "error_energy": error / 3}
+        row |= {"error_energy_max": error / 2, "error_momentum_max": 1e-14 + error / 100}
+        row |= {"error_position_at_least": max(error - CERTIFIED, 0.0)}
+        row |= {"error_position_at_most": error + CERTIFIED}
+        row |= {"time_s": time, "time_min_s": 0.97 * time, "setup_s": 1e-5}
+    return row
+
+
+def front(scene, rows):
+    """The rows of front.csv: the fastest of the points at each accuracy; verlet's steps leave 4 %
+    to their limit of stability."""
+    table = []
+    for accuracy in (10.0**-digit for digit in range(1, 10)):
+        known = [
+            row
+            for row in rows
+            if row["outcome"] == "reached_end" and row["error_position_at_most"] <= accuracy
+        ]
+        line = dict.fromkeys(FRONT_COLUMNS, "")
+        line |= {"scene": scene, "accuracy": accuracy, "judged_by": "position"}
+        if known:
+            best = min(known, key=lambda row: row["time_s"])
+            for name in ("method", "knob", "value", "error_position", "time_s"):
+                line[name] = best[name]
+            if best["method"] == "verlet":
+                line["stability_margin"] = 0.04
+        table.append(line)
+    return table
+
+
+def write_table(path, columns, rows):
+    """Writes dicts as a CSV file; numbers to their last bit."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def sidecar(scene, dimension, nodes, springs):
+    """What points.json says of the study."""
+    command = ["build/bin/work_precision", "--scene", scene, "--out", f"results/{scene}"]
+    unknowns = dimension * nodes
+    reductions = [{"name": "pins", "what": "2 pinned nodes stay where drawn"}]
+    return {
+        "command_line": [*command, "--point-limit", "0.5"],
+        "compiler": "GNU 12.2.0",
+        "cpu": "a processor",
+        "date": "2026-01-02T03:04:05Z",
+        "exit_status": 0,
+        "flags": "-O3",
+        "interrupted": None,
+        "kernels": "v3",
+        "libraries": {"eigen": "3.4.0", "sundials": "6.4.1"},
+        "methods": [{"name": m.name, "summary": m.summary, "takes": []} for m in METHODS],
+        "outcomes": OUTCOMES,
+        "reduced": {
+            "omega_max": 3281.4,
+            "largest_stable_step": 6.1e-4,
+            "parts": 1,
+            "reductions": reductions,
+            "stiffness_is_constant": False,
+            "unknowns": max(1, unknowns - 2 * dimension),
+            "unknowns_drawn": unknowns,
+            "unstable_directions": 0,
+        },
+        "scene": {
+            "dimension": dimension,
+            "hash": "0123456789abcdef",
+            "name": scene,
+            "nodes": nodes,
+            "springs": springs,
+        },
+        "study": {"options": {"--point-limit": ["0.5"]}, "program": "work_precision"},
+        "until": UNTIL,
+        "version": "0.1.0",
+    }
+
+
+def reference(scene, displacement):
+    """What reference.json says."""
+    return {
+        "beyond_horizon": False,
+        "certified_position": CERTIFIED,
+        "certified_velocity": 3e-12,
+        "certified_energy": 2e-13,
+        "chaotic": False,
+        "horizon": None,
+        "lyapunov": 0.0,
+        "made_by": "kahan_li8 at h = 0.0001 s; Boost.odeint Fehlberg 7(8) at tolerance 1e-13",
+        "modal_shares_floor": 0.0,
+        "only_symmetric": False,
+        "rounding_effect": 3e-15,
+        "scales": {"displacement": displacement, "kinetic": 0.2, "parts": [], "speed": 1.1},
+        "scene": scene,
+        "until": UNTIL,
+    }
+
+
+def write_study(folder, scene, dimension, nodes, springs, displacement):
+    """Writes points.csv, front.csv, their sidecar and reference.json; returns the rows of the
+    points."""
+    rows = points(scene)
+    write_table(folder / "points.csv", COLUMNS, rows)
+    write_table(folder / "front.csv", FRONT_COLUMNS, front(scene, rows))
+    for name in ("points.json", "front.json"):
+        text = json.dumps(sidecar(scene, dimension, nodes, springs), indent=2)
+        (folder / name).write_text(text + "\n", encoding="utf-8")
+    text = json.dumps(reference(scene, displacement), indent=1)
+    (folder / "reference.json").write_text(text + "\n", encoding="utf-8")
+    return rows
