@@ -1,6 +1,7 @@
 #include "experiments/command/method_options.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,17 @@ namespace qddot::command {
 namespace {
 
 constexpr int most_iterations = 100000;  // a step
+
+struct Spelling {
+  const char* name;
+  Option option;
+};
+constexpr std::array spellings = {Spelling{"--max-order", Option::max_order},
+                                  Spelling{"--stability-detection", Option::stability_detection},
+                                  Spelling{"--iterations", Option::iterations},
+                                  Spelling{"--solve-tolerance", Option::solve_tolerance},
+                                  Spelling{"--spectral-radius", Option::spectral_radius},
+                                  Spelling{"--solver", Option::solver}};
 
 template <class T>
 void require_that(bool is_allowed, const char* option, const T& value, const std::string& what) {
@@ -83,19 +95,21 @@ void require_options(const CommandLine& line, const Options& options) {
 }
 
 void require_options(const CommandLine& line, const Options& options, const Method& method) {
-  const auto require = [&](const char* name, Option option) {
-    if (!line.has(name) || method.listens_to(option)) return;
-    throw InvalidInput(
-        fmt::format("{} is not for {}; it is for {}", name, method.name,
-                    names_where([&](const Method& other) { return other.listens_to(option); })));
-  };
-  require("--max-order", Option::max_order);
-  require("--stability-detection", Option::stability_detection);
-  require("--iterations", Option::iterations);
-  require("--solve-tolerance", Option::solve_tolerance);
-  require("--spectral-radius", Option::spectral_radius);
-  require("--solver", Option::solver);
+  for (const auto& [name, option] : spellings) {
+    if (!line.has(name) || method.listens_to(option)) continue;
+    throw InvalidInput(fmt::format(
+        "{} is not for {}; it is for {}", name, method.name,
+        names_where([option](const Method& other) { return other.listens_to(option); })));
+  }
   require_values(line, options, method.order);
+}
+
+std::vector<std::string> options_taken_by(const Method& method) {
+  std::vector<std::string> names;
+  for (const auto& [name, option] : spellings) {
+    if (method.listens_to(option)) names.emplace_back(name);
+  }
+  return names;
 }
 
 }  // namespace qddot::command

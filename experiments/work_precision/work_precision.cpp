@@ -25,6 +25,7 @@
 #include "experiments/command/csv.hpp"
 #include "experiments/command/entry.hpp"
 #include "experiments/command/method_options.hpp"
+#include "experiments/command/point_notes.hpp"
 #include "experiments/command/point_record.hpp"
 #include "experiments/command/point_table.hpp"
 #include "experiments/command/program.hpp"
@@ -136,6 +137,7 @@ int work_precision(const CommandLine& line, const Arguments& a,
     }
   });
 
+  nlohmann::json origin_of_points = origin;
   if (reference) {
     const std::vector<Point> points = from_coarse_to_fine(taken);
     auto front = fastest_at_each_accuracy(points, *reference);
@@ -144,8 +146,11 @@ int work_precision(const CommandLine& line, const Arguments& a,
       point_columns().write_row(points_csv, {drawn.name, point, reference->certified.position});
     tabulate(front_csv, drawn.name, front, judged_by(*reference));
     print_front(drawn.name, until, front, *reference);
+    origin_of_points.update(notes_on(points));
   }
-  return study.finish({&points_csv, &front_csv}, origin, done);
+  study.complete(points_csv, origin_of_points, done);
+  study.complete(front_csv, origin, done);
+  return study.conclude(done);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -82,6 +83,30 @@ BOOST_AUTO_TEST_CASE(it_writes_its_tables_and_their_sidecars) {
       }
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(the_sidecar_of_the_points_has_what_those_say_who_show_them) {
+  std::size_t failures = 0;
+  for (const auto& m : all_measured()) {
+    const auto json = nlohmann::json::parse(read_all(m->out + "/points.json"));
+    std::string met;
+    for (const auto& note : json.at("methods")) {
+      const Method& method = *find_method(note.at("name").get<std::string>());
+      met += (met.empty() ? "" : ",") + method.name;
+      BOOST_TEST(note.at("summary") == method.summary);
+      const auto takes = note.at("takes").get<std::vector<std::string>>();
+      const bool has_solver = std::ranges::find(takes, "--solver") != takes.end();
+      BOOST_TEST(has_solver == method.listens_to(Option::solver), method.name);
+    }
+    BOOST_TEST(met == m->methods);
+    for (std::size_t row = 0; row < m->points.rows.size(); ++row) {
+      if (m->reached(row)) continue;
+      ++failures;
+      BOOST_TEST(!json.at("outcomes").at(m->points.text(row, "outcome")).empty());
+    }
+    BOOST_TEST(!json.at("outcomes").contains("reached_end"));
+  }
+  BOOST_TEST(failures > 0u);
 }
 
 BOOST_AUTO_TEST_CASE(each_method_has_its_points_in_the_order_asked_for) {
