@@ -7,7 +7,6 @@ At most a dozen methods stand out, others are pale and failures are counted; --a
 and shows which of its runs failed.
 """
 
-import math
 import os
 import sys
 
@@ -18,11 +17,12 @@ import failures
 import measurements
 import quantities
 from band import draw_band
+from caveats import caveats
 from chart import Chart
 from emphasis import Everything, Prominent
 from names import shown
 from sheet import Sheet
-from style import FAINT, STOCK, number, seconds, use_style
+from style import FAINT, STOCK, number, use_style
 
 WIDTH = 10.0
 MARGIN = 0.15
@@ -55,46 +55,6 @@ def draw_header(sheet, scene, quantity, reference, sentences):
     for line, words in enumerate(sentences):
         top = 0.83 + HORIZON * line
         sheet.text(MARGIN, top, words, size=10, color=WARNING, va="center")
-
-
-def warnings(reference, interruption):
-    """What a reader must know of the study and the motion before its errors; two lines each."""
-    return [
-        *([interruption_in_words(interruption)] if interruption else []),
-        *([horizon_in_words(reference)] if reference.horizon else []),
-        *([symmetry_in_words(reference)] if reference.symmetric_until is not None else []),
-    ]
-
-
-def interruption_in_words(interruption):
-    """That points are missing, and how they are measured."""
-    return (
-        f"The study was interrupted by {interruption}: points are missing.\n"
-        "The same command with --resume measures them."
-    )
-
-
-def symmetry_in_words(reference):
-    """That the motion exists in exact symmetry alone, and what its errors are then."""
-    return (
-        "this motion exists only in exact symmetry: a push of one rounding out of it moves the"
-        f" nodes apart from t = {number(reference.symmetric_until)} s on.\n"
-        "Errors are those of computing the symmetric motion, from which any push leads away."
-    )
-
-
-def horizon_in_words(reference):
-    """What is chaotic, and from when on."""
-    words = (
-        f"chaotic: from t = {number(reference.horizon)} s on, two runs that start one rounding apart"
-        f" differ by more than 1e-2"
-    )
-    if reference.lyapunov:
-        words += f" (× 10 in {seconds(math.log(10) / reference.lyapunov)})"
-    words += f".\nPosition errors at T = {number(reference.until)} s mean nothing."
-    if reference.modal_floor:
-        words += " Fastest: of the runs whose energy is in the right modes."
-    return words
 
 
 def key_line(family):
@@ -163,7 +123,7 @@ def draw(views, reference, interruption, fallback_scene, everything):
     emphasis = Everything(views) if everything else Prominent(views)
     strip = failures if everything else causes
     failed = failures.failing(measurements.sweeps(main.runs))
-    sentences = warnings(reference, interruption)
+    sentences = caveats(reference, interruption)
     header = HEADER + HORIZON * len(sentences)
     panels = sum(panel_height(view, emphasis) for view in views)
     strip_top = header + panels + HEADING * len(more)

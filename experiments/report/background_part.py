@@ -1,0 +1,144 @@
+"""What lies behind a page's numbers, as labels with words: what was left out of the scene, the
+reference, and what made it all."""
+
+import math
+import shlex
+
+from caveats import caveats
+from style import number, seconds
+from study_folder import is_number, look, number_or_none
+
+
+def in_words(value, unit=""):
+    """A number with its unit, or None where it is none."""
+    return f"{number(value)} {unit}".strip() if is_number(value) else None
+
+
+def labelled(*pairs):
+    """The pairs of label and words as lists, without those of which nothing is known."""
+    return [[label, str(words)] for label, words in pairs if words not in (None, "")]
+
+
+def findings(reduced):
+    """Each reduction's name and what it does."""
+    listed = look(reduced, "reductions")
+    return [
+        {"name": entry["name"], "what": entry["what"]}
+        for entry in (listed if isinstance(listed, list) else [])
+        if isinstance(look(entry, "name"), str) and isinstance(look(entry, "what"), str)
+    ]
+
+
+def left_out_part(sidecar):
+    """The page's `left_out`; None where the study says nothing of it."""
+    reduced = sidecar.get("reduced")
+    if not isinstance(reduced, dict):
+        return None
+    constant = reduced.get("stiffness_is_constant")
+    unstable = reduced.get("unstable_directions")
+    return {
+        "unknowns_drawn": number_or_none(reduced.get("unknowns_drawn")),
+        "unknowns": number_or_none(reduced.get("unknowns")),
+        "findings": findings(reduced),
+        "facts": labelled(
+            ("largest frequency at the start", in_words(reduced.get("omega_max"), "1/s")),
+            (
+                "Verlet's largest stable step there",
+                in_words(reduced.get("largest_stable_step"), "s"),
+            ),
+            ("parts that no spring joins", reduced.get("parts")),
+            (
+                "stiffness matrix",
+                {True: "constant", False: "changes with the motion"}.get(constant),
+            ),
+            ("unstable directions at the start", unstable if is_number(unstable) else None),
+        ),
+    }
+
+
+def reference_part(study):
+    """The page's `reference`: how it was made, to what it is certified, and until when the motion
+    can be known."""
+    file, reference = study.reference_file, study.reference
+    if not file:
+        return []
+    rounding = file.get("rounding_effect")
+    rate = reference.lyapunov
+    symmetric = reference.symmetric_until
+    return labelled(
+        ("made by", file.get("made_by")),
+        ("positions certified to", in_words(file.get("certified_position"))),
+        ("velocities certified to", in_words(file.get("certified_velocity"))),
+        ("energy certified to", in_words(file.get("certified_energy"))),
+        ("one rounding of the start moves the end by", in_words(rounding)),
+        ("horizon", reference.horizon and in_words(reference.horizon, "s")),
+        ("errors grow ten times in", rate and seconds(math.log(10) / rate)),
+        ("symmetry lasts until", symmetric and in_words(symmetric, "s")),
+        ("largest displacement", in_words(look(file, "scales", "displacement"), "m")),
+        ("largest speed", in_words(look(file, "scales", "speed"), "m/s")),
+        ("largest kinetic energy", in_words(look(file, "scales", "kinetic"), "J")),
+        ("made in", seconds(file["seconds"]) if is_number(file.get("seconds")) else None),
+    )
+
+
+def libraries(sidecar):
+    """The libraries with their versions, in one line."""
+    versions = sidecar.get("libraries")
+    pairs = versions.items() if isinstance(versions, dict) else ()
+    return ", ".join(f"{name} {version}" for name, version in pairs)
+
+
+def measured_by(sidecar):
+    """The command line of the study, quoted for a shell."""
+    words = sidecar.get("command_line")
+    return shlex.join(map(str, words)) if isinstance(words, list) else None
+
+
+def provenance_part(sidecar):
+    """The page's `provenance`."""
+    return labelled(
+        ("processor", sidecar.get("cpu")),
+        ("vector kernels", sidecar.get("kernels")),
+        ("compiler", sidecar.get("compiler")),
+        ("compiler flags", sidecar.get("flags")),
+        ("libraries", libraries(sidecar)),
+        ("qddot", sidecar.get("version")),
+        ("sources", sidecar.get("source_hash")),
+        ("measured", sidecar.get("date")),
+        ("measured by", measured_by(sidecar)),
+        ("scene's nodes", look(sidecar, "scene", "nodes")),
+        ("scene's springs", look(sidecar, "scene", "springs")),
+        ("scene's dimension", look(sidecar, "scene", "dimension")),
+        ("scene's hash", look(sidecar, "scene", "hash")),
+    )
+
+
+def sentence(words):
+    """Words that may be two lines, as one that begins with a capital."""
+    line = words.replace("\n", " ")
+    return line[:1].upper() + line[1:]
+
+
+def chaos_in_words(reference):
+    """Below which errors rounding decides; None where it decides nothing, or where the horizon says
+    more."""
+    limit = reference.chaotic_below
+    if limit is None or reference.horizon or limit <= (reference.certified or 0.0):
+        return None
+    return (
+        "The motion is chaotic: position errors below"
+        f" {number(limit)} depend on how a method rounds."
+    )
+
+
+def study_notes(study):
+    """What a reader must know of the study and its motion first, in sentences."""
+    notes = [sentence(words) for words in caveats(study.reference, study.interruption)]
+    notes += filter(None, [chaos_in_words(study.reference)])
+    if not study.reference_file:
+        notes.append("There is no reference.json: what the errors are certified to is not known.")
+    if not study.sidecar:
+        notes.append("There is no points.json: how the runs were made is not known.")
+    if all(run.failure for run in study.runs):
+        notes.append("No run gave a point.")
+    return notes

@@ -1,0 +1,64 @@
+"""Which runs and frames of a motion a page has room for."""
+
+import numpy as np
+
+# While what is shown is too large, frames are dropped down to the first number and then runs down
+# to the second, then both to the next pair.
+LEAST_FRAMES_AND_RUNS = ((30, 8), (16, 4), (8, 2), (2, 1))
+# A few frames far apart tell what a frame takes; of more frames, nearer to each other, each takes
+# less, by experience not below this part.
+SAMPLE_FRAMES = 4
+NEAR_FRAMES_TAKE = 0.5
+
+
+def kept_frames(count, longest, limit):
+    """The numbers of the frames that are kept of a run's `count`, where the longest run has
+    `longest` and keeps `limit`: every run's at the same places, and its first and last."""
+    places = np.rint(np.linspace(0, longest - 1, min(max(limit, 2), longest))).astype(int)
+    return sorted({0, *(int(place) for place in places if place < count), count - 1})
+
+
+def ladder(runs, frames):
+    """Choices (runs, frames) from all to the least, each with less than the one before."""
+    choices = [(runs, frames)]
+    for least_frames, least_runs in LEAST_FRAMES_AND_RUNS:
+        while frames > least_frames:
+            frames = max(least_frames, frames * 4 // 5)
+            choices.append((runs, frames))
+        while runs > least_runs:
+            runs -= 1
+            choices.append((runs, frames))
+    return choices
+
+
+def fit(counts, room, encode):
+    """The first choice of the ladder that fits into `room` bytes, as the list of what
+    encode(run, frames) makes of each kept run; None where not even the last does.
+
+    counts: the frames of each run, the most telling first; encode(run, frames) makes what has a
+    `size` in bytes of the frames of these numbers.
+    """
+    longest = max(counts)
+    made = {}
+
+    def encoded(run, limit):
+        frames = tuple(kept_frames(counts[run], longest, limit))
+        if (run, frames) not in made:
+            made[run, frames] = encode(run, frames)
+        return made[run, frames]
+
+    def size_of(runs, limit):
+        return sum(encoded(run, limit).size for run in range(runs))
+
+    sampled = min(SAMPLE_FRAMES, longest)
+    expected = size_of(len(counts), sampled) / sampled * NEAR_FRAMES_TAKE / len(counts)
+    most = room / max(expected, 1e-9)  # frames of all runs together
+    choices = ladder(len(counts), longest)
+    for runs, frames in choices:
+        if runs * frames > most and (runs, frames) != choices[-1]:
+            continue
+        size = size_of(runs, frames)
+        if size <= room:
+            return [encoded(run, frames) for run in range(runs)]
+        most = runs * frames * room / size
+    return None

@@ -1,0 +1,94 @@
+"""The command lines that repeat a page and its runs, quoted for a shell."""
+
+import shlex
+
+from study_folder import look
+
+LISTS = ("--methods", "--no-reduce")
+FLAGS = ("--stability-detection",)
+# What a run takes of the options of its study, beside those that its method listens to.
+OF_EVERY_RUN = ("--no-reduce", "--threads")
+METHOD_OPTIONS = (
+    "--max-order",
+    "--stability-detection",
+    "--iterations",
+    "--solve-tolerance",
+    "--spectral-radius",
+    "--solver",
+)
+# ./run report gives this one itself.
+GIVEN_BY_RUN = {"--point-limit": "0.5"}
+
+
+def scene_argument(sidecar):
+    """What the study's command line says for --scene; None where that is not known."""
+    words = sidecar.get("command_line")
+    if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
+        return None
+    for word, following in zip(words, [*words[1:], None]):
+        if word == "--scene":
+            return following
+        if word.startswith("--scene="):
+            return word.removeprefix("--scene=")
+    return None
+
+
+def study_options(sidecar):
+    """The options that decided what the study measured, {name: value}; a list is joined by commas,
+    of other options the last value counts, a flag has None."""
+    options = look(sidecar, "study", "options")
+    found = {}
+    for name, values in options.items() if isinstance(options, dict) else ():
+        if not isinstance(values, list) or not all(isinstance(value, str) for value in values):
+            continue
+        if name in FLAGS:
+            found[name] = None
+        elif values:
+            found[name] = ",".join(values) if name in LISTS else values[-1]
+    return found
+
+
+def words_of(options):
+    """The words that give these options."""
+    words = []
+    for name, value in options.items():
+        # A value that begins with a dash would be read as an option.
+        if value is not None and value.startswith("-"):
+            words.append(f"{name}={value}")
+        else:
+            words += [name] if value is None else [name, value]
+    return words
+
+
+def page_command(sidecar):
+    """The line that measures all of the page again; None where the scene's argument is not
+    known."""
+    scene = scene_argument(sidecar)
+    if scene is None:
+        return None
+    options = study_options(sidecar)
+    options = {name: value for name, value in options.items() if GIVEN_BY_RUN.get(name) != value}
+    return shlex.join(["./run", "report", scene, *words_of(options)])
+
+
+class RunCommands:
+    """The command lines of single runs of one study."""
+
+    def __init__(self, study):
+        self.scene = scene_argument(study.sidecar)
+        self.until = study.until
+        self.options = study_options(study.sidecar)
+        self.takes = {name: note.get("takes") for name, note in study.method_notes.items()}
+
+    def of_run(self, method, knob, value):
+        """The line that repeats a run of a method at a value of its knob; None where what the run
+        was told is not known."""
+        options = {name: given for name, given in self.options.items() if name in OF_EVERY_RUN}
+        listed = {name: given for name, given in self.options.items() if name in METHOD_OPTIONS}
+        if self.scene is None or self.until is None or (listed and method not in self.takes):
+            return None
+        taken = self.takes.get(method, [])
+        options |= {name: given for name, given in listed.items() if name in taken}
+        words = ["build/bin/simulate", "--scene", self.scene, "--method", method]
+        words += [f"--{knob.replace('_', '-')}", repr(value), "--until", repr(self.until)]
+        return shlex.join([*words, *words_of(options)])

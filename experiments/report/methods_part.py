@@ -1,0 +1,66 @@
+"""The methods of a study as the page shows them: colours, marks, families and the line on each."""
+
+from measurements import fastest_at_each_accuracy
+from prominent import strong_methods
+from style import STOCK, assign_looks, family_look
+from study_folder import look
+
+
+def family_title(name):
+    """A family's name for people."""
+    return family_look(name).title
+
+
+def dash(family):
+    """The dashes and gaps of a family's line in pixels; none for a solid one."""
+    line = family.line
+    return [] if isinstance(line, str) else [family.width * length for length in line[1]]
+
+
+def family_entry(name, family):
+    """One entry of the page's `families`."""
+    return {
+        "name": name,
+        "title": family.title,
+        "dash": dash(family),
+        "filled": family.filled,
+        "width": family.width,
+    }
+
+
+def looks_of(known, strong):
+    """The looks of the methods {name: (family, stock_of)}; those that stand out take the first
+    colours, and with a stock way the method whose colour it has."""
+    owners = {known[method][1] for method in strong}
+    first = [method for method in known if method in strong or method in owners]
+    return assign_looks({method: known[method] for method in dict.fromkeys([*first, *known])})
+
+
+def methods_part(study):
+    """The page's `families` and `methods`, the latter in the order of the points."""
+    runs = study.judged_runs()
+    known = {run.method: (run.family, run.stock_of) for run in runs}
+    strong = strong_methods(runs, fastest_at_each_accuracy(runs))
+    looks = looks_of(known, strong)
+    notes = study.method_notes
+    orders = {row["method"]: row.get("order") for row in study.rows}
+    families, methods = {}, []
+    for method, (family, stock_of) in known.items():
+        drawn = looks[method].family
+        name = "stock" if drawn is STOCK else family
+        families.setdefault(name, family_entry(name, drawn))
+        order = orders[method] or ""
+        methods.append(
+            {
+                "name": method,
+                "family": list(families).index(name),
+                "order": int(order) if order.isdecimal() and int(order) else None,
+                "color": looks[method].color,
+                "text_color": looks[method].text_color,
+                "marker": looks[method].marker,
+                "stock_of": stock_of or None,
+                "strong": method in strong,
+                "line": look(notes.get(method), "summary"),
+            }
+        )
+    return {"families": list(families.values()), "methods": methods}

@@ -1,0 +1,240 @@
+"""The motions of a page: what of the files in motions/ it holds, in how many bytes."""
+
+import json
+import math
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from answers import knob_in_words
+from budget import fit
+from encoding import distances_blob, index_blob, positions_blob, quantised
+from measurements import BadInput
+from motion_files import open_motion, read_energies, read_motion_rows
+from study_folder import look, number_or_none, read_json
+
+# How far runs may go out of the reference's box on each side, as a part of its side.
+MARGIN = 0.25
+# What stands around a blob in the page.
+FRAME_OF_BLOB = len('<script type="text/plain" id="p1000"></script>\n')
+
+
+@dataclass(frozen=True)
+class EncodedRun:
+    """One run as the page has it: its entry in `runs` without the names of its blobs."""
+
+    entry: dict
+    positions: str
+    distances: str | None
+
+    @property
+    def size(self):
+        """How many bytes it takes."""
+        parts = [json.dumps(self.entry), self.positions, self.distances or ""]
+        return sum(len(part) + FRAME_OF_BLOB for part in parts)
+
+
+@dataclass(frozen=True)
+class Box:
+    """The cube that positions are told in: its lower corner [m] and its side [m]."""
+
+    low: np.ndarray
+    size: float
+
+
+def bounds(motion):
+    """The least and the largest coordinates (3,) that are numbers, over all frames."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for frame in range(len(motion.times)):
+        (positions,) = motion.positions([frame])
+        finite = np.isfinite(positions)
+        low = np.minimum(low, np.where(finite, positions, np.inf).min(axis=0))
+        high = np.maximum(high, np.where(finite, positions, -np.inf).max(axis=0))
+    return low.astype(float), high.astype(float)
+
+
+def box_of(motions):
+    """The box of the first motion, widened for the others by no more than MARGIN to each side."""
+    low, high = bounds(motions[0])
+    if not np.isfinite(low + high).all():
+        raise BadInput("the first motion has no positions")
+    side = float((high - low).max()) or 1.0
+    least, most = low - MARGIN * side, high + MARGIN * side
+    for motion in motions[1:]:
+        own_low, own_high = bounds(motion)
+        low = np.minimum(low, np.clip(own_low, least, low))
+        high = np.maximum(high, np.clip(own_high, high, most))
+    return Box(low, float((high - low).max()) or 1.0)
+
+
+def unmoved(motion):
+    """The nodes that are at one place in all frames; none where there is one frame only."""
+    if len(motion.times) < 2:
+        return []
+    (first,) = motion.positions([0])
+    still = np.ones(motion.nodes, bool)
+    for frame in range(1, len(motion.times)):
+        (positions,) = motion.positions([frame])
+        still &= (positions == first).all(axis=1)
+    return np.flatnonzero(still).tolist()
+
+
+def distance_unit(study, directory):
+    """The largest displacement [m], by which distances are divided; None where it is not known or
+    nothing moves."""
+    sources = (
+        read_json(os.path.join(directory, "motions.json")).get("displacement"),
+        look(study.reference_file, "scales", "displacement"),
+    )
+    known = [value for value in map(number_or_none, sources) if value and value > 0]
+    return known[0] if known else None
+
+
+def open_all(directory, rows):
+    """The rows with their open files, and a sentence for each file that cannot be shown."""
+    opened, notes = [], []
+    for row in rows:
+        try:
+            motion = open_motion(directory, row.file)
+        except BadInput as error:
+            notes.append(f"{error} It is not shown.")
+            continue
+        if opened and motion.nodes != opened[0][1].nodes:
+            motion.file.close()
+            notes.append(f"{row.file} has other nodes than {opened[0][0].file}. It is not shown.")
+            continue
+        opened.append((row, motion))
+    return opened, notes
+
+
+class Encoder:
+    """Makes entries of a page's `motion` out of open files."""
+
+    def __init__(self, study, opened, energies):
+        self.opened = opened
+        self.energies = energies
+        self.box = box_of([motion for _, motion in opened])
+        self.unit = distance_unit(study, study.directory)
+        methods = list(dict.fromkeys(run.method for run in study.runs))
+        self.methods = {name: index for index, name in enumerate(methods)}
+        self.points = {}
+        for index, run in enumerate(study.runs):
+            self.points.setdefault((run.method, run.knob, run.value), index)
+
+    def entry(self, row, motion, frames):
+        """What the page says of a run beside its blobs."""
+        label = row.method or row.role
+        if math.isfinite(row.value):
+            label += f" at {knob_in_words(row.knob, row.value)}"
+        return {
+            "role": "reference" if row.role == "reference" else "run",
+            "point": self.points.get((row.method, row.knob, row.value)),
+            "method": self.methods.get(row.method),
+            "label": label,
+            "why": row.why,
+            "outcome": row.outcome,
+            "t_reached": row.t_reached if math.isfinite(row.t_reached) else None,
+            "times": motion.times[list(frames)].tolist(),
+            "energy": self.energies.get(row.file),
+            "seconds": row.seconds,
+        }
+
+    def encode(self, run, frames):
+        """A run at the frames of these numbers."""
+        row, motion = self.opened[run]
+        steps, left_box = quantised(motion.positions(frames), self.box.low, self.box.size)
+        distances = motion.distances(frames) if self.unit and row.role != "reference" else None
+        return EncodedRun(
+            self.entry(row, motion, frames) | {"left_box": left_box},
+            positions_blob(steps),
+            None if distances is None else distances_blob(distances / self.unit),
+        )
+
+
+def pack(study, opened, energies, room):
+    """The page's `motion` and its blobs, and a sentence on what there was no room for."""
+    first = opened[0][1]
+    encoder = Encoder(study, opened, energies)
+    blobs = {"s0": index_blob(first.springs)}
+    if len(first.faces):
+        blobs["f0"] = index_blob(first.faces)
+    room -= sum(map(len, blobs.values()))
+    pinned = unmoved(first)
+    room -= len(json.dumps(pinned))
+    counts = [len(motion.times) for _, motion in opened]
+    runs = fit(counts, room, encoder.encode)
+    if runs is None:
+        return (
+            None,
+            {},
+            ["The motions are too large for this page; the files in motions/ hold them."],
+        )
+    entries = []
+    for number, run in enumerate(runs):
+        blobs[f"p{number}"] = run.positions
+        names = {"positions": f"p{number}", "distances": None}
+        if run.distances is not None:
+            names["distances"] = f"d{number}"
+            blobs[f"d{number}"] = run.distances
+        entries.append(run.entry | names)
+    dimension = look(study.sidecar, "scene", "dimension")
+    part = {
+        "dimension": dimension if dimension in (1, 2, 3) else 3,
+        "nodes": first.nodes,
+        "springs": "s0",
+        "faces": "f0" if "f0" in blobs else None,
+        "pinned": pinned,
+        "low": encoder.box.low.tolist(),
+        "size": encoder.box.size,
+        "distance_unit": encoder.unit,
+        "runs": entries,
+    }
+    return part, blobs, what_was_left_out(opened, entries)
+
+
+def what_was_left_out(opened, entries):
+    """A sentence on the runs and frames that the page does not hold; none where it has all."""
+    all_frames = max(len(motion.times) for _, motion in opened)
+    frames = max(len(entry["times"]) for entry in entries)
+    parts = []
+    if len(entries) < len(opened):
+        parts.append(f"{len(entries)} of the {len(opened)} motions that were kept")
+    if frames < all_frames:
+        parts.append(f"{frames} of the {all_frames} frames of a motion")
+    if not parts:
+        return []
+    return [
+        f"To stay small, this page holds {' and '.join(parts)}; the files in motions/ hold all."
+    ]
+
+
+def motion_part(study, room):
+    """The page's `motion` with its blobs {name: base64} in at most `room` bytes, and notes; the
+    motion is None where there is none."""
+    if not os.path.exists(os.path.join(study.directory, "motions.csv")):
+        return None, {}, []
+    notes, opened = [], []
+    try:
+        rows = read_motion_rows(study.directory)
+        opened, notes = open_all(study.directory, rows)
+        energies, more = energies_or_note(study.directory)
+        notes += more
+        if not opened:
+            return None, {}, notes
+        part, blobs, more = pack(study, opened, energies, room)
+        return part, blobs, notes + more
+    except (BadInput, OSError, ValueError) as error:
+        reason = " ".join(str(error).split()).removesuffix(".")
+        return None, {}, [*notes, f"The motions cannot be shown: {reason}."]
+    finally:
+        for _, motion in opened:
+            motion.file.close()
+
+
+def energies_or_note(directory):
+    """The energies over time, and a sentence where their table is broken."""
+    try:
+        return read_energies(directory), []
+    except BadInput as error:
+        return {}, [f"{error} The motions are shown without energies."]

@@ -1,0 +1,96 @@
+"""The PNG pictures of other studies in the same folder, as they stand in a page."""
+
+import base64
+import io
+import os
+from dataclasses import dataclass
+
+from PIL import Image
+
+# Charts are lines on white: so many colours keep them as they look, in a quarter of the bytes.
+COLORS = 128
+SMALL = 150_000  # bytes of a file that is taken as it is
+MOST = 2_500_000  # bytes of all pictures in a page
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture that a study may leave: the file's name, its title and what it shows in words."""
+
+    file: str
+    title: str
+    alt: str
+
+
+CHART = Picture("chart.png", "Time against error", "time of a run against its error, by method")
+PICTURES = (
+    Picture(
+        "stability_map.png",
+        "Where each method is stable",
+        "outcome of whole runs by method and step size",
+    ),
+    Picture(
+        "stability_modes.png",
+        "Which natural modes grow",
+        "growth of the natural modes by method and step size",
+    ),
+    Picture("modes.png", "The lowest natural modes", "shapes of the scene's lowest natural modes"),
+    Picture(
+        "energy_drift.png",
+        "Where the energy goes over a long run",
+        "energy error over time, by method",
+    ),
+    Picture(
+        "exchange.png",
+        "The energy that stiff springs exchange",
+        "energies of stiff springs over time, by method and step size",
+    ),
+)
+
+
+def reduced(data):
+    """The PNG's bytes with fewer colours, or the same where that does not make it smaller. Raises
+    OSError where they are no picture."""
+    with Image.open(io.BytesIO(data)) as image:
+        image.load()
+        if len(data) <= SMALL:
+            return data
+        flat = Image.alpha_composite(Image.new("RGBA", image.size, "white"), image.convert("RGBA"))
+        few = flat.convert("RGB").quantize(COLORS, Image.Quantize.FASTOCTREE, dither=0)
+        buffer = io.BytesIO()
+        few.save(buffer, "PNG", optimize=True)
+        return min(data, buffer.getvalue(), key=len)
+
+
+def data_uri(directory, picture):
+    """The picture as a data URI; None where there is no such file. Raises OSError where it is no
+    picture."""
+    path = os.path.join(directory, picture.file)
+    if not os.path.exists(path):
+        return None
+    with open(path, "rb") as file:
+        data = reduced(file.read())
+    return "data:image/png;base64," + base64.b64encode(data).decode("ascii")
+
+
+def pictures_part(directory):
+    """The page's `pictures`, the chart's data URI or None, and sentences on pictures left out."""
+    entries, notes, chart, size = [], [], None, 0
+    for picture in (CHART, *PICTURES):
+        try:
+            uri = data_uri(directory, picture)
+        # What Pillow raises for a file that is no whole picture.
+        except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
+            notes.append(f"{picture.file} is no picture that can be read.")
+            continue
+        if uri is None:
+            continue
+        if size + len(uri) > MOST:
+            notes.append(f"{picture.file} is too large for this page; it lies in the folder.")
+            continue
+        size += len(uri)
+        if picture is CHART:
+            chart = uri
+        else:
+            entries.append({"title": picture.title, "alt": picture.alt, "src": uri})
+    return entries, chart, notes

@@ -1,0 +1,134 @@
+"""The points of a study as the page has them: one list a column, and the errors that a chart may
+stand over."""
+
+import math
+import os
+from dataclasses import replace
+
+import measurements
+import quantities
+from commands import RunCommands
+from style import number
+
+NUMBERS = (
+    "t_reached",
+    "error_position",
+    "error_velocity",
+    "error_energy",
+    "error_energy_max",
+    "error_momentum_max",
+    "error_modal_shares",
+    "error_position_at_least",
+    "error_position_at_most",
+    "time_s",
+    "time_min_s",
+    "setup_s",
+    "energy_growth",
+    "order_mean",
+    "timed_runs",
+)
+COUNTS = (
+    "steps",
+    "rejected",
+    "force_evaluations",
+    "stiffness_evaluations",
+    "factorizations",
+    "solves",
+    "newton_iterations",
+    "indefinite_factorizations",
+    "order_reductions",
+    "stability_limited_steps",
+)
+NAMES = {
+    quantities.POSITION.column: "positions at the end",
+    quantities.ENERGY.column: "energy on the way",
+    quantities.MOMENTUM.column: "momenta on the way",
+    quantities.MODES.column: "energy in the modes",
+}
+
+
+def finite(value):
+    """The number, or None where it is NaN or infinite."""
+    return value if math.isfinite(value) else None
+
+
+def read_column(study, name):
+    """A column's numbers, None where there is none. Raises BadInput for a cell that is no number."""
+    path = os.path.join(study.directory, "points.csv")
+    return [
+        finite(measurements.parse(path, line, row, name, False))
+        for line, row in measurements.read_rows(path, (name,))
+    ]
+
+
+def whole(values):
+    """Counts, which are whole numbers, without a fraction."""
+    return [int(value) if value is not None and value.is_integer() else value for value in values]
+
+
+def cause(run, sentences):
+    """Why a run is no point of the chart, in a sentence; None for a good run."""
+    if not run.failure:
+        return None
+    return sentences.get(run.outcome) or run.failure
+
+
+def outcome_sentences(sidecar):
+    """What points.json says of each outcome, {name: sentence}."""
+    outcomes = sidecar.get("outcomes")
+    pairs = outcomes.items() if isinstance(outcomes, dict) else ()
+    return {name: words for name, words in pairs if isinstance(words, str)}
+
+
+def points_part(study):
+    """The page's `points` and `counts`."""
+    methods = {run.method: place for place, run in reversed(list(enumerate(study.runs)))}
+    places = {name: index for index, name in enumerate(sorted(methods, key=methods.get))}
+    commands = RunCommands(study)
+    sentences = outcome_sentences(study.sidecar)
+    counts = [name for name in COUNTS if name in study.columns]
+    points = {
+        "method": [places[run.method] for run in study.runs],
+        "value": [run.value for run in study.runs],
+        "knob": [run.knob for run in study.runs],
+        "outcome": [run.outcome for run in study.runs],
+        "cause": [cause(run, sentences) for run in study.runs],
+    }
+    for name in NUMBERS:
+        known = name in study.columns
+        points[name] = read_column(study, name) if known else [None] * len(study.runs)
+    points |= {name: whole(read_column(study, name)) for name in counts}
+    points["command"] = [commands.of_run(run.method, run.knob, run.value) for run in study.runs]
+    return {"points": points, "counts": counts}
+
+
+def position_view(study):
+    """The view of the position errors, which needs no front."""
+    reference = study.reference
+    subtitle = quantities.POSITION.subtitle + quantities.lengths(reference.displacements)
+    words = reference.certified and f"reference certified to {number(reference.certified)}"
+    quantity = replace(quantities.POSITION, subtitle=subtitle)
+    return quantities.View(quantity, study.runs, [], reference.certified, words)
+
+
+def quantity_entry(view):
+    """One entry of the page's `quantities`."""
+    counts = [run.counts for run in view.runs]
+    return {
+        "column": view.quantity.column,
+        "name": NAMES[view.quantity.column],
+        "axis": view.quantity.axis,
+        "subtitle": view.quantity.subtitle,
+        "floor": view.floor,
+        "floor_words": view.floor_words or None,
+        "counts": None if all(counts) else counts,
+    }
+
+
+def quantities_part(study):
+    """The errors that a chart may stand over; the first is what answers are judged by."""
+    others = (quantities.ENERGY, quantities.MOMENTUM, quantities.MODES)
+    views = [quantities.view(study.directory, other, study.reference) for other in others]
+    entries = [quantity_entry(view) for view in (position_view(study), *filter(None, views))]
+    judge = quantities.ENERGY if study.judged_by == "energy" else quantities.POSITION
+    return sorted(entries, key=lambda entry: entry["column"] != judge.column)
