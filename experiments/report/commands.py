@@ -67,8 +67,8 @@ def page_command(sidecar):
     if scene is None:
         return None
     options = study_options(sidecar)
-    options = {name: value for name, value in options.items() if GIVEN_BY_RUN.get(name) != value}
-    return shlex.join(["./run", "report", scene, *words_of(options)])
+    own = [pair for pair in options.items() if pair not in GIVEN_BY_RUN.items()]
+    return shlex.join(["./run", "report", scene, *words_of(dict(own))])
 
 
 class RunCommands:

@@ -25,7 +25,6 @@ NUMBERS = (
     "setup_s",
     "energy_growth",
     "order_mean",
-    "timed_runs",
 )
 COUNTS = (
     "steps",
@@ -53,7 +52,10 @@ def finite(value):
 
 
 def read_column(study, name):
-    """A column's numbers, None where there is none. Raises BadInput for a cell that is no number."""
+    """A column's numbers, None where there is none, as in a column that is missing. Raises BadInput
+    for a cell that is no number."""
+    if name not in study.columns:
+        return [None] * len(study.runs)
     path = os.path.join(study.directory, "points.csv")
     return [
         finite(measurements.parse(path, line, row, name, False))
@@ -94,10 +96,8 @@ def points_part(study):
         "outcome": [run.outcome for run in study.runs],
         "cause": [cause(run, sentences) for run in study.runs],
     }
-    for name in NUMBERS:
-        known = name in study.columns
-        points[name] = read_column(study, name) if known else [None] * len(study.runs)
-    points |= {name: whole(read_column(study, name)) for name in counts}
+    points |= {name: read_column(study, name) for name in NUMBERS}
+    points |= {name: whole(read_column(study, name)) for name in ("timed_runs", *counts)}
     points["command"] = [commands.of_run(run.method, run.knob, run.value) for run in study.runs]
     return {"points": points, "counts": counts}
 

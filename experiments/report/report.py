@@ -21,6 +21,8 @@ from study_folder import read_study
 
 # A page of any scene; browsers read as much in a moment, and mails take it.
 MOST_BYTES = 8_000_000
+# What sentences on the motions and all but their blobs may take of that.
+WORDS_ON_MOTIONS = 20_000
 
 
 def measured_parts(study):
@@ -56,7 +58,7 @@ def page_of(directory):
         static = static_part(content["answers"], study.judged_runs(), whole["notes"], chart)
         return html(study.scene, whole, blobs, static)
 
-    room = MOST_BYTES - len(page(None, {}, []).encode("utf-8", "replace"))
+    room = MOST_BYTES - WORDS_ON_MOTIONS - len(page(None, {}, []).encode("utf-8", "replace"))
     return page(*motion_part(study, room))
 
 

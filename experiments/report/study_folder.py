@@ -147,14 +147,15 @@ def read_study(directory):
     path = os.path.join(directory, "points.csv")
     columns = measurements.read_header(path)
     reference_path = os.path.join(directory, "reference.json")
+    sidecar = read_json(os.path.join(directory, "points.json"))
     return Study(
         directory,
         columns,
         [row for _, row in measurements.read_rows(path, ("method",))],
         measurements.read_runs(path),
-        read_json(os.path.join(directory, "points.json")),
+        sidecar,
         measurements.read_reference(reference_path),
         read_json(reference_path),
-        measurements.interrupted_by(path),
+        sidecar.get("interrupted"),
         read_margins(os.path.join(directory, "front.csv")),
     )

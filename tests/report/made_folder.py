@@ -116,7 +116,7 @@ def write_motions(folder, sheet, rows, frames, runs, noise):
         name = f"motions/{row['method']}_{row['value']:g}.vtkhdf"
         until = row["t_reached"]
         times = exact[exact <= until]
-        if times[-1] < until:
+        if frames > 1 and times[-1] < until:
             times = np.append(times, until)
         reference = sheet.motion(times)
         diverges = row["outcome"] == "diverged"

@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+"""Whether motions are told in few bytes as the page's format says, and which frames and runs are
+kept where room is scarce."""
+
+import base64
+import unittest
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+import budget
+import encoding
+
+
+def inflated(text):
+    """The bytes of a blob."""
+    return zlib.decompress(base64.b64decode(text), -15)
+
+
+class Positions(unittest.TestCase):
+    """Positions in 16 bits."""
+
+    def test_an_error_is_at_most_half_a_step(self):
+        generator = np.random.default_rng(1)
+        low, size = np.array([-3.0, 10.0, 0.5]), 7.0
+        positions = low + size * generator.random((20, 50, 3))
+        steps, left_box = encoding.quantised(positions, low, size)
+        self.assertFalse(left_box)
+        error = np.abs(low + size * steps / 65535 - positions).max()
+        # The positions themselves are rounded: a few units of the largest, 17 m.
+        self.assertLessEqual(error, size / 65535 / 2 + 1e-14)
+        # The bound is no larger than it has to be.
+        self.assertGreater(error, 0.9 * size / 65535 / 2)
+
+    def test_the_corners_are_told(self):
+        steps, left_box = encoding.quantised([[[0, 0, 0], [2, 2, 2]]], np.zeros(3), 2.0)
+        self.assertFalse(left_box)
+        self.assertEqual(steps.tolist(), [[[0, 0, 0], [65535, 65535, 65535]]])
+
+    def test_what_is_outside_is_moved_into_the_box_and_said(self):
+        for outside in (2.1, -0.1, np.inf, -np.inf, np.nan, 1e300):
+            steps, left_box = encoding.quantised([[[1, 1, outside]]], np.zeros(3), 2.0)
+            self.assertTrue(left_box)
+            self.assertIn(steps[0, 0, 2], (0, 65535))
+
+    def test_changes_are_told_in_planes_of_low_and_high_bytes(self):
+        # 65535 to 0 is a change by one, modulo 65536.
+        steps = np.array([[[0, 258, 65535]], [[1, 257, 0]]], "<u2")
+        data = inflated(encoding.positions_blob(steps))
+        self.assertEqual(data, bytes([0, 2, 255, 1, 255, 1]) + bytes([0, 1, 255, 0, 255, 0]))
+
+    def test_the_steps_stay_as_they_were(self):
+        steps = np.array([[[5, 6, 7]], [[8, 9, 10]]], "<u2")
+        before = steps.copy()
+        encoding.positions_blob(steps)
+        self.assertTrue((steps == before).all())
+
+
+class Distances(unittest.TestCase):
+    """Distances in one byte."""
+
+    def codes(self, *distances):
+        """The codes of relative distances."""
+        return list(inflated(encoding.distances_blob(np.array([distances]))))
+
+    def test_codes_go_with_the_logarithm(self):
+        self.assertEqual(self.codes(0.0, 1e-14, 1.0), [0, 0, 255])
+        # 1 + 254 * 7 / 14 at the middle.
+        self.assertEqual(self.codes(1e-7), [128])
+        self.assertEqual(self.codes(1.1e-14), [2])
+
+    def test_what_is_far_off_or_no_number_is_the_largest(self):
+        self.assertEqual(self.codes(7.0, np.inf, np.nan, 1e30), [255] * 4)
+
+    def test_a_code_is_off_by_at_most_half_a_step(self):
+        distances = 10 ** np.random.default_rng(2).uniform(-13.9, 0, 1000)
+        codes = np.array(self.codes(*distances), float)
+        decades = np.abs((codes - 1) * 14 / 254 - 14 - np.log10(distances))
+        # Logarithms are rounded, of numbers up to 14.
+        self.assertLessEqual(decades.max(), 14 / 254 / 2 + 1e-13)
+
+
+class Indices(unittest.TestCase):
+    """Node numbers."""
+
+    def test_they_are_little_endian_words(self):
+        self.assertEqual(
+            inflated(encoding.index_blob(np.array([[1, 258]]))), bytes([1, 0, 0, 0, 2, 1, 0, 0])
+        )
+
+
+@dataclass(frozen=True)
+class Made:
+    """What stands for an encoded run."""
+
+    run: int
+    frames: tuple
+    size: int
+
+
+def of_size(bytes_a_frame):
+    """An encode function whose runs take so many bytes a frame."""
+    return lambda run, frames: Made(run, frames, bytes_a_frame * len(frames))
+
+
+class Budget(unittest.TestCase):
+    """Which runs and frames there is room for."""
+
+    def test_the_first_and_the_last_frame_stay(self):
+        for count, longest, limit in ((60, 60, 7), (1, 60, 7), (2, 60, 2), (33, 60, 20), (1, 1, 9)):
+            frames = budget.kept_frames(count, longest, limit)
+            self.assertEqual((frames[0], frames[-1]), (0, count - 1))
+            self.assertEqual(frames, sorted(set(frames)))
+        self.assertEqual(budget.kept_frames(5, 5, 9), [0, 1, 2, 3, 4])
+
+    def test_runs_keep_frames_at_the_same_places(self):
+        whole = budget.kept_frames(60, 60, 11)
+        short = budget.kept_frames(31, 60, 11)
+        self.assertEqual(short[:-1], [place for place in whole if place < 30])
+
+    def test_each_choice_has_less_than_the_one_before(self):
+        choices = budget.ladder(21, 60)
+        self.assertEqual((choices[0], choices[-1]), ((21, 60), (1, 2)))
+        for (runs, frames), (fewer, less) in zip(choices, choices[1:]):
+            self.assertTrue(fewer <= runs and less <= frames and (fewer, less) != (runs, frames))
+        self.assertEqual(budget.ladder(1, 1), [(1, 1)])
+
+    def test_all_is_kept_where_there_is_room(self):
+        runs = budget.fit([60] * 5, 5 * 60 * 100, of_size(100))
+        self.assertEqual([run.frames for run in runs], [tuple(range(60))] * 5)
+
+    def test_frames_go_first_then_the_least_telling_runs(self):
+        frames_only = budget.fit([60] * 9, 9 * 40 * 100, of_size(100))
+        self.assertEqual(len(frames_only), 9)
+        both = budget.fit([60] * 20, 150 * 100, of_size(100))
+        self.assertEqual([run.run for run in both], list(range(len(both))))
+        self.assertTrue(1 < len(both) < 20)
+        self.assertEqual(both[0].frames[-1], 59)
+
+    def test_what_is_chosen_fits_and_is_not_far_below(self):
+        for room in (300, 1000, 5000, 20000, 100000):
+            runs = budget.fit([60] * 20, room, of_size(100))
+            size = sum(run.size for run in runs)
+            # Choices differ by a fifth, or by one run of at least two.
+            self.assertTrue(0.5 * room <= size <= room, f"{size} of {room}")
+
+    def test_nothing_is_chosen_where_not_even_two_frames_fit(self):
+        self.assertIsNone(budget.fit([60] * 20, 199, of_size(100)))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,270 @@
+#!/usr/bin/python3
+"""Whether the page of a folder with hostile names, missing or broken files is harmless and honest,
+and whether it appears whole or not at all."""
+
+import math
+import shutil
+import unittest
+from unittest import mock
+
+import h5py
+import numpy as np
+
+import made_folder
+import report
+from decoding import Page, elements
+from packed_folder import Folder
+
+HOSTILE = (
+    "</script><script>alert(1)</script>",
+    "<!-- <script> -->",
+    "\"><img src=x onerror=alert(1)> ' & &amp; ]]>",
+    "{{title}} <!-- qddot:data -->",
+    "a\u2028b\u2029c\x00\x1b\x7f\r\n\tend",
+    "\u202eright to left\u202c \u200f \u2066",
+    "\ud800 half of a pair",
+    "$x$ \\u003c \\",
+)
+
+
+class Names(Folder):
+    """Names and texts that are more than names."""
+
+    def named(self, name):
+        """The page of a scene of this name."""
+        made_folder.make_folder(self.folder, side=3, frames=3, runs=1)
+        self.edit("reference.json", lambda content: content.update(scene=name))
+
+        def change(content):
+            content["scene"]["name"] = content["cpu"] = content["command_line"][2] = name
+            content["methods"][0]["summary"] = content["outcomes"]["diverged"] = name
+            content["reduced"]["reductions"][0]["what"] = name
+
+        self.edit("points.json", change)
+        rows = self.rows("motions.csv")
+        rows[1]["why"] = name.encode("utf-8", "replace").decode().replace("\x00", "")
+        self.rewrite("motions.csv", rows)
+        return self.page()
+
+    def test_hostile_names_are_text(self):
+        harmless = [tag for tag, _, _ in elements(self.named("cloth").text)]
+        for name in HOSTILE:
+            result = self.named(name)
+            found = elements(result.text)
+            self.assertEqual([tag for tag, _, _ in found], harmless, name)
+            attributes = {key for _, attrs, _ in found for key in attrs}
+            self.assertFalse(attributes - {"type", "id", "src", "alt"}, name)
+            self.assertEqual(result.data["title"], name)
+            self.assertEqual(result.data["methods"][0]["line"], name)
+
+    def test_the_json_is_ascii_and_opens_no_element(self):
+        for name in HOSTILE:
+            text = self.named(name).json
+            self.assertTrue(text.isascii() and text.isprintable(), name)
+            self.assertNotIn("<", text)
+
+    def test_titles_turn_no_direction(self):
+        text = self.named(HOSTILE[5]).text
+        self.assertNotRegex(text, "[\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+
+
+class Missing(Folder):
+    """Files that are not there, or hold little."""
+
+    def test_the_points_alone_make_a_page(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        for name in ("front.csv", "front.json", "points.json", "reference.json"):
+            (self.folder / name).unlink()
+        data = self.page().data
+        self.assertIsNone(data["motion"])
+        self.assertEqual((data["until"], data["command"]), (None, []))
+        self.assertEqual((data["left_out"], data["reference"]), (None, []))
+        self.assertEqual(set(data["points"]["command"]), {None})
+        self.assertEqual(data["quantities"][0]["floor"], None)
+        self.assertIsNotNone(data["answers"][0]["point"])
+        self.assertRegex(" ".join(data["notes"]), "no reference.json.* no points.json")
+
+    def test_only_failures(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        rows = [row for row in self.rows() if row["outcome"] != "reached_end"]
+        self.rewrite("points.csv", rows)
+        data = self.page().data
+        self.assertEqual({answer["why"] for answer in data["answers"]}, {"no method reached it"})
+        self.assertIn("No run gave a point.", data["notes"])
+
+    def test_one_point(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        rows = [row for row in self.rows() if row["outcome"] == "reached_end"]
+        self.rewrite("points.csv", rows[:1])
+        data = self.page().data
+        self.assertEqual(len(data["methods"]), 1)
+        reached = [answer for answer in data["answers"] if answer["point"] is not None]
+        self.assertTrue(all(answer["next"] is None and not answer["others"] for answer in reached))
+
+    def test_no_point_at_all(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        header = (self.folder / "points.csv").read_text().splitlines()[0]
+        (self.folder / "points.csv").write_text(header + "\n")
+        data = self.page().data
+        self.assertEqual((data["methods"], data["points"]["method"]), ([], []))
+
+    def test_an_interruption_is_said_first(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        self.edit("points.json", lambda content: content.update(interrupted="SIGINT"))
+        self.assertRegex(self.page().data["notes"][0], "interrupted by SIGINT")
+
+    def test_beyond_the_horizon_energy_judges(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+
+        def change(content):
+            content.update(beyond_horizon=True, horizon=0.3, lyapunov=50.0, chaotic=True)
+
+        self.edit("reference.json", change)
+        data = self.page().data
+        self.assertEqual(data["judged_by"], "energy")
+        self.assertEqual(data["quantities"][0]["column"], "error_energy_max")
+        self.assertRegex(data["notes"][0], "^Chaotic: from t = 0.3 s on")
+        self.assertNotIn("\n", data["notes"][0])
+
+    def test_infinite_and_missing_numbers_are_null(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        rows = self.rows()
+        rows[0] |= {"energy_growth": "inf", "error_velocity": "nan", "steps": ""}
+        self.rewrite("points.csv", rows)
+        points = self.page().data["points"]
+        for name in ("energy_growth", "error_velocity", "steps"):
+            self.assertIsNone(points[name][0])
+
+    def test_zero_motion(self):
+        made_folder.make_folder(self.folder, side=3, frames=4, runs=1)
+        for row in self.rows("motions.csv"):
+            with h5py.File(self.folder / row["file"], "r+") as file:
+                file["VTKHDF/Points"][...] = 1.5
+        self.edit("motions.json", lambda content: content.update(displacement=0.0))
+        self.edit("reference.json", lambda content: content["scales"].update(displacement=0.0))
+        motion = self.page().data["motion"]
+        self.assertIsNone(motion["distance_unit"])
+        self.assertEqual({run["distances"] for run in motion["runs"]}, {None})
+        self.assertTrue(motion["size"] > 0 and len(motion["pinned"]) == 9)
+
+    def test_motions_without_a_reference(self):
+        made_folder.make_folder(self.folder, side=3, frames=4, runs=3)
+        self.rewrite("motions.csv", self.rows("motions.csv")[1:])
+        runs = self.page().data["motion"]["runs"]
+        self.assertEqual({run["role"] for run in runs}, {"run"})
+
+
+class Broken(Folder):
+    """Files that cannot be read."""
+
+    def setUp(self):
+        super().setUp()
+        made_folder.make_folder(self.folder, side=3, frames=4, runs=3)
+        self.motion = self.rows("motions.csv")[1]["file"]
+
+    def spoiled_motion(self, change):
+        """The page's data after a change to one motion's file."""
+        with h5py.File(self.folder / self.motion, "r+") as file:
+            change(file["VTKHDF"])
+        return self.page().data
+
+    def assert_not_shown(self, data):
+        """A note names the motion, and the others are shown."""
+        self.assertTrue(any(self.motion in note for note in data["notes"]), data["notes"])
+        self.assertEqual(len(data["motion"]["runs"]), 3)
+
+    def test_a_motion_that_is_missing_or_no_motion_is_left_out(self):
+        path = self.folder / self.motion
+        whole = path.read_bytes()
+        for content in (b"", b"no motion", whole[: len(whole) // 2]):
+            path.write_bytes(content)
+            self.assert_not_shown(self.page().data)
+        path.unlink()
+        self.assert_not_shown(self.page().data)
+
+    def test_a_motion_whose_parts_do_not_fit_is_left_out(self):
+        def shorter(root):
+            points = root["Points"][:-1]
+            del root["Points"]
+            root["Points"] = points
+
+        self.assert_not_shown(self.spoiled_motion(shorter))
+
+    def test_springs_of_no_nodes_are_refused(self):
+        def far(root):
+            root["Lines/Connectivity"][0] = 99
+
+        self.assert_not_shown(self.spoiled_motion(far))
+
+    def test_positions_that_are_no_numbers_leave_the_box(self):
+        def spoil(root):
+            root["Points"][-1] = [math.nan, math.inf, -math.inf]
+
+        data = self.spoiled_motion(spoil)
+        self.assertTrue(data["motion"]["runs"][1]["left_box"])
+        self.assertTrue(np.isfinite([data["motion"]["size"], *data["motion"]["low"]]).all())
+
+    def test_a_motion_outside_the_folder_is_not_read(self):
+        rows = self.rows("motions.csv")
+        shutil.copy(self.folder / self.motion, self.folder.parent / "other.vtkhdf")
+        rows[1]["file"] = self.motion = "../other.vtkhdf"
+        self.rewrite("motions.csv", rows)
+        self.assert_not_shown(self.page().data)
+
+    def test_a_broken_table_of_motions_is_a_note(self):
+        (self.folder / "motions.csv").write_text("file,role\n")
+        data = self.page().data
+        self.assertIsNone(data["motion"])
+        self.assertRegex(data["notes"][0], "motions.csv has no column method")
+
+    def test_broken_energies_are_a_note(self):
+        (self.folder / "motions_energy.csv").write_text("file,t,kinetic,potential,total\na,b,,,\n")
+        data = self.page().data
+        self.assertIsNone(data["motion"]["runs"][0]["energy"])
+        self.assertRegex(data["notes"][0], "t is 'b', not a number")
+
+    def test_a_broken_picture_is_a_note(self):
+        (self.folder / "modes.png").write_bytes(b"\x89PNG\r\n\x1a\nnothing")
+        data = self.page().data
+        self.assertEqual(data["pictures"], [])
+        self.assertEqual(data["notes"], ["modes.png is no picture that can be read."])
+
+    def test_odd_sidecars_say_nothing(self):
+        for text in (
+            "",
+            "[]",
+            '{"reduced": 3, "methods": [1], "study": [], "scene": "x"}',
+            "[" * 9999,
+        ):
+            (self.folder / "points.json").write_text(text)
+            self.assertEqual(self.page().data["command"], [])
+
+    def test_broken_points_are_refused_in_one_sentence(self):
+        before = (self.folder / "report.html").exists()
+        text = (self.folder / "points.csv").read_text()
+        for broken in (text.replace("0.02,", "tiny,", 1), "a,b\n1,2\n", "\x00\xff"):
+            (self.folder / "points.csv").write_text(broken, encoding="latin-1")
+            status, said = self.call()
+            self.assertEqual(status, 2)
+            self.assertRegex(said, r"^.*points\.csv.*\.\n$")
+        (self.folder / "points.csv").unlink()
+        self.assertEqual(self.call()[0], 2)
+        self.assertEqual((self.folder / "report.html").exists(), before)
+
+    def test_the_page_before_stays_where_a_new_one_cannot_be_written(self):
+        before = self.page().text
+        with mock.patch("os.replace", side_effect=OSError(28, "No space left on device")):
+            status, said = self.call()
+        self.assertEqual((status, said.count("\n")), (2, 1))
+        self.assertIn("No space left", said)
+        self.assertEqual(Page(self.folder / "report.html").text, before)
+        self.assertFalse((self.folder / "report.html.tmp").exists())
+
+    def test_a_wrong_call_is_refused(self):
+        for arguments in ([], ["a", "b"], ["--help"]):
+            with mock.patch("sys.stderr"):
+                self.assertEqual(report.main(arguments), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
