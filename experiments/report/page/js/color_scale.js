@@ -1,0 +1,50 @@
+// Colours of distances from the reference: logarithmic, from dark blue (1e-14) to orange (1).
+"use strict";
+{
+  const { element } = qddotReport;
+  const DECADES = 14;
+  // From the map "plasma" of matplotlib without its yellow, which nobody sees on white.
+  const STOPS = ["#0d0887", "#41049d", "#6a00a8", "#8f0da4", "#b12a90", "#cc4778", "#e16462", "#f2844b", "#fca636"];
+
+  const channels = (color) => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
+
+  /** Red, green and blue from 0 to 255 at a place from 0 to 1 of the scale. */
+  function colorAt(place) {
+    const at = Math.min(Math.max(place, 0), 1) * (STOPS.length - 1);
+    const [low, high] = [channels(STOPS[Math.floor(at)]), channels(STOPS[Math.ceil(at)])];
+    return low.map((value, channel) => value + (at % 1) * (high[channel] - value));
+  }
+
+  const linear = (value) => (value <= 10.31475 ? value / 3294.6 : ((value / 255 + 0.055) / 1.055) ** 2.4);
+
+  /** Red, green and blue of the 256 packed distances, as linear light, which three.js computes with. */
+  const table = new Float32Array(256 * 3);
+  for (let code = 0; code < 256; code++) colorAt((code - 1) / 254).forEach((value, channel) => (table[3 * code + channel] = linear(value)));
+
+  /** The relative distance that a packed one stands for. */
+  const distanceOf = (code) => (code === 0 ? 0 : 10 ** (((code - 1) / 254) * DECADES - DECADES));
+
+  /** A bar with its numbers, and a pointer at the largest distance, which `point(code)` moves. */
+  function legend() {
+    const bar = element("div", { class: "scale-bar" });
+    bar.style.background = `linear-gradient(to right, ${STOPS.join(", ")})`;
+    const ticks = element("div", { class: "scale-ticks" });
+    for (let power = -DECADES; power <= 0; power += 2) {
+      const words = power === 0 ? "1" : power === -DECADES ? `≤ 1e${power}` : `1e${power}`;
+      const tick = element("span", {}, words);
+      tick.style.left = `${(100 * (power + DECADES)) / DECADES}%`;
+      ticks.append(tick);
+    }
+    const pointer = element("i");
+    const words = element("p", { "aria-live": "off" });
+    const node = element("div", { class: "scale" }, words, element("div", { class: "scale-now", "aria-hidden": "true" }, pointer), bar, ticks);
+    function point(code) {
+      pointer.style.left = `${(100 * Math.max(0, code - 1)) / 254}%`;
+      const far = code === 0 ? "at most 1e-14" : qddotReport.words.number(distanceOf(code));
+      words.textContent = `Distance of a node from the reference, relative to the largest displacement. Largest now: ${far}`;
+    }
+    return { node, point };
+  }
+
+  qddotReport.distanceScale = { table, colorAt, distanceOf, legend };
+}

@@ -1,0 +1,177 @@
+// The motion of the chosen run beside the reference's.
+"use strict";
+{
+  const { element, byId, report, words, state, choose } = qddotReport;
+  const { motion, points } = report;
+  const section = byId("motion");
+  const NEUTRAL = [0.09, 0.1, 0.12];
+  // Of the length of a line of nodes: how far up its largest displacement is drawn.
+  const LIFT = 0.2;
+  const FEWEST_LIFTED = 8;
+  let stage = null;
+  let player = null;
+  let lists = null;
+  let scene = null;
+  let turn = 0;
+
+  const reference = motion?.runs.find((run) => run.role === "reference") ?? null;
+  const runOf = (point) => motion?.runs.find((run) => run.point === point) ?? null;
+  const sentence = (text) => element("p", { class: "quiet" }, text);
+
+  function keptRuns() {
+    const runs = motion.runs.filter((run) => run.role === "run" && run.point !== null);
+    if (!runs.length) return null;
+    const button = (run) =>
+      element(
+        "button",
+        { type: "button", "aria-pressed": String(run.point === state.run), title: run.why, click: () => choose({ run: run.point }) },
+        run.label,
+      );
+    return element("div", { class: "kept", role: "group", "aria-label": "Runs whose motion was kept" }, "Kept motions:", ...runs.map(button));
+  }
+
+  function withoutMotion() {
+    const failed = points.outcome[state.run] === "reached_end" ? "" : " up to where it failed";
+    return element(
+      "div",
+      {},
+      sentence(`No motion of this run was kept. This command writes all nodes${failed} over time into motion.csv:`),
+      qddotReport.commandLine(`${points.command[state.run]} --trajectory motion.csv`),
+    );
+  }
+
+  function stopWords(run) {
+    if (run.outcome === "reached_end") return null;
+    const why = run.point !== null ? points.cause[run.point] : null;
+    return `stopped at t = ${words.seconds(run.t_reached)}: ${why ?? words.plain(run.outcome)}`;
+  }
+
+  function viewOf(run) {
+    const words = element("div", { class: "view-words" }, element("b", {}, run.label), run.role === "reference" ? "the reference" : run.why);
+    const stop = stopWords(run);
+    if (stop) words.append(element("div", {}, element("span", { class: "view-stop" }, stop)));
+    if (run.left_box) words.append(element("div", { class: "quiet" }, "parts of it leave what is kept"));
+    return element("div", { class: "view" }, words);
+  }
+
+  // A line of nodes moves along itself: its displacements are drawn upwards, or nobody would see them.
+  function lifted(bounds) {
+    if (motion.dimension !== 1 || motion.nodes < FEWEST_LIFTED || !(motion.distance_unit > 0)) return null;
+    const extents = bounds.high.map((high, axis) => high - bounds.low[axis]);
+    const along = extents.indexOf(Math.max(...extents));
+    return { along, up: along === 2 ? 0 : 2, factor: (LIFT * extents[along]) / motion.distance_unit };
+  }
+
+  function place(run, body, t) {
+    qddotReport.positionsAt(run, t, body.positions);
+    if (!scene.lift) return;
+    const { along, up, factor } = scene.lift;
+    const { places } = run;
+    for (let i = along; i < body.positions.length; i += 3) {
+      const start = motion.low[along] + (motion.size * places[i]) / 65535;
+      body.positions[i - along + up] = scene.middle[up] + factor * (body.positions[i] - start);
+    }
+  }
+
+  function paint(run, body, t) {
+    if (!run.distances) {
+      for (let i = 0; i < body.colors.length; i++) body.colors[i] = NEUTRAL[i % 3];
+      return null;
+    }
+    const { frame } = qddotReport.frameAt(run.times, t);
+    const { table } = qddotReport.distanceScale;
+    let largest = 0;
+    for (let node = 0; node < motion.nodes; node++) {
+      const code = run.distances[frame * motion.nodes + node];
+      if (code > largest) largest = code;
+      body.colors.set(table.subarray(3 * code, 3 * code + 3), 3 * node);
+    }
+    return largest;
+  }
+
+  function show(t) {
+    if (!scene) return;
+    for (const { run, body, view } of scene.parts) {
+      place(run, body, t);
+      const largest = paint(run, body, t);
+      if (largest !== null) scene.scale?.point(largest);
+      body.update();
+      view.style.background = t > run.times.at(-1) && run.outcome !== "reached_end" ? "#fbe9e5" : "";
+    }
+    stage.draw();
+  }
+
+  function buttons() {
+    const button = (text, label, act) => element("button", { type: "button", "aria-label": label, title: label, click: act }, text);
+    return [
+      button("+", "Closer", () => stage.zoom(1.25)),
+      button("−", "Farther", () => stage.zoom(0.8)),
+      button("Reset view", "Show the whole scene", () => stage.look(scene.bounds)),
+    ];
+  }
+
+  async function build(runs) {
+    lists ??= { springs: await qddotReport.nodeLists(motion.springs), faces: await qddotReport.nodeLists(motion.faces) };
+    const unpacked = await Promise.all(runs.map(qddotReport.unpackedRun));
+    const bounds = qddotReport.boundsOf(unpacked[0]);
+    return { unpacked, bounds };
+  }
+
+  function liftBounds(bounds, lift) {
+    if (!lift) return bounds;
+    const [low, high] = [[...bounds.low], [...bounds.high]];
+    const reach = 1.2 * lift.factor * motion.distance_unit;
+    const middle = (low[lift.up] + high[lift.up]) / 2;
+    [low[lift.up], high[lift.up]] = [middle - reach, middle + reach];
+    return { low, high };
+  }
+
+  function explain(lift) {
+    const move = motion.dimension < 3 ? "Drag to move" : "Drag to turn, with the right button to move";
+    const lines = [`${move}; pinch, or click and turn the wheel, to zoom. Dark squares are pinned nodes. Between kept frames nodes move straight.`];
+    if (lift) lines.push(`Nodes move along the line; their displacement is drawn upwards as well, ${words.ratio(lift.factor)} as large.`);
+    return sentence(lines.join(" "));
+  }
+
+  /** Draws the motion of the chosen run, or says why there is none. */
+  qddotReport.drawMotion = async () => {
+    const mine = ++turn;
+    player?.pause();
+    const heading = element("h3", {}, "Its motion beside the reference");
+    const say = (...nodes) => section.replaceChildren(heading, ...nodes.filter(Boolean));
+    scene = null;
+    if (!motion || !motion.runs.length) return say(sentence("No motions were kept."), state.run === null ? null : withoutMotion());
+    if (!qddotReport.canInflate()) return say(sentence("This browser cannot unpack the motions: it lacks DecompressionStream."));
+    const chosen = state.run === null ? null : runOf(state.run);
+    const runs = [...new Set([reference, chosen].filter(Boolean))];
+    const missing = state.run !== null && !chosen ? withoutMotion() : null;
+    if (!runs.length) return say(keptRuns(), missing);
+
+    const views = runs.map(viewOf);
+    const holder = element("div", { class: views.length > 1 ? "views" : "views alone" }, ...views);
+    const opening = stage === null;
+    try {
+      stage ??= qddotReport.motionStage(motion.dimension);
+    } catch {
+      return say(keptRuns(), missing, sentence("This browser draws no WebGL, which the motion is drawn with; all else on this page works without."));
+    }
+    const { unpacked, bounds } = await build(runs);
+    if (mine !== turn) return;
+    const lift = lifted(bounds);
+    const bodies = unpacked.map(() => qddotReport.motionBody({ nodes: motion.nodes, pinned: motion.pinned, ...lists }));
+    const scale = unpacked.some((run) => run.distances) ? qddotReport.distanceScale.legend() : null;
+    const wide = liftBounds(bounds, lift);
+    const middle = wide.low.map((low, axis) => (low + wide.high[axis]) / 2);
+    scene = { bounds: wide, lift, middle, scale, parts: unpacked.map((run, at) => ({ run, body: bodies[at], view: views[at] })) };
+    const until = Math.max(...unpacked.map((run) => run.times.at(-1)));
+    player = qddotReport.player(until, show);
+    player.node.append(...buttons());
+    say(keptRuns(), missing, holder, player.node, scale?.node, explain(lift));
+    stage.canvas.setAttribute("aria-label", `Motion of ${runs.map((run) => run.label).join(" and ")}`);
+    stage.show(holder, views, bodies);
+    // The reader's own view stays from run to run.
+    if (opening || !reference) stage.look(wide);
+    player.go(0);
+    section.dataset.ready = state.run ?? "";
+  };
+}
