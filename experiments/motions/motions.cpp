@@ -47,7 +47,8 @@ using namespace measure;
 using namespace command;
 namespace {
 
-// Bytes of motions, and seconds of runs, that a folder gets unless more runs are asked for.
+// Runs, bytes of their motions and seconds that a folder gets unless more runs are asked for.
+constexpr std::size_t most_runs = 120;
 constexpr double most_bytes = 256e6, most_seconds = 60;
 // Frames times nodes that a motion has unless more frames are asked for.
 constexpr double most_positions = 6e5;
@@ -67,9 +68,10 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--frames", a.frames,
                   "how many times are seen after the start (default: 100, fewer of large scenes)")
       .take_last();
-  line.add_option("--runs", a.runs,
-                  "how many runs, the most telling first (default: as many as 256 MB and a minute "
-                  "hold)")
+  line.add_option(
+          "--runs", a.runs,
+          "how many runs, the most telling first (default: 120, fewer where these take more "
+          "than 256 MB or a minute)")
       .take_last();
   line.add_option("--out", a.out,
                   "the folder of work_precision's points.csv, for motions.csv and motions/");
@@ -126,8 +128,8 @@ int motions(const CommandLine& line, Arguments& a, const std::vector<std::string
   const Reference reference = reference_for(drawn, start, scene, study.until, a.out, origin);
   const auto front = fastest_at_each_accuracy(study.points, reference);
   auto runs = chosen_runs(study.points, front);
-  if (line.has("--runs") && std::ssize(runs) > a.runs)
-    runs.resize(static_cast<std::size_t>(a.runs));
+  const std::size_t all = runs.size();
+  runs.resize(std::min(all, line.has("--runs") ? static_cast<std::size_t>(a.runs) : most_runs));
 
   const auto times = frame_times(
       study.until, line.has("--frames") ? a.frames : usual_number_of_frames(start.nodes.size()));
@@ -146,14 +148,13 @@ int motions(const CommandLine& line, Arguments& a, const std::vector<std::string
   progress().wipe();
   origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
   origin["displacement"] = reference.scales.displacement;
-  origin["runs_left_out"] = runs.size() - kept.runs();
+  origin["runs_left_out"] = all - kept.runs();
   kept.finish(origin);
   fmt::print("{}: {} of {} runs, {} frames each, {:.3g} MB in {}/motions\n",
-             in_one_line(drawn.name), kept.runs(), runs.size(), times.size(), 1e-6 * kept.bytes(),
-             a.out);
+             in_one_line(drawn.name), kept.runs(), all, times.size(), 1e-6 * kept.bytes(), a.out);
   if (!why) return done;
   fmt::print(stderr, "motions: interrupted by {}: {} of {} runs are kept\n", why->by, kept.runs(),
-             runs.size());
+             all);
   return why->status;
 }
 

@@ -21,7 +21,7 @@ struct Kept {
                                          "0.3", "--repeats", "1", "--out", folder.path()});
   Table points = read_csv(folder / "points.csv");
   nlohmann::json reference = nlohmann::json::parse(read_all(folder / "reference.json"));
-  Exit result = keep({"--frames", "40"});
+  Exit result = keep({"--frames", "40", "--runs", "1000"});
   Table motions = read_csv(folder / "motions.csv");
   Table energy = read_csv(folder / "motions_energy.csv");
 
