@@ -27,6 +27,14 @@ template <class Value>
 void write_all(const Handle& parent, const std::string& name, hid_t type, const Value* values,
                const std::vector<hsize_t>& size) {
   const Handle space = new_space(size), properties = new_properties(H5P_DATASET_CREATE);
+  constexpr hsize_t chunk = 1 << 14;  // rows: smaller sets are left as they are
+  if (size[0] > chunk) {
+    std::vector<hsize_t> chunks = size;
+    chunks[0] = chunk;
+    checked(H5Pset_chunk(properties.id(), static_cast<int>(chunks.size()), chunks.data()));
+    checked(H5Pset_shuffle(properties.id()));
+    checked(H5Pset_deflate(properties.id(), 1));
+  }
   const Handle set = new_dataset(parent, name, type, space, properties);
   if (size[0] > 0) checked(H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
 }
