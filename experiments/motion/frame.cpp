@@ -9,15 +9,24 @@
 namespace qddot::motion {
 namespace {
 
-// Appends a number as a float; false where it is none.
-bool take(double value, std::vector<float>& to) {
-  to.push_back(static_cast<float>(value));
-  return std::isfinite(to.back());
+// Whether the exponent is not the one of infinities and of what is no number.
+bool is_finite(float value) {
+  constexpr std::uint32_t exponent = 0x7f800000;
+  return (std::bit_cast<std::uint32_t>(value) & exponent) != exponent;
 }
 
-bool take_rounded(double value, std::vector<float>& to) {
-  to.push_back(rounded(static_cast<float>(value)));
-  return std::isfinite(to.back());
+// These make a number a float; `is_fine` is false from then on where it is none. No branches, so
+// that loops over them are done in vectors.
+float whole(double value, bool& is_fine) {
+  const auto result = static_cast<float>(value);
+  is_fine &= is_finite(result);
+  return result;
+}
+
+float short_form(double value, bool& is_fine) {
+  const float result = rounded(whole(value, is_fine));
+  is_fine &= is_finite(result);
+  return result;
 }
 
 }  // namespace
@@ -25,7 +34,6 @@ bool take_rounded(double value, std::vector<float>& to) {
 float rounded(float value) {
   constexpr int dropped = 23 - kept_bits;  // of the 23 that a float has behind the first
   constexpr std::uint32_t mask = (std::uint32_t(1) << dropped) - 1;
-  if (!std::isfinite(value)) return value;
   auto bits = std::bit_cast<std::uint32_t>(value);
   bits += (mask >> 1) + (bits >> dropped & 1);
   return std::bit_cast<float>(bits & ~mask);
@@ -41,48 +49,57 @@ Framing::Framing(const Scene& start, const ReducedScene& scene, const Fields& wa
 }
 
 const Frame* Framing::of(const State& state, const State* reference) {
+  bool is_fine = std::isfinite(state.t);
   frame_.time = state.t;
-  for (auto* numbers : {&frame_.positions, &frame_.velocities, &frame_.kinetic_energies,
-                        &frame_.distances, &frame_.strains})
-    numbers->clear();
   const std::vector<Node> nodes = scene_.expand(state);
-  if (!std::isfinite(state.t) || !take_nodes(nodes)) return nullptr;
-  if (wanted_.strain && !take_strains(nodes)) return nullptr;
-  if (!reference) return &frame_;
-  const std::vector<Node> exact = scene_.expand(*reference);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double distance = (nodes[i].position - exact[i].position).norm();
-    if (!take_rounded(distance, frame_.distances)) return nullptr;
-  }
-  return &frame_;
+  take_positions(nodes, is_fine);
+  if (wanted_.velocity) take_velocities(nodes, is_fine);
+  if (wanted_.kinetic_energy) take_energies(nodes, is_fine);
+  if (wanted_.strain) take_strains(nodes, is_fine);
+  if (reference) take_distances(nodes, scene_.expand(*reference), is_fine);
+  return is_fine ? &frame_ : nullptr;
 }
 
-bool Framing::take_nodes(const std::vector<Node>& nodes) {
-  bool is_fine = true;
+void Framing::take_positions(const std::vector<Node>& nodes, bool& is_fine) {
+  frame_.positions.resize(3 * nodes.size());
+  float* to = frame_.positions.data();
+  for (const Node& node : nodes) {
+    for (const double x : node.position) *to++ = whole(x, is_fine);
+  }
+}
+
+void Framing::take_velocities(const std::vector<Node>& nodes, bool& is_fine) {
+  frame_.velocities.resize(3 * nodes.size());
+  float* to = frame_.velocities.data();
+  for (const Node& node : nodes) {
+    for (const double v : node.velocity) *to++ = short_form(v, is_fine);
+  }
+}
+
+void Framing::take_energies(const std::vector<Node>& nodes, bool& is_fine) {
+  frame_.kinetic_energies.resize(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    for (const double x : nodes[i].position) is_fine &= take(x, frame_.positions);
-    // What is not written must be a number as well: a motion without velocities does not outlive
-    // one that has them.
-    for (const double v : nodes[i].velocity) is_fine &= take_rounded(v, frame_.velocities);
     const double energy = 0.5 * masses_[i] * nodes[i].velocity.squaredNorm();
-    is_fine &= take_rounded(energy, frame_.kinetic_energies);
+    frame_.kinetic_energies[i] = short_form(energy, is_fine);
   }
-  if (!wanted_.velocity) frame_.velocities.clear();
-  if (!wanted_.kinetic_energy) frame_.kinetic_energies.clear();
-  return is_fine;
 }
 
-bool Framing::take_strains(const std::vector<Node>& nodes) {
-  bool is_fine = true;
-  frame_.strains.assign(first_line_, 0);
+void Framing::take_strains(const std::vector<Node>& nodes, bool& is_fine) {
+  frame_.strains.resize(cells_, 0);
+  float* to = frame_.strains.data() + first_line_;
   for (std::size_t i = 0; i < springs_.size(); ++i) {
     const auto& from = nodes[springs_[i][0]].position;
-    const auto& to = nodes[springs_[i][1]].position;
-    const double strain = lengths_[i] > 0 ? ((to - from).norm() - lengths_[i]) / lengths_[i] : 0;
-    is_fine &= take_rounded(strain, frame_.strains);
+    const double length = (nodes[springs_[i][1]].position - from).norm();
+    const double strain = lengths_[i] > 0 ? (length - lengths_[i]) / lengths_[i] : 0;
+    *to++ = short_form(strain, is_fine);
   }
-  frame_.strains.resize(cells_, 0);
-  return is_fine;
+}
+
+void Framing::take_distances(const std::vector<Node>& nodes, const std::vector<Node>& exact,
+                             bool& is_fine) {
+  frame_.distances.resize(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    frame_.distances[i] = short_form((nodes[i].position - exact[i].position).norm(), is_fine);
 }
 
 }  // namespace qddot::motion

@@ -11,7 +11,7 @@ namespace qddot::motion {
 // colour scale of 256 shades. The zeros behind them are what makes files small.
 constexpr int kept_bits = 7;
 
-// The nearest of the numbers with so many bits; halves go to the even one.
+// The nearest of the numbers with so many bits, of a finite one; halves go to the even one.
 float rounded(float value);
 
 // The numbers of one frame, as a file holds them: node after node, x, y and z of each.
@@ -36,8 +36,12 @@ class Framing {
   const Frame* of(const State& state, const State* reference);
 
  private:
-  bool take_nodes(const std::vector<Node>& nodes);
-  bool take_strains(const std::vector<Node>& nodes);
+  void take_positions(const std::vector<Node>& nodes, bool& is_fine);
+  void take_velocities(const std::vector<Node>& nodes, bool& is_fine);
+  void take_energies(const std::vector<Node>& nodes, bool& is_fine);
+  void take_strains(const std::vector<Node>& nodes, bool& is_fine);
+  void take_distances(const std::vector<Node>& nodes, const std::vector<Node>& exact,
+                      bool& is_fine);
 
   const ReducedScene& scene_;
   Fields wanted_;

@@ -54,7 +54,7 @@ std::string obj_text(const Scene& start) {
 class Pc2File final : public MotionFile {
  public:
   Pc2File(const std::vector<std::string>& files, const Scene& start, const ReducedScene& scene)
-      : framing_(start, scene, {.strain = false}),
+      : framing_(start, scene, {.velocity = false, .kinetic_energy = false, .strain = false}),
         points_(start.nodes.size()),
         file_(files[0], {}, files[2]),
         obj_(files[1]),

@@ -40,6 +40,34 @@ Handle stream_properties(hsize_t rows, std::size_t dimensions) {
   return properties;
 }
 
+// Compresses chunks, one after another. Does not call HDF5, so that several threads may have one.
+class Packer {
+ public:
+  Packer() : deflate_(libdeflate_alloc_compressor(fastest), libdeflate_free_compressor) {
+    if (!deflate_) throw std::bad_alloc();
+  }
+
+  void pack(Chunk& chunk) {
+    const std::size_t count = chunk.values.size();
+    shuffled_.resize(4 * count);
+    const float* from = chunk.values.data();
+    unsigned char* const to = shuffled_.data();
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t i = 0; i < count; ++i)
+        to[k * count + i] =
+            static_cast<unsigned char>(std::bit_cast<std::uint32_t>(from[i]) >> (8 * k));
+    }
+    room_.resize(libdeflate_zlib_compress_bound(deflate_.get(), shuffled_.size()));
+    const std::size_t size =
+        libdeflate_zlib_compress(deflate_.get(), to, shuffled_.size(), room_.data(), room_.size());
+    chunk.packed.assign(room_.begin(), room_.begin() + std::ptrdiff_t(size));
+  }
+
+ private:
+  std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> deflate_;
+  std::vector<unsigned char> shuffled_, room_;
+};
+
 std::string path_in_file(const Handle& parent, const std::string& name) {
   std::string path(static_cast<std::size_t>(checked(H5Iget_name(parent.id(), nullptr, 0))), '\0');
   checked(H5Iget_name(parent.id(), path.data(), path.size() + 1));
@@ -47,22 +75,6 @@ std::string path_in_file(const Handle& parent, const std::string& name) {
 }
 
 }  // namespace
-
-void Chunk::pack() {
-  const std::size_t count = values.size();
-  std::vector<unsigned char> bytes(4 * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto bits = std::bit_cast<std::uint32_t>(values[i]);
-    for (std::size_t k = 0; k < 4; ++k)
-      bytes[k * count + i] = static_cast<unsigned char>(bits >> (8 * k));
-  }
-  const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> deflate(
-      libdeflate_alloc_compressor(fastest), libdeflate_free_compressor);
-  if (!deflate) throw std::bad_alloc();
-  packed.resize(libdeflate_zlib_compress_bound(deflate.get(), bytes.size()));
-  packed.resize(libdeflate_zlib_compress(deflate.get(), bytes.data(), bytes.size(), packed.data(),
-                                         packed.size()));
-}
 
 RowStream::RowStream(const Handle& parent, const std::string& name, std::size_t rows_a_frame,
                      std::size_t columns)
@@ -87,7 +99,10 @@ void RowStream::append(const std::vector<float>& rows) {
     for (std::size_t i = 0; i < count;) {
       const std::size_t end =
           std::min(count, i + static_cast<std::size_t>(rows_a_chunk_) - chunk.values.size());
-      for (; i < end; ++i) chunk.values.push_back(rows[i * columns_ + chunk.column]);
+      std::size_t at = chunk.values.size();
+      chunk.values.resize(at + end - i);
+      float* const to = chunk.values.data();
+      for (; i < end; ++i) to[at++] = rows[i * columns_ + chunk.column];
       if (chunk.values.size() < rows_a_chunk_) continue;
       full_.push_back(std::move(chunk));
       chunk = Chunk{full_.back().row + rows_a_chunk_, full_.back().column, {}, {}};
@@ -134,7 +149,8 @@ bool write_full(const std::vector<RowStream*>& streams) {
   if (chunks.empty()) return false;
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (std::size_t k = next++; k < chunks.size(); k = next++) chunks[k]->pack();
+    Packer packer;
+    for (std::size_t k = next++; k < chunks.size(); k = next++) packer.pack(*chunks[k]);
   };
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   {

@@ -14,9 +14,6 @@ struct Chunk {
   hsize_t row = 0, column = 0;
   std::vector<float> values;
   std::vector<unsigned char> packed;
-
-  // Fills `packed`. Does not call HDF5, so that several threads may do so, each for a chunk.
-  void pack();
 };
 
 // A dataset of 32-bit floats, rows x columns, that grows by the rows of frame after frame. Each
