@@ -32,7 +32,7 @@ class Progress {
   static constexpr double plain_pause = 30;
   // A bound that is more than so many times what the slowest piece so far makes of the rest helps
   // nobody, and is not said.
-  static constexpr double loosest_bound = 4;
+  static constexpr double loosest_bound = 8;
 
   // Says nothing until it is started.
   explicit Progress(Screen screen = standard_error()) : screen_(std::move(screen)) {}

@@ -176,13 +176,13 @@ BOOST_AUTO_TEST_CASE(a_bound_runs_down_and_is_said_where_it_is_of_use) {
   shown.progress.now_at("a");
   BOOST_TEST(shown.last() == line("bench 1/11  a  0:00"));  // nobody knows yet of how much use
   shown.now += 10;
-  shown.progress.left_at_most(400);  // ten pieces like the slowest take 100 s
+  shown.progress.left_at_most(800);  // ten pieces like the slowest take 100 s
   shown.progress.finish("a");
-  BOOST_TEST(shown.last() == line("bench 1/11  a  0:10, at most 6:40 left"));
+  BOOST_TEST(shown.last() == line("bench 1/11  a  0:10, at most 13:20 left"));
   shown.now += 15;
   shown.progress.now_at("b");
-  BOOST_TEST(shown.last() == line("bench 2/11  b  0:25, at most 6:25 left"));
-  shown.progress.left_at_most(401);
+  BOOST_TEST(shown.last() == line("bench 2/11  b  0:25, at most 13:05 left"));
+  shown.progress.left_at_most(1300);
   shown.now += 0.5;
   shown.progress.now_at("b");
   BOOST_TEST(shown.last() == line("bench 2/11  b  0:25"));

@@ -3,20 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "qddot/measure/motion/resolved_frequency.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/scene/scene_file.hpp"
 
 namespace qddot::measure {
 namespace {
 
 // A first run at least so long [s] is a sample; shorter ones are timed in batches of `batch` [s].
 constexpr double sample_from = 0.1, batch = 1e-4;
-// What is watched ends at some of its steps to be looked at, no more than a quarter of them; with
-// what it takes to look, that is less than a second run.
-constexpr double watched = 2;
+// What is watched ends at some of its steps to be looked at, no more than a quarter of them. What
+// it takes to look shows in how much longer points take than their runs say.
+constexpr double watched = 1.25;
 // Threads that wait for the end of their time, and the journal [s].
 constexpr double around = 1e-3;
-// A point of so many seconds shows what else there is.
-constexpr double long_enough = 0.01;
+// A point that is expected to take so much of the limit shows what else there is, and not what
+// disturbs it; a run of so many steps, what one takes.
+constexpr double long_enough = 0.5;
+constexpr int many_steps = 100;
 // From 0.1 to 1e-15, a power of ten apart.
 constexpr int most_tolerances = 15;
 // To both sides of the first.
@@ -25,20 +29,31 @@ constexpr int most_rungs = 121;
 constexpr double saved_at_most = 10;
 // So many coarse runs over the budget are forgiven to implicit steps.
 constexpr int forgiven = 3;
-// A ladder lacks up to 42 rungs near its limit where errors fall as the order says, whatever that
-// is, and some more where runs beyond it come to their end by luck; all of at most eight times the
+// A ladder lacks up to 42 rungs near its limit where errors fall as the order says, 35 from order 3
+// on, and some more where runs beyond it come to their end by luck; all of at most eight times the
 // steps of the limit.
-constexpr int most_lacking = 50;
+constexpr int most_lacking = 50, most_lacking_of_high_order = 40, high_order = 3;
 constexpr double refined_up_to = 8;
-// No explicit method takes more forces a step (Kahan and Li's has the most).
-constexpr double most_forces = 17;
 // What a step does beside its forces differs from method to method, and w_max rises on the way: it
 // is that of the start which is known.
 constexpr double dearer_step = 2, stiffer_on_the_way = 2;
+// Implicit steps that resolve w_max as explicit ones do, at h w = 1, do not run away.
+constexpr double limit_of_implicit = 1;
 
 // Whether all forces are taken at each step: multirate methods resolve w_max of the soft ones.
 bool is_plainly_explicit(const Method& method) {
   return !method.is(Trait::implicit) && !method.asks(Need::split_forces);
+}
+
+// How many forces explicit steps take each, those of their start among them.
+double forces_a_step(const Method& method) {
+  constexpr int steps = 64;
+  static const ReducedScene oscillator(load_scene("oscillator"));
+  const double h = 0.1 / frequency_bound(oscillator.system(), oscillator.initial().q);
+  State state = oscillator.initial();
+  const auto integrator = make_integrator(method, oscillator.system(), {.step_size = h});
+  const Counts counts = integrator->advance(state, steps * h).counts;
+  return static_cast<double>(counts.force_evaluations) / steps;
 }
 
 }  // namespace
@@ -58,11 +73,15 @@ void SweepBound::learn(const Point& point, double seconds) {
   setup_ = std::max(setup_, point.setup);
   const bool reached = point.outcome == Outcome::reached_end;
   const double expected = this->point(reached ? point.time : effort_.seconds);
-  if (seconds >= long_enough) slower_ = std::max(slower_, slower_ * seconds / expected);
-  if (reached && point.method->knob == Knob::step_size && is_plainly_explicit(*point.method) &&
-      point.counts.force_evaluations > 0) {
+  if (expected >= long_enough * effort_.seconds)
+    slower_ = std::max(slower_, slower_ * seconds / expected);
+  const auto steps = static_cast<double>(point.counts.steps);
+  if (!reached || point.method->knob != Knob::step_size || steps < many_steps) return;
+  if (w_ == 0) w_ = frequency_bound(scene_->system(), scene_->initial().q);
+  if (!is_plainly_explicit(*point.method)) {
+    step_ = std::max(step_, point.time / steps);
+  } else if (point.counts.force_evaluations > 0) {
     force_ = std::max(force_, point.time / static_cast<double>(point.counts.force_evaluations));
-    if (w_ == 0) w_ = resolved_frequency(*point.method, scene_->system(), scene_->initial().q);
   }
 }
 
@@ -72,18 +91,27 @@ double SweepBound::point(double run) const {
   return slower_ * (point_seconds_at_most(run, effort_) + setups + around);
 }
 
+double SweepBound::step(const Method& method) const {
+  if (!is_plainly_explicit(method)) return step_;
+  const auto [known, is_new] = forces_.try_emplace(&method, 0);
+  if (is_new) known->second = forces_a_step(method);
+  return known->second * force_;
+}
+
 double SweepBound::near_limit(const Method& method) const {
-  const double limit = linear_limit(method);
-  if (limit == 0) return 0;
+  if (linear_limit(method) == 0) return 0;
+  const double limit =
+      std::isfinite(linear_limit(method)) ? linear_limit(method) : limit_of_implicit;
   double longest = effort_.seconds;
-  if (force_ > 0 && std::isfinite(limit) && is_plainly_explicit(method)) {
+  if (const double seconds = step(method); seconds > 0) {
     const double steps = refined_up_to * std::max(1.0, stiffer_on_the_way * until_ * w_ / limit);
-    longest = std::min(longest, steps * most_forces * dearer_step * force_);
+    longest = std::min(longest, steps * dearer_step * seconds);
   }
   // They are the closer the nearer to the limit: at most evenly spread over the octaves.
+  const int count = method.order < high_order ? most_lacking : most_lacking_of_high_order;
   double sum = 0;
-  for (int i = 0; i < most_lacking; ++i)
-    sum += point(longest * std::pow(refined_up_to, -static_cast<double>(i) / most_lacking));
+  for (int i = 0; i < count; ++i)
+    sum += point(longest * std::pow(refined_up_to, -static_cast<double>(i) / count));
   return sum;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+
 #include "qddot/measure/speed/measurement.hpp"
 
 namespace qddot::measure {
@@ -25,6 +27,7 @@ class SweepBound {
 
  private:
   double point(double run) const;
+  double step(const Method& method) const;
   double near_limit(const Method& method) const;
 
   const ReducedScene* scene_;
@@ -32,8 +35,10 @@ class SweepBound {
   Effort effort_;
   double setup_ = 0;   // the longest so far [s]
   double slower_ = 1;  // the largest such factor so far
-  double w_ = 0;       // w_max at the start [rad/s]
+  double w_ = 0;       // no less than w_max at the start [rad/s]
   double force_ = 0;   // the longest of explicit steps so far [s], with its share of the step
+  double step_ = 0;    // the longest of other fixed steps so far [s]
+  mutable std::map<const Method*, double> forces_;  // that explicit steps take each
 };
 
 }  // namespace qddot::measure
