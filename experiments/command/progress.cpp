@@ -16,6 +16,9 @@ namespace {
 
 constexpr double between_redraws = 0.1;  // [s]
 constexpr std::size_t usual_columns = 80, no_limit = 1000;
+// A terminal may show ^C behind the line, and terminals differ in what they clear past the last
+// column.
+constexpr std::size_t kept_free = 3;
 
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -134,10 +137,9 @@ void Progress::show() {
   last_line_ = now;
   state_.elapsed = now - begun_;
   state_.left = left_now(now);
-  // Past the last column terminals differ in what they clear.
   const std::size_t columns = screen_.columns();
-  screen_.write(
-      fmt::format("\r{}\033[K", progress_in_words(state_, columns > 1 ? columns - 1 : 1)));
+  screen_.write(fmt::format(
+      "\r{}\033[K", progress_in_words(state_, columns > kept_free ? columns - kept_free : 1)));
   is_visible_ = true;
 }
 

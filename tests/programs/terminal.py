@@ -33,6 +33,7 @@ class Screen:
             elif piece == "\x1b[K":
                 self.rows[-1] = self.rows[-1][: self.column]
                 self.seen.add(self.rows[-1])
+                self._is_progress = self.column > 0
             elif piece == "\x1b":
                 self.faults.append("an escape sequence")
             else:
