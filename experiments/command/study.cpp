@@ -64,6 +64,7 @@ Study::Study(const CommandLine& line, const std::string& folder,
             {"options", options_of(line)},
             {"code", code_hash()},
             {"processor", processor()}}) {
+  progress().wipe();  // what was done before may have a line
   const bool resumes = line.has("--resume");
   if (resumes && !std::filesystem::exists(path_)) {
     std::vector<std::string> paths;

@@ -125,6 +125,7 @@ std::vector<AmplitudeRow> rows_of(const Arguments& a, const Scene& start,
     rows = scaled_rows(start, *rest, a.amplitudes, reductions, &left_out);
   }
   for (const std::string& why : left_out) {
+    progress().wipe();
     fmt::print(stderr, "stability_map: warning: {}; its row is left out\n", in_one_line(why));
   }
   return rows;
@@ -305,6 +306,7 @@ std::optional<Scene> at_rest(const Scene& start, const std::string& source) {
   try {
     return settled(start, source);
   } catch (const InvalidInput& why) {
+    progress().wipe();
     fmt::print(stderr, "stability_map: warning: {}; its modes are left out\n", why.what());
     return {};
   }
@@ -320,7 +322,9 @@ int stability_map(const CommandLine& line, const Arguments& a,
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   const auto methods = select_methods(a.methods, scene, a.scene.name);
+  progress().stage("finding the equilibrium");
   const std::optional<Scene> rest = at_rest(start, a.scene.name);
+  progress().stage("finding the modes of the rows");
   const auto rows = rows_of(a, start, rest);
   require_folder(a.out);
   Study study(line, a.out, {"limits.csv", "linear.csv", "adaptive.csv", "modal.csv", "map.csv"},
