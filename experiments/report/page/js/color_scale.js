@@ -1,10 +1,11 @@
-// Colours of distances from the reference: logarithmic, from dark blue (1e-14) to orange (1).
+// Colours of distances from the reference: logarithmic, from blue (1e-14) over purple to orange (1).
 "use strict";
 {
   const { element } = qddotReport;
   const DECADES = 14;
-  // From the map "plasma" of matplotlib without its yellow, which nobody sees on white.
-  const STOPS = ["#0d0887", "#41049d", "#6a00a8", "#8f0da4", "#b12a90", "#cc4778", "#e16462", "#f2844b", "#fca636"];
+  const TICKS = [-14, -10, -6, -2, 0];
+  // All about as light as each other, so that a face's shade stays to be seen, and none pale on white.
+  const STOPS = ["#4a86bd", "#5573bf", "#6b60ba", "#8650ac", "#a34598", "#c0427c", "#d84f58", "#e86a35", "#f29111"];
 
   const channels = (color) => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
 
@@ -29,7 +30,7 @@
     const bar = element("div", { class: "scale-bar" });
     bar.style.background = `linear-gradient(to right, ${STOPS.join(", ")})`;
     const ticks = element("div", { class: "scale-ticks" });
-    for (let power = -DECADES; power <= 0; power += 2) {
+    for (const power of TICKS) {
       const words = power === 0 ? "1" : power === -DECADES ? `≤ 1e${power}` : `1e${power}`;
       const tick = element("span", {}, words);
       tick.style.left = `${(100 * (power + DECADES)) / DECADES}%`;

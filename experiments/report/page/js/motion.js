@@ -171,7 +171,8 @@
     stage.show(holder, views, bodies);
     // The reader's own view stays from run to run.
     if (opening || !reference) stage.look(wide);
-    player.go(0);
+    // The errors of the chart are those of the end.
+    player.go(until);
     section.dataset.ready = state.run ?? "";
   };
 }

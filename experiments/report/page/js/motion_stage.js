@@ -2,12 +2,27 @@
 "use strict";
 {
   const ANGLE = 32;
+  const MARGIN = 1.12;
   const MOST_PIXELS_A_PIXEL = 2;
 
   /** Along which axis a flat scene is looked at: the one in which it extends least. */
   function thinnestAxis({ low, high }) {
     const extents = [0, 1, 2].map((axis) => high[axis] - low[axis]);
     return extents.indexOf(Math.min(...extents));
+  }
+
+  /** How far from the middle of a box a camera in the direction `from` sees all of its corners. */
+  function distanceToSee({ low, high }, middle, from, aspect) {
+    const right = new THREE.Vector3(0, 0, 1).cross(from).normalize();
+    const up = from.clone().cross(right);
+    const slope = Math.tan((ANGLE * Math.PI) / 360) / MARGIN;
+    let away = 1e-30;
+    for (let corner = 0; corner < 8; corner++) {
+      const place = new THREE.Vector3(...[0, 1, 2].map((axis) => (corner & (1 << axis) ? high : low)[axis])).sub(middle);
+      const wide = Math.max(Math.abs(place.dot(up)), Math.abs(place.dot(right)) / aspect);
+      away = Math.max(away, place.dot(from) + wide / slope);
+    }
+    return away;
   }
 
   function camera(flat) {
@@ -55,10 +70,10 @@
         eye.position.copy(middle).addScaledVector(from, 2 * radius);
         [eye.near, eye.far, eye.zoom] = [0.01 * radius, 100 * radius, 1];
       } else {
-        const away = (1.05 * radius) / Math.sin((ANGLE * Math.PI) / 360);
         const from = new THREE.Vector3(0.62, -1, 0.5).normalize();
         const aspect = places[0] ? places[0].clientWidth / places[0].clientHeight : 1;
-        eye.position.copy(middle).addScaledVector(from, away * Math.max(1, 1 / aspect));
+        const away = distanceToSee(bounds, middle, from, aspect);
+        eye.position.copy(middle).addScaledVector(from, away);
         [eye.near, eye.far] = [away / 200, away * 20];
       }
       controls.update();
