@@ -10,6 +10,8 @@ import numpy as np
 from measurements import BadInput, parse, read_rows
 
 PHASES = ("all", "force", "stiffness", "factorization", "solve")
+# Bytes of unpacked chunks: frames are read one by one, of which a chunk may hold many.
+CACHE = 1 << 26
 ENERGIES = ("t", "kinetic", "potential", "total")
 
 
@@ -118,7 +120,7 @@ def open_motion(directory, name):
         raise BadInput(f"{name or 'a motion without a name'} is no file of the folder.")
     file = None
     try:
-        file = h5py.File(path, "r")
+        file = h5py.File(path, "r", rdcc_nbytes=CACHE)
         root = file["VTKHDF"]
         times = np.asarray(root["Steps/Values"], float).reshape(-1)
         points, columns = root["Points"].shape

@@ -91,6 +91,16 @@ def distance_unit(study, directory):
     return known[0] if known else None
 
 
+def is_of_another_study(study):
+    """Whether the motions were kept of another scene or to another end than the points."""
+    origin = read_json(os.path.join(study.directory, "motions.json"))
+    pairs = (
+        (look(origin, "scene", "hash"), look(study.sidecar, "scene", "hash")),
+        (number_or_none(origin.get("until")), study.until),
+    )
+    return any(None not in pair and pair[0] != pair[1] for pair in pairs)
+
+
 def open_all(directory, rows):
     """The rows with their open files, and a sentence for each file that cannot be shown."""
     opened, notes = [], []
@@ -214,6 +224,8 @@ def motion_part(study, room):
     motion is None where there is none."""
     if not os.path.exists(os.path.join(study.directory, "motions.csv")):
         return None, {}, []
+    if is_of_another_study(study):
+        return None, {}, ["The motions in this folder are of another study and are not shown."]
     notes, opened = [], []
     try:
         rows = read_motion_rows(study.directory)

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 """Whether the page's answers are those of the study itself: of front.csv and of the table that it
-prints; and what they say of margins, doubts and accuracies that nothing reached."""
+prints; and what they say of margins, doubts and accuracies that nothing reached. The programs are in
+the folder QDDOT_BIN."""
 
-import argparse
 import csv
 import json
+import os
 import re
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -95,7 +95,7 @@ class Sentences(unittest.TestCase):
 class Studies(unittest.TestCase):
     """Real studies, each made once."""
 
-    bin = None
+    bin = Path(os.environ.get("QDDOT_BIN", "build/bin")).resolve()
 
     @classmethod
     def setUpClass(cls):
@@ -232,8 +232,4 @@ def front_of(folder):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--bin", type=Path, required=True, help="the folder of the programs")
-    arguments, others = parser.parse_known_args()
-    Studies.bin = arguments.bin.resolve()
-    unittest.main(argv=[sys.argv[0], *others])
+    unittest.main()

@@ -211,6 +211,13 @@ class Broken(Folder):
         self.rewrite("motions.csv", rows)
         self.assert_not_shown(self.page().data)
 
+    def test_motions_of_another_study_are_not_shown(self):
+        for other in ({"until": 0.25}, {"scene": {"hash": "another"}}):
+            self.edit("motions.json", lambda content, other=other: content.update(other))
+            data = self.page().data
+            self.assertIsNone(data["motion"])
+            self.assertRegex(data["notes"][0], "are of another study")
+
     def test_a_broken_table_of_motions_is_a_note(self):
         (self.folder / "motions.csv").write_text("file,role\n")
         data = self.page().data

@@ -4,13 +4,17 @@ hostile names, missing and broken files."""
 
 import math
 import os
+import tempfile
 import unittest
+from pathlib import Path
 
 import h5py
 import numpy as np
 
 import made_folder
-from decoding import elements
+import page
+import report
+from decoding import Page, elements
 from packed_folder import Folder
 
 
@@ -209,6 +213,29 @@ class Motions(Folder):
             second["seconds"],
             {"all": 2, "force": 0.5, "stiffness": None, "factorization": 0.25, "solve": 0},
         )
+
+
+class RealPage(unittest.TestCase):
+    """The page that is shipped, with its own template, styles and scripts."""
+
+    def test_it_holds_all_that_its_order_lists(self):
+        with tempfile.TemporaryDirectory() as folder:
+            made_folder.make_folder(folder, side=3, frames=3, runs=1, scene="a </title> b")
+            self.assertEqual(report.main([folder]), 0)
+            result = Page(Path(folder) / "report.html")
+        found = elements(result.text)
+        texts = [text for _, _, text in found]
+        for name in page.listed(".js") + page.listed(".css"):
+            self.assertIn((page.HOME / name).read_text(encoding="utf-8"), texts, name)
+        self.assertNotRegex(result.text, r"<!-- qddot:|\{\{title\}\}")
+        self.assertEqual([text for tag, _, text in found if tag == "title"], ["a </title> b"])
+        sources = [attributes["src"] for _, attributes, _ in found if "src" in attributes]
+        self.assertEqual([source for source in sources if not source.startswith("data:")], [])
+
+    def test_every_script_of_the_page_is_listed(self):
+        own = [file.relative_to(page.HOME) for file in (page.HOME / "page").rglob("*.[jc]s*")]
+        listed = page.listed(".js") + page.listed(".css")
+        self.assertEqual(sorted(map(str, own)), sorted(n for n in listed if n.startswith("page/")))
 
 
 if __name__ == "__main__":

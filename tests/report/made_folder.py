@@ -71,7 +71,7 @@ def write_vtkhdf(path, sheet, times, positions, distance):
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = [2, 0]
         root.attrs.create("Type", b"PolyData", dtype=h5py.string_dtype("ascii", 8))
-        options = {"compression": "gzip", "shuffle": True}
+        options = {"compression": "lzf", "shuffle": True}
         root.create_dataset("Points", data=positions.reshape(-1, 3).astype("f4"), **options)
         steps = root.create_group("Steps")
         steps.attrs["NSteps"] = frames
@@ -135,7 +135,9 @@ def write_motions(folder, sheet, rows, frames, runs, noise):
         energy += energies(name, times, 0.3 * noise * number)
     made_sweeps.write_table(folder / "motions.csv", MOTION_COLUMNS, table)
     made_sweeps.write_table(folder / "motions_energy.csv", ENERGY_COLUMNS, energy)
-    text = json.dumps({"interrupted": None, "exit_status": 0, "version": "0.1.0"})
+    origin = {"interrupted": None, "exit_status": 0, "version": "0.1.0"}
+    origin |= {"until": made_sweeps.UNTIL, "displacement": displacement, "runs_left_out": 0}
+    text = json.dumps(origin)
     (folder / "motions.json").write_text(text + "\n", encoding="utf-8")
 
 
