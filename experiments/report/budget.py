@@ -15,7 +15,7 @@ def kept_frames(count, longest, limit):
     """The numbers of the frames that are kept of a run's `count`, where the longest run has
     `longest` and keeps `limit`: every run's at the same places, and its first and last."""
     places = np.rint(np.linspace(0, longest - 1, min(max(limit, 2), longest))).astype(int)
-    return sorted({0, *(int(place) for place in places if place < count), count - 1})
+    return sorted({*(int(place) for place in places if place < count), count - 1})
 
 
 def ladder(runs, frames):

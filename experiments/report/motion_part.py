@@ -5,17 +5,14 @@ import math
 import os
 from dataclasses import dataclass
 
-import numpy as np
-
 from answers import knob_in_words
 from budget import fit
 from encoding import distances_blob, index_blob, positions_blob, quantised
 from measurements import BadInput
+from motion_box import box_of, unmoved
 from motion_files import open_motion, read_energies, read_motion_rows
-from study_folder import look, number_or_none, read_json
+from study_folder import is_number, look, number_or_none, read_json
 
-# How far runs may go out of the reference's box on each side, as a part of its side.
-MARGIN = 0.25
 # What stands around a blob in the page.
 FRAME_OF_BLOB = len('<script type="text/plain" id="p1000"></script>\n')
 
@@ -35,51 +32,6 @@ class EncodedRun:
         return sum(len(part) + FRAME_OF_BLOB for part in parts)
 
 
-@dataclass(frozen=True)
-class Box:
-    """The cube that positions are told in: its lower corner [m] and its side [m]."""
-
-    low: np.ndarray
-    size: float
-
-
-def bounds(motion):
-    """The least and the largest coordinates (3,) that are numbers, over all frames."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for frame in range(len(motion.times)):
-        (positions,) = motion.positions([frame])
-        finite = np.isfinite(positions)
-        low = np.minimum(low, np.where(finite, positions, np.inf).min(axis=0))
-        high = np.maximum(high, np.where(finite, positions, -np.inf).max(axis=0))
-    return low.astype(float), high.astype(float)
-
-
-def box_of(motions):
-    """The box of the first motion, widened for the others by no more than MARGIN to each side."""
-    low, high = bounds(motions[0])
-    if not np.isfinite(low + high).all():
-        raise BadInput("the first motion has no positions")
-    side = float((high - low).max()) or 1.0
-    least, most = low - MARGIN * side, high + MARGIN * side
-    for motion in motions[1:]:
-        own_low, own_high = bounds(motion)
-        low = np.minimum(low, np.clip(own_low, least, low))
-        high = np.maximum(high, np.clip(own_high, high, most))
-    return Box(low, float((high - low).max()) or 1.0)
-
-
-def unmoved(motion):
-    """The nodes that are at one place in all frames; none where there is one frame only."""
-    if len(motion.times) < 2:
-        return []
-    (first,) = motion.positions([0])
-    still = np.ones(motion.nodes, bool)
-    for frame in range(1, len(motion.times)):
-        (positions,) = motion.positions([frame])
-        still &= (positions == first).all(axis=1)
-    return np.flatnonzero(still).tolist()
-
-
 def distance_unit(study, directory):
     """The largest displacement [m], by which distances are divided; None where it is not known or
     nothing moves."""
@@ -91,14 +43,27 @@ def distance_unit(study, directory):
     return known[0] if known else None
 
 
-def is_of_another_study(study):
-    """Whether the motions were kept of another scene or to another end than the points."""
-    origin = read_json(os.path.join(study.directory, "motions.json"))
+def is_of_another_study(study, origin):
+    """Whether the motions, by their sidecar, were kept of another scene or to another end than the
+    points."""
     pairs = (
         (look(origin, "scene", "hash"), look(study.sidecar, "scene", "hash")),
         (number_or_none(origin.get("until")), study.until),
     )
     return any(None not in pair and pair[0] != pair[1] for pair in pairs)
+
+
+def missing_motions(origin):
+    """Sentences on motions that the study itself did not keep, as their sidecar says."""
+    notes = []
+    if origin.get("interrupted"):
+        notes.append(
+            f"Keeping motions was interrupted by {origin['interrupted']}: some are missing."
+        )
+    more = origin.get("runs_left_out")
+    if is_number(more) and more > 0:
+        notes.append(f"There was no room in motions/ for {more:g} more runs.")
+    return notes
 
 
 def open_all(directory, rows):
@@ -224,14 +189,15 @@ def motion_part(study, room):
     motion is None where there is none."""
     if not os.path.exists(os.path.join(study.directory, "motions.csv")):
         return None, {}, []
-    if is_of_another_study(study):
+    origin = read_json(os.path.join(study.directory, "motions.json"))
+    if is_of_another_study(study, origin):
         return None, {}, ["The motions in this folder are of another study and are not shown."]
     notes, opened = [], []
     try:
         rows = read_motion_rows(study.directory)
         opened, notes = open_all(study.directory, rows)
         energies, more = energies_or_note(study.directory)
-        notes += more
+        notes += missing_motions(origin) + more
         if not opened:
             return None, {}, notes
         part, blobs, more = pack(study, opened, energies, room)

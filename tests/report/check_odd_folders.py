@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 import made_folder
+import page
 import report
 from decoding import Page, elements
 from packed_folder import Folder
@@ -126,6 +127,23 @@ class Missing(Folder):
         self.assertRegex(data["notes"][0], "^Chaotic: from t = 0.3 s on")
         self.assertNotIn("\n", data["notes"][0])
 
+    def test_another_motion_is_no_answer_beyond_the_horizon(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        known = {"beyond_horizon": True, "horizon": 0.3, "lyapunov": 50.0, "chaotic": True}
+        self.edit("reference.json", lambda content: content.update(known, modal_shares_floor=0.01))
+        rows = self.rows()
+        for row in rows:
+            # Chance makes 0.01; ten times as far is another motion.
+            row["error_modal_shares"] = 0.11 if row["method"] == "symmetric8" else 0.09
+        self.rewrite("points.csv", rows)
+        data = self.page().data
+        names = [data["methods"][index]["name"] for index in data["points"]["method"]]
+        fastest = {names[answer["point"]] for answer in data["answers"] if answer["point"]}
+        self.assertTrue(fastest)
+        self.assertNotIn("symmetric8", fastest)
+        counts = data["quantities"][0]["counts"]
+        self.assertEqual(counts, [name != "symmetric8" for name in names])
+
     def test_infinite_and_missing_numbers_are_null(self):
         made_folder.make_folder(self.folder, has_motions=False)
         rows = self.rows()
@@ -134,6 +152,16 @@ class Missing(Folder):
         points = self.page().data["points"]
         for name in ("energy_growth", "error_velocity", "steps"):
             self.assertIsNone(points[name][0])
+
+    def test_a_number_that_is_not_finite_is_no_json(self):
+        for number in (math.nan, math.inf):
+            with self.assertRaises(ValueError):
+                page.json_text({"x": number})
+
+    def test_motions_that_were_not_kept_are_said(self):
+        made_folder.make_folder(self.folder, side=3, frames=3, runs=1)
+        self.edit("motions.json", lambda c: c.update(interrupted="SIGTERM", runs_left_out=7))
+        self.assertRegex(" ".join(self.page().data["notes"]), "by SIGTERM.* for 7 more runs")
 
     def test_zero_motion(self):
         made_folder.make_folder(self.folder, side=3, frames=4, runs=1)
