@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <optional>
 
@@ -30,6 +30,7 @@ const std::vector<std::string> columns = {"method",
                                           "time_s",
                                           "time_min_s",
                                           "setup_s",
+                                          "steps",
                                           "energy_growth"};
 
 // What of a study's options decides how a method runs.
@@ -65,6 +66,7 @@ Point point_of(const WrittenTable& table, std::size_t row, const std::string& pa
           .time = number("time_s"),
           .time_min = number("time_min_s"),
           .setup = number("setup_s"),
+          .counts = {.steps = static_cast<std::int64_t>(number("steps"))},
           .energy_growth = number("energy_growth")};
 }
 

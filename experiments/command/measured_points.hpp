@@ -19,7 +19,7 @@ struct MeasuredPoints {
   std::vector<std::string> no_reduce;  // what was left in the scene
   Options options;                     // beside the knob
   nlohmann::json key;                  // of the study
-  std::vector<Point> points;           // errors that were not measured are no numbers
+  std::vector<Point> points;  // what was not measured is no number; of the counts the steps
 };
 
 // Reads points.csv and its sidecar in `folder`. Throws InvalidInput, in a sentence that names the

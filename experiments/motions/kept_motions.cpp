@@ -45,6 +45,27 @@ std::vector<std::string> motions_in(const std::string& table) {
   return files;
 }
 
+// Every how many-th of the times a run is seen: all of them where that changes no step.
+std::size_t spacing(const Point& point, std::size_t times) {
+  constexpr std::int64_t steps_a_frame = 4;
+  const Method& method = *point.method;
+  const auto frames = static_cast<std::int64_t>(times) - 1;
+  if (method.knob == Knob::step_size || method.is(Trait::interpolates)) return 1;
+  for (std::int64_t every = 1; every < frames; ++every) {
+    const bool is_even = frames % every == 0;
+    if (is_even && frames / every * steps_a_frame <= point.counts.steps) {
+      return static_cast<std::size_t>(every);
+    }
+  }
+  return static_cast<std::size_t>(frames);
+}
+
+std::vector<double> thinned(const std::vector<double>& times, std::size_t every) {
+  std::vector<double> fewer;
+  for (std::size_t i = 0; i < times.size(); i += every) fewer.push_back(times[i]);
+  return fewer;
+}
+
 struct TimedRun {
   Summary summary;
   double seconds = 0;  // in all
@@ -81,7 +102,7 @@ KeptMotions::KeptMotions(const std::string& folder, const Scene& start, const Re
 
 void KeptMotions::add_reference(const ReferenceMotion& motion) {
   reference_ = motion.states;
-  const std::string file = write("reference", reference_, true);
+  const std::string file = write("reference", reference_, 1, true);
   table_.row(file, "reference", motion.method->name, knob_name(motion.method->knob), motion.value,
              name(Outcome::reached_end), times_.back(), reference_.size(), "",
              fmt::format("within {:.1e} of the reference at the end", motion.error), "", "", "", "",
@@ -92,14 +113,15 @@ void KeptMotions::add(const ChosenRun& run, const Options& options, const Refere
                       double seconds) {
   const Method& method = *run.point->method;
   const Options own = options_for(method, run.point->value, scene_, options);
-  const auto states = states_at(times_, scene_, method, own, seconds);
+  const std::size_t every = spacing(*run.point, times_.size());
+  const auto states = states_at(thinned(times_, every), scene_, method, own, seconds);
   const auto [summary, whole] = timed_run(scene_, times_.back(), method, own, seconds);
   const std::string file =
-      write(fmt::format("{}_{:.12g}", method.name, run.point->value), states, false);
+      write(fmt::format("{}_{:.12g}", method.name, run.point->value), states, every, false);
   const Seconds& part = summary.seconds;
   table_.row(file, "run", method.name, knob_name(method.knob), run.point->value,
              name(run.point->outcome), run.point->t_reached, states.size(),
-             largest_distance(states, reference), run.why, whole, part.force, part.stiffness,
+             largest_distance(states, every, reference), run.why, whole, part.force, part.stiffness,
              part.factorization, part.solve);
   ++runs_;
 }
@@ -119,13 +141,13 @@ void KeptMotions::finish(const nlohmann::json& origin) {
 }
 
 std::string KeptMotions::write(const std::string& name, const std::vector<State>& states,
-                               bool is_reference) {
+                               std::size_t every, bool is_reference) {
   const std::string place = fmt::format("motions/{}.vtkhdf", name), path = folder_ + "/" + place;
   const bool is_compared = !is_reference && !reference_.empty();
   const auto file = motion::open_motion(path, start_, scene_, is_compared);
   for (std::size_t i = 0; i < states.size(); ++i) {
     const State& state = states[i];
-    if (!file->add(state, is_compared ? &reference_[i] : nullptr)) break;
+    if (!file->add(state, is_compared ? &reference_[i * every] : nullptr)) break;
     const double kinetic = scene_.kinetic(state), potential = scene_.potential(state);
     energy_.row(place, state.t, kinetic, potential, kinetic + potential);
   }
@@ -138,13 +160,14 @@ std::string KeptMotions::write(const std::string& name, const std::vector<State>
   return place;
 }
 
-double KeptMotions::largest_distance(const std::vector<State>& states,
+double KeptMotions::largest_distance(const std::vector<State>& states, std::size_t every,
                                      const Reference& reference) const {
   if (reference_.empty()) return std::numeric_limits<double>::quiet_NaN();
   double largest = 0;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    largest = std::max(largest, position_error(scene_.expand(states[i]),
-                                               scene_.expand(reference_[i]), reference.scales));
+    largest =
+        std::max(largest, position_error(scene_.expand(states[i]),
+                                         scene_.expand(reference_[i * every]), reference.scales));
   }
   return largest;
 }

@@ -26,6 +26,8 @@ class KeptMotions {
   // Keeps the motion that all others are compared with, before any of them.
   void add_reference(const ReferenceMotion& motion);
   // Makes the run once more, up to so many `seconds`, and keeps its motion. Throws Interrupted.
+  // What can be seen at the ends of its steps alone takes more of them to end at the frames: such a
+  // run has a frame for every fourth of the steps that it took on the chart, at most.
   void add(const ChosenRun& run, const Options& options, const Reference& reference,
            double seconds);
   // How many runs beside the reference, and how many bytes of files.
@@ -35,9 +37,12 @@ class KeptMotions {
   void finish(const nlohmann::json& origin);
 
  private:
-  // Writes the motion's file and its energies. Returns its path in the folder.
-  std::string write(const std::string& name, const std::vector<State>& states, bool is_reference);
-  double largest_distance(const std::vector<State>& states, const Reference& reference) const;
+  // Writes the file of a motion that has a state at every so many-th frame, and its energies.
+  // Returns its path in the folder.
+  std::string write(const std::string& name, const std::vector<State>& states, std::size_t every,
+                    bool is_reference);
+  double largest_distance(const std::vector<State>& states, std::size_t every,
+                          const Reference& reference) const;
 
   std::string folder_;
   const Scene& start_;

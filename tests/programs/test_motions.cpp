@@ -74,6 +74,12 @@ BOOST_AUTO_TEST_CASE(a_run_is_the_one_of_the_chart) {
     BOOST_TEST(k.motions.text(row, "t_reached") == k.points.text(point, "t_reached"));
     const bool is_good = k.points.text(point, "outcome") == "reached_end";
     if (is_good) {
+      // IDA's steps end at the frames: it has few of these and still takes other steps.
+      if (k.motions.text(row, "method") == "ida") {
+        BOOST_TEST(4 * (k.motions.value(row, "frames") - 1) <=
+                   std::max(4.0, k.points.value(point, "steps")));
+        continue;
+      }
       BOOST_TEST(k.motions.value(row, "frames") == 41);
       // At the end it is as far from the reference as the chart says, up to what the reference's
       // own motion is off, 1e-6 at most.
