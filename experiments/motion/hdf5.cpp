@@ -52,10 +52,13 @@ Failure::Failure() : std::runtime_error(reason()) {}
 
 Handle new_properties(hid_t kind) { return {H5Pcreate(kind), H5Pclose}; }
 
-Handle new_file(const std::string& path) {
+void be_quiet() {
   // At the process's end HDF5 would try again to write what a full disk did not take.
   H5dont_atexit();
   checked(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
+}
+
+Handle new_file(const std::string& path) {
   const Handle access = new_properties(H5P_FILE_ACCESS);
   checked(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110));
   // It is locked already, by who made it (see unfinished.hpp), and HDF5's lock would meet that.

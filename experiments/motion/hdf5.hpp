@@ -47,8 +47,11 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-// A file in place of what is there, of HDF5 1.10's format; HDF5 prints nothing any more and does
-// not lock it.
+// From now on HDF5 prints nothing of what fails in the calling thread, and does nothing at the
+// process's end. To be called before anything else of HDF5's.
+void be_quiet();
+
+// A file in place of what is there, of HDF5 1.10's format, which HDF5 does not lock.
 Handle new_file(const std::string& path);
 Handle new_group(const Handle& parent, const std::string& name);
 Handle new_properties(hid_t kind);

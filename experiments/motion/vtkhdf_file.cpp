@@ -126,6 +126,7 @@ class VtkhdfFile final : public MotionFile {
   template <class Call>
   void trying(const Call& call) {
     try {
+      hdf5::be_quiet();
       call();
     } catch (const hdf5::Failure& failure) {
       throw CannotWrite(fmt::format("{}: cannot be written: {}", file_.path(), failure.what()));

@@ -115,6 +115,8 @@ void require_distinct_outputs(const CommandLine& line, const Arguments& a) {
     require_given(path, option, "the name of a CSV file");
     take(option, path, {path, sidecar_of(path)});
   }
+  if (line.has("--motion-fields") && !line.has("--motion"))
+    throw InvalidInput("--motion-fields is given without --motion, which it belongs to");
   if (line.has("--motion")) {
     require_given(a.motion_path, "--motion", "the name of a .vtkhdf or .pc2 file");
     take("--motion", a.motion_path, motion::files_of_motion(a.motion_path, "--motion"));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
 
@@ -21,6 +22,7 @@ using namespace std::string_literals;
 
 namespace {
 
+using Triples = std::vector<std::array<std::size_t, 3>>;
 using Pairs = std::vector<std::array<std::size_t, 2>>;
 
 // What parse_mesh says of the text; empty where it takes it.
@@ -172,6 +174,29 @@ BOOST_AUTO_TEST_CASE(a_prism_and_a_pyramid_on_one_face) {
                                   {4, 5},
                                   {4, 6},
                                   {5, 6}}));
+}
+
+BOOST_AUTO_TEST_CASE(faces_are_triangles_and_polygons_cut_up) {
+  const Triples two = {{0, 1, 2}, {0, 2, 3}};
+  BOOST_TEST((obj(square + "f 1 2 3 4\n").faces == two));
+  BOOST_TEST((obj(square + "f 1 2 3\nf 1 3 4\n").faces == two));
+  // The same corners again, in another order, are the same face; two corners are none.
+  BOOST_TEST((obj(square + "f 1 2 3\nf 3 2 1\nf 1 3 4\nf 1 1 2\nl 1 2\n").faces == two));
+  BOOST_TEST(obj(square + "l 1 2 3\n").faces.empty());
+}
+
+BOOST_AUTO_TEST_CASE(tetrahedra_have_their_boundary_for_faces) {
+  // The first triangle is given; the other six are sides of one tetrahedron alone.
+  const Mesh mesh = medit(glued);
+  BOOST_REQUIRE(mesh.faces.size() == 7);
+  BOOST_TEST((mesh.faces[0] == std::array<std::size_t, 3>{0, 1, 2}));
+  for (std::size_t k = 1; k < mesh.faces.size(); ++k) {
+    const auto [a, b, c] = mesh.faces[k];
+    const Eigen::Vector3d& x = mesh.vertices[a];
+    const Eigen::Vector3d normal = (mesh.vertices[b] - x).cross(mesh.vertices[c] - x);
+    const Eigen::Vector3d inside(0.2, 0.2, 0);
+    BOOST_TEST(normal.dot(x - inside) > 0);  // they face outwards
+  }
 }
 
 BOOST_AUTO_TEST_CASE(bending_pairs_lie_opposite_to_shared_edges) {

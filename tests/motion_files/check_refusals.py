@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+"""What simulate refuses of motions, and what it may replace.
+
+Call: check_refusals.py --bin FOLDER.
+"""
+
+import argparse
+import os
+import resource
+import signal
+import subprocess
+import tempfile
+
+from motion_case import Place, run_words
+
+HUGE = """
+dimension = 1
+nodes = [{position = [0.0], pinned = true}, {position = [1e60], mass = 1.0}]
+springs = [{nodes = [0, 1], stiffness = 100.0}]
+"""
+
+
+def check_refused(place, words, *fragments):
+    """One sentence with the fragments beside warnings, status 2, and no file that was not there."""
+    before = sorted(os.listdir(place.folder))
+    ended = place.run(words)
+    lines = ended.stderr.strip().split("\n")
+    said = "\n".join(line for line in lines if "warning: " not in line)
+    assert ended.returncode == 2, (words, ended.returncode, said)
+    assert said.startswith("simulate: ") and "\n" not in said, said
+    for fragment in fragments:
+        assert fragment in said, (fragment, said)
+    assert sorted(os.listdir(place.folder)) == before, words
+
+
+def check_refusals(place):
+    good = run_words("cloth", "")
+    without_every = good.replace("--every 0.01", "")
+    check_refused(place, good + "--motion m.vtk", "--motion m.vtk", ".vtkhdf and .pc2")
+    check_refused(place, good + "--motion m", "--motion m", ".vtkhdf and .pc2")
+    check_refused(place, good + "--motion=", "--motion")
+    check_refused(place, without_every + "--motion m.pc2", "--every is missing", "--motion")
+    check_refused(place, without_every + "--motion-fields strain", "--motion-fields", "--motion,")
+    check_refused(
+        place,
+        good + "--motion m.vtkhdf --motion-fields speed",
+        "--motion-fields",
+        "speed",
+        "strain",
+    )
+    check_refused(place, good + "--motion m.vtkhdf --motion-fields none,strain", "none alone")
+    check_refused(place, good + "--motion m.pc2 --motion-fields strain", "--motion-fields", ".pc2")
+    for other in ("--trajectory m.csv", "--final m.json", "--energy m.xdmf"):
+        check_refused(place, good + other + " --motion m.vtkhdf", "another output", "--motion")
+    check_refused(place, good + "--energy m.obj --motion m.pc2", "another output", "m.obj")
+    check_refused(
+        place, good + "--motion m.vtkhdf --write-scene m.xdmf", "another output", "--write-scene"
+    )
+    check_refused(place, good + "--motion none/m.vtkhdf", "none/m.vtkhdf", "folder")
+    check_refused(place, good + "--motion a:b.vtkhdf", "a:b.vtkhdf", "colons")
+    place.write("huge.toml", HUGE)
+    for ending in ("vtkhdf", "pc2"):
+        check_refused(place, run_words("huge", f"--motion m.{ending}"), "32-bit")
+
+
+def check_replacing(place):
+    """Own files are replaced, those of others only with --force, and what was read never."""
+    for path, companion in (("r.vtkhdf", "r.xdmf"), ("r.pc2", "r.obj")):
+        words = run_words("cloth", f"--motion {path}")
+        for _ in range(2):
+            ended = place.run(words)
+            assert ended.returncode == 0, ended.stderr
+        place.write(companion, "mine\n")
+        check_refused(place, words, companion, "--force")
+        assert place.run(words + " --force").returncode == 0
+        for name in place.files("r."):
+            os.remove(place.path(name))
+        place.write(path, "mine\n")
+        check_refused(place, words, path, "--force")
+        os.remove(place.path(path))
+    check_refused(
+        place, run_words("meshed", "--force --motion left_out.pc2"), "left_out.obj", "was read"
+    )
+
+
+def check_full_disk(place):
+    """Files that may not grow as far as they need: status 3, one sentence, no file."""
+    for path, most in (("full.vtkhdf", 9000), ("full.vtkhdf", 300), ("full.pc2", 1000)):
+        ended = subprocess.run(
+            [place.simulate] + run_words("cloth", f"--motion {path}").split(),
+            cwd=place.folder,
+            capture_output=True,
+            text=True,
+            check=False,
+            preexec_fn=lambda most=most: limit(most),
+        )
+        said = ended.stderr.strip()
+        assert ended.returncode == 3, (path, most, ended.returncode, said)
+        assert said.startswith(f"simulate: {path.split('.')[0]}") and "\n" not in said, said
+        assert "File too large" in said, said
+        assert place.files("full") == [], place.files("full")
+
+
+def limit(most):
+    """With SIGXFSZ ignored, writes beyond it fail as those on a full disk do."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--bin", required=True, help="the folder of the programs")
+    simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
+    with tempfile.TemporaryDirectory(prefix="motion.") as folder:
+        place = Place(simulate, folder)
+        check_refusals(place)
+        check_replacing(place)
+        check_full_disk(place)
+
+
+if __name__ == "__main__":
+    main()

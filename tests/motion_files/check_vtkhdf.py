@@ -1,0 +1,231 @@
+#!/usr/bin/python3
+"""Reads .vtkhdf files of simulate back: layout, values, virtual datasets and the .xdmf.
+
+Call: check_vtkhdf.py --bin FOLDER.
+"""
+
+import argparse
+import json
+import os
+import tempfile
+import tomllib
+
+import h5py
+import numpy as np
+
+from motion_case import (
+    FLOAT,
+    SCENES,
+    SHORT,
+    Place,
+    assert_close,
+    mixed_cells,
+    run_words,
+    table,
+    xdmf_frames,
+)
+
+FIELDS = ["kinetic_energy", "velocity"]
+KINDS = {"Vertices": 1, "Lines": 2, "Polygons": 3, "Strips": 1}
+
+
+def scene_of(place, name):
+    """Nodes and springs as --write-scene gives them."""
+    place.run(f"--scene {name}.toml --write-scene {name}.written.toml")
+    with open(place.path(f"{name}.written.toml"), "rb") as file:
+        return tomllib.load(file)
+
+
+def cells_of(root, kind):
+    """The cells of a kind; checks the counts that the layout asks for."""
+    group = root[kind]
+    offsets, nodes = group["Offsets"][...], group["Connectivity"][...]
+    assert group["NumberOfCells"][...].tolist() == [len(offsets) - 1]
+    assert group["NumberOfConnectivityIds"][...].tolist() == [len(nodes)]
+    assert offsets[0] == 0 and offsets[-1] == len(nodes)
+    assert (np.diff(offsets) == KINDS[kind]).all()
+    return [
+        tuple(int(k) for k in nodes[a:b]) for a, b in zip(offsets[:-1], offsets[1:], strict=True)
+    ]
+
+
+def check_layout(root, frames, nodes, cells):
+    """Field by field, what VTKHDF 2.0 says of PolyData over time with topology that is there once."""
+    assert root.attrs["Version"].tolist() == [2, 0]
+    kind = root.attrs.get_id("Type")
+    assert root.attrs["Type"] == b"PolyData"
+    assert (
+        not kind.get_type().is_variable_str() and kind.get_type().get_cset() == h5py.h5t.CSET_ASCII
+    )
+    assert root["NumberOfPoints"][...].tolist() == [nodes]
+    assert root["Points"].shape == (frames * nodes, 3) and root["Points"].dtype == "<f4"
+    steps = root["Steps"]
+    assert steps.attrs["NSteps"] == frames and steps["Values"].shape == (frames,)
+    assert steps["NumberOfParts"][...].tolist() == [1] * frames
+    assert steps["PartOffsets"][...].tolist() == [0] * frames
+    for name in ("CellOffsets", "ConnectivityIdOffsets"):
+        assert steps[name].shape == (frames, 4) and not steps[name][...].any()
+    starts = [k * nodes for k in range(frames)]
+    assert steps["PointOffsets"][...].tolist() == starts
+    assert sorted(steps["PointDataOffsets"]) == sorted(root["PointData"])
+    for name in root["PointData"]:
+        assert steps["PointDataOffsets"][name][...].tolist() == starts
+    assert sorted(steps["CellDataOffsets"]) == sorted(root["CellData"])
+    for name in root["CellData"]:
+        assert root["CellData"][name].shape == (frames * cells,)
+        assert steps["CellDataOffsets"][name][...].tolist() == [k * cells for k in range(frames)]
+
+
+def strains_of(scene, positions):
+    """(l - length) / length, by the rest length or, where it is zero, the length at the start."""
+    result = np.zeros((len(positions), len(scene["springs"])))
+    for k, spring in enumerate(scene["springs"]):
+        a, b = spring["nodes"]
+        lengths = np.linalg.norm(positions[:, b] - positions[:, a], axis=1)
+        by = spring["rest_length"] or lengths[0]
+        if by > 0:
+            result[:, k] = (lengths - by) / by
+    return result
+
+
+def check_strains(found, scene, positions, first_line):
+    """Strain is a difference of lengths, so that their rounding (17 digits in the table, whole
+    doubles in the run: some 1e-15) counts beside that of the number itself.
+    """
+    wanted = strains_of(scene, positions)
+    lines = found[:, first_line : first_line + wanted.shape[1]]
+    assert (np.abs(lines - wanted) <= SHORT * np.abs(wanted) + 1e-14).all()
+    assert not found[:, :first_line].any() and not found[:, first_line + wanted.shape[1] :].any()
+
+
+def check_frames(place, stem, root_file, times):
+    """The virtual datasets are the rows, and the .xdmf names them whole."""
+    root = root_file["VTKHDF"]
+    frames = xdmf_frames(place.path(stem + ".xdmf"))
+    assert [time for time, _ in frames] == times.tolist()
+    data = {"Points": root["Points"], **root["PointData"], **root["CellData"]}
+    for k, (_, found) in enumerate(frames):
+        group = root_file[f"Frames/{k:06}"]
+        assert sorted(group) == sorted(data)
+        for name, rows in data.items():
+            count = len(rows) // len(frames)
+            assert group[name].is_virtual
+            assert np.array_equal(group[name][...], rows[k * count : (k + 1) * count])
+            assert np.array_equal(found[name], group[name][...])
+        assert np.array_equal(found["position"], found["Points"])
+        wanted = [cell for kind in KINDS for cell in cells_of(root, kind)]
+        assert mixed_cells(found["Topology"]) == wanted
+
+
+def check_scene(place, name, faces, loose):
+    """All of a motion against the table of the same run."""
+    stem = "m_" + name
+    ended = place.run(run_words(name, f"--motion {stem}.vtkhdf --trajectory {stem}_t.csv"))
+    assert ended.returncode == 0, ended.stderr
+    times, positions, velocities = table(place.path(stem + "_t.csv"))
+    scene = scene_of(place, name)
+    frames, nodes = positions.shape[:2]
+    with h5py.File(place.path(stem + ".vtkhdf")) as file:
+        root = file["VTKHDF"]
+        springs = [tuple(spring["nodes"]) for spring in scene["springs"]]
+        assert cells_of(root, "Lines") == springs
+        assert cells_of(root, "Polygons") == faces
+        assert cells_of(root, "Vertices") == [(node,) for node in loose]
+        assert cells_of(root, "Strips") == []
+        check_layout(root, frames, nodes, len(loose) + len(springs) + len(faces))
+        assert np.array_equal(root["Steps/Values"][...], times)
+        assert_close(root["Points"][...].reshape(positions.shape), positions, FLOAT)
+        assert sorted(root["PointData"]) == FIELDS
+        assert_close(root["PointData/velocity"][...].reshape(velocities.shape), velocities, SHORT)
+        masses = [0 if node.get("pinned") else node["mass"] for node in scene["nodes"]]
+        energies = 0.5 * np.array(masses) * (velocities**2).sum(axis=2)
+        # Squares and sums round in doubles, far below SHORT.
+        assert_close(
+            root["PointData/kinetic_energy"][...].reshape(frames, nodes), energies, SHORT * 1.0001
+        )
+        check_strains(
+            root["CellData/strain"][...].reshape(frames, -1), scene, positions, len(loose)
+        )
+        check_frames(place, stem, file, times)
+    with open(place.path(stem + ".json"), encoding="utf-8") as file:
+        assert json.load(file)["outcome"] == "reached_end"
+
+
+def cloth_faces(n):
+    cells = [(i, j) for i in range(n - 1) for j in range(n - 1)]
+    at = lambda i, j: i * n + j
+    faces = []
+    for i, j in cells:
+        faces.append((at(i, j), at(i + 1, j), at(i + 1, j + 1)))
+        faces.append((at(i, j), at(i + 1, j + 1), at(i, j + 1)))
+    return faces
+
+
+def check_fields(place):
+    """--motion-fields leaves out what is not named."""
+    place.run(run_words("cloth", "--motion f.vtkhdf --motion-fields strain"))
+    with h5py.File(place.path("f.vtkhdf")) as file:
+        assert list(file["VTKHDF/PointData"]) == [] and list(file["VTKHDF/CellData"]) == ["strain"]
+    place.run(run_words("cloth", "--motion f.vtkhdf --motion-fields none"))
+    with h5py.File(place.path("f.vtkhdf")) as file:
+        assert list(file["VTKHDF/CellData"]) == []
+        assert sorted(file["Frames/000000"]) == ["Points"]
+
+
+def check_many_frames(place):
+    """Frames fill several chunks, the last one in part."""
+    words = "--scene pair --method verlet --step-size 1e-3 --until 9 --every 2e-3"
+    ended = place.run(words + " --motion many.vtkhdf --trajectory many_t.csv")
+    assert ended.returncode == 0, ended.stderr
+    _, positions, velocities = table(place.path("many_t.csv"))
+    with h5py.File(place.path("many.vtkhdf")) as file:
+        points = file["VTKHDF/Points"]
+        assert len(points) > 2 * points.chunks[0] and len(points) % points.chunks[0] > 0
+        assert_close(points[...].reshape(positions.shape), positions, FLOAT)
+        assert_close(
+            file["VTKHDF/PointData/velocity"][...].reshape(velocities.shape), velocities, SHORT
+        )
+        assert_close(file["Frames/004500/Points"][...], positions[-1], FLOAT)
+
+
+def check_failed_run(place):
+    """A run that grows without bound leaves what it reached, and nothing that is no number."""
+    ended = place.run(
+        "--scene cloth.toml --method explicit_euler --step-size 1e-2 --until 50 --every 1e-2 "
+        "--motion d.vtkhdf --trajectory d_t.csv"
+    )
+    assert ended.returncode == 3, (ended.returncode, ended.stderr)
+    _, positions, velocities = table(place.path("d_t.csv"))
+    with h5py.File(place.path("d.vtkhdf")) as file:
+        root = file["VTKHDF"]
+        frames = int(root["Steps"].attrs["NSteps"])
+        assert 1 < frames <= len(positions)
+        found = root["Points"][...]
+        assert_close(found.reshape(frames, -1, 3), positions[:frames], FLOAT)
+        for data in (found, root["PointData/velocity"][...], root["PointData/kinetic_energy"][...]):
+            assert np.isfinite(data).all()
+        assert len(xdmf_frames(place.path("d.xdmf"))) == frames
+    # What the next frame would hold is beyond 32-bit floats, in its kinetic energies first.
+    if frames < len(positions):
+        assert (velocities[frames] ** 2).sum(axis=1).max() * 0.5 / 25 > np.finfo("f4").max / 2
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--bin", required=True, help="the folder of the programs")
+    simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
+    with tempfile.TemporaryDirectory(prefix="motion.") as folder:
+        place = Place(simulate, folder)
+        assert set(SCENES) == {"cloth", "plane", "line", "meshed"}
+        check_scene(place, "cloth", cloth_faces(5), [])
+        check_scene(place, "plane", [], [3])
+        check_scene(place, "line", [], [])
+        check_scene(place, "meshed", [(0, 1, 2), (0, 2, 3)], [])
+        check_fields(place)
+        check_many_frames(place)
+        check_failed_run(place)
+        assert not [name for name in os.listdir(folder) if name.endswith(".part")]
+
+
+if __name__ == "__main__":
+    main()

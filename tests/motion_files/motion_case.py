@@ -1,0 +1,158 @@
+"""Runs simulate for a motion and its table, and reads both back."""
+
+import csv
+import os
+import subprocess
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+# Half the spacing of 32-bit floats, relative: what rounding to them may change.
+FLOAT = 2.0**-24
+# Half the spacing of numbers with seven bits behind the first, and the rounding to 32 bits before.
+SHORT = 2.0**-8 + FLOAT
+SMALLEST = 2.0**-126  # below it 32-bit floats are spaced evenly
+
+CLOTH = """
+[generator]
+kind = "cloth"
+nodes = 5
+"""
+# Two dimensions; a spring of rest length zero, another whose ends coincide; a node on no spring.
+PLANE = """
+dimension = 2
+gravity = [0.0, -9.81]
+nodes = [
+  {position = [0.0, 0.0], pinned = true},
+  {position = [0.5, 0.0], mass = 0.1},
+  {position = [0.5, 0.0], mass = 0.2, velocity = [1.0, 0.5]},
+  {position = [2.0, 1.0], mass = 0.3, velocity = [0.0, 1.0]},
+]
+springs = [
+  {nodes = [0, 1], stiffness = 100.0, rest_length = 0.4},
+  {nodes = [0, 2], stiffness = 50.0, rest_length = 0.0},
+  {nodes = [1, 2], stiffness = 20.0, rest_length = 0.0},
+]
+"""
+LINE = """
+dimension = 1
+nodes = [{position = [0.0], pinned = true}, {position = [1.0], mass = 1.0, velocity = [0.5]}]
+springs = [{nodes = [0, 1], stiffness = 100.0, rest_length = 0.5}]
+"""
+# Vertex 2 is on no edge, so that nodes behind it have other numbers than vertices.
+MESH = "v 0 0 0\nv 9 9 9\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 3 4 5\n"
+MESHED = """
+gravity = [0.0, -9.81, 0.0]
+[mesh]
+file = "left_out.obj"
+stiffness = 1e3
+node_mass = 0.1
+[[mesh.pin]]
+min = [-0.1, -0.1, -0.1]
+max = [0.1, 0.1, 0.1]
+"""
+SCENES = {"cloth": CLOTH, "plane": PLANE, "line": LINE, "meshed": MESHED}
+
+
+@dataclass(frozen=True)
+class Place:
+    """A folder to work in, and the program."""
+
+    simulate: str
+    folder: str
+
+    def __post_init__(self):
+        for name, text in SCENES.items():
+            self.write(name + ".toml", text)
+        self.write("left_out.obj", MESH)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def run(self, words):
+        """Runs simulate with these words in the folder; its exit."""
+        return subprocess.run(
+            [self.simulate] + words.split(),
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    def files(self, *beginnings):
+        return sorted(name for name in os.listdir(self.folder) if name.startswith(beginnings))
+
+
+def run_words(scene, more):
+    """A short run that ends well."""
+    return f"--scene {scene}.toml --method verlet --step-size 1e-4 --until 0.05 --every 0.01 {more}"
+
+
+def table(path):
+    """Times, positions and velocities (frames x nodes x 3, zero beyond the dimension) of a
+    --trajectory.
+    """
+    with open(path, encoding="utf-8", newline="") as file:
+        header, *rows = list(csv.reader(file))
+    values = np.array([[float(field or "nan") for field in row] for row in rows])
+    nodes = int(values[:, 1].max()) + 1
+    dimension = (len(header) - 2) // 2
+    frames = values.reshape(-1, nodes, len(header))
+    positions = np.zeros((len(frames), nodes, 3))
+    velocities = np.zeros((len(frames), nodes, 3))
+    positions[:, :, :dimension] = frames[:, :, 2 : 2 + dimension]
+    velocities[:, :, :dimension] = frames[:, :, 2 + dimension :]
+    return frames[:, 0, 0], positions, velocities
+
+
+def assert_close(found, wanted, tolerance):
+    """Relative to each number, or to the smallest that has all its bits."""
+    wanted = np.asarray(wanted)
+    assert found.shape == wanted.shape, (found.shape, wanted.shape)
+    worst = np.abs(found - wanted) - tolerance * np.maximum(np.abs(wanted), SMALLEST)
+    assert (worst <= 0).all(), f"off by {worst.max()}"
+
+
+def mixed_cells(numbers):
+    """The cells of an XDMF topology of mixed kinds, in order."""
+    cells, at = [], 0
+    while at < len(numbers):
+        kind = numbers[at]
+        count = 3 if kind == 4 else numbers[at + 1]
+        start = at + (1 if kind == 4 else 2)
+        assert kind in (1, 2, 4), kind
+        cells.append(tuple(int(node) for node in numbers[start : start + count]))
+        at = start + count
+    return cells
+
+
+def xdmf_frames(path):
+    """Of each frame its time and {name: (array, dimensions as said)}, read through HDF5."""
+    frames = []
+    root = ElementTree.parse(path).getroot()
+    assert root.tag == "Xdmf" and root.get("Version") == "3.0"
+    collection = root.find("Domain/Grid")
+    assert collection.get("CollectionType") == "Temporal"
+    for grid in collection.findall("Grid"):
+        items = {
+            "Topology": grid.find("Topology/DataItem"),
+            "Points": grid.find("Geometry/DataItem"),
+        }
+        for attribute in grid.findall("Attribute"):
+            items[attribute.get("Name")] = attribute.find("DataItem")
+        found = {}
+        for name, item in items.items():
+            file, place = item.text.split(":")
+            with h5py.File(os.path.join(os.path.dirname(path), file)) as data:
+                found[name] = data[place][...]
+            said = tuple(int(word) for word in item.get("Dimensions").split())
+            assert said == found[name].shape, (name, said, found[name].shape)
+            assert int(item.get("Precision")) == found[name].dtype.itemsize
+        frames.append((float(grid.find("Time").get("Value")), found))
+    return frames
