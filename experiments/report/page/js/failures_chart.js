@@ -1,104 +1,93 @@
 // The runs that gave no point of the chart: a row for each way to fail, over the knob.
 "use strict";
 {
-  const { byId, report, words, state, plot, isDrawn } = qddotReport;
+  const { byId, report, words, state, plot } = qddotReport;
   const { points, methods } = report;
   const drawing = byId("failures-drawing");
-  const ROW = 46;
+  const NARROW = 560;
   const PALE = 0.25;
+  const GAP = 0.03;
   const EDGES = { t: 4, b: 46 };
 
-  function failures() {
-    const kinds = new Map();
-    points.method.forEach((_, point) => {
-      if (isDrawn(point, state.column, state.ordinate)) return;
-      const ended = points.outcome[point] === "reached_end";
-      const kind = ended ? qddotReport.whyNot(point, state.column) : words.plain(points.outcome[point]);
-      if (kind !== "no such number") kinds.set(kind, [...(kinds.get(kind) ?? []), point]);
-    });
-    return kinds;
-  }
+  const axisName = (place, name) => (place ? `${name}${place + 1}` : name);
 
-  function trace(kinds, knob, axis) {
-    const marks = { x: [], y: [], customdata: [], mode: "markers", hoverinfo: "none", xaxis: axis };
-    const marker = { symbol: "x-thin", size: 8, opacity: [], line: { color: [], width: [] }, color: plot.INK };
-    [...kinds.values()].forEach((runs, row) => {
-      for (const point of runs.filter((one) => points.knob[one] === knob)) {
-        const method = points.method[point];
-        const strong = qddotReport.shown.has(method);
+  function trace(rows, knob, place) {
+    const marks = { x: [], y: [], customdata: [], mode: "markers", hoverinfo: "none", xaxis: axisName(place, "x") };
+    const marker = { symbol: "x-thin", size: 7, opacity: [], line: { color: [], width: [] }, color: plot.INK };
+    for (const { runs, ys } of rows) {
+      runs.forEach((point, at) => {
+        if (points.knob[point] !== knob) return;
+        const strong = qddotReport.shown.has(points.method[point]) || point === state.run;
         marks.x.push(points.value[point]);
-        // Methods that fail at the same knob stand under each other inside the row.
-        marks.y.push(row - 0.36 + (0.72 * (method + 0.5)) / methods.length);
+        marks.y.push(ys[at]);
         marks.customdata.push(point);
-        marker.opacity.push(point === state.run || strong ? 1 : PALE);
-        marker.line.color.push(methods[method].color);
-        marker.line.width.push(point === state.run ? 4 : strong ? 2 : 1.5);
-      }
-    });
+        marker.opacity.push(strong ? 1 : PALE);
+        marker.line.color.push(methods[points.method[point]].color);
+        marker.line.width.push(strong ? 2 : 1.5);
+      });
+    }
     return { ...marks, marker };
   }
 
-  function ringTrace(kinds, knobs) {
-    const ring = { x: [], y: [], mode: "markers", hoverinfo: "skip", marker: { symbol: "circle-open", size: 19, color: plot.INK, line: { width: 2.2, color: plot.INK } } };
-    [...kinds.values()].forEach((runs, row) => {
-      if (!runs.includes(state.run)) return;
-      const method = points.method[state.run];
-      const place = knobs.indexOf(points.knob[state.run]);
-      ring.x.push(points.value[state.run]);
-      ring.y.push(row - 0.36 + (0.72 * (method + 0.5)) / methods.length);
-      ring.xaxis = place ? `x${place + 1}` : "x";
-    });
-    return ring;
+  /** A ring around the chosen run, where it is one of these. */
+  function ringTrace(rows, knobs) {
+    const row = rows.find(({ runs }) => runs.includes(state.run));
+    const place = row ? knobs.indexOf(points.knob[state.run]) : 0;
+    return {
+      x: row ? [points.value[state.run]] : [],
+      y: row ? [row.ys[row.runs.indexOf(state.run)]] : [],
+      xaxis: axisName(place, "x"),
+      mode: "markers",
+      hoverinfo: "skip",
+      marker: { symbol: "circle-open", size: 17, color: plot.INK, line: { width: 2.2, color: plot.INK } },
+    };
   }
 
-  function layout(kinds, knobs, narrow) {
-    const rows = kinds.size;
-    const result = {
+  function knobAxis(rows, knob, place, knobs, narrow) {
+    const values = rows.flatMap(({ runs }) => runs).filter((point) => points.knob[point] === knob).map((point) => points.value[point]);
+    const axis = plot.decades(...plot.widened(Math.min(...values), Math.max(...values), 2), plot.powerOfTen);
+    const every = Math.ceil(axis.tickvals.length / (narrow ? 3 : 7));
+    axis.tickvals = axis.tickvals.filter((_, at) => at % every === 0);
+    axis.ticktext = axis.ticktext.filter((_, at) => at % every === 0);
+    const title = words.knobTitle(knob) + (knob === "step_size" ? " in s" : "");
+    axis.title = { text: plot.plainWords(title), font: { size: 12 }, standoff: 4 };
+    const share = 1 / knobs.length;
+    axis.domain = [place * share + (place ? GAP : 0), (place + 1) * share - (place + 1 < knobs.length ? GAP : 0)];
+    return { ...axis, fixedrange: true, showline: false };
+  }
+
+  function layout(rows, height, knobs, narrow) {
+    const across = { type: "line", xref: "paper", x0: 0, x1: 1, line: { color: plot.GRID, width: 1 } };
+    const axes = knobs.map((knob, place) => [axisName(place, "xaxis"), knobAxis(rows, knob, place, knobs, narrow)]);
+    return {
       ...plot.layout(),
+      ...Object.fromEntries(axes),
       margin: { l: narrow ? 104 : 132, r: 12, ...EDGES },
       yaxis: {
-        range: [rows - 0.5, -0.5],
-        tickvals: [...kinds.keys()].map((_, row) => row),
-        ticktext: [...kinds].map(([kind, runs]) => plot.plainWords(`${kind} (${runs.length})`)),
+        range: [height, 0],
+        tickvals: rows.map(({ top, bottom }) => (top + bottom) / 2),
+        ticktext: rows.map(({ kind, runs }) => plot.plainWords(`${kind} (${runs.length})`)),
         tickfont: { size: narrow ? 11 : 12 },
         showgrid: false,
         zeroline: false,
         fixedrange: true,
       },
-      shapes: [...kinds.keys()].slice(1).map((_, row) => ({
-        type: "line", xref: "paper", x0: 0, x1: 1, y0: row + 0.5, y1: row + 0.5, line: { color: plot.GRID, width: 1 },
-      })),
+      shapes: rows.slice(1).map(({ top }) => ({ ...across, y0: top, y1: top })),
     };
-    const share = 1 / knobs.length;
-    knobs.forEach((knob, place) => {
-      const values = [...kinds.values()].flat().filter((point) => points.knob[point] === knob).map((point) => points.value[point]);
-      const [low, high] = plot.widened(Math.min(...values), Math.max(...values), 2);
-      const axis = plot.decades(low, high, plot.powerOfTen);
-      const most = narrow ? 4 : 7;
-      const every = Math.ceil(axis.tickvals.length / most);
-      axis.tickvals = axis.tickvals.filter((_, at) => at % every === 0);
-      axis.ticktext = axis.ticktext.filter((_, at) => at % every === 0);
-      axis.title = { text: plot.plainWords(words.knobTitle(knob) + (knob === "step_size" ? " in s" : "")), font: { size: 12 }, standoff: 4 };
-      axis.domain = [place * share + (place ? 0.03 : 0), (place + 1) * share - (place + 1 < knobs.length ? 0.03 : 0)];
-      axis.fixedrange = true;
-      axis.showline = false;
-      result[place ? `xaxis${place + 1}` : "xaxis"] = axis;
-    });
-    return result;
   }
 
   let listening = false;
 
   /** Draws the strip for the present choice; hides it where no run failed. */
   qddotReport.drawFailures = () => {
-    const kinds = failures();
-    byId("failures").hidden = kinds.size === 0;
-    if (!kinds.size) return;
-    const knobs = [...new Set([...kinds.values()].flat().map((point) => points.knob[point]))];
-    const narrow = drawing.clientWidth < 560;
-    drawing.style.height = `${kinds.size * ROW + EDGES.t + EDGES.b}px`;
-    const data = knobs.map((knob, place) => trace(kinds, knob, place ? `x${place + 1}` : "x"));
-    Plotly.react(drawing, [...data, ringTrace(kinds, knobs)], layout(kinds, knobs, narrow), plot.config);
+    const { rows, height } = qddotReport.failureRows();
+    byId("failures").hidden = rows.length === 0;
+    if (!rows.length) return;
+    const knobs = [...new Set(rows.flatMap(({ runs }) => runs).map((point) => points.knob[point]))];
+    drawing.style.height = `${height + EDGES.t + EDGES.b}px`;
+    const data = knobs.map((knob, place) => trace(rows, knob, place));
+    const narrow = drawing.clientWidth < NARROW;
+    Plotly.react(drawing, [...data, ringTrace(rows, knobs)], layout(rows, height, knobs, narrow), plot.config);
     if (!listening) qddotReport.listenToMarks(drawing);
     listening = true;
   };

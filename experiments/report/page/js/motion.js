@@ -4,7 +4,8 @@
   const { element, byId, report, words, state, choose } = qddotReport;
   const { motion, points } = report;
   const section = byId("motion");
-  const NEUTRAL = [0.09, 0.1, 0.12];
+  // The reference in grey: dark lines, lighter faces, on which shade is seen.
+  const NEUTRAL = motion?.faces ? [0.24, 0.25, 0.27] : [0.07, 0.075, 0.085];
   // Of the length of a line of nodes: how far up its largest displacement is drawn.
   const LIFT = 0.2;
   const FEWEST_LIFTED = 8;

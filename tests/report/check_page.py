@@ -1,0 +1,319 @@
+#!/usr/bin/python3
+"""Whether the page of a report does what it should in a real browser: Chromium without a screen."""
+
+import unittest
+
+from selenium.webdriver.common.keys import Keys
+
+from browser import Browser
+from packed_folder import Folder
+from page_in_browser import CHOSEN, Page
+
+HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'&lt;"
+RING = "return JSON.stringify(document.getElementById('chart-drawing').data.at(-1).x)"
+READY = "return document.getElementById('motion').dataset.ready === String(qddotReport.state.run)"
+
+
+class Choosing(Page):
+    """What a reader does to find a run."""
+
+    def test_a_mark_tells_its_run_on_hover_and_is_chosen_by_a_click(self):
+        self.load(self.made)
+        point = self.point("points.outcome[i] === 'reached_end' && points.error_position[i] < 1e-3")
+        self.move_to("chart-drawing", point).click().perform()
+        said = self.browser.text("#tooltip")
+        for words in ("relative position error", "time of a run", "force evaluations"):
+            self.assertIn(words, said)
+        self.browser.wait("return qddotReport.state.run === arguments[0]", point)
+        name = self.browser.run(
+            "const { methods, points } = qddotReport.report;"
+            "return methods[points.method[arguments[0]]].name",
+            point,
+        )
+        self.assertIn(name, self.browser.text("#run-head"))
+        self.assertIn(f"run={name}", self.browser.driver.current_url)
+        self.assertNotEqual(self.browser.run(RING), "[]")
+
+    def test_a_failed_run_tells_its_cause_and_can_be_chosen(self):
+        self.load(self.made)
+        point = self.point("points.outcome[i] === 'diverged'")
+        cause = self.browser.run("return qddotReport.report.points.cause[arguments[0]]", point)
+        actions = self.move_to("failures-drawing", point)
+        self.assertIn(cause, self.browser.text("#tooltip"))
+        actions.click().perform()
+        self.browser.wait("return qddotReport.state.run === arguments[0]", point)
+        self.assertIn(cause, self.browser.text("#run-head"))
+
+    def test_a_row_of_the_answers_is_chosen_by_enter(self):
+        self.load(self.made)
+        row = self.browser.find(".answers tbody tr[tabindex]:last-child")
+        row.send_keys(Keys.ENTER)
+        self.assertEqual(self.browser.run(CHOSEN), int(row.get_attribute("data-point")))
+        self.assertEqual(row.get_attribute("aria-selected"), "true")
+
+    def test_every_answer_stands_in_the_table(self):
+        self.load(self.made)
+        shown = self.browser.run(
+            "const rows = [...document.querySelectorAll('.answers tbody tr')];"
+            "return rows.map(row => row.dataset.point)"
+        )
+        points = self.browser.run("return qddotReport.report.answers.map(answer => answer.point)")
+        self.assertEqual(shown, [None if point is None else str(point) for point in points])
+
+    def test_the_menus_lead_to_every_run_of_a_method(self):
+        self.load(self.made)
+        for option in self.browser.driver.find_elements("css selector", "#run-choice select")[0:1]:
+            option.send_keys("verlet")
+        self.browser.wait(
+            "const { report, state } = qddotReport;"
+            "return report.methods[report.points.method[state.run]].name === 'verlet'"
+        )
+        before = self.browser.run(CHOSEN)
+        self.browser.find("#run-choice button[aria-label='Finer run']").click()
+        self.assertNotEqual(self.browser.run(CHOSEN), before)
+
+    def test_methods_are_switched_on_and_off(self):
+        self.load(self.made)
+        strong = (
+            "return document.getElementById('chart-drawing').data.slice(2, -1).map(one => one.name)"
+        )
+        self.browser.find(".legend-buttons button:nth-child(3)").click()
+        self.assertEqual(self.browser.run(strong), [])
+        self.browser.find("#legend input[type=search]").send_keys("VERL")
+        shown = [
+            one
+            for one in self.browser.driver.find_elements("css selector", "[data-method]")
+            if one.is_displayed()
+        ]
+        self.assertEqual([one.text for one in shown], ["verlet"])
+        shown[0].click()
+        self.assertEqual(self.browser.run(strong), ["verlet"])
+        self.browser.find(".legend-buttons button:nth-child(2)").click()
+        self.assertEqual(
+            len(self.browser.run(strong)),
+            self.browser.run("return qddotReport.report.methods.length"),
+        )
+        cloud = "return document.getElementById('chart-drawing').data[1].x.length"
+        self.browser.find(".legend-buttons button:nth-child(3)").click()
+        self.assertGreater(self.browser.run(cloud), 0)
+        self.browser.find("#cloud").click()
+        self.assertEqual(self.browser.run(cloud), 0)
+
+    def test_quantities_and_ordinates_change_the_axes(self):
+        self.load(self.made)
+        for quantity in self.browser.run("return qddotReport.report.quantities"):
+            self.browser.run(
+                "const menu = document.getElementById('quantity'); menu.value = arguments[0];"
+                "menu.dispatchEvent(new Event('change'))",
+                quantity["column"],
+            )
+            title = self.browser.run(
+                "return document.getElementById('chart-drawing').layout.xaxis.title.text"
+            )
+            self.assertIn(quantity["axis"], title)
+            self.assertEqual(self.browser.text("#quantity-about"), quantity["subtitle"])
+        self.browser.find("#ordinate").send_keys("force evaluations")
+        self.browser.wait(
+            "const { layout } = document.getElementById('chart-drawing');"
+            "return layout.yaxis.title.text.includes('force evaluations')"
+        )
+
+    def test_a_link_leads_to_its_run_and_rubbish_to_the_opening_one(self):
+        self.load(self.made)
+        opening = self.browser.run(CHOSEN)
+        point = self.point(f"i !== {opening} && points.outcome[i] === 'diverged'")
+        self.choose(point)
+        fragment = "#" + self.browser.driver.current_url.split("#")[1]
+        self.browser.load(self.made, fragment)
+        self.assertEqual(self.browser.run(CHOSEN), point)
+        for rubbish in (
+            "#%",
+            "#run=verlet@",
+            "#run=@@&error=__proto__&against=constructor",
+            "#<b>",
+            "#run=%E0%A4%A",
+        ):
+            self.browser.load(self.made, rubbish)
+            self.assertEqual(self.browser.run(CHOSEN), opening, rubbish)
+
+
+class Moving(Page):
+    """The motion of a run beside the reference's."""
+
+    def kept(self, condition="true"):
+        """The run of a kept motion for which a condition of `run` holds."""
+        return self.browser.run(
+            "return qddotReport.report.motion.runs.find("
+            f"run => run.role === 'run' && {condition}).point"
+        )
+
+    def test_slider_and_play_move_it(self):
+        self.load(self.made)
+        self.choose(self.kept("run.outcome === 'reached_end'"))
+        self.browser.wait(READY)
+        slider = self.browser.find(".player input[type=range]")
+        slider.send_keys(Keys.HOME)
+        self.assertEqual(self.browser.text(".player output"), "t = 0 s")
+        slider.send_keys(Keys.ARROW_RIGHT)
+        self.assertNotEqual(self.browser.text(".player output"), "t = 0 s")
+        before = int(self.browser.run("return document.querySelector('.views').dataset.draws"))
+        play = self.browser.find(".player .play")
+        play.click()
+        self.browser.wait(
+            "return Number(document.querySelector('.views').dataset.draws) > arguments[0] + 2",
+            before,
+        )
+        self.browser.wait(
+            "return document.querySelector('.play').getAttribute('aria-pressed') === 'false'"
+        )
+        self.assertEqual(slider.get_attribute("value"), "1000")
+
+    def test_two_views_stand_beside_each_other_and_show_something(self):
+        self.load(self.made)
+        self.choose(self.kept("run.outcome === 'reached_end'"))
+        self.browser.wait(READY)
+        self.assertEqual(len(self.browser.driver.find_elements("css selector", ".view")), 2)
+        # The canvas is read in the frame in which it is drawn: later it is empty.
+        inks = self.browser.driver.execute_async_script("""
+            const done = arguments[0];
+            document.querySelector(".player input").dispatchEvent(new Event("input"));
+            requestAnimationFrame(() => {
+              const canvas = document.querySelector(".views canvas");
+              const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+              copy.drawImage(canvas, 0, 0);
+              const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+              const inks = [0, 0];
+              for (let i = 0; i < data.length; i += 4) {
+                const left = (i / 4) % canvas.width < canvas.width / 2;
+                const light = data[i] + data[i + 1] + data[i + 2];
+                if (data[i + 3] > 0 && light < 600) inks[left ? 0 : 1]++;
+              }
+              done(inks);
+            });
+        """)
+        for ink in inks:
+            self.assertGreater(ink, 1000)
+
+    def test_a_run_that_failed_plays_up_to_there_and_says_so(self):
+        self.load(self.made)
+        self.choose(self.kept("run.outcome !== 'reached_end'"))
+        self.browser.wait(READY)
+        self.assertIn("stopped at t = ", self.browser.text(".views"))
+
+    def test_a_run_without_a_motion_gets_the_command_that_makes_one(self):
+        self.load(self.made)
+        point = self.point("!qddotReport.report.motion.runs.some(run => run.point === i)")
+        self.choose(point)
+        self.browser.wait(
+            "return document.getElementById('motion').innerText.includes('--trajectory motion.csv')"
+        )
+
+    def test_without_motions_the_page_says_so(self):
+        page = self.packed("motionless", has_motions=False)
+        self.load(page)
+        self.assertIn("No motions were kept.", self.browser.text("#motion"))
+
+    def shown_flat(self, dimension):
+        """What the page says of the motion of a scene of this dimension."""
+        self.load(self.packed(f"flat{dimension}", dimension=dimension, side=9))
+        self.choose(self.kept("run.outcome === 'reached_end'"))
+        self.browser.wait(READY)
+        self.browser.wait("return Number(document.querySelector('.views').dataset.draws) > 0")
+        return self.browser.text("#motion")
+
+    def test_a_line_is_drawn_with_its_displacements_upwards(self):
+        self.assertIn("drawn upwards", self.shown_flat(1))
+
+    def test_a_plane_is_drawn_as_it_is(self):
+        self.assertNotIn("drawn upwards", self.shown_flat(2))
+
+
+class Odd(Page):
+    """Pages of odd folders and browsers."""
+
+    def test_failures_only(self):
+        def spoil(folder):
+            table = Folder()
+            table.folder = folder
+            rows = table.rows()
+            for row in rows:
+                row.update(outcome="diverged", error_position="", time_s="")
+            table.rewrite("points.csv", rows)
+            for name in ("front.csv", "front.json", "motions.csv"):
+                (folder / name).unlink()
+
+        self.load(self.packed("failures", spoil))
+        self.assertIn("No run gave a point", self.browser.text("#chart"))
+        point = self.browser.run("return qddotReport.report.points.method.length - 1")
+        self.move_to("failures-drawing", point).click().perform()
+        self.browser.wait("return qddotReport.state.run === arguments[0]", point)
+
+    def test_hostile_names_are_words(self):
+        def spoil(folder):
+            table = Folder()
+            table.folder = folder
+            rows = table.rows()
+            first = rows[0]["method"]
+            for row in rows:
+                row.update(
+                    scene=HOSTILE, method=HOSTILE if row["method"] == first else row["method"]
+                )
+            table.rewrite("points.csv", rows)
+            table.edit("points.json", lambda content: content["scene"].update(name=HOSTILE))
+            table.edit("reference.json", lambda content: content.update(scene=HOSTILE))
+
+        page = self.packed("hostile", spoil)
+        self.load(page)
+        self.assertEqual(self.browser.text("h1"), HOSTILE)
+        method = self.browser.run(
+            "return qddotReport.report.methods.findIndex(one => one.name === arguments[0])", HOSTILE
+        )
+        self.assertGreaterEqual(method, 0)
+        self.choose(self.browser.run("return qddotReport.runsOf[arguments[0]][0]", method))
+        self.browser.find(".legend-buttons button:nth-child(2)").click()
+        self.assertIn(HOSTILE, self.browser.text("#run-head"))
+        self.assertEqual(
+            self.browser.run("return document.querySelectorAll('img[src=x]').length"), 0
+        )
+
+    def test_a_telephone_needs_no_scrolling_sideways(self):
+        other = Browser(400, 800)
+        self.addCleanup(other.close)
+        other.screen(400, 800)
+        other.load(self.made)
+        other.wait("return document.querySelector('.views canvas') !== null")
+        width, window = other.run("return [document.documentElement.scrollWidth, innerWidth]")
+        self.assertEqual(window, 400)
+        self.assertLessEqual(width, window)
+
+    def test_without_webgl_a_sentence_stands_in_its_place(self):
+        other = Browser(flags=("--disable-gpu", "--disable-3d-apis"))
+        self.addCleanup(other.close)
+        other.load(self.made)
+        other.wait("return document.getElementById('motion').innerText.includes('no WebGL')")
+        self.assertIn("What to take", other.text())
+
+    def test_without_decompression_a_sentence_stands_in_its_place(self):
+        spoiled = self.made.with_name("old.html")
+        page = self.made.read_text(encoding="utf-8")
+        spoiled.write_text(
+            page.replace("<body>", "<body><script>delete window.DecompressionStream</script>", 1),
+            encoding="utf-8",
+        )
+        self.load(spoiled)
+        self.browser.wait(
+            "const { innerText } = document.getElementById('motion');"
+            "return innerText.includes('lacks DecompressionStream')"
+        )
+
+    def test_without_scripts_chart_and_table_stand_there(self):
+        other = Browser()
+        self.addCleanup(other.close)
+        other.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
+        other.driver.get(self.made.as_uri())
+        self.assertTrue(other.find("noscript table").is_displayed())
+        self.assertIn("1e-4", other.text("noscript"))
+
+
+if __name__ == "__main__":
+    unittest.main()
