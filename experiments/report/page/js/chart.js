@@ -69,6 +69,8 @@
     const size = { width: drawing.clientWidth - margin.l - margin.r, height: drawing.clientHeight - margin.t - margin.b };
     const across = (value) => (Math.log(value / view.left) / Math.log(view.right / view.left)) * size.width;
     const up = (value) => size.height * (1 - Math.log(value / view.bottom) / Math.log(view.top / view.bottom));
+    // The region of errors that mean nothing has words of its own.
+    size.left = view.floor === null ? 0 : across(view.floor);
     const onFront = new Set(front.map((point) => points.method[point]));
     const lines = strong
       .map((method) => ({

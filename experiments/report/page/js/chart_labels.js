@@ -17,7 +17,7 @@
   const holds = (a, mark) => mark.x > a.left - 3 && mark.x < a.right + 3 && mark.y > a.top - 3 && mark.y < a.bottom + 3;
 
   /** Labels of methods as {method, x, y, right, up} in px; `lines` is a list of {method, places}, the
-      most important first, and `size` the plot's in px. A method for which there is no room gets none. */
+      most important first; `size` is the plot's in px, and `size.left` where its names may begin. A method for which there is no room gets none. */
   qddotReport.placeLabels = (lines, size) => {
     const marks = lines.flatMap((line) => line.places);
     const taken = [];
@@ -31,7 +31,7 @@
         const { x, y } = places[index];
         for (const side of SIDES) {
           const room = box(x, y, side, width);
-          if (room.left < 0 || room.right > size.width || room.top < 0 || room.bottom > size.height) continue;
+          if (room.left < size.left || room.right > size.width || room.top < 0 || room.bottom > size.height) continue;
           if (taken.some((other) => overlap(room, other))) continue;
           const hidden = marks.filter((mark) => holds(room, mark)).length;
           const cost = hidden + Math.min(index, places.length - 1 - index) * 0.3;

@@ -4,6 +4,7 @@
   const { element, byId, report, runsOf, words, swatch, state, choose } = qddotReport;
   const { points, methods, families, motion } = report;
   const PHASES = [["force", "forces"], ["stiffness", "stiffness matrices"], ["factorization", "factorizations"], ["solve", "solves"]];
+  const TIMES = [["time_s", "time of a run, median"], ["time_min_s", "least"], ["setup_s", "set-up before it"]];
   const methodMenu = element("select", { change: () => choose({ run: firstRun(Number(methodMenu.value)) }) });
   const runMenu = element("select", { change: () => choose({ run: Number(runMenu.value) }) });
 
@@ -63,9 +64,7 @@
         "ul",
         { class: "run-facts" },
         ...errors.map((one) => fact(one.axis, words.number(points[one.column][point]))),
-        fact("time of a run, median", words.seconds(points.time_s[point])),
-        fact("least", words.seconds(points.time_min_s[point])),
-        fact("set-up before it", words.seconds(points.setup_s[point])),
+        ...TIMES.filter(([column]) => typeof points[column]?.[point] === "number").map(([column, label]) => fact(label, words.seconds(points[column][point]))),
       ),
       open && element("p", { class: "about" }, `Its position error lies ${open}.`),
       element("p", { class: "about" }, "This command repeats it:"),

@@ -1,7 +1,7 @@
 // The motion of the chosen run beside the reference's.
 "use strict";
 {
-  const { element, byId, report, words, state, choose } = qddotReport;
+  const { element, byId, report, words, state } = qddotReport;
   const { motion, points } = report;
   const section = byId("motion");
   // The reference in grey: dark lines, lighter faces, on which shade is seen.
@@ -19,24 +19,11 @@
   const runOf = (point) => motion?.runs.find((run) => run.point === point) ?? null;
   const sentence = (text) => element("p", { class: "quiet" }, text);
 
-  function keptRuns() {
-    const runs = motion.runs.filter((run) => run.role === "run" && run.point !== null);
-    if (!runs.length) return null;
-    const button = (run) =>
-      element(
-        "button",
-        { type: "button", "aria-pressed": String(run.point === state.run), title: run.why, click: () => choose({ run: run.point }) },
-        run.label,
-      );
-    return element("div", { class: "kept", role: "group", "aria-label": "Runs whose motion was kept" }, "Kept motions:", ...runs.map(button));
-  }
-
   function withoutMotion() {
-    const failed = points.outcome[state.run] === "reached_end" ? "" : " up to where it failed";
     return element(
       "div",
       {},
-      sentence(`No motion of this run was kept. This command writes all nodes${failed} over time into motion.csv:`),
+      sentence("No motion of this run was kept. This command writes the motion of all nodes into motion.csv:"),
       qddotReport.commandLine(`${points.command[state.run]} --trajectory motion.csv`),
     );
   }
@@ -146,7 +133,7 @@
     const chosen = state.run === null ? null : runOf(state.run);
     const runs = [...new Set([reference, chosen].filter(Boolean))];
     const missing = state.run !== null && !chosen ? withoutMotion() : null;
-    if (!runs.length) return say(keptRuns(), missing);
+    if (!runs.length) return say(qddotReport.keptMotions(), missing);
 
     const views = runs.map(viewOf);
     const holder = element("div", { class: views.length > 1 ? "views" : "views alone" }, ...views);
@@ -154,7 +141,7 @@
     try {
       stage ??= qddotReport.motionStage(motion.dimension);
     } catch {
-      return say(keptRuns(), missing, sentence("This browser draws no WebGL, which the motion is drawn with; all else on this page works without."));
+      return say(qddotReport.keptMotions(), missing, sentence("This browser draws no WebGL, which the motion is drawn with; all else on this page works without."));
     }
     const { unpacked, bounds } = await build(runs);
     if (mine !== turn) return;
@@ -167,7 +154,7 @@
     const until = Math.max(...unpacked.map((run) => run.times.at(-1)));
     player = qddotReport.player(until, show);
     player.node.append(...buttons());
-    say(keptRuns(), missing, holder, player.node, scale?.node, explain(lift));
+    say(qddotReport.keptMotions(), missing, holder, player.node, scale?.node, explain(lift));
     stage.canvas.setAttribute("aria-label", `Motion of ${runs.map((run) => run.label).join(" and ")}`);
     stage.show(holder, views, bodies);
     // The reader's own view stays from run to run.

@@ -34,7 +34,8 @@
   qddotReport.motionStage = (dimension) => {
     const canvas = document.createElement("canvas");
     canvas.setAttribute("role", "img");
-    const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    // Where a pixel of the page is several of the screen, edges are smooth enough without more work.
+    const renderer = new THREE.WebGLRenderer({ canvas, antialias: devicePixelRatio < MOST_PIXELS_A_PIXEL, alpha: true });
     renderer.setClearColor(0xffffff, 1);
     renderer.setScissorTest(true);
     const flat = dimension < 3;
