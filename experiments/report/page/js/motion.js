@@ -9,6 +9,8 @@
   // Of the length of a line of nodes: how far up its largest displacement is drawn.
   const LIFT = 0.2;
   const FEWEST_LIFTED = 8;
+  // A packed relative distance of 0.3.
+  const FAR = 246;
   let stage = null;
   let player = null;
   let lists = null;
@@ -105,6 +107,14 @@
     return { unpacked, bounds };
   }
 
+  // The errors of the chart are those of the end; a run that blows up shows most while it still is in
+  // the view, where it is about as far off as the scene moves.
+  function openingTime(run, until) {
+    if (run.outcome === "reached_end" || !run.distances) return until;
+    const far = run.distances.findIndex((code) => code >= FAR);
+    return far < 0 ? run.times.at(-1) : run.times[Math.floor(far / motion.nodes)];
+  }
+
   function liftBounds(bounds, lift) {
     if (!lift) return bounds;
     const [low, high] = [[...bounds.low], [...bounds.high]];
@@ -159,8 +169,7 @@
     stage.show(holder, views, bodies);
     // The reader's own view stays from run to run.
     if (opening || !reference) stage.look(wide);
-    // The errors of the chart are those of the end.
-    player.go(until);
+    player.go(openingTime(unpacked.at(-1), until));
     section.dataset.ready = state.run ?? "";
   };
 }

@@ -31,11 +31,11 @@
   }
 
   /** Lines of some pixels' width between pairs of nodes: the ends are copied at each change. */
-  function thickLines(springs, width) {
+  function thickLines(springs, width, color) {
     const geometry = new THREE.LineSegmentsGeometry();
     geometry.setPositions(new Float32Array(3 * springs.length));
     geometry.setColors(new Float32Array(3 * springs.length));
-    const lines = new THREE.LineSegments2(geometry, new THREE.LineMaterial({ linewidth: width, vertexColors: true }));
+    const lines = new THREE.LineSegments2(geometry, new THREE.LineMaterial({ linewidth: width, vertexColors: true, color }));
     const copy = (attribute, values) => {
       const { array } = attribute.data;
       springs.forEach((node, end) => array.set(values.subarray(3 * node, 3 * node + 3), 3 * end));
@@ -65,10 +65,12 @@
       sun.position.set(-0.4, -0.7, 1);
       scene.add(new THREE.AmbientLight(0xffffff, 1.9), sun);
     }
+    // On faces springs are darker than these, so that the weave is seen.
+    const shade = faces.length ? 0x777777 : 0xffffff;
     if (springs.length && springs.length <= 2 * FEW_SPRINGS) {
-      parts.push(thickLines(springs, springs.length <= 600 ? 2.6 : 1.5));
+      parts.push(thickLines(springs, faces.length ? 1.2 : springs.length <= 600 ? 2.6 : 1.5, shade));
     } else if (springs.length) {
-      const thin = new THREE.LineBasicMaterial({ vertexColors: true, transparent: faces.length > 0, opacity: faces.length ? 0.35 : 1 });
+      const thin = new THREE.LineBasicMaterial({ vertexColors: true, color: shade, transparent: faces.length > 0, opacity: faces.length ? 0.35 : 1 });
       parts.push(new THREE.LineSegments(nodeGeometry(attributes, springs), thin));
     }
     const disc = discTexture();

@@ -27,7 +27,8 @@
   function addressed(hash) {
     const words = new URLSearchParams(hash.replace(/^#/, ""));
     const found = {};
-    const [name, value] = (words.get("run") ?? "").split("@");
+    const wanted = words.get("run") ?? "";
+    const [name, value] = [wanted.slice(0, wanted.lastIndexOf("@")), wanted.slice(wanted.lastIndexOf("@") + 1)];
     const method = methods.findIndex((one) => one.name === name);
     const run = method < 0 ? undefined : runsOf[method].find((point) => String(points.value[point]) === value);
     if (run !== undefined) found.run = run;
