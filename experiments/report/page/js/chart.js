@@ -10,7 +10,9 @@
   function currentView() {
     const { column, ordinate } = state;
     const quantity = report.quantities.find((one) => one.column === column);
-    const drawn = points.method.map((_, point) => point).filter((point) => quantity && isDrawn(point, column, ordinate));
+    const drawn = points.method
+      .map((_, point) => point)
+      .filter((point) => quantity && isDrawn(point, column, ordinate));
     const positive = drawn.map((point) => points[column][point]).filter((error) => error > 0);
     const least = positive.reduce((a, b) => Math.min(a, b), Infinity);
     const floor = quantity?.floor ?? null;
@@ -24,10 +26,24 @@
       ? plot.widened(floorShown ? floor / 2 : Math.min(...xs), Math.max(...xs), 2.5)
       : [1e-9, 1];
     const [bottom, top] = ys.length ? plot.widened(Math.min(...ys), Math.max(...ys), 2) : [1e-3, 1];
-    return { column, ordinate, quantity, drawn, floor: floorShown ? floor : null, stand, x, y, left, right, bottom, top };
+    return {
+      column,
+      ordinate,
+      quantity,
+      drawn,
+      floor: floorShown ? floor : null,
+      stand,
+      x,
+      y,
+      left,
+      right,
+      bottom,
+      top,
+    };
   }
 
-  const ordinateTitle = (ordinate) => (ordinate === "time_s" ? "time of one run, median" : words.plain(ordinate));
+  const ordinateTitle = (ordinate) =>
+    ordinate === "time_s" ? "time of one run, median" : words.plain(ordinate);
 
   function axes(view, narrow) {
     const inTime = view.ordinate === "time_s";
@@ -36,7 +52,11 @@
     const title = narrow ? view.quantity.axis : `◀ more accurate          ${view.quantity.axis}`;
     across.title = { text: plot.plainWords(title), standoff: 8, font: { size: 13 } };
     const direction = inTime ? "faster" : "less work";
-    up.title = { text: plot.plainWords(`◀ ${direction}          ${ordinateTitle(view.ordinate)}`), standoff: 6, font: { size: 13 } };
+    up.title = {
+      text: plot.plainWords(`◀ ${direction}          ${ordinateTitle(view.ordinate)}`),
+      standoff: 6,
+      font: { size: 13 },
+    };
     return { xaxis: across, yaxis: up };
   }
 
@@ -45,8 +65,21 @@
     const edges = { xref: "x", yref: "paper", y0: 0, y1: 1, layer: "below" };
     return {
       shapes: [
-        { ...edges, type: "rect", x0: view.left / 1e3, x1: view.floor, fillcolor: "#efefec", line: { width: 0 } },
-        { ...edges, type: "line", x0: view.floor, x1: view.floor, line: { color: plot.FAINT, width: 1 } },
+        {
+          ...edges,
+          type: "rect",
+          x0: view.left / 1e3,
+          x1: view.floor,
+          fillcolor: "#efefec",
+          line: { width: 0 },
+        },
+        {
+          ...edges,
+          type: "line",
+          x0: view.floor,
+          x1: view.floor,
+          line: { color: plot.FAINT, width: 1 },
+        },
       ],
       annotations: [
         {
@@ -66,9 +99,14 @@
   }
 
   function labels(view, strong, front, margin) {
-    const size = { width: drawing.clientWidth - margin.l - margin.r, height: drawing.clientHeight - margin.t - margin.b };
-    const across = (value) => (Math.log(value / view.left) / Math.log(view.right / view.left)) * size.width;
-    const up = (value) => size.height * (1 - Math.log(value / view.bottom) / Math.log(view.top / view.bottom));
+    const size = {
+      width: drawing.clientWidth - margin.l - margin.r,
+      height: drawing.clientHeight - margin.t - margin.b,
+    };
+    const across = (value) =>
+      (Math.log(value / view.left) / Math.log(view.right / view.left)) * size.width;
+    const up = (value) =>
+      size.height * (1 - Math.log(value / view.bottom) / Math.log(view.top / view.bottom));
     // The region of errors that mean nothing has words of its own.
     size.left = view.floor === null ? 0 : across(view.floor);
     const onFront = new Set(front.map((point) => points.method[point]));
@@ -103,7 +141,9 @@
     note.textContent = view.quantity?.subtitle ?? "";
     if (!view.drawn.length) {
       Plotly.purge(drawing);
-      drawing.replaceChildren(element("p", { class: "quiet empty" }, "No run gave a point of this chart."));
+      drawing.replaceChildren(
+        element("p", { class: "quiet empty" }, "No run gave a point of this chart."),
+      );
       drawing.style.height = "auto";
       return;
     }
@@ -112,8 +152,12 @@
       drawing.replaceChildren();
     }
     const narrow = drawing.clientWidth < NARROW;
-    const strong = methods.map((_, method) => method).filter((method) => qddotReport.shown.has(method));
-    const rest = methods.map((_, method) => method).filter((method) => !qddotReport.shown.has(method));
+    const strong = methods
+      .map((_, method) => method)
+      .filter((method) => qddotReport.shown.has(method));
+    const rest = methods
+      .map((_, method) => method)
+      .filter((method) => !qddotReport.shown.has(method));
     const front = qddotReport.front(view.quantity, view.ordinate, view.stand);
     const margin = { l: narrow ? 62 : 84, r: 12, t: 10, b: 52 };
     const floor = floorShapes(view);
@@ -139,21 +183,28 @@
     if (listening) return;
     listening = true;
     qddotReport.listenToMarks(drawing);
-    drawing.on("plotly_relayout", () => (byId("whole").hidden = drawing.layout.xaxis.autorange === true || !zoomed()));
+    drawing.on(
+      "plotly_relayout",
+      () => (byId("whole").hidden = drawing.layout.xaxis.autorange === true || !zoomed()),
+    );
   }
 
   function zoomed() {
     const view = currentView();
     const [from, to] = drawing.layout.xaxis.range;
-    return Math.abs(from - Math.log10(view.left)) > 1e-6 || Math.abs(to - Math.log10(view.right)) > 1e-6;
+    return (
+      Math.abs(from - Math.log10(view.left)) > 1e-6 || Math.abs(to - Math.log10(view.right)) > 1e-6
+    );
   }
 
   /** Lets the marks of a drawing show their run on hover and choose it on a click. */
   qddotReport.listenToMarks = (node) => {
-    const pointOf = (event) => event.points?.map((mark) => mark.customdata).find((point) => typeof point === "number");
+    const pointOf = (event) =>
+      event.points?.map((mark) => mark.customdata).find((point) => typeof point === "number");
     node.on("plotly_hover", (event) => {
       const point = pointOf(event);
-      if (point !== undefined) qddotReport.showTooltip(point, event.event.clientX, event.event.clientY);
+      if (point !== undefined)
+        qddotReport.showTooltip(point, event.event.clientX, event.event.clientY);
     });
     node.on("plotly_unhover", qddotReport.hideTooltip);
     node.on("plotly_click", (event) => {

@@ -1,4 +1,5 @@
-// What the chart consists of, for Plotly: the front, the pale cloud, the lines of the strong methods.
+// What the chart consists of, for Plotly: the front, the pale cloud, the lines of the strong
+// methods.
 "use strict";
 {
   const { report, runsOf, isDrawn, plot } = qddotReport;
@@ -7,7 +8,8 @@
   const PALE = 0.2;
 
   /** The places of a method's runs in the chart, from the largest knob to the least. */
-  const drawnRuns = (method, column, ordinate) => runsOf[method].filter((point) => isDrawn(point, column, ordinate));
+  const drawnRuns = (method, column, ordinate) =>
+    runsOf[method].filter((point) => isDrawn(point, column, ordinate));
 
   /** The front as a staircase up to the right end of the axes. */
   function frontTrace(front, view) {
@@ -19,13 +21,32 @@
       xs.unshift(xs[0]);
       ys.unshift(view.top);
     }
-    return { x: xs, y: ys, mode: "lines", line: { color: FRONT, width: 9, shape: "hv" }, hoverinfo: "skip" };
+    return {
+      x: xs,
+      y: ys,
+      mode: "lines",
+      line: { color: FRONT, width: 9, shape: "hv" },
+      hoverinfo: "skip",
+    };
   }
 
   /** The methods that are not strong: one line with gaps, marks in their colours. */
   function cloudTrace(methods, view) {
-    const trace = { x: [], y: [], customdata: [], mode: "lines+markers", hoverinfo: "none", connectgaps: false };
-    const marker = { symbol: [], size: [], color: [], opacity: PALE, line: { color: [], width: 1 } };
+    const trace = {
+      x: [],
+      y: [],
+      customdata: [],
+      mode: "lines+markers",
+      hoverinfo: "none",
+      connectgaps: false,
+    };
+    const marker = {
+      symbol: [],
+      size: [],
+      color: [],
+      opacity: PALE,
+      line: { color: [], width: 1 },
+    };
     for (const method of methods) {
       const look = plot.markerOf(method);
       for (const point of [...drawnRuns(method, view.column, view.ordinate), null]) {
@@ -53,7 +74,13 @@
       mode: "lines+markers",
       hoverinfo: "none",
       line: plot.lineOf(method),
-      marker: { symbol: look.symbol, size: look.size, color: look.fill, line: { color: look.edge, width: 1.2 }, opacity: 1 },
+      marker: {
+        symbol: look.symbol,
+        size: look.size,
+        color: look.fill,
+        line: { color: look.edge, width: 1.2 },
+        opacity: 1,
+      },
     };
     if (view.column === "error_position") trace.error_x = uncertainty(runs, view, look.edge);
     return trace;
@@ -63,9 +90,20 @@
     const most = runs.map((point) => points.error_position_at_most?.[point] ?? 0);
     const least = runs.map((point) => points.error_position_at_least?.[point] ?? 0);
     const above = runs.map((point, at) => Math.max(0, most[at] - view.x(point)));
-    const below = runs.map((point, at) => Math.max(0, view.x(point) - Math.max(least[at], view.left)));
+    const below = runs.map((point, at) =>
+      Math.max(0, view.x(point) - Math.max(least[at], view.left)),
+    );
     const visible = runs.some((point, at) => above[at] > 0.1 * view.x(point));
-    return { type: "data", symmetric: false, array: above, arrayminus: below, color, thickness: 0.8, width: 0, visible };
+    return {
+      type: "data",
+      symmetric: false,
+      array: above,
+      arrayminus: below,
+      color,
+      thickness: 0.8,
+      width: 0,
+      visible,
+    };
   }
 
   /** A ring around the chosen run. */
@@ -76,7 +114,12 @@
       y: shown ? [view.y(point)] : [],
       mode: "markers",
       hoverinfo: "skip",
-      marker: { symbol: "circle-open", size: 19, color: plot.INK, line: { width: 2.2, color: plot.INK } },
+      marker: {
+        symbol: "circle-open",
+        size: 19,
+        color: plot.INK,
+        line: { width: 2.2, color: plot.INK },
+      },
     };
   }
 

@@ -1,11 +1,22 @@
-// Colours of distances from the reference: logarithmic, from blue (1e-14) over purple to orange (1).
+// Colours of distances from the reference, logarithmic: blue (1e-14), purple, orange (1).
 "use strict";
 {
   const { element } = qddotReport;
   const DECADES = 14;
   const TICKS = [-14, -10, -6, -2, 0];
-  // All about as light as each other, so that a face's shade stays to be seen, and none pale on white.
-  const STOPS = ["#4a86bd", "#5573bf", "#6b60ba", "#8650ac", "#a34598", "#c0427c", "#d84f58", "#e86a35", "#f29111"];
+  // All about as light as each other, so that a face's shade stays to be seen, and none pale on
+  // white.
+  const STOPS = [
+    "#4a86bd",
+    "#5573bf",
+    "#6b60ba",
+    "#8650ac",
+    "#a34598",
+    "#c0427c",
+    "#d84f58",
+    "#e86a35",
+    "#f29111",
+  ];
 
   const channels = (color) => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
 
@@ -16,11 +27,16 @@
     return low.map((value, channel) => value + (at % 1) * (high[channel] - value));
   }
 
-  const linear = (value) => (value <= 10.31475 ? value / 3294.6 : ((value / 255 + 0.055) / 1.055) ** 2.4);
+  const linear = (value) =>
+    value <= 10.31475 ? value / 3294.6 : ((value / 255 + 0.055) / 1.055) ** 2.4;
 
-  /** Red, green and blue of the 256 packed distances, as linear light, which three.js computes with. */
+  /** Red, green and blue of the 256 packed distances, as linear light, which three.js computes
+      with. */
   const table = new Float32Array(256 * 3);
-  for (let code = 0; code < 256; code++) colorAt((code - 1) / 254).forEach((value, channel) => (table[3 * code + channel] = linear(value)));
+  for (let code = 0; code < 256; code++)
+    colorAt((code - 1) / 254).forEach(
+      (value, channel) => (table[3 * code + channel] = linear(value)),
+    );
 
   /** The relative distance that a packed one stands for. */
   const distanceOf = (code) => (code === 0 ? 0 : 10 ** (((code - 1) / 254) * DECADES - DECADES));
@@ -38,7 +54,14 @@
     }
     const pointer = element("i");
     const words = element("p", { "aria-live": "off" });
-    const node = element("div", { class: "scale" }, words, element("div", { class: "scale-now", "aria-hidden": "true" }, pointer), bar, ticks);
+    const node = element(
+      "div",
+      { class: "scale" },
+      words,
+      element("div", { class: "scale-now", "aria-hidden": "true" }, pointer),
+      bar,
+      ticks,
+    );
     function point(code) {
       pointer.style.left = `${(100 * Math.max(0, code - 1)) / 254}%`;
       const far = code === 0 ? "at most 1e-14" : qddotReport.words.number(distanceOf(code));

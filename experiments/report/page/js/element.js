@@ -13,7 +13,8 @@
     return node;
   }
 
-  /** A new element; an attribute whose value is a function is a listener of the event of that name. */
+  /** A new element; an attribute whose value is a function is a listener of the event of that name.
+   */
   qddotReport.element = (tag, attributes = {}, ...children) =>
     fill(document.createElement(tag), attributes, children);
 
@@ -26,7 +27,11 @@
 
   /** A line of a shell with a button that copies it. */
   qddotReport.commandLine = (words) => {
-    const button = qddotReport.element("button", { type: "button", "aria-label": `Copy: ${words}` }, "Copy");
+    const button = qddotReport.element(
+      "button",
+      { type: "button", "aria-label": `Copy: ${words}` },
+      "Copy",
+    );
     const code = qddotReport.element("code", {}, words);
     button.addEventListener("click", async () => {
       try {

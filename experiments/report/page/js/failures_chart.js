@@ -12,8 +12,21 @@
   const axisName = (place, name) => (place ? `${name}${place + 1}` : name);
 
   function trace(rows, knob, place) {
-    const marks = { x: [], y: [], customdata: [], mode: "markers", hoverinfo: "none", xaxis: axisName(place, "x") };
-    const marker = { symbol: "x-thin", size: 7, opacity: [], line: { color: [], width: [] }, color: plot.INK };
+    const marks = {
+      x: [],
+      y: [],
+      customdata: [],
+      mode: "markers",
+      hoverinfo: "none",
+      xaxis: axisName(place, "x"),
+    };
+    const marker = {
+      symbol: "x-thin",
+      size: 7,
+      opacity: [],
+      line: { color: [], width: [] },
+      color: plot.INK,
+    };
     for (const { runs, ys } of rows) {
       runs.forEach((point, at) => {
         if (points.knob[point] !== knob) return;
@@ -39,26 +52,49 @@
       xaxis: axisName(place, "x"),
       mode: "markers",
       hoverinfo: "skip",
-      marker: { symbol: "circle-open", size: 17, color: plot.INK, line: { width: 2.2, color: plot.INK } },
+      marker: {
+        symbol: "circle-open",
+        size: 17,
+        color: plot.INK,
+        line: { width: 2.2, color: plot.INK },
+      },
     };
   }
 
   function knobAxis(rows, knob, place, knobs, narrow) {
-    const values = rows.flatMap(({ runs }) => runs).filter((point) => points.knob[point] === knob).map((point) => points.value[point]);
-    const axis = plot.decades(...plot.widened(Math.min(...values), Math.max(...values), 2), plot.powerOfTen);
+    const values = rows
+      .flatMap(({ runs }) => runs)
+      .filter((point) => points.knob[point] === knob)
+      .map((point) => points.value[point]);
+    const axis = plot.decades(
+      ...plot.widened(Math.min(...values), Math.max(...values), 2),
+      plot.powerOfTen,
+    );
     const every = Math.ceil(axis.tickvals.length / (narrow ? 3 : 7));
     axis.tickvals = axis.tickvals.filter((_, at) => at % every === 0);
     axis.ticktext = axis.ticktext.filter((_, at) => at % every === 0);
     const title = words.knobTitle(knob) + (knob === "step_size" ? " in s" : "");
     axis.title = { text: plot.plainWords(title), font: { size: 12 }, standoff: 4 };
     const share = 1 / knobs.length;
-    axis.domain = [place * share + (place ? GAP : 0), (place + 1) * share - (place + 1 < knobs.length ? GAP : 0)];
+    axis.domain = [
+      place * share + (place ? GAP : 0),
+      (place + 1) * share - (place + 1 < knobs.length ? GAP : 0),
+    ];
     return { ...axis, fixedrange: true, showline: false };
   }
 
   function layout(rows, height, knobs, narrow) {
-    const across = { type: "line", xref: "paper", x0: 0, x1: 1, line: { color: plot.GRID, width: 1 } };
-    const axes = knobs.map((knob, place) => [axisName(place, "xaxis"), knobAxis(rows, knob, place, knobs, narrow)]);
+    const across = {
+      type: "line",
+      xref: "paper",
+      x0: 0,
+      x1: 1,
+      line: { color: plot.GRID, width: 1 },
+    };
+    const axes = knobs.map((knob, place) => [
+      axisName(place, "xaxis"),
+      knobAxis(rows, knob, place, knobs, narrow),
+    ]);
     return {
       ...plot.layout(),
       ...Object.fromEntries(axes),
@@ -87,7 +123,12 @@
     drawing.style.height = `${height + EDGES.t + EDGES.b}px`;
     const data = knobs.map((knob, place) => trace(rows, knob, place));
     const narrow = drawing.clientWidth < NARROW;
-    Plotly.react(drawing, [...data, ringTrace(rows, knobs)], layout(rows, height, knobs, narrow), plot.config);
+    Plotly.react(
+      drawing,
+      [...data, ringTrace(rows, knobs)],
+      layout(rows, height, knobs, narrow),
+      plot.config,
+    );
     if (!listening) qddotReport.listenToMarks(drawing);
     listening = true;
   };

@@ -1,5 +1,5 @@
-// Where the runs that gave no point stand: a row for each way to fail, and in a row those at about the
-// same knob under each other.
+// Where the runs that gave no point stand: a row for each way to fail, and in a row those at about
+// the same knob under each other.
 "use strict";
 {
   const { report, words, state, isDrawn, whyNot } = qddotReport;

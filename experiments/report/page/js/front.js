@@ -10,7 +10,9 @@
     const stands = (point) => Math.max(errors[point], floor);
     const candidates = points.method
       .map((_, point) => point)
-      .filter((point) => isDrawn(point, quantity.column, ordinate) && quantity.counts?.[point] !== false)
+      .filter(
+        (point) => isDrawn(point, quantity.column, ordinate) && quantity.counts?.[point] !== false,
+      )
       .sort((a, b) => stands(a) - stands(b) || points[ordinate][a] - points[ordinate][b]);
     const front = [];
     let least = Infinity;

@@ -6,14 +6,33 @@
 
   function button(run) {
     const chosen = String(run.point === state.run);
-    return element("button", { type: "button", "aria-pressed": chosen, title: run.why, click: () => choose({ run: run.point }) }, run.label);
+    return element(
+      "button",
+      {
+        type: "button",
+        "aria-pressed": chosen,
+        title: run.why,
+        click: () => choose({ run: run.point }),
+      },
+      run.label,
+    );
   }
 
   function menu(runs) {
     const kept = runs.some((run) => run.point === state.run);
-    const options = runs.map((run) => element("option", { value: run.point }, run.why ? `${run.label}: ${run.why}` : run.label));
+    const options = runs.map((run) =>
+      element("option", { value: run.point }, run.why ? `${run.label}: ${run.why}` : run.label),
+    );
     const first = element("option", { value: "", disabled: true }, `all ${runs.length}`);
-    const select = element("select", { "aria-label": "All runs whose motion was kept", change: () => choose({ run: Number(select.value) }) }, first, ...options);
+    const select = element(
+      "select",
+      {
+        "aria-label": "All runs whose motion was kept",
+        change: () => choose({ run: Number(select.value) }),
+      },
+      first,
+      ...options,
+    );
     select.value = kept ? state.run : "";
     return select;
   }
@@ -24,6 +43,11 @@
     if (!runs.length) return null;
     const parts = runs.slice(0, MOST_BUTTONS).map(button);
     if (runs.length > MOST_BUTTONS) parts.push(menu(runs));
-    return element("div", { class: "kept", role: "group", "aria-label": "Runs whose motion was kept" }, "Kept motions:", ...parts);
+    return element(
+      "div",
+      { class: "kept", role: "group", "aria-label": "Runs whose motion was kept" },
+      "Kept motions:",
+      ...parts,
+    );
   };
 }

@@ -37,7 +37,13 @@
 
   function methodLine(method) {
     const box = element("input", { type: "checkbox", change: () => toggle([method], box.checked) });
-    const label = element("label", { title: methods[method].line, "data-method": method }, box, swatch(method), element("span", {}, methods[method].name));
+    const label = element(
+      "label",
+      { title: methods[method].line, "data-method": method },
+      box,
+      swatch(method),
+      element("span", {}, methods[method].name),
+    );
     boxes[method] = { box, label };
     return label;
   }
@@ -59,13 +65,24 @@
 
   /** Builds the list. */
   qddotReport.drawLegend = () => {
-    const button = (words, chosen) => element("button", { type: "button", click: () => show(chosen()) }, words);
+    const button = (words, chosen) =>
+      element("button", { type: "button", click: () => show(chosen()) }, words);
     const groups = families
-      .map((_, family) => ({ family, members: methods.map((_, method) => method).filter((method) => methods[method].family === family) }))
+      .map((_, family) => ({
+        family,
+        members: methods
+          .map((_, method) => method)
+          .filter((method) => methods[method].family === family),
+      }))
       .filter(({ members }) => members.length)
       .map(({ family, members }) => familyGroup(family, members));
     byId("legend").append(
-      element("input", { type: "search", placeholder: "Find a method", "aria-label": "Find a method", input: (event) => search(event.target.value) }),
+      element("input", {
+        type: "search",
+        placeholder: "Find a method",
+        "aria-label": "Find a method",
+        input: (event) => search(event.target.value),
+      }),
       element(
         "div",
         { class: "legend-buttons", role: "group", "aria-label": "Draw strongly" },

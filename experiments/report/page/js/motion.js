@@ -25,7 +25,9 @@
     return element(
       "div",
       {},
-      sentence("No motion of this run was kept. This command writes the motion of all nodes into motion.csv:"),
+      sentence(
+        "No motion of this run was kept. This command writes the motion of all nodes into motion.csv:",
+      ),
       qddotReport.commandLine(`${points.command[state.run]} --trajectory motion.csv`),
     );
   }
@@ -37,19 +39,31 @@
   }
 
   function viewOf(run) {
-    const words = element("div", { class: "view-words" }, element("b", {}, run.label), run.role === "reference" ? "the reference" : run.why);
+    const words = element(
+      "div",
+      { class: "view-words" },
+      element("b", {}, run.label),
+      run.role === "reference" ? "the reference" : run.why,
+    );
     const stop = stopWords(run);
     if (stop) words.append(element("div", {}, element("span", { class: "view-stop" }, stop)));
-    if (run.left_box) words.append(element("div", { class: "quiet" }, "parts of it leave what is kept"));
+    if (run.left_box)
+      words.append(element("div", { class: "quiet" }, "parts of it leave what is kept"));
     return element("div", { class: "view" }, words);
   }
 
-  // A line of nodes moves along itself: its displacements are drawn upwards, or nobody would see them.
+  // A line of nodes moves along itself: its displacements are drawn upwards, or nobody would see
+  // them.
   function lifted(bounds) {
-    if (motion.dimension !== 1 || motion.nodes < FEWEST_LIFTED || !(motion.distance_unit > 0)) return null;
+    if (motion.dimension !== 1 || motion.nodes < FEWEST_LIFTED || !(motion.distance_unit > 0))
+      return null;
     const extents = bounds.high.map((high, axis) => high - bounds.low[axis]);
     const along = extents.indexOf(Math.max(...extents));
-    return { along, up: along === 2 ? 0 : 2, factor: (LIFT * extents[along]) / motion.distance_unit };
+    return {
+      along,
+      up: along === 2 ? 0 : 2,
+      factor: (LIFT * extents[along]) / motion.distance_unit,
+    };
   }
 
   function place(run, body, t) {
@@ -86,13 +100,15 @@
       const largest = paint(run, body, t);
       if (largest !== null) scene.scale?.point(largest);
       body.update();
-      view.style.background = t > run.times.at(-1) && run.outcome !== "reached_end" ? "#fbe9e5" : "";
+      view.style.background =
+        t > run.times.at(-1) && run.outcome !== "reached_end" ? "#fbe9e5" : "";
     }
     stage.draw();
   }
 
   function buttons() {
-    const button = (text, label, act) => element("button", { type: "button", "aria-label": label, title: label, click: act }, text);
+    const button = (text, label, act) =>
+      element("button", { type: "button", "aria-label": label, title: label, click: act }, text);
     return [
       button("+", "Closer", () => stage.zoom(1.25)),
       button("−", "Farther", () => stage.zoom(0.8)),
@@ -101,14 +117,17 @@
   }
 
   async function build(runs) {
-    lists ??= { springs: await qddotReport.nodeLists(motion.springs), faces: await qddotReport.nodeLists(motion.faces) };
+    lists ??= {
+      springs: await qddotReport.nodeLists(motion.springs),
+      faces: await qddotReport.nodeLists(motion.faces),
+    };
     const unpacked = await Promise.all(runs.map(qddotReport.unpackedRun));
     const bounds = qddotReport.boundsOf(unpacked[0]);
     return { unpacked, bounds };
   }
 
-  // The errors of the chart are those of the end; a run that blows up shows most while it still is in
-  // the view, where it is about as far off as the scene moves.
+  // The errors of the chart are those of the end; a run that blows up shows most while it still is
+  // in the view, where it is about as far off as the scene moves.
   function openingTime(run, until) {
     if (run.outcome === "reached_end" || !run.distances) return until;
     const far = run.distances.findIndex((code) => code >= FAR);
@@ -125,9 +144,15 @@
   }
 
   function explain(lift) {
-    const move = motion.dimension < 3 ? "Drag to move" : "Drag to turn, with the right button to move";
-    const lines = [`${move}; pinch, or click and turn the wheel, to zoom. Dark squares are pinned nodes. Between kept frames nodes move straight.`];
-    if (lift) lines.push(`Nodes move along the line; their displacement is drawn upwards as well, ${words.ratio(lift.factor)} as large.`);
+    const move =
+      motion.dimension < 3 ? "Drag to move" : "Drag to turn, with the right button to move";
+    const lines = [
+      `${move}; pinch, or click and turn the wheel, to zoom. Dark squares are pinned nodes. Between kept frames nodes move straight.`,
+    ];
+    if (lift)
+      lines.push(
+        `Nodes move along the line; their displacement is drawn upwards as well, ${words.ratio(lift.factor)} as large.`,
+      );
     return sentence(lines.join(" "));
   }
 
@@ -138,8 +163,10 @@
     const heading = element("h3", {}, "Its motion beside the reference");
     const say = (...nodes) => section.replaceChildren(heading, ...nodes.filter(Boolean));
     scene = null;
-    if (!motion || !motion.runs.length) return say(sentence("No motions were kept."), state.run === null ? null : withoutMotion());
-    if (!qddotReport.canInflate()) return say(sentence("This browser cannot unpack the motions: it lacks DecompressionStream."));
+    if (!motion || !motion.runs.length)
+      return say(sentence("No motions were kept."), state.run === null ? null : withoutMotion());
+    if (!qddotReport.canInflate())
+      return say(sentence("This browser cannot unpack the motions: it lacks DecompressionStream."));
     const chosen = state.run === null ? null : runOf(state.run);
     const runs = [...new Set([reference, chosen].filter(Boolean))];
     const missing = state.run !== null && !chosen ? withoutMotion() : null;
@@ -151,21 +178,38 @@
     try {
       stage ??= qddotReport.motionStage(motion.dimension);
     } catch {
-      return say(qddotReport.keptMotions(), missing, sentence("This browser draws no WebGL, which the motion is drawn with; all else on this page works without."));
+      return say(
+        qddotReport.keptMotions(),
+        missing,
+        sentence(
+          "This browser draws no WebGL, which the motion is drawn with; all else on this page works without.",
+        ),
+      );
     }
     const { unpacked, bounds } = await build(runs);
     if (mine !== turn) return;
     const lift = lifted(bounds);
-    const bodies = unpacked.map(() => qddotReport.motionBody({ nodes: motion.nodes, pinned: motion.pinned, ...lists }));
+    const bodies = unpacked.map(() =>
+      qddotReport.motionBody({ nodes: motion.nodes, pinned: motion.pinned, ...lists }),
+    );
     const scale = unpacked.some((run) => run.distances) ? qddotReport.distanceScale.legend() : null;
     const wide = liftBounds(bounds, lift);
     const middle = wide.low.map((low, axis) => (low + wide.high[axis]) / 2);
-    scene = { bounds: wide, lift, middle, scale, parts: unpacked.map((run, at) => ({ run, body: bodies[at], view: views[at] })) };
+    scene = {
+      bounds: wide,
+      lift,
+      middle,
+      scale,
+      parts: unpacked.map((run, at) => ({ run, body: bodies[at], view: views[at] })),
+    };
     const until = Math.max(...unpacked.map((run) => run.times.at(-1)));
     player = qddotReport.player(until, show);
     player.node.append(...buttons());
     say(qddotReport.keptMotions(), missing, holder, player.node, scale?.node, explain(lift));
-    stage.canvas.setAttribute("aria-label", `Motion of ${runs.map((run) => run.label).join(" and ")}`);
+    stage.canvas.setAttribute(
+      "aria-label",
+      `Motion of ${runs.map((run) => run.label).join(" and ")}`,
+    );
     stage.show(holder, views, bodies);
     // The reader's own view stays from run to run.
     if (opening || !reference) stage.look(wide);

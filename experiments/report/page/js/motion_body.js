@@ -25,7 +25,8 @@
 
   function nodeGeometry(attributes, index) {
     const geometry = new THREE.BufferGeometry();
-    for (const [name, attribute] of Object.entries(attributes)) geometry.setAttribute(name, attribute);
+    for (const [name, attribute] of Object.entries(attributes))
+      geometry.setAttribute(name, attribute);
     if (index) geometry.setIndex(new THREE.BufferAttribute(index, 1));
     return geometry;
   }
@@ -35,7 +36,10 @@
     const geometry = new THREE.LineSegmentsGeometry();
     geometry.setPositions(new Float32Array(3 * springs.length));
     geometry.setColors(new Float32Array(3 * springs.length));
-    const lines = new THREE.LineSegments2(geometry, new THREE.LineMaterial({ linewidth: width, vertexColors: true, color }));
+    const lines = new THREE.LineSegments2(
+      geometry,
+      new THREE.LineMaterial({ linewidth: width, vertexColors: true, color }),
+    );
     const copy = (attribute, values) => {
       const { array } = attribute.data;
       springs.forEach((node, end) => array.set(values.subarray(3 * node, 3 * node + 3), 3 * end));
@@ -58,7 +62,12 @@
 
     if (faces.length) {
       const skin = new THREE.MeshLambertMaterial({
-        vertexColors: true, side: THREE.DoubleSide, flatShading: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+        vertexColors: true,
+        side: THREE.DoubleSide,
+        flatShading: true,
+        polygonOffset: true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
       });
       parts.push(new THREE.Mesh(nodeGeometry(attributes, faces), skin));
       const sun = new THREE.DirectionalLight(0xffffff, 1.6);
@@ -68,21 +77,39 @@
     // On faces springs are darker than these, so that the weave is seen.
     const shade = faces.length ? 0x777777 : 0xffffff;
     if (springs.length && springs.length <= 2 * FEW_SPRINGS) {
-      parts.push(thickLines(springs, faces.length ? 1.2 : springs.length <= 600 ? 2.6 : 1.5, shade));
+      parts.push(
+        thickLines(springs, faces.length ? 1.2 : springs.length <= 600 ? 2.6 : 1.5, shade),
+      );
     } else if (springs.length) {
-      const thin = new THREE.LineBasicMaterial({ vertexColors: true, color: shade, transparent: faces.length > 0, opacity: faces.length ? 0.35 : 1 });
+      const thin = new THREE.LineBasicMaterial({
+        vertexColors: true,
+        color: shade,
+        transparent: faces.length > 0,
+        opacity: faces.length ? 0.35 : 1,
+      });
       parts.push(new THREE.LineSegments(nodeGeometry(attributes, springs), thin));
     }
     const disc = discTexture();
     if (nodes <= FEW_NODES || !springs.length) {
       const size = nodes <= 40 ? 13 : nodes <= FEW_NODES ? 7 : 3;
-      const dots = new THREE.PointsMaterial({ size, sizeAttenuation: false, vertexColors: true, map: disc, alphaTest: 0.5 });
+      const dots = new THREE.PointsMaterial({
+        size,
+        sizeAttenuation: false,
+        vertexColors: true,
+        map: disc,
+        alphaTest: 0.5,
+      });
       parts.push(new THREE.Points(nodeGeometry(attributes), dots));
     }
     if (pinned.length) {
       const size = nodes <= FEW_NODES ? 11 : 5;
       const squares = new THREE.PointsMaterial({ size, sizeAttenuation: false, color: PINNED });
-      parts.push(new THREE.Points(nodeGeometry({ position: attributes.position }, Uint32Array.from(pinned)), squares));
+      parts.push(
+        new THREE.Points(
+          nodeGeometry({ position: attributes.position }, Uint32Array.from(pinned)),
+          squares,
+        ),
+      );
     }
     for (const part of parts) {
       // Bounds of what moves would have to be found anew for each frame.

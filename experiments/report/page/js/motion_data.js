@@ -1,4 +1,5 @@
-// The kept motions: positions of all nodes at the kept times, and their distances from the reference.
+// The kept motions: positions of all nodes at the kept times, and their distances from the
+// reference.
 "use strict";
 {
   const { report } = qddotReport;
@@ -24,7 +25,8 @@
     return { ...run, perFrame, places, distances };
   }
 
-  /** A run with its frames unpacked: `places` (frames x nodes x 3) and `distances` (frames x nodes) or null. */
+  /** A run with its frames unpacked: `places` (frames x nodes x 3) and `distances` (frames x nodes)
+      or null. */
   qddotReport.unpackedRun = async (run) => {
     if (!unpacked.has(run)) {
       // A few are kept, so that a reader who looks at many needs no more memory for it.
@@ -44,7 +46,8 @@
     return new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
   };
 
-  /** Where a time lies among a run's frames: the frame before it and the share of the way to the next. */
+  /** Where a time lies among a run's frames: the frame before it and the share of the way to the
+      next. */
   qddotReport.frameAt = (times, t) => {
     let low = 0;
     let high = times.length - 1;

@@ -18,7 +18,9 @@
     const slope = Math.tan((ANGLE * Math.PI) / 360) / MARGIN;
     let away = 1e-30;
     for (let corner = 0; corner < 8; corner++) {
-      const place = new THREE.Vector3(...[0, 1, 2].map((axis) => (corner & (1 << axis) ? high : low)[axis])).sub(middle);
+      const place = new THREE.Vector3(
+        ...[0, 1, 2].map((axis) => (corner & (1 << axis) ? high : low)[axis]),
+      ).sub(middle);
       const wide = Math.max(Math.abs(place.dot(up)), Math.abs(place.dot(right)) / aspect);
       away = Math.max(away, place.dot(from) + wide / slope);
     }
@@ -26,16 +28,23 @@
   }
 
   function camera(flat) {
-    return flat ? new THREE.OrthographicCamera(-1, 1, 1, -1, -1, 1) : new THREE.PerspectiveCamera(ANGLE, 1);
+    return flat
+      ? new THREE.OrthographicCamera(-1, 1, 1, -1, -1, 1)
+      : new THREE.PerspectiveCamera(ANGLE, 1);
   }
 
-  /** A stage, made once for the page; throws where there is no WebGL. show(holder, places, bodies) puts
-      its canvas behind the elements `places` of the holder and draws a body into each. */
+  /** A stage, made once for the page; throws where there is no WebGL. show(holder, places, bodies)
+      puts its canvas behind the elements `places` of the holder and draws a body into each. */
   qddotReport.motionStage = (dimension) => {
     const canvas = document.createElement("canvas");
     canvas.setAttribute("role", "img");
-    // Where a pixel of the page is several of the screen, edges are smooth enough without more work.
-    const renderer = new THREE.WebGLRenderer({ canvas, antialias: devicePixelRatio < MOST_PIXELS_A_PIXEL, alpha: true });
+    // Where a pixel of the page is several of the screen, edges are smooth enough without more
+    // work.
+    const renderer = new THREE.WebGLRenderer({
+      canvas,
+      antialias: devicePixelRatio < MOST_PIXELS_A_PIXEL,
+      alpha: true,
+    });
     renderer.setClearColor(0xffffff, 1);
     renderer.setScissorTest(true);
     const flat = dimension < 3;
@@ -45,7 +54,8 @@
     controls.enableDamping = false;
     controls.enableRotate = !flat;
     controls.screenSpacePanning = true;
-    // The wheel and a finger up or down go on scrolling the page; a click on the view gives it the wheel.
+    // The wheel and a finger up or down go on scrolling the page; a click on the view gives it the
+    // wheel.
     controls.enableZoom = false;
     canvas.style.touchAction = "pan-y";
     canvas.addEventListener("pointerdown", () => (controls.enableZoom = true));
@@ -61,7 +71,9 @@
     /** Puts the camera where it sees all of the bounds. */
     function look(newBounds) {
       bounds = newBounds;
-      const middle = new THREE.Vector3(...bounds.low.map((low, axis) => (low + bounds.high[axis]) / 2));
+      const middle = new THREE.Vector3(
+        ...bounds.low.map((low, axis) => (low + bounds.high[axis]) / 2),
+      );
       const radius = Math.hypot(...bounds.low.map((low, axis) => bounds.high[axis] - low)) / 2 || 1;
       controls.target.copy(middle);
       if (flat) {
@@ -102,12 +114,18 @@
       const { width, height } = holder.getBoundingClientRect();
       if (!width || !height) return;
       const ratio = Math.min(devicePixelRatio, MOST_PIXELS_A_PIXEL);
-      if (canvas.width !== Math.floor(width * ratio) || canvas.height !== Math.floor(height * ratio)) {
+      if (
+        canvas.width !== Math.floor(width * ratio) ||
+        canvas.height !== Math.floor(height * ratio)
+      ) {
         renderer.setPixelRatio(ratio);
         renderer.setSize(width, height);
       }
       places.forEach((place, index) => {
-        const [x, y] = [place.offsetLeft + 1, holder.clientHeight - place.offsetTop - place.clientHeight - 1];
+        const [x, y] = [
+          place.offsetLeft + 1,
+          holder.clientHeight - place.offsetTop - place.clientHeight - 1,
+        ];
         renderer.setViewport(x, y, place.clientWidth, place.clientHeight);
         renderer.setScissor(x, y, place.clientWidth, place.clientHeight);
         fit(place.clientWidth, place.clientHeight);

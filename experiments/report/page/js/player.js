@@ -8,8 +8,11 @@
   function speeds(until) {
     const wanted = Math.log10(until / PASS);
     const nice = [];
-    for (let power = -9; power <= 3; power++) for (const digit of [1, 2, 5]) nice.push(digit * 10 ** power);
-    const nearest = nice.reduce((a, b) => (Math.abs(Math.log10(b) - wanted) < Math.abs(Math.log10(a) - wanted) ? b : a));
+    for (let power = -9; power <= 3; power++)
+      for (const digit of [1, 2, 5]) nice.push(digit * 10 ** power);
+    const nearest = nice.reduce((a, b) =>
+      Math.abs(Math.log10(b) - wanted) < Math.abs(Math.log10(a) - wanted) ? b : a,
+    );
     const at = nice.indexOf(nearest);
     const offered = new Set([1, ...nice.slice(Math.max(0, at - 4), at + 4)]);
     return { nearest, offered: [...offered].sort((a, b) => b - a) };
@@ -28,9 +31,24 @@
     let playing = false;
     let before = null;
 
-    const play = element("button", { type: "button", class: "play", "aria-pressed": "false", click: () => (playing ? pause() : start()) }, "▶ Play");
+    const play = element(
+      "button",
+      {
+        type: "button",
+        class: "play",
+        "aria-pressed": "false",
+        click: () => (playing ? pause() : start()),
+      },
+      "▶ Play",
+    );
     const slider = element("input", {
-      type: "range", min: 0, max: 1000, step: 1, value: 0, "aria-label": "Time of the motion", input: () => {
+      type: "range",
+      min: 0,
+      max: 1000,
+      step: 1,
+      value: 0,
+      "aria-label": "Time of the motion",
+      input: () => {
         pause();
         go((Number(slider.value) / 1000) * until);
       },
@@ -39,7 +57,9 @@
     const menu = element(
       "select",
       { "aria-label": "Speed", change: () => (speed = Number(menu.value)) },
-      ...offered.map((one) => element("option", { value: one, selected: one === nearest }, speedInWords(one))),
+      ...offered.map((one) =>
+        element("option", { value: one, selected: one === nearest }, speedInWords(one)),
+      ),
     );
 
     function go(time) {

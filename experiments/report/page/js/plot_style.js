@@ -1,27 +1,50 @@
-// What all drawings of the page have in common: type, axes, marks; and Plotly's words made harmless.
+// What all drawings of the page have in common: type, axes, marks; and Plotly's words made
+// harmless.
 "use strict";
 {
   const { words, lookOf } = qddotReport;
   const INK = "#222222";
   const FAINT = "#5f6368";
   const GRID = "#e8e8e4";
-  const SYMBOLS = { o: "circle", s: "square", "^": "triangle-up", D: "diamond", v: "triangle-down", P: "cross", X: "x" };
+  const SYMBOLS = {
+    o: "circle",
+    s: "square",
+    "^": "triangle-up",
+    D: "diamond",
+    v: "triangle-down",
+    P: "cross",
+    X: "x",
+  };
   // Triangles look smaller than squares of the same size, and matplotlib's are larger too.
   const SIZES = { o: 7, s: 6.5, "^": 8.5, v: 8.5, D: 7, P: 8, X: 7.5 };
   const MOST_TICKS = 12;
-  const FONT = { family: "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif", size: 13, color: INK };
+  const FONT = {
+    family: "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif",
+    size: 13,
+    color: INK,
+  };
 
   // Plotly reads some HTML in its words.
-  const plainWords = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
+  const plainWords = (text) =>
+    text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
 
   function markerOf(method) {
     const { color, marker, filled } = lookOf(method);
-    return { symbol: SYMBOLS[marker] ?? "circle", size: SIZES[marker] ?? 7, fill: filled ? color : "#ffffff", edge: color };
+    return {
+      symbol: SYMBOLS[marker] ?? "circle",
+      size: SIZES[marker] ?? 7,
+      fill: filled ? color : "#ffffff",
+      edge: color,
+    };
   }
 
   function lineOf(method) {
     const { color, dash, width } = lookOf(method);
-    return { color, width, dash: dash.length ? dash.map((part) => `${(part * width).toFixed(1)}px`).join(",") : "solid" };
+    return {
+      color,
+      width,
+      dash: dash.length ? dash.map((part) => `${(part * width).toFixed(1)}px`).join(",") : "solid",
+    };
   }
 
   /** A logarithmic axis over a range of positive numbers, with ticks at decades in given words. */
@@ -29,7 +52,8 @@
     const [from, to] = [Math.log10(low), Math.log10(high)];
     const every = Math.ceil((to - from) / MOST_TICKS);
     const ticks = [];
-    for (let power = Math.ceil(from / every) * every; power <= to; power += every) ticks.push(power);
+    for (let power = Math.ceil(from / every) * every; power <= to; power += every)
+      ticks.push(power);
     return {
       type: "log",
       range: [from, to],
@@ -50,14 +74,21 @@
     return power === 0 ? "1" : power === 1 ? "10" : `1e${power}`;
   }
 
-  /** A range of positive numbers, by a factor wider at both ends and never shorter than two decades. */
+  /** A range of positive numbers, by a factor wider at both ends and never shorter than two
+      decades. */
   function widened(low, high, factor) {
     const spare = Math.max(1, Math.sqrt(100 / (high / low)));
     return [low / Math.max(factor, spare), high * Math.max(factor, spare)];
   }
 
   // No motion of the page by its own: Plotly's drawings stand still and ask nobody for anything.
-  const config = { displayModeBar: false, responsive: true, showTips: false, doubleClick: "reset", showLink: false };
+  const config = {
+    displayModeBar: false,
+    responsive: true,
+    showTips: false,
+    doubleClick: "reset",
+    showLink: false,
+  };
   const layout = () => ({
     font: FONT,
     paper_bgcolor: "#ffffff",
@@ -69,6 +100,18 @@
   });
 
   qddotReport.plot = {
-    INK, FAINT, GRID, SYMBOLS, plainWords, markerOf, lineOf, decades, powerOfTen, widened, config, layout, seconds: words.seconds,
+    INK,
+    FAINT,
+    GRID,
+    SYMBOLS,
+    plainWords,
+    markerOf,
+    lineOf,
+    decades,
+    powerOfTen,
+    widened,
+    config,
+    layout,
+    seconds: words.seconds,
   };
 }

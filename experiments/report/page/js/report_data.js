@@ -25,7 +25,8 @@
   /** Why a run is no such mark: its own cause, or what its error has to do with it. */
   function whyNot(point, column) {
     if (points.cause[point]) return points.cause[point];
-    if (points.outcome[point] !== "reached_end") return qddotReport.words.plain(points.outcome[point]);
+    if (points.outcome[point] !== "reached_end")
+      return qddotReport.words.plain(points.outcome[point]);
     const error = points[column]?.[point];
     return error > MOST_ERROR ? `error above ${MOST_ERROR}` : "no such number";
   }

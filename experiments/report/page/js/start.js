@@ -12,8 +12,16 @@
   }
 
   function drawAll() {
-    menu("quantity", report.quantities.map(({ column, name }) => [column, name]), "column");
-    menu("ordinate", ordinates.map((column) => [column, column === "time_s" ? "time" : words.plain(column)]), "ordinate");
+    menu(
+      "quantity",
+      report.quantities.map(({ column, name }) => [column, name]),
+      "column",
+    );
+    menu(
+      "ordinate",
+      ordinates.map((column) => [column, column === "time_s" ? "time" : words.plain(column)]),
+      "ordinate",
+    );
     for (const id of ["chart", "run"]) byId(id).hidden = report.points.method.length === 0;
     qddotReport.drawLegend();
     qddotReport.drawChart();

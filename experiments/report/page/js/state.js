@@ -1,14 +1,19 @@
-// What the reader chose: the run, the kind of error and the ordinate. It stands in the address after
-// "#", so that a link leads to a run; what is no such choice there is passed over.
+// What the reader chose: the run, the kind of error and the ordinate. It stands in the address
+// after "#", so that a link leads to a run; what is no such choice there is passed over.
 "use strict";
 {
   const { report, runsOf } = qddotReport;
   const { points, methods } = report;
   const listeners = [];
-  const ordinates = ["time_s", ...report.counts.filter((column) => points[column]?.some((value) => value > 0))];
+  const ordinates = [
+    "time_s",
+    ...report.counts.filter((column) => points[column]?.some((value) => value > 0)),
+  ];
   const state = {
     run: openingRun(),
-    column: (report.quantities.find((one) => one.column === judgedColumn()) ?? report.quantities[0])?.column ?? null,
+    column:
+      (report.quantities.find((one) => one.column === judgedColumn()) ?? report.quantities[0])
+        ?.column ?? null,
     ordinate: "time_s",
   };
 
@@ -19,27 +24,39 @@
   // The first answer in the middle of the table; else the first run with a motion, else any.
   function openingRun() {
     const answers = report.answers.filter((answer) => answer.point !== null);
-    const kept = (report.motion?.runs ?? []).filter((run) => run.role === "run" && run.point !== null);
+    const kept = (report.motion?.runs ?? []).filter(
+      (run) => run.role === "run" && run.point !== null,
+    );
     const keptAnswer = answers.find((answer) => kept.some((run) => run.point === answer.point));
-    return keptAnswer?.point ?? kept[0]?.point ?? answers[0]?.point ?? (points.method.length ? 0 : null);
+    return (
+      keptAnswer?.point ?? kept[0]?.point ?? answers[0]?.point ?? (points.method.length ? 0 : null)
+    );
   }
 
   function addressed(hash) {
     const words = new URLSearchParams(hash.replace(/^#/, ""));
     const found = {};
     const wanted = words.get("run") ?? "";
-    const [name, value] = [wanted.slice(0, wanted.lastIndexOf("@")), wanted.slice(wanted.lastIndexOf("@") + 1)];
+    const [name, value] = [
+      wanted.slice(0, wanted.lastIndexOf("@")),
+      wanted.slice(wanted.lastIndexOf("@") + 1),
+    ];
     const method = methods.findIndex((one) => one.name === name);
-    const run = method < 0 ? undefined : runsOf[method].find((point) => String(points.value[point]) === value);
+    const run =
+      method < 0
+        ? undefined
+        : runsOf[method].find((point) => String(points.value[point]) === value);
     if (run !== undefined) found.run = run;
-    if (report.quantities.some((one) => one.column === words.get("error"))) found.column = words.get("error");
+    if (report.quantities.some((one) => one.column === words.get("error")))
+      found.column = words.get("error");
     if (ordinates.includes(words.get("against"))) found.ordinate = words.get("against");
     return found;
   }
 
   function address() {
     const words = new URLSearchParams();
-    if (state.run !== null) words.set("run", `${methods[points.method[state.run]].name}@${points.value[state.run]}`);
+    if (state.run !== null)
+      words.set("run", `${methods[points.method[state.run]].name}@${points.value[state.run]}`);
     if (state.column) words.set("error", state.column);
     words.set("against", state.ordinate);
     return `#${words}`;
@@ -60,5 +77,10 @@
 
   addEventListener("hashchange", () => choose(addressed(location.hash)));
   Object.assign(state, addressed(location.hash));
-  Object.assign(qddotReport, { state, choose, ordinates, onChoice: (listener) => listeners.push(listener) });
+  Object.assign(qddotReport, {
+    state,
+    choose,
+    ordinates,
+    onChoice: (listener) => listeners.push(listener),
+  });
 }

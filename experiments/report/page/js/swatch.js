@@ -30,7 +30,14 @@
     };
     return svgElement(
       "svg",
-      { class: "swatch", width: 28, height: 14, viewBox: "0 0 28 14", "aria-hidden": "true", fill: "none" },
+      {
+        class: "swatch",
+        width: 28,
+        height: 14,
+        viewBox: "0 0 28 14",
+        "aria-hidden": "true",
+        fill: "none",
+      },
       svgElement("path", line),
       svgElement("path", mark),
     );
@@ -38,5 +45,10 @@
 
   /** The swatch with the method's name. */
   qddotReport.named = (method) =>
-    qddotReport.element("span", { class: "named" }, qddotReport.swatch(method), qddotReport.report.methods[method].name);
+    qddotReport.element(
+      "span",
+      { class: "named" },
+      qddotReport.swatch(method),
+      qddotReport.report.methods[method].name,
+    );
 }

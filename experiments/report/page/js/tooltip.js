@@ -10,18 +10,28 @@
     const rows = [];
     if (quantity) rows.push([quantity.axis, words.number(points[quantity.column]?.[point])]);
     rows.push(["time of a run", words.seconds(points.time_s[point])]);
-    const counted = report.counts.filter((column) => points[column]?.[point] > 0).slice(0, MOST_COUNTS);
-    for (const column of counted) rows.push([words.plain(column), words.count(points[column][point])]);
+    const counted = report.counts
+      .filter((column) => points[column]?.[point] > 0)
+      .slice(0, MOST_COUNTS);
+    for (const column of counted)
+      rows.push([words.plain(column), words.count(points[column][point])]);
     return rows;
   }
 
   function content(point) {
     const list = element("dl");
-    for (const [label, value] of pairs(point)) list.append(element("dt", {}, label), element("dd", {}, value));
+    for (const [label, value] of pairs(point))
+      list.append(element("dt", {}, label), element("dd", {}, value));
     const failed = points.outcome[point] !== "reached_end" || points.cause[point];
     return [
-      element("p", {}, element("b", {}, named(points.method[point])), ` at ${words.knob(points.knob[point], points.value[point])}`),
-      methods[points.method[point]].line && element("p", { class: "quiet" }, methods[points.method[point]].line),
+      element(
+        "p",
+        {},
+        element("b", {}, named(points.method[point])),
+        ` at ${words.knob(points.knob[point], points.value[point])}`,
+      ),
+      methods[points.method[point]].line &&
+        element("p", { class: "quiet" }, methods[points.method[point]].line),
       failed && element("p", { class: "bad" }, qddotReport.whyNot(point, state.column)),
       list,
     ].filter(Boolean);

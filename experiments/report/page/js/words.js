@@ -17,22 +17,32 @@
   function exact(value) {
     if (!known(value)) return "–";
     const digits = Number(value.toPrecision(4));
-    return digits !== 0 && Math.abs(digits) < 1e-3 ? digits.toExponential().replace("e+", "e") : String(digits);
+    return digits !== 0 && Math.abs(digits) < 1e-3
+      ? digits.toExponential().replace("e+", "e")
+      : String(digits);
   }
 
   /** A duration with its unit: 20 µs, 5 ms, 3 s. */
   function seconds(value) {
     if (!known(value)) return "–";
     if (value === 0) return "0 s";
-    for (const [unit, scale] of [["s", 1], ["ms", 1e-3], ["µs", 1e-6], ["ns", 1e-9]]) {
-      if (value >= 0.9999 * scale || unit === "ns") return `${Number((value / scale).toPrecision(3))} ${unit}`;
+    for (const [unit, scale] of [
+      ["s", 1],
+      ["ms", 1e-3],
+      ["µs", 1e-6],
+      ["ns", 1e-9],
+    ]) {
+      if (value >= 0.9999 * scale || unit === "ns")
+        return `${Number((value / scale).toPrecision(3))} ${unit}`;
     }
   }
 
   /** A whole number with its thousands apart. */
   function count(value) {
     if (!known(value)) return "–";
-    return Number.isInteger(value) ? value.toLocaleString("en").replaceAll(",", "\u202f") : number(value);
+    return Number.isInteger(value)
+      ? value.toLocaleString("en").replaceAll(",", "\u202f")
+      : number(value);
   }
 
   /** How many times as much: "1.04 ×", "120 ×". */
