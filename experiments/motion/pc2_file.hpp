@@ -7,7 +7,7 @@
 namespace qddot::motion {
 
 // A motion as a point cache of version 1, positions alone, and an .obj beside it of the nodes at
-// the start, with the faces and the springs that are no side of one (see open_motion).
+// the start, with the faces and all springs (see open_motion).
 std::unique_ptr<MotionFile> open_pc2(const std::string& path, const Scene& start,
                                      const ReducedScene& scene);
 

@@ -29,7 +29,7 @@ from written_tables import faults
 
 SIMULATE = (
     "--scene steady.toml --method verlet --step-size 1e-4 --until 0.02 --final results/final.csv --trajectory "
-    "results/trajectory.csv --energy results/energy.csv --every 1e-4 --write-scene results/scene.toml"
+    "results/trajectory.csv --energy results/energy.csv --motion results/motion.vtkhdf --every 1e-4 --write-scene results/scene.toml"
 )
 COMMANDS = {name: words + " --out results" for name, words in STUDIES.items()} | {
     "simulate": SIMULATE,

@@ -23,7 +23,8 @@ PATHS = [
     "body.obj", "mine", "mine/points.csv", "results", "folder", "folder/", "fifo", "locked.toml",
     "locked", "locked/x.csv", "link.toml", "loop", "dangling", "dangling/x.csv", "zero", "full",
     "empty.toml", "$x.toml", "-dash.toml", "none/x.csv", "none.toml", "scene.toml/x.csv",
-    "new.csv", "new", "scene", "scene.csv", "x" * 260, "mine/end.csv", ".", "..", "",
+    "new.csv", "new", "scene", "scene.csv", "x" * 260, "mine/end.csv",
+    "new.vtkhdf", "new.pc2", "body.pc2", "a:b.vtkhdf", "none/x.pc2", "locked/x.vtkhdf", ".vtkhdf", ".", "..", "",
 ]
 # Names of scenes.
 HOSTILE_NAMES = [

@@ -75,9 +75,10 @@ class Commands:
             "--step-size" if knob == "step_size" else "--rtol": None,
         }
         chosen = random.sample(
-            ["--final", "--trajectory", "--energy", "--write-scene"], random.choice([0, 1, 1, 2])
+            ["--final", "--trajectory", "--energy", "--motion", "--write-scene"],
+            random.choice([0, 1, 1, 2]),
         )
-        if {"--trajectory", "--energy"} & set(chosen):
+        if {"--trajectory", "--energy", "--motion"} & set(chosen):
             chosen.append("--every")
         return names | {name: None for name in chosen}
 

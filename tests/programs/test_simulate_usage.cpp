@@ -15,11 +15,12 @@ namespace {
 using Words = std::vector<std::string>;
 
 // A good command line of which each test spoils a part: options and their values. All outputs are
-// asked for, so that any that is left behind shows. Values that end in .csv stand in the folder.
+// asked for, so that any that is left behind shows. Values that end in .csv or .pc2 stand in the
+// folder.
 std::map<std::string, Words> good_options() {
   return {{"--scene", {"oscillator"}}, {"--method", {"verlet"}}, {"--step-size", {"0.01"}},
           {"--until", {"1"}},          {"--final", {"f.csv"}},   {"--trajectory", {"g.csv"}},
-          {"--energy", {"e.csv"}},     {"--every", {"0.1"}}};
+          {"--energy", {"e.csv"}},     {"--motion", {"m.pc2"}},  {"--every", {"0.1"}}};
 }
 
 Words words_of(const std::map<std::string, Words>& options, const Folder& folder) {
@@ -27,7 +28,10 @@ Words words_of(const std::map<std::string, Words>& options, const Folder& folder
   for (const auto& [option, values] : options) {
     words.push_back(option);
     for (const std::string& value : values) {
-      words.push_back(value.ends_with(".csv") && !value.starts_with('/') ? folder / value : value);
+      words.push_back((value.ends_with(".csv") || value.ends_with(".pc2")) &&
+                              !value.starts_with('/')
+                          ? folder / value
+                          : value);
     }
   }
   return words;
@@ -199,7 +203,8 @@ BOOST_AUTO_TEST_CASE(every_is_for_outputs_over_time) {
   auto options = good_options();
   options.erase("--trajectory");
   options.erase("--energy");
-  check_refused(options, {"--every", "--trajectory", "--energy"});
+  options.erase("--motion");
+  check_refused(options, {"--every", "--trajectory", "--energy", "--motion"});
   check_value_refused("--every", "1e-12", {"--every", "1e-12", "allowed"});
   // The one before both outputs belongs to neither.
   const Folder folder;
