@@ -8,6 +8,7 @@
 #include <libdeflate.h>
 #include <memory>
 #include <new>
+#include <span>
 #include <thread>
 
 namespace qddot::motion {
@@ -30,11 +31,12 @@ hsize_t chunk_rows(hsize_t rows_a_frame) {
   return (rows + parts - 1) / parts;
 }
 
-Handle stream_properties(hsize_t rows, std::size_t dimensions) {
+Handle stream_properties(hsize_t rows, std::size_t dimensions, bool is_packed) {
   Handle properties = new_properties(H5P_DATASET_CREATE);
   std::vector<hsize_t> chunk(dimensions, 1);
   chunk[0] = rows;
   checked(H5Pset_chunk(properties.id(), static_cast<int>(dimensions), chunk.data()));
+  if (!is_packed) return properties;
   checked(H5Pset_shuffle(properties.id()));
   checked(H5Pset_deflate(properties.id(), fastest));
   return properties;
@@ -48,6 +50,12 @@ class Packer {
   }
 
   void pack(Chunk& chunk) {
+    if (!chunk.is_packed) {
+      const auto bytes = std::as_bytes(std::span(chunk.values));
+      const auto* first = reinterpret_cast<const unsigned char*>(bytes.data());
+      chunk.packed.assign(first, first + bytes.size());
+      return;
+    }
     const std::size_t count = chunk.values.size();
     shuffled_.resize(4 * count);
     const float* from = chunk.values.data();
@@ -77,7 +85,7 @@ std::string path_in_file(const Handle& parent, const std::string& name) {
 }  // namespace
 
 RowStream::RowStream(const Handle& parent, const std::string& name, std::size_t rows_a_frame,
-                     std::size_t columns)
+                     std::size_t columns, bool is_packed)
     : name_(path_in_file(parent, name)),
       rows_a_frame_(rows_a_frame),
       columns_(columns),
@@ -85,8 +93,11 @@ RowStream::RowStream(const Handle& parent, const std::string& name, std::size_t 
       open_(columns) {
   const auto none = size(0);
   set_ = new_dataset(parent, name, H5T_IEEE_F32LE, new_space(none, true),
-                     stream_properties(rows_a_chunk_, none.size()));
-  for (std::size_t k = 0; k < columns; ++k) open_[k].column = k;
+                     stream_properties(rows_a_chunk_, none.size(), is_packed));
+  for (std::size_t k = 0; k < columns; ++k) {
+    open_[k].column = k;
+    open_[k].is_packed = is_packed;
+  }
 }
 
 std::vector<hsize_t> RowStream::size(hsize_t rows) const {
@@ -105,7 +116,8 @@ void RowStream::append(const std::vector<float>& rows) {
       for (; i < end; ++i) to[at++] = rows[i * columns_ + chunk.column];
       if (chunk.values.size() < rows_a_chunk_) continue;
       full_.push_back(std::move(chunk));
-      chunk = Chunk{full_.back().row + rows_a_chunk_, full_.back().column, {}, {}};
+      chunk = Chunk{
+          full_.back().row + rows_a_chunk_, full_.back().column, full_.back().is_packed, {}, {}};
     }
   }
   rows_ += count;

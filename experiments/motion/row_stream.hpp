@@ -8,10 +8,11 @@
 
 namespace qddot::motion {
 
-// Part of one column of a dataset, as HDF5 keeps it: compressed as its filters shuffle and deflate
-// do, so that any reader of HDF5 has it back.
+// Part of one column of a dataset, as HDF5 keeps it: as it is, or compressed as HDF5's filters
+// shuffle and deflate do, so that any reader of HDF5 has it back.
 struct Chunk {
   hsize_t row = 0, column = 0;
+  bool is_packed = true;
   std::vector<float> values;
   std::vector<unsigned char> packed;
 };
@@ -20,9 +21,9 @@ struct Chunk {
 // column is in chunks of its own: numbers beside each other are then alike, and smaller together.
 class RowStream {
  public:
-  // One column makes it a dataset of one dimension.
+  // One column makes it a dataset of one dimension. `is_packed`: whether it is compressed.
   RowStream(const hdf5::Handle& parent, const std::string& name, std::size_t rows_a_frame,
-            std::size_t columns);
+            std::size_t columns, bool is_packed = true);
 
   // Takes the rows of a frame, row after row; they wait for their chunk to be full.
   void append(const std::vector<float>& rows);

@@ -160,13 +160,16 @@ class VtkhdfFile final : public MotionFile {
   void open_streams(std::size_t nodes, std::size_t cells, const Fields& fields) {
     fields_of_nodes_ = hdf5::new_group(root_, "PointData");
     fields_of_cells_ = hdf5::new_group(root_, "CellData");
+    // Positions alone are small as they are, and to compress them takes most of the time.
+    const bool is_packed =
+        fields.velocity || fields.kinetic_energy || fields.strain || has_reference_;
     const auto open = [&](bool is_wanted, const Handle& group, const char* name,
                           const std::vector<float> Frame::*numbers, std::size_t rows,
                           std::size_t columns) {
       if (!is_wanted) return;
       const bool is_of_cells = &group == &fields_of_cells_;
-      streams_.push_back(
-          {name, numbers, is_of_cells, rows, columns, RowStream(group, name, rows, columns)});
+      streams_.push_back({name, numbers, is_of_cells, rows, columns,
+                          RowStream(group, name, rows, columns, is_packed)});
       if (&group != &root_) about_.fields.push_back({name, rows, columns, is_of_cells});
     };
     open(true, root_, "Points", &Frame::positions, nodes, 3);
