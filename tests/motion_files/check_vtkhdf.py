@@ -50,7 +50,7 @@ def cells_of(root, kind):
 
 
 def check_layout(root, frames, nodes, cells):
-    """Field by field, what VTKHDF 2.0 says of PolyData over time with topology that is there once."""
+    """What VTKHDF 2.0 says of PolyData over time, with topology that is there once."""
     assert root.attrs["Version"].tolist() == [2, 0]
     kind = root.attrs.get_id("Type")
     assert root.attrs["Type"] == b"PolyData"
