@@ -133,7 +133,7 @@ void KeptMotions::finish(const nlohmann::json& origin) {
   energy_.commit();
   for (const std::string& before : earlier_) {
     if (std::ranges::find(files_, before) != files_.end()) continue;
-    for (const std::string& file : motion::files_of_motion(folder_ + "/" + before, "file")) {
+    for (const std::string& file : motion_files::files_of_motion(folder_ + "/" + before, "file")) {
       std::error_code ignored;
       std::filesystem::remove(file, ignored);
     }
@@ -144,7 +144,7 @@ std::string KeptMotions::write(const std::string& name, const std::vector<State>
                                std::size_t every, bool is_reference) {
   const std::string place = fmt::format("motions/{}.vtkhdf", name), path = folder_ + "/" + place;
   const bool is_compared = !is_reference && !reference_.empty();
-  const auto file = motion::open_motion(path, start_, scene_, is_compared);
+  const auto file = motion_files::open_motion(path, start_, scene_, is_compared);
   for (std::size_t i = 0; i < states.size(); ++i) {
     const State& state = states[i];
     if (!file->add(state, is_compared ? &reference_[i * every] : nullptr)) break;
@@ -153,7 +153,7 @@ std::string KeptMotions::write(const std::string& name, const std::vector<State>
   }
   file->complete(origin_);
   file->commit();
-  for (const std::string& part : motion::files_of_motion(path, "file")) {
+  for (const std::string& part : motion_files::files_of_motion(path, "file")) {
     bytes_ += static_cast<double>(std::filesystem::file_size(part));
   }
   files_.push_back(place);

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/csv.hpp"
-#include "experiments/motion/motion_file.hpp"
+#include "experiments/motion_files/motion_file.hpp"
 #include "experiments/motions/chosen_runs.hpp"
 #include "experiments/motions/reference_motion.hpp"
 

@@ -32,7 +32,7 @@
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/reference_file.hpp"
 #include "experiments/command/scene_choice.hpp"
-#include "experiments/motion/motion_file.hpp"
+#include "experiments/motion_files/motion_file.hpp"
 #include "experiments/motions/chosen_runs.hpp"
 #include "experiments/motions/kept_motions.hpp"
 #include "experiments/motions/reference_motion.hpp"

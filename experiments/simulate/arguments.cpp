@@ -14,7 +14,7 @@
 #include "experiments/command/csv.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/program.hpp"
-#include "experiments/motion/motion_file.hpp"
+#include "experiments/motion_files/motion_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::simulate {
@@ -119,7 +119,7 @@ void require_distinct_outputs(const CommandLine& line, const Arguments& a) {
     throw InvalidInput("--motion-fields is given without --motion, which it belongs to");
   if (line.has("--motion")) {
     require_given(a.motion_path, "--motion", "the name of a .vtkhdf or .pc2 file");
-    take("--motion", a.motion_path, motion::files_of_motion(a.motion_path, "--motion"));
+    take("--motion", a.motion_path, motion_files::files_of_motion(a.motion_path, "--motion"));
   }
   if (!line.has("--write-scene")) return;
   require_given(a.written_scene_path, "--write-scene", "the name of a TOML file");

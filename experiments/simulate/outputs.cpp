@@ -28,11 +28,11 @@ Outputs::Outputs(const Arguments& a, const Scene& start, const ReducedScene& sce
         a.energy_path, std::vector<std::string>{"t", "kinetic", "potential", "total"});
   }
   if (!a.motion_path.empty()) {
-    const motion::Fields fields =
+    const motion_files::Fields fields =
         a.motion_fields.empty()
-            ? motion::Fields{}
-            : motion::fields_named(a.motion_fields, a.motion_path, "--motion-fields");
-    motion_ = motion::open_motion(a.motion_path, start, scene, false, fields);
+            ? motion_files::Fields{}
+            : motion_files::fields_named(a.motion_fields, a.motion_path, "--motion-fields");
+    motion_ = motion_files::open_motion(a.motion_path, start, scene, false, fields);
   }
   if (looks_on_the_way()) behind_.emplace([this](const State& state) { see(state); });
 }

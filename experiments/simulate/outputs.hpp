@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "experiments/command/csv.hpp"
-#include "experiments/motion/motion_file.hpp"
+#include "experiments/motion_files/motion_file.hpp"
 #include "experiments/simulate/arguments.hpp"
 #include "experiments/simulate/background_observer.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
@@ -37,7 +37,7 @@ class Outputs {
   const ReducedScene& scene_;
   std::vector<double> trajectory_times_, energy_times_, motion_times_;
   std::unique_ptr<CsvFile> final_, trajectory_, energy_;
-  std::unique_ptr<motion::MotionFile> motion_;
+  std::unique_ptr<motion_files::MotionFile> motion_;
   std::optional<BackgroundObserver> behind_;  // writes while the run goes on
 };
 

@@ -48,8 +48,8 @@ MAY_SEE = {
     "src/algebra/multifrontal/vectors": {VECTORS, "src/algebra/multifrontal"},
     "experiments/measure/speed/vectors": {VECTORS, "experiments/measure/speed"},
     # Those that write motions.
-    "experiments/simulate": COMMAND | {"experiments/motion"},
-    "experiments/motions": COMMAND | {"experiments/motion"},
+    "experiments/simulate": COMMAND | {"experiments/motion_files"},
+    "experiments/motions": COMMAND | {"experiments/motion_files"},
     # A peer is SUNDIALS by itself, whose handles are there.
     "experiments/bench": COMMAND | {"integrators/sundials"},
 }

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "experiments/motion/motion_file.hpp"
+#include "experiments/motion_files/motion_file.hpp"
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 
 // How many bits behind the first one a field keeps: a rounding of 2^-8, which is the step of a
 // colour scale of 256 shades. The zeros behind them are what makes files small.
@@ -52,4 +52,4 @@ class Framing {
   Frame frame_;
 };
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

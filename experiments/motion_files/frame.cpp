@@ -1,12 +1,12 @@
-#include "experiments/motion/frame.hpp"
+#include "experiments/motion_files/frame.hpp"
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
-#include "experiments/motion/cells.hpp"
+#include "experiments/motion_files/cells.hpp"
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 namespace {
 
 // Whether the exponent is not the one of infinities and of what is no number.
@@ -102,4 +102,4 @@ void Framing::take_distances(const std::vector<Node>& nodes, const std::vector<N
     frame_.distances[i] = short_form((nodes[i].position - exact[i].position).norm(), is_fine);
 }
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

@@ -1,6 +1,6 @@
-#include "experiments/motion/cells.hpp"
+#include "experiments/motion_files/cells.hpp"
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 
 Cells cells_of(const Scene& scene) {
   Cells cells;
@@ -30,4 +30,4 @@ std::vector<double> strain_lengths(const Scene& start) {
   return lengths;
 }
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

@@ -6,7 +6,7 @@
 
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 
 // What joins the nodes in a picture: a point for each node on no spring and no face, a line for
 // each spring, a triangle for each face; cells are counted in that order.
@@ -24,4 +24,4 @@ Cells cells_of(const Scene& scene);
 // rest length; where that is zero, the length at the start. Zero where both are.
 std::vector<double> strain_lengths(const Scene& start);
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

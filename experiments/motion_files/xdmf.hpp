@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 
 // What an .xdmf says of the file beside it, whose datasets it names: /Frames/cells and, of each
 // frame, /Frames/NUMBER/NAME with Points and the fields.
@@ -32,4 +32,4 @@ std::string xdmf_text(const XdmfFields& about, const std::vector<double>& times)
 // Whether XML and XDMF can name that file: UTF-8 without control characters and colons.
 bool can_be_named(const std::string& file);
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

@@ -1,4 +1,4 @@
-#include "experiments/motion/xdmf.hpp"
+#include "experiments/motion_files/xdmf.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 namespace {
 
 std::string escaped(const std::string& text) {
@@ -87,4 +87,4 @@ bool can_be_named(const std::string& file) {
   }
 }
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

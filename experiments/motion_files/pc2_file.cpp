@@ -1,4 +1,4 @@
-#include "experiments/motion/pc2_file.hpp"
+#include "experiments/motion_files/pc2_file.hpp"
 
 #include <bit>
 #include <cstdint>
@@ -12,10 +12,10 @@
 #include "experiments/command/csv.hpp"
 #include "experiments/command/overwriting.hpp"
 #include "experiments/command/whole_file.hpp"
-#include "experiments/motion/frame.hpp"
+#include "experiments/motion_files/frame.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 namespace {
 
 using command::WholeFile;
@@ -103,4 +103,4 @@ std::unique_ptr<MotionFile> open_pc2(const std::string& path, const Scene& start
   return std::make_unique<Pc2File>(files_of_motion(path, "motion"), start, scene);
 }
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

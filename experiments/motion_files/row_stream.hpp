@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/motion/hdf5.hpp"
+#include "experiments/motion_files/hdf5.hpp"
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 
 // Part of one column of a dataset, as HDF5 keeps it: as it is, or compressed as HDF5's filters
 // shuffle and deflate do, so that any reader of HDF5 has it back.
@@ -50,4 +50,4 @@ class RowStream {
 // Packs the full chunks of all streams, on all cores, then writes them; whether there were any.
 bool write_full(const std::vector<RowStream*>& streams);
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

@@ -8,7 +8,7 @@
 
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 
 // What a motion says beside the positions, where its format has room for more.
 struct Fields {
@@ -52,4 +52,4 @@ std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& st
                                         const ReducedScene& scene, bool has_reference = false,
                                         const Fields& fields = {});
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace qddot::motion::hdf5 {
+namespace qddot::motion_files::hdf5 {
 
 // A call of HDF5 failed; says why, as the operating system does where it knows.
 class Failure : public std::runtime_error {
@@ -70,4 +70,4 @@ void write_attribute(const Handle& object, const std::string& name, std::int64_t
 // An ASCII string of fixed length.
 void write_attribute(const Handle& object, const std::string& name, const std::string& text);
 
-}  // namespace qddot::motion::hdf5
+}  // namespace qddot::motion_files::hdf5

@@ -1,4 +1,4 @@
-#include "experiments/motion/vtkhdf_file.hpp"
+#include "experiments/motion_files/vtkhdf_file.hpp"
 
 #include <array>
 #include <filesystem>
@@ -9,14 +9,14 @@
 
 #include "experiments/command/csv.hpp"
 #include "experiments/command/whole_file.hpp"
-#include "experiments/motion/cells.hpp"
-#include "experiments/motion/frame.hpp"
-#include "experiments/motion/hdf5.hpp"
-#include "experiments/motion/row_stream.hpp"
-#include "experiments/motion/xdmf.hpp"
+#include "experiments/motion_files/cells.hpp"
+#include "experiments/motion_files/frame.hpp"
+#include "experiments/motion_files/hdf5.hpp"
+#include "experiments/motion_files/row_stream.hpp"
+#include "experiments/motion_files/xdmf.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 namespace {
 
 using command::CannotWrite;
@@ -225,4 +225,4 @@ std::unique_ptr<MotionFile> open_vtkhdf(const std::string& path, const Scene& st
                                       fields);
 }
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

@@ -1,16 +1,16 @@
-#include "experiments/motion/motion_file.hpp"
+#include "experiments/motion_files/motion_file.hpp"
 
 #include <array>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "experiments/motion/frame.hpp"
-#include "experiments/motion/pc2_file.hpp"
-#include "experiments/motion/vtkhdf_file.hpp"
+#include "experiments/motion_files/frame.hpp"
+#include "experiments/motion_files/pc2_file.hpp"
+#include "experiments/motion_files/vtkhdf_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 namespace {
 
 bool is_pc2(const std::string& path) { return path.ends_with(".pc2"); }
@@ -58,4 +58,4 @@ std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& st
   return open_vtkhdf(path, start, scene, has_reference, fields);
 }
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

@@ -1,4 +1,4 @@
-#include "experiments/motion/row_stream.hpp"
+#include "experiments/motion_files/row_stream.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -11,7 +11,7 @@
 #include <span>
 #include <thread>
 
-namespace qddot::motion {
+namespace qddot::motion_files {
 namespace {
 
 using namespace hdf5;
@@ -175,4 +175,4 @@ bool write_full(const std::vector<RowStream*>& streams) {
   return true;
 }
 
-}  // namespace qddot::motion
+}  // namespace qddot::motion_files

@@ -1,8 +1,8 @@
-#include "experiments/motion/hdf5.hpp"
+#include "experiments/motion_files/hdf5.hpp"
 
 #include <cstdint>
 
-namespace qddot::motion::hdf5 {
+namespace qddot::motion_files::hdf5 {
 namespace {
 
 // HDF5's account of its last failure, innermost call first: the first sentence, or the system's
@@ -110,4 +110,4 @@ void write_attribute(const Handle& object, const std::string& name, const std::s
   put_attribute(object, name, type.id(), Handle(H5Screate(H5S_SCALAR), H5Sclose), text.data());
 }
 
-}  // namespace qddot::motion::hdf5
+}  // namespace qddot::motion_files::hdf5
