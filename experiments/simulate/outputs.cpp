@@ -38,7 +38,7 @@ Outputs::Outputs(const Arguments& a, const Scene& start, const ReducedScene& sce
 }
 
 Observer Outputs::observer() {
-  return {merged(merged(trajectory_times_, energy_times_), motion_times_),
+  return {merged({trajectory_times_, energy_times_, motion_times_}),
           [this](const State& state) { behind_->see(state); }};
 }
 

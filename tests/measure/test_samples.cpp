@@ -53,17 +53,22 @@ BOOST_AUTO_TEST_CASE(too_many_samples_are_refused) {
 }
 
 BOOST_AUTO_TEST_CASE(merged_holds_each_time_after_zero_once_and_in_order) {
-  BOOST_TEST(merged({0, 0.2, 0.4}, {0, 0.3, 0.4}) == (Times{0.2, 0.3, 0.4}),
+  using Lists = std::vector<Times>;
+  const auto of = [](const Lists& lists) { return merged(lists); };
+  BOOST_TEST(of({{0, 0.2, 0.4}, {0, 0.3, 0.4}}) == (Times{0.2, 0.3, 0.4}),
              boost::test_tools::per_element());
-  BOOST_TEST(merged({}, {0, 1}) == (Times{1}), boost::test_tools::per_element());
-  BOOST_TEST(merged({0, 1}, {}) == (Times{1}), boost::test_tools::per_element());
-  BOOST_TEST(merged({}, {}).empty());
-  BOOST_TEST(merged({0}, {0}).empty());
+  BOOST_TEST(of({{0, 0.2, 0.4}, {0, 0.3, 0.4}, {0, 0.1}}) == (Times{0.1, 0.2, 0.3, 0.4}),
+             boost::test_tools::per_element());
+  BOOST_TEST(of({{}, {0, 1}}) == (Times{1}), boost::test_tools::per_element());
+  BOOST_TEST(of({{0, 1}, {}, {}}) == (Times{1}), boost::test_tools::per_element());
+  BOOST_TEST(of({}).empty());
+  BOOST_TEST(of({{}, {}}).empty());
+  BOOST_TEST(of({{0}, {0}}).empty());
 }
 
 BOOST_AUTO_TEST_CASE(times_that_only_rounding_parts_are_one) {
   const Times tenths = multiples(0.1, 3), fifths = multiples(0.2, 3), thirds = multiples(0.3, 3);
-  const Times all = merged(tenths, merged(fifths, thirds));
+  const Times all = merged({tenths, fifths, thirds});
   BOOST_TEST(all.size() == 30u);
   BOOST_TEST(all.back() == 3);
   for (const Times& times : {tenths, fifths, thirds}) {

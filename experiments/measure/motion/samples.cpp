@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -30,12 +29,13 @@ std::vector<double> samples(double every, double until) {
   return times;
 }
 
-std::vector<double> merged(const std::vector<double>& a, const std::vector<double>& b) {
+std::vector<double> merged(const std::vector<std::vector<double>>& lists) {
   std::vector<double> times;
-  std::ranges::set_union(a, b, std::back_inserter(times));
+  for (const auto& list : lists) times.insert(times.end(), list.begin(), list.end());
+  std::ranges::sort(times);
   const auto same = [](double s, double t) { return t - s <= time_rounding * t; };
   times.erase(std::unique(times.begin(), times.end(), same), times.end());
-  if (!times.empty()) times.erase(times.begin());
+  if (!times.empty() && times.front() == 0) times.erase(times.begin());
   return times;
 }
 

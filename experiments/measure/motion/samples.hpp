@@ -8,8 +8,8 @@ namespace qddot::measure {
 // beside `until` is `until`); empty if every = 0. Throws InvalidInput for more than 1e8 of them.
 std::vector<double> samples(double every, double until);
 
-// The times after 0 of both lists, ascending, each once.
-std::vector<double> merged(const std::vector<double>& a, const std::vector<double>& b);
+// The times after 0 of all lists, ascending, each once.
+std::vector<double> merged(const std::vector<std::vector<double>>& lists);
 
 // Whether t is one of the times.
 bool is_sample(const std::vector<double>& times, double t);
