@@ -73,8 +73,8 @@ def warning(run, margin, certified):
     if margin is not None and margin < SMALL_MARGIN:
         side = "above" if margin < 0 else "below"
         sentences.append(
-            f"The step is {abs(100 * margin):.2g} % {side} its limit of stability, by w_max at the"
-            " start: motion raises that, and a longer run may blow up; take half of the step there."
+            f"The step is {abs(100 * margin):.2g} % {side} its limit of stability at the start; a"
+            " longer run may blow up: take half of it there."
         )
     if certified is not None and certified > 0.1 * run.error:
         sentences.append(

@@ -128,7 +128,7 @@ class Encoder:
 
 
 def pack(study, opened, energies, room):
-    """The page's `motion` and its blobs, and a sentence on what there was no room for."""
+    """The page's `motion` and its blobs; without a motion, a sentence on why there is none."""
     first = opened[0][1]
     encoder = Encoder(study, opened, energies)
     blobs = {"s0": index_blob(first.springs)}
@@ -163,9 +163,10 @@ def pack(study, opened, energies, room):
         "low": encoder.box.low.tolist(),
         "size": encoder.box.size,
         "distance_unit": encoder.unit,
+        "notes": what_was_left_out(opened, entries),
         "runs": entries,
     }
-    return part, blobs, what_was_left_out(opened, entries)
+    return part, blobs, []
 
 
 def what_was_left_out(opened, entries):
@@ -185,8 +186,8 @@ def what_was_left_out(opened, entries):
 
 
 def motion_part(study, room):
-    """The page's `motion` with its blobs {name: base64} in at most `room` bytes, and notes; the
-    motion is None where there is none."""
+    """The page's `motion` with its blobs {name: base64} in at most `room` bytes, and notes for the
+    page's head; the motion is None where there is none."""
     if not os.path.exists(os.path.join(study.directory, "motions.csv")):
         return None, {}, []
     origin = read_json(os.path.join(study.directory, "motions.json"))
@@ -201,7 +202,10 @@ def motion_part(study, room):
         if not opened:
             return None, {}, notes
         part, blobs, more = pack(study, opened, energies, room)
-        return part, blobs, notes + more
+        if part is None:
+            return None, {}, notes + more
+        # What is missing of the motions is said beside them.
+        return part | {"notes": notes + part["notes"]}, blobs, []
     except (BadInput, OSError, ValueError) as error:
         reason = " ".join(str(error).split()).removesuffix(".")
         return None, {}, [*notes, f"The motions cannot be shown: {reason}."]

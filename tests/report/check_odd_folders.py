@@ -161,7 +161,8 @@ class Missing(Folder):
     def test_motions_that_were_not_kept_are_said(self):
         made_folder.make_folder(self.folder, side=3, frames=3, runs=1)
         self.edit("motions.json", lambda c: c.update(interrupted="SIGTERM", runs_left_out=7))
-        self.assertRegex(" ".join(self.page().data["notes"]), "by SIGTERM.* for 7 more runs")
+        notes = self.page().data["motion"]["notes"]
+        self.assertRegex(" ".join(notes), "by SIGTERM.* for 7 more runs")
 
     def test_zero_motion(self):
         made_folder.make_folder(self.folder, side=3, frames=4, runs=1)
@@ -198,7 +199,8 @@ class Broken(Folder):
 
     def assert_not_shown(self, data):
         """A note names the motion, and the others are shown."""
-        self.assertTrue(any(self.motion in note for note in data["notes"]), data["notes"])
+        notes = data["motion"]["notes"]
+        self.assertTrue(any(self.motion in note for note in notes), notes)
         self.assertEqual(len(data["motion"]["runs"]), 3)
 
     def test_a_motion_that_is_missing_or_no_motion_is_left_out(self):
@@ -256,7 +258,7 @@ class Broken(Folder):
         (self.folder / "motions_energy.csv").write_text("file,t,kinetic,potential,total\na,b,,,\n")
         data = self.page().data
         self.assertIsNone(data["motion"]["runs"][0]["energy"])
-        self.assertRegex(data["notes"][0], "t is 'b', not a number")
+        self.assertRegex(data["motion"]["notes"][0], "t is 'b', not a number")
 
     def test_a_broken_picture_is_a_note(self):
         (self.folder / "modes.png").write_bytes(b"\x89PNG\r\n\x1a\nnothing")

@@ -209,7 +209,7 @@ class Moving(Page):
         point = self.point("!qddotReport.report.motion.runs.some(run => run.point === i)")
         self.choose(point)
         self.browser.wait(
-            "return document.getElementById('motion').innerText.includes('--trajectory motion.csv')"
+            "return document.getElementById('motion').innerText.includes('--motion motion.vtkhdf --every ')"
         )
 
     def test_without_motions_the_page_says_so(self):

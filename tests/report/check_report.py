@@ -194,7 +194,7 @@ class Motions(Folder):
         kept = [run["label"] for run in runs]
         self.assertTrue(1 < len(kept) < 21)
         self.assertRegex(
-            " ".join(data["notes"]), r"holds \d+ of the 21 motions .* files in motions/"
+            " ".join(data["motion"]["notes"]), r"holds \d+ of the 21 motions .* files in motions/"
         )
 
     def test_a_run_of_seconds_by_phase(self):

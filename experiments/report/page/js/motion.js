@@ -9,6 +9,8 @@
   // Of the length of a line of nodes: how far up its largest displacement is drawn.
   const LIFT = 0.2;
   const FEWEST_LIFTED = 8;
+  // Of a motion that a user makes of a run without one.
+  const FRAMES = 100;
   // A packed relative distance of 0.3.
   const FAR = 246;
   let stage = null;
@@ -22,13 +24,15 @@
   const sentence = (text) => element("p", { class: "quiet" }, text);
 
   function withoutMotion() {
+    const command = points.command[state.run];
+    if (!command || !report.until) return sentence("No motion of this run was kept.");
     return element(
       "div",
       {},
-      sentence(
-        "No motion of this run was kept. This command writes the motion of all nodes into motion.csv:",
+      sentence("No motion of this run was kept. This command writes it for ParaView:"),
+      qddotReport.commandLine(
+        `${command} --motion motion.vtkhdf --every ${report.until / FRAMES}`,
       ),
-      qddotReport.commandLine(`${points.command[state.run]} --trajectory motion.csv`),
     );
   }
 
@@ -147,6 +151,7 @@
     const move =
       motion.dimension < 3 ? "Drag to move" : "Drag to turn, with the right button to move";
     const lines = [
+      ...motion.notes,
       `${move}; pinch, or click and turn the wheel, to zoom. Dark squares are pinned nodes. Between kept frames nodes move straight.`,
     ];
     if (lift)
