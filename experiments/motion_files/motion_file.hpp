@@ -14,7 +14,7 @@ namespace qddot::motion_files {
 struct Fields {
   bool velocity = true;        // [m/s], of each node
   bool kinetic_energy = true;  // [J], of each node
-  bool strain = true;          // of each spring, see strain.hpp
+  bool strain = true;          // of each spring: (l - l0) / l0, see docs/motions.md
 };
 
 // A motion in a file that others open: all nodes of a scene, pinned ones too, frame after frame in
