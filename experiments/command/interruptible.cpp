@@ -97,6 +97,8 @@ void wait_for_answer(double seconds) {
 Interruptible::Interruptible(std::string program) : program_(std::move(program)) {
   if (::pipe(shared().pipe.data()) != 0) throw std::runtime_error("no pipe can be opened");
   for (const int signal : {SIGINT, SIGTERM}) catch_signal(signal);
+  // A file that may not grow any more is a failure to write, which is said.
+  std::signal(SIGXFSZ, SIG_IGN);
   watcher_ = std::thread([this] { watch(); });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <optional>
@@ -56,8 +57,13 @@ Point point_of(const WrittenTable& table, std::size_t row, const std::string& pa
                     path, row + 1, method ? "outcome" : "method",
                     table.text(row, method ? "outcome" : "method")));
   }
+  const double value = number("value");
+  if (!(std::isfinite(value) && value > 0)) {
+    throw InvalidInput(fmt::format("{}: row {}: value {} is not allowed; it is finite and above 0",
+                                   path, row + 1, table.text(row, "value")));
+  }
   return {.method = method,
-          .value = number("value"),
+          .value = value,
           .outcome = *outcome,
           .t_reached = number("t_reached"),
           .errors = {number("error_position"), number("error_velocity"), number("error_energy")},
@@ -84,6 +90,7 @@ void take_options(const nlohmann::json& given, MeasuredPoints& study) {
   std::vector<const char*> argv;
   for (const std::string& word : words) argv.push_back(word.c_str());
   line.parse(static_cast<int>(argv.size()), argv.data());
+  require_options(line, study.options);
 }
 
 }  // namespace
@@ -106,6 +113,10 @@ MeasuredPoints measured_points(const std::string& folder) {
         fmt::format("{}: it is missing or not as work_precision writes it beside "
                     "points.csv",
                     sidecar));
+  }
+  if (!(std::isfinite(study.until) && study.until > 0)) {
+    throw InvalidInput(fmt::format(
+        "{}: study.about.until {} is not allowed; it is finite and above 0", sidecar, study.until));
   }
   for (std::size_t row = 0; row < table.size(); ++row) {
     study.points.push_back(point_of(table, row, path));

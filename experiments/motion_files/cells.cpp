@@ -19,12 +19,12 @@ Cells cells_of(const Scene& scene) {
   return cells;
 }
 
-std::vector<double> strain_lengths(const Scene& start) {
+std::vector<double> strain_lengths(const Scene& scene, const std::vector<Node>& nodes) {
   std::vector<double> lengths;
-  lengths.reserve(start.springs.size());
-  for (const auto& [nodes, law, holds, stiff] : start.springs) {
-    const auto& from = start.nodes[nodes[0]].position;
-    const auto& to = start.nodes[nodes[1]].position;
+  lengths.reserve(scene.springs.size());
+  for (const auto& [ends, law, holds, stiff] : scene.springs) {
+    const auto& from = nodes[ends[0]].position;
+    const auto& to = nodes[ends[1]].position;
     lengths.push_back(law.rest_length > 0 ? law.rest_length : (to - from).norm());
   }
   return lengths;

@@ -21,7 +21,8 @@ struct Cells {
 Cells cells_of(const Scene& scene);
 
 // The lengths [m] by which strains of the scene's springs are taken, (l - length) / length: the
-// rest length; where that is zero, the length at the start. Zero where both are.
-std::vector<double> strain_lengths(const Scene& start);
+// rest length; where that is zero, the length between the nodes as the motion starts, `nodes`. Zero
+// where both are.
+std::vector<double> strain_lengths(const Scene& scene, const std::vector<Node>& nodes);
 
 }  // namespace qddot::motion_files

@@ -40,7 +40,9 @@ float rounded(float value) {
 }
 
 Framing::Framing(const Scene& start, const ReducedScene& scene, const Fields& wanted)
-    : scene_(scene), wanted_(wanted), lengths_(strain_lengths(start)) {
+    : scene_(scene),
+      wanted_(wanted),
+      lengths_(strain_lengths(start, scene.expand(scene.initial()))) {
   for (const Node& node : start.nodes) masses_.push_back(node.pinned ? 0 : node.mass);
   const Cells cells = cells_of(start);
   springs_ = cells.lines;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/command/csv.hpp"
 #include "experiments/motion_files/frame.hpp"
 #include "experiments/motion_files/pc2_file.hpp"
 #include "experiments/motion_files/vtkhdf_file.hpp"
@@ -23,14 +24,14 @@ std::vector<std::string> files_of_motion(const std::string& path, const std::str
     throw InvalidInput(fmt::format(
         "{} {}: the ending names no format; allowed are .vtkhdf and .pc2", option, path));
   const std::string stem = path.substr(0, path.size() - ending.size());
-  return {path, stem + (is_pc2(path) ? ".obj" : ".xdmf"), stem + ".json"};
+  return {path, stem + (is_pc2(path) ? ".obj" : ".xdmf"), command::sidecar_of(path)};
 }
 
 Fields fields_named(const std::vector<std::string>& names, const std::string& path,
                     const std::string& option) {
   if (is_pc2(path))
     throw InvalidInput(fmt::format("{} is not for {}: a .pc2 holds positions alone", option, path));
-  Fields fields{.velocity = false, .kinetic_energy = false, .strain = false};
+  Fields fields = no_fields;
   const std::array all = {std::pair("velocity", &Fields::velocity),
                           std::pair("kinetic_energy", &Fields::kinetic_energy),
                           std::pair("strain", &Fields::strain)};
@@ -41,7 +42,7 @@ Fields fields_named(const std::vector<std::string>& names, const std::string& pa
     }
     if (!is_known)
       throw InvalidInput(fmt::format(
-          "{}: {} is not a field; allowed are velocity, kinetic_energy and strain, or none alone",
+          "{}: '{}' is not a field; allowed are velocity, kinetic_energy and strain, or none alone",
           option, name));
   }
   return fields;
@@ -51,7 +52,7 @@ std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& st
                                         const ReducedScene& scene, bool has_reference,
                                         const Fields& fields) {
   files_of_motion(path, "motion");
-  if (!Framing(start, scene, fields).of(scene.initial(), nullptr))
+  if (!Framing(start, scene, is_pc2(path) ? no_fields : fields).of(scene.initial(), nullptr))
     throw InvalidInput(fmt::format(
         "{}: the scene starts with numbers beyond 32-bit floats, which end at 3.4e38", path));
   if (is_pc2(path)) return open_pc2(path, start, scene);

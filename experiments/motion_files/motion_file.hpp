@@ -16,6 +16,7 @@ struct Fields {
   bool kinetic_energy = true;  // [J], of each node
   bool strain = true;          // of each spring: (l - l0) / l0, see docs/motions.md
 };
+constexpr Fields no_fields{.velocity = false, .kinetic_energy = false, .strain = false};
 
 // A motion in a file that others open: all nodes of a scene, pinned ones too, frame after frame in
 // 32-bit floats, and what joins them. Its files appear together on commit(), or not at all.

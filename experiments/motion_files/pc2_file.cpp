@@ -37,11 +37,12 @@ std::string header(std::size_t points, std::size_t frames) {
   return text;
 }
 
-std::string obj_text(const Scene& start) {
+// `nodes`: where the motion starts; massless ones are not where they are drawn.
+std::string obj_text(const Scene& start, const std::vector<Node>& nodes) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   // Nine digits read back as the same 32-bit float.
-  for (const Node& node : start.nodes)
+  for (const Node& node : nodes)
     fmt::format_to(out, "v {:.9g} {:.9g} {:.9g}\n", node.position[0], node.position[1],
                    node.position[2]);
   for (const auto& [a, b, c] : start.faces)
@@ -54,13 +55,13 @@ std::string obj_text(const Scene& start) {
 class Pc2File final : public MotionFile {
  public:
   Pc2File(const std::vector<std::string>& files, const Scene& start, const ReducedScene& scene)
-      : framing_(start, scene, {.velocity = false, .kinetic_energy = false, .strain = false}),
+      : framing_(start, scene, no_fields),
         points_(start.nodes.size()),
         file_(files[0], {}, files[2]),
         obj_(files[1]),
         sidecar_(files[2]) {
     file_.write(header(points_, 0));
-    obj_.write(obj_text(start));
+    obj_.write(obj_text(start, scene.expand(scene.initial())));
   }
 
   bool add(const State& state, const State*) override {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <new>
 #include <span>
+#include <system_error>
 #include <thread>
 
 namespace qddot::motion_files {
@@ -20,8 +21,8 @@ static_assert(std::endian::native == std::endian::little, "floats are written as
 
 // Rows of a chunk: enough to make it worth its place in the index, few enough for the caches.
 constexpr hsize_t least_rows = 1 << 12, most_rows = 1 << 16;
-constexpr int fastest =
-    1;  // level of deflate: the next ones save no 5 % and take half as long again
+// Level of deflate: the next ones save no 5 % and take half as long again.
+constexpr int fastest = 1;
 
 // Whole frames where they are small, equal parts of a frame where it is large.
 hsize_t chunk_rows(hsize_t rows_a_frame) {
@@ -167,7 +168,11 @@ bool write_full(const std::vector<RowStream*>& streams) {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   {
     std::vector<std::future<void>> others;
-    while (others.size() + 1 < std::min(cores, chunks.size())) others.push_back(std::async(work));
+    try {
+      while (others.size() + 1 < std::min(cores, chunks.size()))
+        others.push_back(std::async(std::launch::async, work));
+    } catch (const std::system_error&) {  // no more threads: those there are do it
+    }
     work();
     for (auto& other : others) other.get();
   }

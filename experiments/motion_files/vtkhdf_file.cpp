@@ -219,7 +219,7 @@ std::unique_ptr<MotionFile> open_vtkhdf(const std::string& path, const Scene& st
   if (!can_be_named(std::filesystem::path(path).filename().string()))
     throw InvalidInput(
         fmt::format("{}: the .xdmf beside it cannot name that file; allowed are names in UTF-8 "
-                    "without control characters and colons",
+                    "without control characters, colons and blanks at their ends",
                     path));
   return std::make_unique<VtkhdfFile>(files_of_motion(path, "motion"), start, scene, has_reference,
                                       fields);

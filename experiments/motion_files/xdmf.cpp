@@ -75,6 +75,8 @@ std::string xdmf_text(const XdmfFields& about, const std::vector<double>& times)
 }
 
 bool can_be_named(const std::string& file) {
+  // Some readers take blanks away from both ends.
+  if (file.starts_with(' ') || file.ends_with(' ')) return false;
   if (std::ranges::any_of(file, [](char c) {
         return static_cast<unsigned char>(c) < ' ' || c == '\x7f' || c == ':';
       }))

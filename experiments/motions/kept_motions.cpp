@@ -1,6 +1,7 @@
 #include "experiments/motions/kept_motions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/command/overwriting.hpp"
 #include "experiments/command/program.hpp"
 #include "experiments/command/written_table.hpp"
 #include "qddot/integrators/registry.hpp"
@@ -34,15 +36,31 @@ const std::vector<std::string> columns = {"file",
                                           "seconds_factorization",
                                           "seconds_solve"};
 
-// The motions that a table of before names; none where there is no such table.
+const std::string place = "motions/", unfinished = "motions.part/", ending = ".vtkhdf";
+
+// The motions that a table of before names, the reference's first if it has one; none where there
+// is no such table. Files elsewhere are no motions of the folder, whoever wrote that they are.
 std::vector<std::string> motions_in(const std::string& table) {
   std::vector<std::string> files;
   try {
     const command::WrittenTable rows(table, {"file"});
-    for (std::size_t i = 0; i < rows.size(); ++i) files.push_back(rows.text(i, "file"));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::string& file = rows.text(i, "file");
+      const bool is_here = file.starts_with(place) && file.rfind('/') + 1 == place.size();
+      if (is_here && file.ends_with(ending)) files.push_back(file);
+    }
   } catch (const InvalidInput&) {
   }
   return files;
+}
+
+// Throws CannotWrite.
+void move(const std::string& from, const std::string& to) {
+  std::error_code error;
+  std::filesystem::rename(from, to, error);
+  if (error) {
+    throw command::CannotWrite(fmt::format("{}: cannot be written: {}", to, error.message()));
+  }
 }
 
 // Every how many-th of the times a run is seen: all of them where that changes no step.
@@ -94,17 +112,24 @@ KeptMotions::KeptMotions(const std::string& folder, const Scene& start, const Re
       scene_(scene),
       times_(std::move(times)),
       earlier_(motions_in(folder + "/motions.csv")),
+      earlier_runs_(earlier_.size() - std::ranges::count(earlier_, place + "reference" + ending)),
       table_(folder + "/motions.csv", columns),
       energy_(folder + "/motions_energy.csv", {"file", "t", "kinetic", "potential", "total"}),
       origin_(origin) {
-  command::require_folder(folder + "/motions");
+  std::filesystem::remove_all(folder_ + "/" + unfinished);
+  command::require_folder(folder_ + "/" + unfinished);
+}
+
+KeptMotions::~KeptMotions() {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_ + "/" + unfinished, ignored);
 }
 
 void KeptMotions::add_reference(const ReferenceMotion& motion) {
   reference_ = motion.states;
-  const std::string file = write("reference", reference_, 1, true);
+  const auto [file, frames] = write("reference", reference_, 1, true);
   table_.row(file, "reference", motion.method->name, knob_name(motion.method->knob), motion.value,
-             name(Outcome::reached_end), times_.back(), reference_.size(), "",
+             name(Outcome::reached_end), times_.back(), frames, "",
              fmt::format("within {:.1e} of the reference at the end", motion.error), "", "", "", "",
              "");
 }
@@ -114,14 +139,17 @@ void KeptMotions::add(const ChosenRun& run, const Options& options, const Refere
   const Method& method = *run.point->method;
   const Options own = options_for(method, run.point->value, scene_, options);
   const std::size_t every = spacing(*run.point, times_.size());
-  const auto states = states_at(thinned(times_, every), scene_, method, own, seconds);
+  auto states = states_at(thinned(times_, every), scene_, method, own, seconds);
   const auto [summary, whole] = timed_run(scene_, times_.back(), method, own, seconds);
-  const std::string file =
+  const auto [file, frames] =
       write(fmt::format("{}_{:.12g}", method.name, run.point->value), states, every, false);
+  const std::string other = difference(*run.point, states.back(), reference);
+  const std::string why = run.why + (run.why.empty() || other.empty() ? "" : "; ") + other;
+  states.resize(frames);
   const Seconds& part = summary.seconds;
   table_.row(file, "run", method.name, knob_name(method.knob), run.point->value,
-             name(run.point->outcome), run.point->t_reached, states.size(),
-             largest_distance(states, every, reference), run.why, whole, part.force, part.stiffness,
+             name(run.point->outcome), run.point->t_reached, frames,
+             largest_distance(states, every, reference), why, whole, part.force, part.stiffness,
              part.factorization, part.solve);
   ++runs_;
 }
@@ -129,35 +157,55 @@ void KeptMotions::add(const ChosenRun& run, const Options& options, const Refere
 void KeptMotions::finish(const nlohmann::json& origin) {
   table_.complete(origin);
   energy_.complete(origin);
-  table_.commit();
-  energy_.commit();
+  command::require_folder(folder_ + "/" + place);
   for (const std::string& before : earlier_) {
-    if (std::ranges::find(files_, before) != files_.end()) continue;
     for (const std::string& file : motion_files::files_of_motion(folder_ + "/" + before, "file")) {
       std::error_code ignored;
       std::filesystem::remove(file, ignored);
     }
   }
+  for (const auto& file : std::filesystem::directory_iterator(folder_ + "/" + unfinished)) {
+    move(file.path().string(), folder_ + "/" + place + file.path().filename().string());
+  }
+  table_.commit();
+  energy_.commit();
 }
 
-std::string KeptMotions::write(const std::string& name, const std::vector<State>& states,
-                               std::size_t every, bool is_reference) {
-  const std::string place = fmt::format("motions/{}.vtkhdf", name), path = folder_ + "/" + place;
+KeptMotions::Written KeptMotions::write(const std::string& name, const std::vector<State>& states,
+                                        std::size_t every, bool is_reference) {
+  const std::string file_name = name + ending, path = folder_ + "/" + unfinished + file_name;
+  const std::string own = folder_ + "/" + place + file_name;
+  for (const std::string& file : motion_files::files_of_motion(own, "file")) {
+    command::require_replaceable(file, {}, command::sidecar_of(own));
+  }
   const bool is_compared = !is_reference && !reference_.empty();
   const auto file = motion_files::open_motion(path, start_, scene_, is_compared);
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const State& state = states[i];
-    if (!file->add(state, is_compared ? &reference_[i * every] : nullptr)) break;
+  std::size_t frames = 0;
+  for (; frames < states.size(); ++frames) {
+    const State& state = states[frames];
+    if (!file->add(state, is_compared ? &reference_[frames * every] : nullptr)) break;
     const double kinetic = scene_.kinetic(state), potential = scene_.potential(state);
-    energy_.row(place, state.t, kinetic, potential, kinetic + potential);
+    energy_.row(place + file_name, state.t, kinetic, potential, kinetic + potential);
   }
   file->complete(origin_);
   file->commit();
   for (const std::string& part : motion_files::files_of_motion(path, "file")) {
     bytes_ += static_cast<double>(std::filesystem::file_size(part));
   }
-  files_.push_back(place);
-  return place;
+  return {place + file_name, frames};
+}
+
+std::string KeptMotions::difference(const Point& point, const State& end,
+                                    const Reference& reference) const {
+  constexpr double seen = 0.05;
+  if (point.outcome != Outcome::reached_end || end.t < times_.back()) return "";
+  const double error =
+      errors_between(scene_, end, reference.end, reference.energy, reference.scales).position;
+  const double on_chart = point.errors.position;
+  if (std::abs(error - on_chart) <= seen * on_chart + 2 * reference.certified.position) return "";
+  return fmt::format(
+      "its steps end at the frames here, which makes its error {:.1e} in the place of {:.1e}",
+      error, on_chart);
 }
 
 double KeptMotions::largest_distance(const std::vector<State>& states, std::size_t every,

@@ -14,7 +14,8 @@
 namespace qddot::motions {
 
 // The motions of one scene in a folder: motions/*.vtkhdf, and the tables motions.csv and
-// motions_energy.csv, which appear at the end.
+// motions_energy.csv. They are made beside their place, in motions.part/, and take that of earlier
+// ones at the end, or never.
 class KeptMotions {
  public:
   // Throws InvalidInput where the folder cannot be written. The scene must outlive it; `start` is
@@ -22,6 +23,10 @@ class KeptMotions {
   // `origin` says how each motion was made (see provenance.hpp).
   KeptMotions(const std::string& folder, const Scene& start, const ReducedScene& scene,
               std::vector<double> times, const nlohmann::json& origin);
+  // Removes what has not appeared.
+  ~KeptMotions();
+  KeptMotions(const KeptMotions&) = delete;
+  KeptMotions& operator=(const KeptMotions&) = delete;
 
   // Keeps the motion that all others are compared with, before any of them.
   void add_reference(const ReferenceMotion& motion);
@@ -30,17 +35,26 @@ class KeptMotions {
   // run has a frame for every fourth of the steps that it took on the chart, at most.
   void add(const ChosenRun& run, const Options& options, const Reference& reference,
            double seconds);
-  // How many runs beside the reference, and how many bytes of files.
+  // How many runs beside the reference, and how many the folder had before; bytes of files.
   std::size_t runs() const { return runs_; }
+  std::size_t earlier_runs() const { return earlier_runs_; }
   double bytes() const { return bytes_; }
-  // Lets the tables appear, and removes the motions of an earlier motions.csv that are not in it.
+  // Lets all appear, in the place of what an earlier motions.csv names. Throws CannotWrite.
   void finish(const nlohmann::json& origin);
 
  private:
-  // Writes the file of a motion that has a state at every so many-th frame, and its energies.
-  // Returns its path in the folder.
-  std::string write(const std::string& name, const std::vector<State>& states, std::size_t every,
-                    bool is_reference);
+  struct Written {
+    std::string file;  // its path in the folder
+    std::size_t frames = 0;
+  };
+
+  // Writes the file of a motion that has a state at every so many-th frame, and its energies, up to
+  // the first state whose numbers the file cannot hold.
+  Written write(const std::string& name, const std::vector<State>& states, std::size_t every,
+                bool is_reference);
+  // That the run ended elsewhere than on the chart, as steps which end at frames are others; empty
+  // where it did not.
+  std::string difference(const Point& point, const State& end, const Reference& reference) const;
   double largest_distance(const std::vector<State>& states, std::size_t every,
                           const Reference& reference) const;
 
@@ -49,7 +63,8 @@ class KeptMotions {
   const ReducedScene& scene_;
   std::vector<double> times_;
   std::vector<State> reference_;  // none where nobody knows it
-  std::vector<std::string> earlier_, files_;
+  std::vector<std::string> earlier_;
+  std::size_t earlier_runs_;
   command::CsvFile table_, energy_;
   nlohmann::json origin_;
   std::size_t runs_ = 0;

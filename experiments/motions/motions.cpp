@@ -54,7 +54,7 @@ constexpr double most_bytes = 256e6, most_seconds = 60;
 constexpr double most_positions = 6e5;
 constexpr int fewest_frames = 20, usual_frames = 100, largest_count = 10000;
 constexpr double longest_run = 10;          // [s]
-constexpr double longest_reference = 30;    // [s]
+constexpr double longest_reference = 15;    // [s]
 constexpr double patience_with_a_run = 30;  // [s], after an interruption
 
 struct Arguments {
@@ -127,6 +127,10 @@ int motions(const CommandLine& line, Arguments& a, const std::vector<std::string
   origin["study"] = study.key;
   const Reference reference = reference_for(drawn, start, scene, study.until, a.out, origin);
   const auto front = fastest_at_each_accuracy(study.points, reference);
+  if (study.points.empty()) {
+    throw InvalidInput(
+        fmt::format("{}/points.csv: it has no runs; work_precision measures some", a.out));
+  }
   auto runs = chosen_runs(study.points, front);
   const std::size_t all = runs.size();
   runs.resize(std::min(all, line.has("--runs") ? static_cast<std::size_t>(a.runs) : most_runs));
@@ -146,6 +150,12 @@ int motions(const CommandLine& line, Arguments& a, const std::vector<std::string
     why = interrupted();
   }
   progress().wipe();
+  if (why && kept.runs() < kept.earlier_runs()) {
+    fmt::print(stderr,
+               "motions: interrupted by {}: {} of {} runs were made; the {} of before stay\n",
+               why->by, kept.runs(), all, kept.earlier_runs());
+    return why->status;
+  }
   origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
   origin["displacement"] = reference.scales.displacement;
   origin["runs_left_out"] = all - kept.runs();

@@ -1,8 +1,8 @@
 #include "experiments/motions/reference_motion.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
@@ -11,25 +11,18 @@
 namespace qddot::motions {
 namespace {
 
-// A reference is seen in a picture, and distances from it on a scale of powers of ten.
-constexpr double good_enough = 1e-9, least_accurate = 1e-6;
-constexpr double near_to_best = 10;
+constexpr double least_accurate = 1e-6;
+// Steps of the composition: so many at the least, and so many times as many again and again.
+constexpr double fewest_steps = 100, refinement = 2, most_steps = 1e8;
 
 double error_of(const Point& point) {
   const bool is_known = point.outcome == Outcome::reached_end && point.errors.position >= 0;
   return is_known ? point.errors.position : std::numeric_limits<double>::infinity();
 }
 
-const Point* fast_and_accurate(const std::vector<Point>& points) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Point& point : points) least = std::min(least, error_of(point));
-  const double enough = std::max(good_enough, near_to_best * least);
-  if (!(enough <= least_accurate)) return nullptr;
-  const Point* best = nullptr;
-  for (const Point& point : points) {
-    if (error_of(point) <= enough && (!best || point.time < best->time)) best = &point;
-  }
-  return best;
+const Point* most_accurate(const std::vector<Point>& points) {
+  const auto best = std::ranges::min_element(points, {}, error_of);
+  return best == points.end() || !(error_of(*best) <= least_accurate) ? nullptr : &*best;
 }
 
 double error_at_end(const std::vector<State>& states, const ReducedScene& scene,
@@ -58,28 +51,31 @@ std::optional<ReferenceMotion> reference_motion(const std::vector<double>& times
                                                 const Reference& reference,
                                                 const std::vector<Point>& points,
                                                 const Options& options, double seconds) {
-  if (const Point* point = fast_and_accurate(points)) {
-    auto states = states_at(times, scene, *point->method,
-                            options_for(*point->method, point->value, scene, options), seconds);
-    if (states.size() == times.size()) {
-      const double error = error_at_end(states, scene, reference);
-      if (error <= least_accurate)
-        return ReferenceMotion{point->method, point->value, states, error};
-    }
-  }
-  constexpr double fewest_steps = 100;
   const auto start = std::chrono::steady_clock::now();
-  const Method& method = *find_method("kahan_li8");
-  for (double steps = std::max<double>(fewest_steps, static_cast<double>(times.size() - 1));
-       seconds_since(start) < seconds; steps *= 4) {
-    const double h = times.back() / steps;
-    auto states = states_at(times, scene, method, options_for(method, h, scene),
-                            seconds - seconds_since(start));
-    if (states.size() < times.size()) continue;
+  std::optional<ReferenceMotion> best;
+  // Whether the run is the best so far; it is none where it does not come to the end in time.
+  const auto improves = [&](const Method& method, double value, const Options& own) {
+    const double left = seconds - seconds_since(start);
+    if (!(left > 0)) return false;
+    auto states = states_at(times, scene, method, options_for(method, value, scene, own), left);
+    if (states.size() < times.size()) return false;
     const double error = error_at_end(states, scene, reference);
-    if (error <= least_accurate) return ReferenceMotion{&method, h, states, error};
+    if (!(error < (best ? best->error : least_accurate))) return false;
+    best = {&method, value, std::move(states), error};
+    return true;
+  };
+  const Method& composition = *find_method("kahan_li8");
+  for (double steps = std::max(fewest_steps, static_cast<double>(times.size() - 1));
+       steps <= most_steps && seconds_since(start) < seconds; steps *= refinement) {
+    // Below what is certified nothing can be told; where an error grows again, rounding has it.
+    const bool is_better = improves(composition, times.back() / steps, {});
+    if (best && (!is_better || best->error <= reference.certified.position)) break;
   }
-  return {};
+  const Point* point = most_accurate(points);
+  if (point && (!best || error_of(*point) < best->error)) {
+    improves(*point->method, point->value, options);
+  }
+  return best;
 }
 
 }  // namespace qddot::motions

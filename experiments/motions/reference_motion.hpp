@@ -15,7 +15,7 @@ struct ReferenceMotion {
   const Method* method = nullptr;  // the run that makes it, with its
   double value = 0;                // knob
   std::vector<State> states;       // at the times; the first is the start
-  double error = 0;                // the position error at its end; not above what was asked for
+  double error = 0;                // its position error at the end: nearer distances mean nothing
 };
 
 // The states of a run at `times` [s], of which the first is 0 and the last the end; fewer where it
@@ -23,10 +23,11 @@ struct ReferenceMotion {
 std::vector<State> states_at(const std::vector<double>& times, const ReducedScene& scene,
                              const Method& method, const Options& options, double seconds);
 
-// The motion of the reference at `times`, by a run that is fast and far more accurate than most:
-// the fastest of the points with an error of at most 1e-9, or ten times the least; or, where none
-// is below 1e-6, by Kahan and Li's composition with smaller and smaller steps. Nothing where no run
-// comes to 1e-6 of the reference in some `seconds`, as beyond the horizon of a chaotic motion.
+// The motion of the reference at `times`: by Kahan and Li's composition with smaller and smaller
+// steps, until it is as near to the reference's end as that is certified to be, rounding is all
+// that is left, or so many `seconds` are over; or by the most accurate of the points, where that is
+// nearer. Nothing where neither comes to 1e-6 of the end, as beyond the horizon of a chaotic
+// motion.
 std::optional<ReferenceMotion> reference_motion(const std::vector<double>& times,
                                                 const ReducedScene& scene,
                                                 const Reference& reference,

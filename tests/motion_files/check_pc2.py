@@ -50,7 +50,7 @@ def check_scene(place, name, faces, springs):
     vertices, found_faces, found_springs = read_obj(place.path(name + ".obj"))
     assert np.array_equal(vertices, samples[0])
     assert (len(found_faces), len(found_springs)) == (faces, springs)
-    with open(place.path(name + ".json"), encoding="utf-8") as file:
+    with open(place.path(name + ".pc2.json"), encoding="utf-8") as file:
         assert json.load(file)["outcome"] == "reached_end"
     return found_faces, found_springs
 

@@ -50,7 +50,7 @@ def check_refusals(place):
     )
     check_refused(place, good + "--motion m.vtkhdf --motion-fields none,strain", "none alone")
     check_refused(place, good + "--motion m.pc2 --motion-fields strain", "--motion-fields", ".pc2")
-    for other in ("--trajectory m.csv", "--final m.json", "--energy m.xdmf"):
+    for other in ("--trajectory m.vtkhdf", "--final m.vtkhdf.json", "--energy m.xdmf"):
         check_refused(place, good + other + " --motion m.vtkhdf", "another output", "--motion")
     check_refused(place, good + "--energy m.obj --motion m.pc2", "another output", "m.obj")
     check_refused(

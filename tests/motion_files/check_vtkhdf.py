@@ -147,7 +147,7 @@ def check_scene(place, name, faces, loose):
             root["CellData/strain"][...].reshape(frames, -1), scene, positions, len(loose)
         )
         check_frames(place, stem, file, times)
-    with open(place.path(stem + ".json"), encoding="utf-8") as file:
+    with open(place.path(stem + ".vtkhdf.json"), encoding="utf-8") as file:
         assert json.load(file)["outcome"] == "reached_end"
 
 

@@ -81,10 +81,6 @@ BOOST_AUTO_TEST_CASE(a_run_is_the_one_of_the_chart) {
         continue;
       }
       BOOST_TEST(k.motions.value(row, "frames") == 41);
-      // At the end it is as far from the reference as the chart says, up to what the reference's
-      // own motion is off, 1e-6 at most.
-      BOOST_TEST(k.motions.value(row, "largest_distance") >=
-                 k.points.value(point, "error_position") - 1e-6);
     } else {
       BOOST_TEST(k.motions.value(row, "frames") <=
                  1 + 40 * k.points.value(point, "t_reached") + 1e-9);
@@ -139,13 +135,67 @@ BOOST_AUTO_TEST_CASE(fewer_runs_take_the_place_of_more) {
   for (std::size_t row = 0; row < 3; ++row) {
     BOOST_TEST(motions.value(row, "frames") == 4);
     const std::string stem = motions.text(row, "file").substr(8);
-    for (const char* ending : {"json", "vtkhdf", "xdmf"}) {
+    for (const char* ending : {"vtkhdf", "vtkhdf.json", "xdmf"}) {
       names.push_back(stem.substr(0, stem.size() - 6) + ending);
     }
   }
   std::ranges::sort(names);
   for (const std::string& name : names) expected += name + ' ';
   BOOST_TEST(listing(own.folder / "motions") == expected);
+}
+
+BOOST_AUTO_TEST_CASE(only_motions_of_the_folder_are_replaced) {
+  const Kept own;
+  own.folder.write("mine.vtkhdf", "mine");
+  const std::string table = read_all(own.folder / "motions.csv");
+  const std::string row =
+      table.substr(table.find('\n') + 1, table.find('\n', table.find('\n') + 1) - table.find('\n'));
+  std::string spoiled = table;
+  for (const char* other : {"mine.vtkhdf", "motions/../mine.vtkhdf", "motions/other.txt"}) {
+    spoiled += other + row.substr(row.find(','));
+  }
+  own.folder.write("motions.csv", spoiled);
+  BOOST_TEST(own.keep({"--runs", "1", "--frames", "2"}).status == 0);
+  BOOST_TEST(read_all(own.folder / "mine.vtkhdf") == "mine");
+  // What somebody else put in the place of a motion stays as well.
+  const std::string first = read_csv(own.folder / "motions.csv").text(1, "file");
+  for (const char* part : {"", ".json"}) std::filesystem::remove(own.folder / first + part);
+  own.folder.write(first, "mine");
+  const Exit refused = own.keep({"--runs", "1", "--frames", "2"});
+  BOOST_TEST(refused.status == 2);
+  BOOST_TEST(contains(refused.err, {first, "--force"}), refused.err);
+  BOOST_TEST(read_all(own.folder / first) == "mine");
+  BOOST_TEST(!std::filesystem::exists(own.folder / "motions.part"));
+}
+
+BOOST_AUTO_TEST_CASE(an_interruption_leaves_the_motions_of_before) {
+  const Kept own;
+  const std::string table = read_all(own.folder / "motions.csv");
+  const std::string files = listing(own.folder / "motions");
+  // So soon that no run is made, and whether the program has begun with them or not.
+  for (const char* limit : {"1e-4", "0.05"}) {
+    const Exit cut = own.keep({"--frames", "10000", "--time-limit", limit});
+    BOOST_TEST(cut.status == 3, cut.out);
+    BOOST_TEST(read_all(own.folder / "motions.csv") == table);
+    BOOST_TEST(listing(own.folder / "motions") == files);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_reference_is_nearer_than_any_run) {
+  const Kept& k = kept();
+  const std::string why = k.motions.text(0, "why");
+  const std::string words = "within ";
+  BOOST_TEST_REQUIRE(why.starts_with(words));
+  const double error = std::stod(why.substr(words.size()));
+  // Rounding, or what the reference is certified to: runs of the chart come as near at the best.
+  BOOST_TEST(error <= 10 * k.reference.at("certified_position").get<double>());
+  for (std::size_t row = 1; row < k.motions.rows.size(); ++row) {
+    const std::size_t point = row_of_points(row);
+    if (k.points.text(point, "outcome") != "reached_end" || k.motions.text(row, "method") == "ida")
+      continue;
+    BOOST_TEST(k.motions.value(row, "largest_distance") >=
+               k.points.value(point, "error_position") - 2 * error);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(what_cannot_be_is_said_in_a_sentence) {
@@ -168,6 +218,21 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_said_in_a_sentence) {
   refused(run("motions", {"--scene", "pendulum", "--out", empty.path()}),
           {"points.json: it is missing"});
   BOOST_TEST(empty.listing() == "points.csv ");
+  // Numbers that nobody wrote.
+  const auto spoiled = [&](const std::string& file, const std::string& from,
+                           const std::string& to) {
+    const Folder folder;
+    for (const char* name : {"points.csv", "points.json"}) {
+      std::string text = read_all(k.folder / name);
+      if (file == name) text.replace(text.find(from), from.size(), to);
+      folder.write(name, text);
+    }
+    return run("motions", {"--scene", "pendulum", "--out", folder.path()});
+  };
+  const std::string value = k.points.text(0, "value");
+  refused(spoiled("points.csv", value, "-1"), {"row 1", "value -1"});
+  refused(spoiled("points.csv", value, "nan"), {"row 1", "value"});
+  refused(spoiled("points.json", "\"until\": 1.0", "\"until\": -3.0"), {"until"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -262,7 +262,7 @@ BOOST_AUTO_TEST_CASE(negative_control_the_command_line_that_is_spoiled_is_good) 
   const Exit result = run("simulate", words_of(good_options(), folder));
   BOOST_TEST(result.status == 0);
   BOOST_TEST(result.err == "");
-  BOOST_TEST(folder.listing() == "e.csv e.json f.csv f.json g.csv g.json m.json m.obj m.pc2 ");
+  BOOST_TEST(folder.listing() == "e.csv e.json f.csv f.json g.csv g.json m.obj m.pc2 m.pc2.json ");
   BOOST_TEST(!complains(result, 0, "simulate", {}));
   BOOST_TEST(!complains({2, "", "simulate: two\nlines\n"}, 2, "simulate", {}));
   BOOST_TEST(!complains({2, "", "simulate: a\n"}, 2, "simulate", {"b"}));
