@@ -84,9 +84,10 @@ def main():
     simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
     with tempfile.TemporaryDirectory(prefix="motion.") as folder:
         place = Place(simulate, folder)
-        assert set(SCENES) == {"cloth", "plane", "line", "meshed"}
+        assert set(SCENES) == {"massless", "cloth", "plane", "line", "meshed"}
         check_scene(place, "cloth", 32, 102)
         check_scene(place, "plane", 0, 3)
+        assert check_scene(place, "massless", 0, 2) == ([], [[0, 1], [1, 2]])
         assert check_scene(place, "line", 0, 1) == ([], [[0, 1]])
         faces, springs = check_scene(place, "meshed", 2, 4)
         assert faces == [[0, 1, 2], [0, 2, 3]]

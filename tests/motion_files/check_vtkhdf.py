@@ -216,10 +216,11 @@ def main():
     simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
     with tempfile.TemporaryDirectory(prefix="motion.") as folder:
         place = Place(simulate, folder)
-        assert set(SCENES) == {"cloth", "plane", "line", "meshed"}
+        assert set(SCENES) == {"massless", "cloth", "plane", "line", "meshed"}
         check_scene(place, "cloth", cloth_faces(5), [])
         check_scene(place, "plane", [], [3])
         check_scene(place, "line", [], [])
+        check_scene(place, "massless", [], [])
         check_scene(place, "meshed", [(0, 1, 2), (0, 2, 3)], [])
         check_fields(place)
         check_many_frames(place)

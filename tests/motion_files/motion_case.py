@@ -53,7 +53,29 @@ node_mass = 0.1
 min = [-0.1, -0.1, -0.1]
 max = [0.1, 0.1, 0.1]
 """
-SCENES = {"cloth": CLOTH, "plane": PLANE, "line": LINE, "meshed": MESHED}
+# A node without mass starts between the others, not where it is drawn.
+MASSLESS = """
+dimension = 1
+until = 0.1
+[[nodes]]
+position = [0.0]
+pinned = true
+[[nodes]]
+position = [0.9]
+mass = 0.0
+[[nodes]]
+position = [1.0]
+mass = 1.0
+[[springs]]
+nodes = [0, 1]
+stiffness = 100.0
+rest_length = 0.0
+[[springs]]
+nodes = [1, 2]
+stiffness = 100.0
+rest_length = 0.0
+"""
+SCENES = {"massless": MASSLESS, "cloth": CLOTH, "plane": PLANE, "line": LINE, "meshed": MESHED}
 
 
 @dataclass(frozen=True)
