@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from matplotlib.colors import to_hex, to_rgb
 
 import measurements
-from prominent import strong_methods
+from prominent import looks_by_prominence, strong_methods
 from style import FAINT, assign_looks, family_look
 
 LABEL_SIZE = 9.5
@@ -103,11 +103,7 @@ class Prominent:
         known = identities(main.runs)
         strong = strong_methods(main.runs, main.front)
         self.shown = [method for method in known if method in strong]
-        # They take the first colours, and with a stock way the method whose colour it has.
-        owners = {known[method][1] for method in self.shown}
-        first = [method for method in known if method in strong or method in owners]
-        order = dict.fromkeys([*first, *known])
-        self.looks = assign_looks({method: known[method] for method in order})
+        self.looks = looks_by_prominence(known, strong)
         drawn = {run.method for view in views for run in view.runs if not run.failure}
         self.pale = len(drawn.difference(strong))
 

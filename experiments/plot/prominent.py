@@ -1,6 +1,7 @@
 """Which methods of a work-precision study stand out: those that a reader would choose between."""
 
 from measurements import fastest_at_each_accuracy
+from style import assign_looks
 
 MOST = 12
 
@@ -45,3 +46,11 @@ def strong_methods(runs, front):
     if len(drawn) <= MOST:
         strong += [method for method in drawn if method not in strong]
     return strong[:MOST]
+
+
+def looks_by_prominence(known, strong):
+    """The looks of the methods {name: (family, stock_of)}; those that stand out take the first
+    colours, and with a stock way the method whose colour it has."""
+    owners = {known[method][1] for method in known if method in strong}
+    first = [method for method in known if method in strong or method in owners]
+    return assign_looks({method: known[method] for method in dict.fromkeys([*first, *known])})

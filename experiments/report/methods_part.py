@@ -1,8 +1,8 @@
 """The methods of a study as the page shows them: colours, marks, families and the line on each."""
 
 from measurements import fastest_at_each_accuracy
-from prominent import strong_methods
-from style import STOCK, assign_looks, family_look
+from prominent import looks_by_prominence, strong_methods
+from style import STOCK, family_look
 from study_folder import look
 
 
@@ -28,20 +28,12 @@ def family_entry(name, family):
     }
 
 
-def looks_of(known, strong):
-    """The looks of the methods {name: (family, stock_of)}; those that stand out take the first
-    colours, and with a stock way the method whose colour it has."""
-    owners = {known[method][1] for method in strong}
-    first = [method for method in known if method in strong or method in owners]
-    return assign_looks({method: known[method] for method in dict.fromkeys([*first, *known])})
-
-
 def methods_part(study):
     """The page's `families` and `methods`, the latter in the order of the points."""
     runs = study.judged_runs()
     known = {run.method: (run.family, run.stock_of) for run in runs}
     strong = strong_methods(runs, fastest_at_each_accuracy(runs))
-    looks = looks_of(known, strong)
+    looks = looks_by_prominence(known, strong)
     notes = study.method_notes
     orders = {row["method"]: row.get("order") for row in study.rows}
     families, methods = {}, []

@@ -305,6 +305,14 @@ class Looks(unittest.TestCase):
         alone = style.assign_looks({"other": ("sundials", "ida")})["other"]
         self.assertEqual(alone.family, style.FAMILIES["sundials"])
 
+    def test_those_that_stand_out_take_the_first_colours(self):
+        known = {"pale": ("sundials", ""), "own": ("sundials", "")}
+        known |= {"strong": ("sundials", ""), "own_klu": ("sundials", "own")}
+        looks = prominent.looks_by_prominence(known, ["own_klu", "strong"])
+        self.assertEqual(list(looks), ["own", "strong", "own_klu", "pale"])
+        self.assertEqual([looks[name].color for name in ("own", "own_klu")], 2 * [style.COOL[0]])
+        self.assertEqual(looks["pale"].color, style.COOL[2])
+
     def test_letters_are_dark_enough_for_white(self):
         # A contrast of 4.5 asks for a relative luminance below 0.18; of the sum of sRGB values,
         # which this is, 0.42 is about that for a grey.
