@@ -4,9 +4,9 @@ import numpy as np
 
 # While what is shown is too large, frames are dropped down to the first number and then runs down
 # to the second, then both to the next pair.
-LEAST_FRAMES_AND_RUNS = ((30, 8), (16, 4), (8, 2), (2, 1))
-# A few frames far apart tell what a frame takes; of more frames, nearer to each other, each takes
-# less, by experience not below this part.
+LEAST_FRAMES_AND_RUNS = ((60, 20), (30, 8), (16, 4), (8, 2), (2, 1))
+# A few frames far apart tell what a frame takes beside what a run takes anyway; of more frames,
+# nearer to each other, each takes less, by experience not below this part.
 SAMPLE_FRAMES = 4
 NEAR_FRAMES_TAKE = 0.5
 
@@ -50,15 +50,21 @@ def fit(counts, room, encode):
     def size_of(runs, limit):
         return sum(encoded(run, limit).size for run in range(runs))
 
-    sampled = min(SAMPLE_FRAMES, longest)
-    expected = size_of(len(counts), sampled) / sampled * NEAR_FRAMES_TAKE / len(counts)
-    most = room / max(expected, 1e-9)  # frames of all runs together
+    few, more = min(2, longest), min(SAMPLE_FRAMES, longest)
+    least = size_of(len(counts), few)
+    a_frame = (size_of(len(counts), more) - least) / max(more - few, 1)
+
+    def expected(runs, frames):
+        changes = a_frame * NEAR_FRAMES_TAKE * max(frames - few, 0)
+        return (least + changes) * runs / len(counts)
+
+    too_low = 1.0  # by what factor sizes were larger than expected
     choices = ladder(len(counts), longest)
     for runs, frames in choices:
-        if runs * frames > most and (runs, frames) != choices[-1]:
+        if too_low * expected(runs, frames) > room and (runs, frames) != choices[-1]:
             continue
         size = size_of(runs, frames)
         if size <= room:
             return [encoded(run, frames) for run in range(runs)]
-        most = runs * frames * room / size
+        too_low = size / max(expected(runs, frames), 1e-9)
     return None

@@ -99,9 +99,9 @@ class Made:
     size: int
 
 
-def of_size(bytes_a_frame):
-    """An encode function whose runs take so many bytes a frame."""
-    return lambda run, frames: Made(run, frames, bytes_a_frame * len(frames))
+def of_size(bytes_a_frame, bytes_a_run=0):
+    """An encode function whose runs take so many bytes a frame, and so many beside."""
+    return lambda run, frames: Made(run, frames, bytes_a_run + bytes_a_frame * len(frames))
 
 
 class Budget(unittest.TestCase):
@@ -144,6 +144,20 @@ class Budget(unittest.TestCase):
             size = sum(run.size for run in runs)
             # Choices differ by a fifth, or by one run of at least two.
             self.assertTrue(0.5 * room <= size <= room, f"{size} of {room}")
+
+    def test_what_runs_take_beside_their_frames_costs_no_frames(self):
+        # As of energies over time, which a run has at all of its frames. There is room for all.
+        runs = budget.fit([101] * 30, 30 * (20_000 + 101 * 100), of_size(100, 20_000))
+        self.assertEqual([len(run.frames) for run in runs], [101] * 30)
+
+    def test_sixty_frames_stay_while_there_are_more_than_twenty_runs(self):
+        for room in np.linspace(100_000, 1_200_000, 23):
+            runs = budget.fit([101] * 60, room, of_size(100, 10_000))
+            if len(runs) > 20:
+                self.assertGreaterEqual(len(runs[0].frames), 60)
+        choices = budget.ladder(60, 101)
+        self.assertIn((20, 60), choices)
+        self.assertTrue(all(frames >= 60 for runs, frames in choices if runs > 20))
 
     def test_nothing_is_chosen_where_not_even_two_frames_fit(self):
         self.assertIsNone(budget.fit([60] * 20, 199, of_size(100)))
