@@ -139,6 +139,6 @@ def study_notes(study):
         notes.append("There is no reference.json: what the errors are certified to is not known.")
     if not study.sidecar:
         notes.append("There is no points.json: how the runs were made is not known.")
-    if all(run.failure for run in study.runs):
+    if all(run.failure for run in study.judged_runs()):
         notes.append("No run gave a point.")
     return notes

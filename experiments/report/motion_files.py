@@ -12,7 +12,8 @@ from measurements import BadInput, parse, read_rows
 PHASES = ("all", "force", "stiffness", "factorization", "solve")
 # Bytes of unpacked chunks: frames are read one by one, of which a chunk may hold many.
 CACHE = 1 << 26
-ENERGIES = ("t", "kinetic", "potential", "total")
+# The columns of the energies and their significant digits in a page: of the total its small changes are shown.
+ENERGIES = {"t": 7, "kinetic": 7, "potential": 7, "total": 17}
 
 
 @dataclass(frozen=True)
@@ -59,9 +60,15 @@ def seconds_of(path, line, row):
     return {phase: value if math.isfinite(value) else None for phase, value in seconds.items()}
 
 
+def to_digits(value, digits):
+    """The number, rounded to this many significant digits; None for what is no number."""
+    return float(f"{value:.{digits}g}") if math.isfinite(value) else None
+
+
 def read_energies(directory):
-    """The energies of motions_energy.csv, {file: {"t": [...], ...}}, None for what is no number; of
-    a missing table, none. Raises BadInput where it is broken."""
+    """The energies of motions_energy.csv, {file: {"t": [...], ...}}, to as many digits as a page
+    needs and None for what is no number; of a missing table, none. Raises BadInput where it is
+    broken."""
     path = os.path.join(directory, "motions_energy.csv")
     if not os.path.exists(path):
         return {}
@@ -70,14 +77,16 @@ def read_energies(directory):
         own = energies.setdefault(row["file"], {name: [] for name in ENERGIES})
         for name in ENERGIES:
             value = parse(path, line, row, name, False)
-            own[name].append(value if math.isfinite(value) else None)
+            own[name].append(to_digits(value, ENERGIES[name]))
     return energies
 
 
 @dataclass
 class MotionFile:
-    """An open motion: `times` [s] of its frames, its nodes, springs (m, 2) and faces (k, 3)."""
+    """An open motion: its name in the folder, `times` [s] of its frames, its nodes, springs (m, 2)
+    and faces (k, 3)."""
 
+    name: str
     file: h5py.File
     times: np.ndarray
     nodes: int
@@ -94,20 +103,24 @@ class MotionFile:
         return self.rows(name, frames) if name in self.file["VTKHDF"] else None
 
     def rows(self, name, frames):
-        """A data set's rows of these frames, by frame and node."""
+        """A data set's rows of these frames, by frame and node. Raises BadInput where they are
+        damaged."""
         data = self.file["VTKHDF"][name]
-        parts = [data[frame * self.nodes : (frame + 1) * self.nodes] for frame in frames]
+        try:
+            parts = [data[frame * self.nodes : (frame + 1) * self.nodes] for frame in frames]
+        except OSError as error:
+            raise BadInput(f"{self.name} is no whole HDF5 file.") from error
         return np.stack(parts) if parts else np.empty((0, self.nodes, *data.shape[1:]))
 
 
 def groups_of(root, name, size, nodes):
-    """The cells of a kind, (count, size): nodes each, all of them the scene's. Raises ValueError
-    for others."""
+    """The cells of a kind, (count, size): nodes each, all of them the scene's. Raises BadInput for
+    others."""
     if name not in root:
         return np.empty((0, size), int)
     cells = np.asarray(root[name]["Connectivity"], dtype=np.int64)
     if len(cells) % size or (len(cells) and not 0 <= cells.min() <= cells.max() < nodes):
-        raise ValueError(f"{name} do not fit the points")
+        raise BadInput(f"its {name} do not fit its points")
     return cells.reshape(-1, size)
 
 
@@ -125,19 +138,30 @@ def open_motion(directory, name):
         times = np.asarray(root["Steps/Values"], float).reshape(-1)
         points, columns = root["Points"].shape
         if not len(times) or not points or points % len(times) or columns != 3:
-            raise ValueError(f"{points} points do not fit {len(times)} frames")
+            raise BadInput(f"{points} points do not fit {len(times)} frames")
         if not np.isfinite(times).all():
-            raise ValueError("a time is no number")
+            raise BadInput("a time is no number")
         nodes = points // len(times)
         distances = root.get("PointData/distance_to_reference")
         if distances is not None and distances.shape != (points,):
-            raise ValueError("its distances do not fit its points")
+            raise BadInput("its distances do not fit its points")
         cells = (
             groups_of(root, name, size, nodes) for name, size in (("Lines", 2), ("Polygons", 3))
         )
-        return MotionFile(file, times, nodes, *cells)
-    except (OSError, LookupError, ValueError, TypeError, AttributeError) as error:
+        return MotionFile(name, file, times, nodes, *cells)
+    except (BadInput, OSError, LookupError, ValueError, TypeError, AttributeError) as error:
         if file:
             file.close()
-        reason = " ".join(str(error).split())
-        raise BadInput(f"{name} cannot be read: {reason}.") from error
+        raise BadInput(f"{name} {what_is_wrong(path, error)}.") from error
+
+
+def what_is_wrong(path, error):
+    """Why a file is not read. A page is passed on and must not tell where its folder was, as the
+    words of HDF5 do."""
+    if isinstance(error, BadInput):
+        return f"cannot be read: {error}"
+    if not os.path.exists(path):
+        return "is missing"
+    if isinstance(error, PermissionError):
+        return "may not be read"
+    return "is no whole HDF5 file" if isinstance(error, OSError) else "does not hold a motion"

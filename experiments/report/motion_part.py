@@ -7,12 +7,15 @@ from dataclasses import dataclass
 
 from answers import knob_in_words
 from budget import fit
+from commands import study_options
 from encoding import distances_blob, index_blob, positions_blob, quantised
 from measurements import BadInput
 from motion_box import box_of, unmoved
 from motion_files import open_motion, read_energies, read_motion_rows
 from study_folder import is_number, look, number_or_none, read_json
 
+# Which runs are made, how often and for how long they may go on: another study has the same runs.
+OF_THE_STUDY_ALONE = ("--methods", "--repeats", "--point-limit")
 # What stands around a blob in the page.
 FRAME_OF_BLOB = len('<script type="text/plain" id="p1000"></script>\n')
 
@@ -28,7 +31,8 @@ class EncodedRun:
     @property
     def size(self):
         """How many bytes it takes."""
-        parts = [json.dumps(self.entry), self.positions, self.distances or ""]
+        entry = json.dumps(self.entry, separators=(",", ":"))
+        parts = [entry, self.positions, self.distances or ""]
         return sum(len(part) + FRAME_OF_BLOB for part in parts)
 
 
@@ -43,10 +47,20 @@ def distance_unit(study, directory):
     return known[0] if known else None
 
 
+def run_options(sidecar):
+    """The options of a sidecar's study that decide how each run goes; None where they are not
+    known."""
+    if not isinstance(look(sidecar, "study", "options"), dict):
+        return None
+    options = study_options(sidecar)
+    return {name: value for name, value in options.items() if name not in OF_THE_STUDY_ALONE}
+
+
 def is_of_another_study(study, origin):
-    """Whether the motions, by their sidecar, were kept of another scene or to another end than the
-    points."""
+    """Whether the motions, by their sidecar, were kept of another scene, to another end or with
+    other options than the points."""
     pairs = (
+        (run_options(origin), run_options(study.sidecar)),
         (look(origin, "scene", "hash"), look(study.sidecar, "scene", "hash")),
         (number_or_none(origin.get("until")), study.until),
     )
@@ -89,7 +103,8 @@ class Encoder:
     def __init__(self, study, opened, energies):
         self.opened = opened
         self.energies = energies
-        self.box = box_of([motion for _, motion in opened])
+        first_is_reference = opened[0][0].role == "reference"
+        self.box = box_of([motion for _, motion in opened], first_is_reference)
         self.unit = distance_unit(study, study.directory)
         methods = list(dict.fromkeys(run.method for run in study.runs))
         self.methods = {name: index for index, name in enumerate(methods)}
@@ -206,12 +221,19 @@ def motion_part(study, room):
             return None, {}, notes + more
         # What is missing of the motions is said beside them.
         return part | {"notes": notes + part["notes"]}, blobs, []
-    except (BadInput, OSError, ValueError) as error:
-        reason = " ".join(str(error).split()).removesuffix(".")
+    except BadInput as error:
+        reason = in_folder(error, study.directory).removesuffix(".")
         return None, {}, [*notes, f"The motions cannot be shown: {reason}."]
+    except (OSError, ValueError):
+        return None, {}, [*notes, "The motions cannot be shown: a file in motions/ is broken."]
     finally:
         for _, motion in opened:
             motion.file.close()
+
+
+def in_folder(error, directory):
+    """The words of an error, in one line, in which files are named as seen from the folder."""
+    return " ".join(str(error).replace(os.path.join(directory, ""), "").split())
 
 
 def energies_or_note(directory):
@@ -219,4 +241,5 @@ def energies_or_note(directory):
     try:
         return read_energies(directory), []
     except BadInput as error:
-        return {}, [f"{error} The motions are shown without energies."]
+        words = in_folder(error, directory)
+        return {}, [f"{words} The motions are shown without energies."]

@@ -69,7 +69,8 @@ def whole(values):
 
 
 def cause(run, sentences):
-    """Why a run is no point of the chart, in a sentence; None for a good run."""
+    """Why a run, with the error that it is judged by, is no point of the chart, in a sentence; None
+    for a good run."""
     if not run.failure:
         return None
     return sentences.get(run.outcome) or run.failure
@@ -94,7 +95,7 @@ def points_part(study):
         "value": [run.value for run in study.runs],
         "knob": [run.knob for run in study.runs],
         "outcome": [run.outcome for run in study.runs],
-        "cause": [cause(run, sentences) for run in study.runs],
+        "cause": [cause(run, sentences) for run in study.judged_runs()],
     }
     points |= {name: read_column(study, name) for name in NUMBERS}
     points |= {name: whole(read_column(study, name)) for name in ("timed_runs", *counts)}

@@ -3,6 +3,7 @@
 and whether it appears whole or not at all."""
 
 import math
+import os
 import shutil
 import unittest
 from unittest import mock
@@ -114,36 +115,6 @@ class Missing(Folder):
         self.edit("points.json", lambda content: content.update(interrupted="SIGINT"))
         self.assertRegex(self.page().data["notes"][0], "interrupted by SIGINT")
 
-    def test_beyond_the_horizon_energy_judges(self):
-        made_folder.make_folder(self.folder, has_motions=False)
-
-        def change(content):
-            content.update(beyond_horizon=True, horizon=0.3, lyapunov=50.0, chaotic=True)
-
-        self.edit("reference.json", change)
-        data = self.page().data
-        self.assertEqual(data["judged_by"], "energy")
-        self.assertEqual(data["quantities"][0]["column"], "error_energy_max")
-        self.assertRegex(data["notes"][0], "^Chaotic: from t = 0.3 s on")
-        self.assertNotIn("\n", data["notes"][0])
-
-    def test_another_motion_is_no_answer_beyond_the_horizon(self):
-        made_folder.make_folder(self.folder, has_motions=False)
-        known = {"beyond_horizon": True, "horizon": 0.3, "lyapunov": 50.0, "chaotic": True}
-        self.edit("reference.json", lambda content: content.update(known, modal_shares_floor=0.01))
-        rows = self.rows()
-        for row in rows:
-            # Chance makes 0.01; ten times as far is another motion.
-            row["error_modal_shares"] = 0.11 if row["method"] == "symmetric8" else 0.09
-        self.rewrite("points.csv", rows)
-        data = self.page().data
-        names = [data["methods"][index]["name"] for index in data["points"]["method"]]
-        fastest = {names[answer["point"]] for answer in data["answers"] if answer["point"]}
-        self.assertTrue(fastest)
-        self.assertNotIn("symmetric8", fastest)
-        counts = data["quantities"][0]["counts"]
-        self.assertEqual(counts, [name != "symmetric8" for name in names])
-
     def test_infinite_and_missing_numbers_are_null(self):
         made_folder.make_folder(self.folder, has_motions=False)
         rows = self.rows()
@@ -182,6 +153,29 @@ class Missing(Folder):
         runs = self.page().data["motion"]["runs"]
         self.assertEqual({run["role"] for run in runs}, {"run"})
 
+    def test_without_a_reference_a_diverged_motion_does_not_make_the_box(self):
+        made_folder.make_folder(self.folder, side=3, frames=40, runs=6)
+        rows = self.rows("motions.csv")[1:]
+        rows.sort(key=lambda row: row["outcome"] != "diverged")
+        self.rewrite("motions.csv", rows)
+        with h5py.File(self.folder / rows[0]["file"]) as file:
+            self.assertGreater(np.abs(file["VTKHDF/Points"]).max(), 100)
+        motion = self.page().data["motion"]
+        self.assertEqual(motion["runs"][0]["outcome"], "diverged")
+        self.assertTrue(motion["runs"][0]["left_box"])
+        # Ten times the sheet's side, which is 1 m, to each side.
+        self.assertTrue(1 <= motion["size"] <= 20, motion["size"])
+
+    def test_a_single_node_without_a_reference_moves_as_far_as_it_does(self):
+        made_folder.make_folder(self.folder, side=1, frames=4, runs=1, dimension=1)
+        (row,) = self.rows("motions.csv")[1:]
+        self.rewrite("motions.csv", [row])
+        with h5py.File(self.folder / row["file"], "r+") as file:
+            file["VTKHDF/Points"][:, 0] = [0, 1, 2, 50][: len(file["VTKHDF/Points"])]
+            far = float(file["VTKHDF/Points"][-1, 0])
+        motion = self.page().data["motion"]
+        self.assertEqual((motion["size"], motion["runs"][0]["left_box"]), (far, False))
+
 
 class Broken(Folder):
     """Files that cannot be read."""
@@ -197,20 +191,44 @@ class Broken(Folder):
             change(file["VTKHDF"])
         return self.page().data
 
-    def assert_not_shown(self, data):
-        """A note names the motion, and the others are shown."""
+    def assert_not_shown(self, data, words=""):
+        """A note names the motion and, if given, says these words of it; the others are shown, and
+        the page does not tell where its folder was."""
         notes = data["motion"]["notes"]
-        self.assertTrue(any(self.motion in note for note in notes), notes)
+        self.assertTrue(any(f"{self.motion} {words}" in note for note in notes), notes)
         self.assertEqual(len(data["motion"]["runs"]), 3)
+        self.assertNotIn(str(self.folder), " ".join(notes))
 
     def test_a_motion_that_is_missing_or_no_motion_is_left_out(self):
         path = self.folder / self.motion
         whole = path.read_bytes()
         for content in (b"", b"no motion", whole[: len(whole) // 2]):
             path.write_bytes(content)
-            self.assert_not_shown(self.page().data)
+            self.assert_not_shown(self.page().data, "is no whole HDF5 file. It is not shown.")
         path.unlink()
-        self.assert_not_shown(self.page().data)
+        self.assert_not_shown(self.page().data, "is missing. It is not shown.")
+        path.mkdir()
+        self.assert_not_shown(self.page().data, "is no whole HDF5 file. It is not shown.")
+
+    def test_a_motion_without_its_parts_is_left_out(self):
+        def elsewhere(root):
+            del root["Points"]
+            root["Points"] = h5py.ExternalLink(self.folder / "nowhere.h5", "/Points")
+
+        for change in (elsewhere, lambda root: root.pop("Points", None)):
+            data = self.spoiled_motion(change)
+            self.assert_not_shown(data, "does not hold a motion. It is not shown.")
+
+    def test_a_damaged_frame_is_told_without_the_words_of_hdf5(self):
+        path = self.folder / self.motion
+        with h5py.File(path, "r") as file:
+            start = file["VTKHDF/Points"].id.get_chunk_info(0)
+        content = bytearray(path.read_bytes())
+        content[start.byte_offset : start.byte_offset + start.size] = b"\xff" * start.size
+        path.write_bytes(content)
+        notes = self.page().data["notes"]
+        words = f"The motions cannot be shown: {self.motion} is no whole HDF5 file."
+        self.assertEqual(notes, [words])
 
     def test_a_motion_whose_parts_do_not_fit_is_left_out(self):
         def shorter(root):
@@ -248,17 +266,36 @@ class Broken(Folder):
             self.assertIsNone(data["motion"])
             self.assertRegex(data["notes"][0], "are of another study")
 
+    def test_motions_of_other_options_are_of_another_study(self):
+        def told(**options):
+            return {"options": {name.replace("_", "-"): value for name, value in options.items()}}
+
+        own = told(__solver=["cholmod"], __methods=["verlet"], __repeats=["3"])
+        self.edit("points.json", lambda content: content.update(study=own))
+        for study, is_shown in (
+            (told(__solver=["cholmod"], __point_limit=["2"]), True),
+            (told(__solver=["klu", "cholmod"]), True),
+            (told(__solver=["klu"], __methods=["verlet"]), False),
+            (told(), False),
+            ({}, True),
+        ):
+            self.edit("motions.json", lambda content, s=study: content.update(study=s))
+            data = self.page().data
+            self.assertEqual(data["motion"] is not None, is_shown, study)
+            if not is_shown:
+                self.assertRegex(data["notes"][0], "are of another study")
+
     def test_a_broken_table_of_motions_is_a_note(self):
         (self.folder / "motions.csv").write_text("file,role\n")
         data = self.page().data
         self.assertIsNone(data["motion"])
-        self.assertRegex(data["notes"][0], "motions.csv has no column method")
+        self.assertRegex(data["notes"][0], ": motions.csv has no column method")
 
     def test_broken_energies_are_a_note(self):
         (self.folder / "motions_energy.csv").write_text("file,t,kinetic,potential,total\na,b,,,\n")
         data = self.page().data
         self.assertIsNone(data["motion"]["runs"][0]["energy"])
-        self.assertRegex(data["motion"]["notes"][0], "t is 'b', not a number")
+        self.assertRegex(data["motion"]["notes"][0], "^motions_energy.csv.* t is 'b', not a number")
 
     def test_a_broken_picture_is_a_note(self):
         (self.folder / "modes.png").write_bytes(b"\x89PNG\r\n\x1a\nnothing")
@@ -295,7 +332,27 @@ class Broken(Folder):
         self.assertEqual((status, said.count("\n")), (2, 1))
         self.assertIn("No space left", said)
         self.assertEqual(Page(self.folder / "report.html").text, before)
-        self.assertFalse((self.folder / "report.html.tmp").exists())
+        self.assertEqual([file for file in self.folder.iterdir() if "html." in file.name], [])
+
+    def test_two_packers_of_a_folder_do_not_write_into_each_other(self):
+        path = str(self.folder / "report.html")
+        replace, others = os.replace, ["another"]
+
+        def replace_late(source, target):
+            # Another packer writes all of its page between this one's writing and renaming.
+            if others:
+                report.write_whole(path, others.pop())
+            replace(source, target)
+
+        with mock.patch("os.replace", replace_late):
+            report.write_whole(path, "mine")
+        self.assertEqual((self.folder / "report.html").read_text(), "mine")
+
+    def test_the_page_has_the_rights_of_any_new_file(self):
+        self.page()
+        (self.folder / "new").touch()
+        rights = [(self.folder / name).stat().st_mode for name in ("report.html", "new")]
+        self.assertEqual(*rights)
 
     def test_a_wrong_call_is_refused(self):
         for arguments in ([], ["a", "b"], ["--help"]):

@@ -125,7 +125,7 @@ def write_motions(folder, sheet, rows, frames, runs, noise):
             error = size * max(noise, row["error_position"] or 0)
             positions = spoiled(reference, times, error, generator, diverges)
             distance = np.linalg.norm(positions - reference, axis=-1)
-            largest = float(distance.max() / displacement)
+            largest = float(distance.max() / displacement) if displacement else ""
         write_vtkhdf(folder / name, sheet, times, positions, distance)
         table.append(
             {key: row[key] for key in ("method", "knob", "value", "outcome", "t_reached")}
