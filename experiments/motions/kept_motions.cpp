@@ -197,7 +197,7 @@ KeptMotions::Written KeptMotions::write(const std::string& name, const std::vect
 
 std::string KeptMotions::difference(const Point& point, const State& end,
                                     const Reference& reference) const {
-  constexpr double seen = 0.05;
+  constexpr double seen = 0.2;
   if (point.outcome != Outcome::reached_end || end.t < times_.back()) return "";
   const double error =
       errors_between(scene_, end, reference.end, reference.energy, reference.scales).position;
