@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from decimal import ROUND_HALF_UP, Context
 
 import matplotlib
 from matplotlib import ticker
@@ -12,6 +13,9 @@ from matplotlib.colors import to_hex, to_rgb
 WARM = ("#D55E00", "#000000", "#E69F00", "#882255", "#CC79A7", "#7F6A1F")
 COOL = ("#0072B2", "#009E73", "#56B4E9", "#332288", "#44AA99", "#5D7A99")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+
+# Halves go up, as in the scripts of a page, which must spell the same.
+FOUR_DIGITS = Context(prec=4, rounding=ROUND_HALF_UP)
 
 INK = "#222222"
 FAINT = "#666666"
@@ -148,6 +152,15 @@ def number(value):
         return f"{value:.3g}"
     mantissa, exponent = f"{value:.1e}".split("e")
     return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def exact(value):
+    """A number to the four digits by which values of a knob are told apart: 5.917e-4, 0.02."""
+    rounded = float(FOUR_DIGITS.create_decimal_from_float(value))
+    if rounded == 0 or abs(rounded) >= 1e-3:
+        return f"{rounded:.15g}"
+    mantissa, exponent = f"{rounded:.3e}".split("e")
+    return f"{mantissa.rstrip('0').removesuffix('.')}e{int(exponent)}"
 
 
 def power_of_ten(value):

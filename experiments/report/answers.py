@@ -4,17 +4,24 @@ import math
 
 from failures import KNOBS
 from methods_part import family_title
+from style import exact
 from study_folder import digits
 
 ACCURACIES = tuple(10.0**-digit for digit in range(2, 9))
 # A step that is nearer to its limit is warned of.
 SMALL_MARGIN = 0.15
+NEAR_ITS_LIMIT = "its limit of stability"
+ON_LIMITS = (
+    "A step that is near its limit of stability at the start may blow up in a longer run: take half"
+    " of it there."
+)
 
 
 def knob_in_words(knob, value):
-    """A value of a knob: "h = 0.0005 s", "rtol = 1e-06"."""
+    """A value of a knob: "h = 5.917e-4 s", "rtol = 1e-6"."""
     unit = " s" if knob == "step_size" else ""
-    return f"{KNOBS.get(knob, ('', knob))[1]} = {value:.4g}{unit}"
+    symbol = KNOBS.get(knob, ("", knob.replace("_", " ")))[1]
+    return f"{symbol} = {exact(value)}{unit}"
 
 
 def is_timed(run):
@@ -68,20 +75,15 @@ def best_of_other_families(runs, ranked):
 
 
 def warning(run, margin, certified):
-    """What a reader must know of the run that is named; None where there is nothing."""
-    sentences = []
+    """What a reader must know of the run that is named, in few words; None where there is
+    nothing."""
+    warnings = []
     if margin is not None and margin < SMALL_MARGIN:
         side = "above" if margin < 0 else "below"
-        sentences.append(
-            f"The step is {abs(100 * margin):.2g} % {side} its limit of stability at the start; a"
-            " longer run may blow up: take half of it there."
-        )
+        warnings.append(f"{abs(100 * margin):.2g} % {side} {NEAR_ITS_LIMIT}")
     if certified is not None and certified > 0.1 * run.error:
-        sentences.append(
-            f"The error is known to within {certified:.1e} alone, which the reference itself may be"
-            " off."
-        )
-    return " ".join(sentences) or None
+        warnings.append(f"error known to within {certified:.1e} alone, as the reference itself is")
+    return "; ".join(warnings) or None
 
 
 def answer(study, runs, accuracy):
@@ -106,3 +108,9 @@ def answers(study):
     """The answers at 1e-2, ... 1e-8, by the error that the study is judged by."""
     runs = study.judged_runs()
     return [answer(study, runs, accuracy) for accuracy in ACCURACIES]
+
+
+def answers_note(found):
+    """What a reader must know of all answers with a step near its limit; None without such."""
+    warned = [answer for answer in found if NEAR_ITS_LIMIT in (answer["warning"] or "")]
+    return ON_LIMITS if warned else None

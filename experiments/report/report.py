@@ -6,8 +6,9 @@ motions.csv with its motions, motions_energy.csv and pictures, and writes DIR/re
 
 import os
 import sys
+import tempfile
 
-from answers import answers
+from answers import answers, answers_note
 from background_part import left_out_part, provenance_part, reference_part, study_notes
 from commands import page_command
 from measurements import BadInput
@@ -29,12 +30,14 @@ def measured_parts(study):
     """The page's data but for the motion, the chart as a data URI and its notes."""
     pictures, chart, notes = pictures_part(study.directory)
     command = page_command(study.sidecar)
+    found = answers(study)
     content = {
         "title": study.scene,
         "until": study.until,
         "command": [command] if command else [],
         "notes": study_notes(study) + notes,
-        "answers": answers(study),
+        "answers": found,
+        "answers_note": answers_note(found),
         "judged_by": study.judged_by,
         **methods_part(study),
         **points_part(study),
@@ -55,7 +58,7 @@ def page_of(directory):
     def page(motion, blobs, notes):
         """The page with this motion."""
         whole = content | {"notes": content["notes"] + notes, "motion": motion}
-        static = static_part(content["answers"], study.judged_runs(), whole["notes"], chart)
+        static = static_part(whole, study.judged_runs(), chart)
         return html(study.scene, whole, blobs, static)
 
     room = MOST_BYTES - WORDS_ON_MOTIONS - len(page(None, {}, []).encode("utf-8", "replace"))
@@ -65,18 +68,18 @@ def page_of(directory):
 def write_whole(path, text):
     """Writes a file that appears whole or not at all. Raises BadInput where it cannot be
     written."""
-    temporary = f"{path}.tmp"
+    folder, name = os.path.split(path)
     try:
-        with open(temporary, "w", encoding="utf-8", errors="replace", newline="\n") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
+        # A folder of its own: two packers may write the same page, and the file has usual rights.
+        with tempfile.TemporaryDirectory(prefix=f".{name}.", dir=folder or ".") as own:
+            temporary = os.path.join(own, name)
+            with open(temporary, "w", encoding="utf-8", errors="replace", newline="\n") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(temporary, path)
     except OSError as error:
         raise BadInput(f"{path} cannot be written: {error.strerror}.") from error
-    finally:
-        if os.path.exists(temporary):
-            os.remove(temporary)
 
 
 def main(arguments):

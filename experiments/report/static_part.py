@@ -5,7 +5,15 @@ from html import escape
 from answers import knob_in_words
 from style import number, seconds
 
-COLUMNS = ("accuracy", "fastest method", "knob", "error", "time", "next best method")
+COLUMNS = (
+    "accuracy",
+    "fastest method",
+    "knob",
+    "error",
+    "time",
+    "next best method",
+    "to know",
+)
 
 
 def visible(text):
@@ -14,18 +22,25 @@ def visible(text):
     return escape("".join(c if c.isprintable() else " " for c in str(text)))
 
 
+def how_long(ratio):
+    """How many times as long a run takes, in words."""
+    times = f"{ratio:.3g}"
+    return "as long" if times == "1" else f"{times} × as long"
+
+
 def cells(answer, runs):
     """The cells of an answer's row."""
-    accuracy = f"{answer['accuracy']:.0e}"
+    accuracy = number(answer["accuracy"])
     if answer["point"] is None:
-        return (accuracy, answer["why"], "", "", "", "")
+        return (accuracy, answer["why"], "", "", "", "", "")
     run = runs[answer["point"]]
     following = ""
     if answer["next"]:
         other = runs[answer["next"]["point"]].method
-        following = f"{other}, {answer['next']['ratio']:.3g} × as long"
+        following = f"{other}, {how_long(answer['next']['ratio'])}"
     knob = knob_in_words(run.knob, run.value)
-    return (accuracy, run.method, knob, number(run.error), seconds(run.time), following)
+    figures = (number(run.error), seconds(run.time))
+    return (accuracy, run.method, knob, *figures, following, answer["warning"] or "")
 
 
 def row(tag, texts):
@@ -33,13 +48,16 @@ def row(tag, texts):
     return "<tr>" + "".join(f"<{tag}>{visible(text)}</{tag}>" for text in texts) + "</tr>"
 
 
-def static_part(answers, runs, notes, chart):
-    """HTML for a page's <noscript>: the notes, the answers of these runs and the chart's data URI,
-    if there is one."""
-    lines = [f"<p>{visible(note)}</p>" for note in notes]
+def static_part(content, runs, chart):
+    """HTML for a page's <noscript>: the notes and the answers of its content, by these runs, and the
+    chart's data URI, if there is one."""
+    lines = [f"<p>{visible(note)}</p>" for note in content["notes"]]
     lines += ["<table>", f"<thead>{row('th', COLUMNS)}</thead>", "<tbody>"]
-    lines += [row("td", cells(answer, runs)) for answer in answers]
+    lines += [row("td", cells(answer, runs)) for answer in content["answers"]]
     lines += ["</tbody>", "</table>"]
+    if content["answers_note"]:
+        lines.append(f"<p>{visible(content['answers_note'])}</p>")
     if chart:
-        lines.append(f'<img src="{chart}" alt="time of a run against its error, by method">')
+        words = "time of a run against its error, by method"
+        lines.append(f'<img src="{chart}" alt="{words}" style="max-width:100%">')
     return "\n".join(lines)

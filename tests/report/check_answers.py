@@ -79,13 +79,36 @@ class Sentences(unittest.TestCase):
             self.assertEqual(self.answer(run)["why"], "no method reached it")
         self.assertEqual(self.answer()["why"], "no method reached it")
 
+    def test_knobs_are_spelled_as_in_the_pages_scripts(self):
+        for value, words in {
+            1 / 1690: "5.917e-4",
+            5e-4: "5e-4",
+            1e-10: "1e-10",
+            0.00099999: "0.001",
+            0.02: "0.02",
+            0.012345: "0.01235",
+            1 / 64: "0.01563",
+            12345.0: "12350",
+        }.items():
+            self.assertEqual(answers.knob_in_words("step_size", value), f"h = {words} s")
+        self.assertEqual(answers.knob_in_words("rtol", 1e-6), "rtol = 1e-6")
+        self.assertEqual(answers.knob_in_words("an_angle", 0.5), "an angle = 0.5")
+
     def test_small_margins_are_warned_of(self):
         for margin, words in ((0.056, "5.6 % below"), (-0.34, "34 % above"), (0.15, None)):
             found = self.answer(a_run(), margins={(2, "verlet", 1e-3): margin})
             if words:
-                self.assertIn(words, found["warning"])
+                self.assertEqual(found["warning"], f"{words} its limit of stability")
             else:
                 self.assertIsNone(found["warning"])
+
+    def test_one_note_tells_what_to_do_near_a_limit(self):
+        near = self.answer(a_run(error=2e-12), margins={(2, "verlet", 1e-3): 0.029})
+        self.assertRegex(near["warning"], "^2.9 % below its limit of stability; error known to ")
+        far = self.answer(a_run(error=2e-12))
+        self.assertIsNone(answers.answers_note([far, self.answer()]))
+        note = answers.answers_note([far, near, near])
+        self.assertEqual((note.count("half"), note[-1]), (1, "."))
 
     def test_an_error_near_what_is_certified_is_doubted(self):
         found = self.answer(a_run(error=2e-12))
@@ -147,14 +170,14 @@ class Studies(unittest.TestCase):
                     continue
                 run = runs[answer["point"]]
                 self.assertEqual(line[10:31].strip(), run.method)
-                self.assertEqual(line[31:48].strip(), answers.knob_in_words(run.knob, run.value))
+                self.assertEqual(line[31:48].strip(), printed_knob(run))
                 doubt = line[57] == "?"
                 self.assertEqual(doubt, "known to within" in (answer["warning"] or ""))
                 self.check_rival(line, runs, answer)
             warned = [a for a in found if "limit of stability" in (a["warning"] or "")]
             for answer in warned:
                 run = runs[answer["point"]]
-                start = f"{run.method} at {answers.knob_in_words(run.knob, run.value)} is"
+                start = f"{run.method} at {printed_knob(run)} is"
                 share = re.search(r"[0-9.e+]+ % (above|below)", answer["warning"])[0]
                 self.assertIn(f"{start} {share} its limit", self.printed[name])
         self.assertIn("no method reached it", reasons)
@@ -200,6 +223,12 @@ class Studies(unittest.TestCase):
         self.assertIn("--max-order 3", line_of(commands, study, "cvode_bdf"))
         self.assertIn("--solver cholmod", line_of(commands, study, "implicit_midpoint"))
         self.assertNotIn("--solver", line_of(commands, study, "verlet"))
+
+
+def printed_knob(run):
+    """A run's knob as the study's own table spells it."""
+    symbol, unit = {"step_size": ("h", " s"), "rtol": ("rtol", "")}[run.knob]
+    return f"{symbol} = {run.value:.4g}{unit}"
 
 
 def line_of(commands, study, method):

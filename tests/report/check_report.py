@@ -10,10 +10,17 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from PIL import Image
 
+import emphasis
 import made_folder
+import measurements
+import motion_files
 import page
+import quantities
 import report
+import static_part
+from answers import knob_in_words
 from decoding import Page, elements
 from packed_folder import Folder
 
@@ -63,6 +70,19 @@ class Contents(Folder):
         self.assertEqual(methods["symmetric8"]["line"], "eight, <b>bold</b>")
         self.assertLessEqual(sum(method["strong"] for method in data["methods"]), 12)
         self.assertTrue(methods["symmetric4"]["strong"])
+
+    def test_colours_are_those_of_the_picture_of_the_folder(self):
+        methods = self.make(has_motions=False).data["methods"]
+        view = quantities.view(
+            self.folder,
+            quantities.POSITION,
+            measurements.read_reference(self.folder / "reference.json"),
+        )
+        looks = emphasis.Prominent([view]).looks
+        self.assertEqual(len(methods), len(looks))
+        for method in methods:
+            look = looks[method["name"]]
+            self.assertEqual((method["color"], method["marker"]), (look.color, look.marker))
 
     def test_the_page_is_one_file_with_all_its_parts(self):
         text = self.make().text
@@ -160,6 +180,18 @@ class Motions(Folder):
             self.assertEqual(data["methods"][run["method"]]["name"], row["method"])
             self.assertEqual(len(run["energy"]["t"]), int(row["frames"]))
 
+    def test_energies_have_the_digits_that_are_shown(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        (self.folder / "motions_energy.csv").write_text(
+            "file,t,kinetic,potential,total\na,0.012345678901,2.3456789012e-5,-1.2345678901,"
+            "0.12345678901234567\na,0.5,nan,,inf\n"
+        )
+        found = motion_files.read_energies(self.folder)["a"]
+        self.assertEqual(found["t"], [0.01234568, 0.5])
+        self.assertEqual(found["kinetic"], [2.345679e-5, None])
+        self.assertEqual(found["potential"], [-1.234568, None])
+        self.assertEqual(found["total"], [0.12345678901234567, None])
+
     def test_nodes_that_never_move_are_pinned(self):
         motion = self.make(side=5).data["motion"]
         self.assertEqual(motion["pinned"], [0, 5, 10, 15, 20])
@@ -213,6 +245,99 @@ class Motions(Folder):
             second["seconds"],
             {"all": 2, "force": 0.5, "stiffness": None, "factorization": 0.25, "solve": 0},
         )
+
+
+class BeyondTheHorizon(Folder):
+    """A folder whose end is beyond the horizon of a chaotic motion."""
+
+    def setUp(self):
+        super().setUp()
+        made_folder.make_folder(self.folder, has_motions=False)
+        known = {"beyond_horizon": True, "horizon": 0.3, "lyapunov": 50.0, "chaotic": True}
+        self.edit("reference.json", lambda content: content.update(known))
+
+    def test_energy_judges(self):
+        data = self.page().data
+        self.assertEqual(data["judged_by"], "energy")
+        self.assertEqual(data["quantities"][0]["column"], "error_energy_max")
+        self.assertRegex(data["notes"][0], "^Chaotic: from t = 0.3 s on")
+        self.assertNotIn("\n", data["notes"][0])
+
+    def test_a_position_error_is_no_failure(self):
+        self.edit("reference.json", lambda content: content.update(modal_shares_floor=0.01))
+        rows = [row for row in self.rows() if row["outcome"] == "reached_end"]
+        for row in rows:
+            row |= {"error_position": 9, "error_position_at_least": 9, "error_position_at_most": 9}
+        for row, error in zip(rows, (1e-5, 4, "")):
+            row |= {"error_energy_max": error, "error_modal_shares": 0.01}
+        self.rewrite("points.csv", rows)
+        data = self.page().data
+        expected = [None, "error above 3", "error not measured"]
+        self.assertEqual(data["points"]["cause"][:3], expected)
+        self.assertIsNotNone(data["answers"][0]["point"])
+        self.assertNotIn("No run gave a point.", data["notes"])
+        for row in rows:
+            row |= {"error_position": 1e-3, "error_energy_max": 4}
+        self.rewrite("points.csv", rows)
+        self.assertIn("No run gave a point.", self.page().data["notes"])
+
+    def test_another_motion_is_no_answer(self):
+        self.edit("reference.json", lambda content: content.update(modal_shares_floor=0.01))
+        rows = self.rows()
+        for row in rows:
+            # Chance makes 0.01; ten times as far is another motion.
+            row["error_modal_shares"] = 0.11 if row["method"] == "symmetric8" else 0.09
+        self.rewrite("points.csv", rows)
+        data = self.page().data
+        names = [data["methods"][index]["name"] for index in data["points"]["method"]]
+        fastest = {names[answer["point"]] for answer in data["answers"] if answer["point"]}
+        self.assertTrue(fastest)
+        self.assertNotIn("symmetric8", fastest)
+        counts = data["quantities"][0]["counts"]
+        self.assertEqual(counts, [name != "symmetric8" for name in names])
+
+
+class WithoutScripts(Folder):
+    """What a reader sees where no scripts run."""
+
+    def elements(self, tag):
+        """The attributes and texts of the page's elements of a kind."""
+        return [(found[1], found[2]) for found in elements(self.page().text) if found[0] == tag]
+
+    def test_the_answers_are_spelled_as_in_the_page(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        front = self.rows("front.csv")
+        for row in front:
+            row["stability_margin"] = 0.029
+        self.rewrite("front.csv", front)
+        data = self.page().data
+        columns = len(self.elements("th"))
+        cells = [text for _, text in self.elements("td")]
+        rows = [cells[start : start + columns] for start in range(0, len(cells), columns)]
+        self.assertEqual([row[0] for row in rows], [f"1e-{digit}" for digit in range(2, 9)])
+        for row, answer in zip(rows, data["answers"]):
+            value = data["points"]["value"][answer["point"]]
+            self.assertEqual(row[2], knob_in_words(data["points"]["knob"][answer["point"]], value))
+            self.assertEqual(row[-1], answer["warning"])
+            self.assertIn("2.9 % below its limit of stability", row[-1])
+        texts = [text for _, text in self.elements("p")]
+        self.assertEqual(texts.count(data["answers_note"]), 1)
+
+    def test_without_a_margin_there_is_no_note_on_margins(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        (self.folder / "front.csv").unlink()
+        self.assertIsNone(self.page().data["answers_note"])
+        self.assertNotIn("limit of stability", self.page().text)
+
+    def test_as_long_is_not_once_as_long(self):
+        for ratio, words in ((1.0, "as long"), (1.004, "as long"), (1.04, "1.04 × as long")):
+            self.assertEqual(static_part.how_long(ratio), words)
+
+    def test_the_chart_is_no_wider_than_the_page(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        Image.new("RGB", (2000, 10), "white").save(self.folder / "chart.png")
+        ((attributes, _),) = self.elements("img")
+        self.assertEqual(attributes["style"], "max-width:100%")
 
 
 class RealPage(unittest.TestCase):
