@@ -1,9 +1,20 @@
 // The head of the page and the table of answers: what to take at each accuracy.
 "use strict";
 {
-  const { element, byId, report, words, named, state, choose } = qddotReport;
+  const { element, byId, report, words, named, state, visit } = qddotReport;
   const { points, methods } = report;
   const rows = [];
+  const HEADS = {
+    accuracy: "Accuracy",
+    take: "Take",
+    at: "At",
+    error: "Error",
+    time: "Time of a run",
+    next: "The next method takes",
+    others: "Best of other families takes",
+  };
+  // Times that are nearer to each other are not told apart.
+  const AS_FAST = 1.02;
 
   const cell = (label, ...children) =>
     element("td", { "data-label": label }, element("div", {}, ...children));
@@ -12,7 +23,7 @@
     return [
       named(points.method[point]),
       " ",
-      element("span", { class: "ratio" }, words.ratio(ratio)),
+      element("span", { class: "ratio" }, ratio < AS_FAST ? "as fast" : words.ratio(ratio)),
     ];
   }
 
@@ -21,15 +32,26 @@
     return answer.others.map((other) => element("div", {}, ...beside(other.point, other.ratio)));
   }
 
+  // In the row, what is wrong; what to do about it stands beside the run.
+  const shortWarning = (text) =>
+    text.replace(/The step is ([^;]* limit of stability)[^;]*;[^.]*\./, "$1.");
+
+  // The address keeps the choice, so the link is not followed.
+  function seeRun(event) {
+    event.preventDefault();
+    const smooth = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    byId("run").scrollIntoView({ behavior: smooth ? "smooth" : "auto" });
+  }
+
   function row(answer) {
     const accuracy = cell(
-      "Accuracy",
+      HEADS.accuracy,
       element("span", { class: "number take" }, words.number(answer.accuracy)),
     );
     if (answer.point === null) {
       const why = element(
         "td",
-        { "data-label": "Take", colspan: 6 },
+        { "data-label": HEADS.take, colspan: 6 },
         element("div", { class: "quiet" }, answer.why ?? "no answer"),
       );
       return element("tr", {}, accuracy, why);
@@ -38,50 +60,34 @@
     const method = points.method[point];
     const error =
       points[report.judged_by === "energy" ? "error_energy_max" : "error_position"]?.[point];
-    const pick = () => choose({ run: point });
+    // The whole row may be clicked on; the button is for keys and for those who hear the page.
+    const pick = element("button", { type: "button", class: "pick" }, named(method));
     const line = element(
       "tr",
-      {
-        tabindex: 0,
-        "aria-selected": "false",
-        "data-point": point,
-        click: pick,
-        keydown: (event) => {
-          if (event.key !== "Enter" && event.key !== " ") return;
-          event.preventDefault();
-          pick();
-        },
-      },
+      { "data-point": point, click: () => visit({ run: point }) },
       accuracy,
       cell(
-        "Take",
-        element("span", { class: "take" }, named(method)),
+        HEADS.take,
+        element("span", { class: "take" }, pick),
         methods[method].line && element("span", { class: "line" }, methods[method].line),
-        warning && element("span", { class: "warning" }, warning),
+        warning && element("span", { class: "warning", title: warning }, shortWarning(warning)),
+        element("a", { class: "see-run", href: "#run", click: seeRun }, "see its run ↓"),
       ),
       cell(
-        "At",
+        HEADS.at,
         element("span", { class: "number" }, words.knob(points.knob[point], points.value[point])),
       ),
-      cell("Error", element("span", { class: "number" }, words.number(error))),
-      cell("Time", element("span", { class: "number" }, words.seconds(points.time_s[point]))),
-      cell("Next method", ...(next ? beside(next.point, next.ratio) : ["–"])),
-      cell("Best of the others", ...others(answer)),
+      cell(HEADS.error, element("span", { class: "number" }, words.number(error))),
+      cell(HEADS.time, element("span", { class: "number" }, words.seconds(points.time_s[point]))),
+      cell(HEADS.next, ...(next ? beside(next.point, next.ratio) : ["–"])),
+      cell(HEADS.others, ...others(answer)),
     );
-    rows.push(line);
+    rows.push({ line, pick, point });
     return line;
   }
 
   function table() {
-    const heads = [
-      "Accuracy",
-      "Take",
-      "At",
-      "Error",
-      "Time of a run",
-      "The next method takes",
-      "Best of other families takes",
-    ];
+    const heads = Object.values(HEADS);
     return element(
       "table",
       { class: "answers" },
@@ -96,8 +102,10 @@
 
   /** Shows which rows are of the chosen run. */
   function mark() {
-    for (const line of rows)
-      line.setAttribute("aria-selected", String(Number(line.dataset.point) === state.run));
+    for (const { line, pick, point } of rows) {
+      line.classList.toggle("chosen", point === state.run);
+      pick.setAttribute("aria-pressed", String(point === state.run));
+    }
   }
 
   /** Writes the head and the table. */
@@ -105,7 +113,7 @@
     const runs = points.method.length;
     const span = report.until === null ? "" : ` over ${words.exact(report.until)} s of motion`;
     byId("lead").append(
-      `${methods.length} methods, ${words.count(runs)} runs${span}: which reaches an accuracy in the least time?`,
+      `${words.things(methods.length, "method")}, ${words.things(runs, "run")}${span}: which reaches an accuracy in the least time?`,
     );
     byId("notes").append(...report.notes.map((note) => element("p", { class: "note" }, note)));
     const kind =

@@ -1,64 +1,9 @@
 // The chart of all runs: error against time or a count.
 "use strict";
 {
-  const { element, byId, report, words, state, choose, traces, plot, isDrawn } = qddotReport;
+  const { element, byId, report, state, traces, plot, chartView } = qddotReport;
   const { points, methods } = report;
   const drawing = byId("chart-drawing");
-  const NARROW = 560;
-
-  /** The axes of the present choice: where a run stands in them, and their ends. */
-  function currentView() {
-    const { column, ordinate } = state;
-    const quantity = report.quantities.find((one) => one.column === column);
-    const drawn = points.method
-      .map((_, point) => point)
-      .filter((point) => quantity && isDrawn(point, column, ordinate));
-    const positive = drawn.map((point) => points[column][point]).filter((error) => error > 0);
-    const least = positive.reduce((a, b) => Math.min(a, b), Infinity);
-    const floor = quantity?.floor ?? null;
-    const stand = floor ?? (positive.length ? least : 1e-16);
-    const x = (point) => Math.max(points[column][point], stand);
-    const y = (point) => points[ordinate][point];
-    const xs = drawn.map(x);
-    const ys = drawn.map(y);
-    const floorShown = floor !== null && (!xs.length || Math.min(...xs) < 1e3 * floor);
-    const [left, right] = xs.length
-      ? plot.widened(floorShown ? floor / 2 : Math.min(...xs), Math.max(...xs), 2.5)
-      : [1e-9, 1];
-    const [bottom, top] = ys.length ? plot.widened(Math.min(...ys), Math.max(...ys), 2) : [1e-3, 1];
-    return {
-      column,
-      ordinate,
-      quantity,
-      drawn,
-      floor: floorShown ? floor : null,
-      stand,
-      x,
-      y,
-      left,
-      right,
-      bottom,
-      top,
-    };
-  }
-
-  const ordinateTitle = (ordinate) =>
-    ordinate === "time_s" ? "time of one run, median" : words.plain(ordinate);
-
-  function axes(view, narrow) {
-    const inTime = view.ordinate === "time_s";
-    const across = plot.decades(view.left, view.right, plot.powerOfTen);
-    const up = plot.decades(view.bottom, view.top, inTime ? plot.seconds : plot.powerOfTen);
-    const title = narrow ? view.quantity.axis : `◀ more accurate          ${view.quantity.axis}`;
-    across.title = { text: plot.plainWords(title), standoff: 8, font: { size: 13 } };
-    const direction = inTime ? "faster" : "less work";
-    up.title = {
-      text: plot.plainWords(`◀ ${direction}          ${ordinateTitle(view.ordinate)}`),
-      standoff: 6,
-      font: { size: 13 },
-    };
-    return { xaxis: across, yaxis: up };
-  }
 
   function floorShapes(view) {
     if (view.floor === null) return { shapes: [], annotations: [] };
@@ -134,36 +79,37 @@
     }));
   }
 
-  /** Draws the chart for the present choice. */
+  function drawNone() {
+    Plotly.purge(drawing);
+    // That took the listeners with it.
+    listening = false;
+    byId("whole").hidden = true;
+    drawing.replaceChildren(
+      element("p", { class: "quiet empty" }, "No run gave a point of this chart."),
+    );
+    drawing.style.height = "auto";
+  }
+
+  /** Draws the chart for the present choice; a zoom stays while its axes do. */
   qddotReport.drawChart = () => {
-    const view = currentView();
-    const note = byId("quantity-about");
-    note.textContent = view.quantity?.subtitle ?? "";
-    if (!view.drawn.length) {
-      Plotly.purge(drawing);
-      drawing.replaceChildren(
-        element("p", { class: "quiet empty" }, "No run gave a point of this chart."),
-      );
-      drawing.style.height = "auto";
-      return;
-    }
+    const view = chartView.currentView();
+    byId("quantity-about").textContent = view.quantity?.subtitle ?? "";
+    if (!view.drawn.length) return drawNone();
     if (drawing.style.height) {
       drawing.style.height = "";
       drawing.replaceChildren();
     }
-    const narrow = drawing.clientWidth < NARROW;
-    const strong = methods
-      .map((_, method) => method)
-      .filter((method) => qddotReport.shown.has(method));
-    const rest = methods
-      .map((_, method) => method)
-      .filter((method) => !qddotReport.shown.has(method));
+    const narrow = drawing.clientWidth < plot.NARROW;
+    const all = methods.map((_, method) => method);
+    const strong = all.filter((method) => qddotReport.shown.has(method));
+    const rest = all.filter((method) => !qddotReport.shown.has(method));
     const front = qddotReport.front(view.quantity, view.ordinate, view.stand);
     const margin = { l: narrow ? 62 : 84, r: 12, t: 10, b: 52 };
     const floor = floorShapes(view);
     const layout = {
       ...plot.layout(),
-      ...axes(view, narrow),
+      ...chartView.axes(view, narrow),
+      uirevision: `${view.column} ${view.ordinate}`,
       margin,
       shapes: floor.shapes,
       annotations: [...floor.annotations, ...labels(view, strong, front, margin)],
@@ -174,8 +120,9 @@
       ...strong.map((method) => traces.methodTrace(method, view)),
       traces.ringTrace(state.run, view),
     ];
-    Plotly.react(drawing, data, layout, plot.config);
+    Plotly.react(drawing, data, layout, { ...plot.config, doubleClick: false });
     listen();
+    offerWhole();
   };
 
   let listening = false;
@@ -183,40 +130,21 @@
     if (listening) return;
     listening = true;
     qddotReport.listenToMarks(drawing);
-    drawing.on(
-      "plotly_relayout",
-      () => (byId("whole").hidden = drawing.layout.xaxis.autorange === true || !zoomed()),
-    );
+    drawing.on("plotly_relayout", offerWhole);
+    drawing.on("plotly_doubleclick", qddotReport.showWholeChart);
   }
 
-  function zoomed() {
-    const view = currentView();
-    const [from, to] = drawing.layout.xaxis.range;
-    return (
-      Math.abs(from - Math.log10(view.left)) > 1e-6 || Math.abs(to - Math.log10(view.right)) > 1e-6
-    );
+  function offerWhole() {
+    byId("whole").hidden = !chartView.isZoomed(drawing, chartView.currentView());
   }
 
-  /** Lets the marks of a drawing show their run on hover and choose it on a click. */
-  qddotReport.listenToMarks = (node) => {
-    const pointOf = (event) =>
-      event.points?.map((mark) => mark.customdata).find((point) => typeof point === "number");
-    node.on("plotly_hover", (event) => {
-      const point = pointOf(event);
-      if (point !== undefined)
-        qddotReport.showTooltip(point, event.event.clientX, event.event.clientY);
-    });
-    node.on("plotly_unhover", qddotReport.hideTooltip);
-    node.on("plotly_click", (event) => {
-      const point = pointOf(event);
-      if (point !== undefined) choose({ run: point });
-    });
-  };
+  /** Undoes the zoom. */
+  qddotReport.showWholeChart = () => chartView.showWhole(drawing, chartView.currentView());
 
   /** Moves the ring to the chosen run. */
   qddotReport.moveRing = () => {
     if (!drawing.data) return;
-    const ring = traces.ringTrace(state.run, currentView());
+    const ring = traces.ringTrace(state.run, chartView.currentView());
     Plotly.restyle(drawing, { x: [ring.x], y: [ring.y] }, [drawing.data.length - 1]);
   };
 }

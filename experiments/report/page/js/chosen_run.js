@@ -1,8 +1,8 @@
 // The head of the chosen run, the menus that choose one, and its figures.
 "use strict";
 {
-  const { element, byId, report, runsOf, words, swatch, state, choose } = qddotReport;
-  const { points, methods, families, motion } = report;
+  const { element, byId, report, runsOf, words, swatch, state, choose, visit, onChoice, keptMotion } = qddotReport;
+  const { points, methods, families } = report;
   const PHASES = [
     ["force", "forces"],
     ["stiffness", "stiffness matrices"],
@@ -11,8 +11,8 @@
   ];
   const TIMES = [
     ["time_s", "time of a run, median"],
-    ["time_min_s", "least"],
-    ["setup_s", "set-up before it"],
+    ["time_min_s", "fastest of them"],
+    ["setup_s", "set-up"],
   ];
   const methodMenu = element("select", {
     change: () => choose({ run: firstRun(Number(methodMenu.value)) }),
@@ -29,7 +29,7 @@
   function step(by) {
     const runs = runsOf[points.method[state.run]];
     const at = runs.indexOf(state.run) + by;
-    if (runs[at] !== undefined) choose({ run: runs[at] });
+    if (runs[at] !== undefined) visit({ run: runs[at] });
   }
 
   /** Builds the menus. */
@@ -59,15 +59,23 @@
       button("◀", "Coarser run", -1),
       button("▶", "Finer run", 1),
     );
+    onChoice((changed) => changed.includes("column") && showChoice());
   };
 
+  // The menu tells of the error that the chart stands over.
   function showChoice() {
+    if (state.run === null) return;
+    const quantity = report.quantities.find(({ column }) => column === state.column);
     const method = points.method[state.run];
     methodMenu.value = method;
     const text = (point) => {
+      const error = points[state.column]?.[point];
+      const known = typeof error === "number";
       const result = points.cause[point]
         ? "failed"
-        : `error ${words.number(points.error_position[point])}`;
+        : known
+          ? `${quantity.axis} ${words.number(error)}`
+          : "error not known";
       return `${words.knob(points.knob[point], points.value[point])} · ${result}`;
     };
     runMenu.replaceChildren(
@@ -106,8 +114,7 @@
         element(
           "p",
           { class: "bad" },
-          `No point of the chart: ${points.cause[point]}`,
-          reached(point),
+          `${ending(point)}: ${points.cause[point]}`,
         ),
       element(
         "ul",
@@ -116,19 +123,33 @@
         ...TIMES.filter(([column]) => typeof points[column]?.[point] === "number").map(
           ([column, label]) => fact(label, words.seconds(points[column][point])),
         ),
+        growth(point),
       ),
+      ...[...new Set(warnings(point))].map((text) => element("p", { class: "warning" }, text)),
       open && element("p", { class: "about" }, `Its position error lies ${open}.`),
       element("p", { class: "about" }, "This command repeats it:"),
       qddotReport.commandLine(points.command[point]),
     ].filter(Boolean);
   }
 
-  function reached(point) {
+  function ending(point) {
     const t = points.t_reached[point];
-    return points.outcome[point] === "reached_end" || t === null
-      ? ""
-      : `, at t = ${words.seconds(t)}`;
+    if (points.outcome[point] === "reached_end") return "No point of the chart";
+    const how = words.plain(points.outcome[point]);
+    return t === null ? how : `${how} at t = ${words.seconds(t)}`;
   }
+
+  // Where the energy stays, its growth says nothing.
+  function growth(point) {
+    const times = points.energy_growth?.[point];
+    if (typeof times !== "number" || Math.abs(times - 1) < 0.01) return null;
+    return fact("largest energy / energy at the start", words.number(times));
+  }
+
+  const warnings = (point) =>
+    report.answers
+      .filter((answer) => answer.point === point && answer.warning)
+      .map((answer) => answer.warning);
 
   function figureList(pairs) {
     return element(
@@ -141,7 +162,7 @@
   }
 
   function phases() {
-    const { seconds } = motion?.runs.find((run) => run.point === state.run) ?? {};
+    const { seconds } = keptMotion(state.run) ?? {};
     if (!seconds || !(seconds.all > 0)) return [];
     const share = (value) =>
       `${words.seconds(value)}, ${Math.round((100 * value) / seconds.all)} %`;
@@ -161,15 +182,13 @@
       words.plain(column),
       words.count(points[column][state.run]),
     ]);
-    const growth = points.energy_growth?.[state.run];
-    if (typeof growth === "number") pairs.push(["energy growth", words.number(growth)]);
     return [element("h3", {}, "Its counts"), figureList(pairs), ...phases()];
   }
 
   /** Shows the chosen run in words. */
   qddotReport.drawRun = () => {
-    if (state.run === null) return;
     showChoice();
+    if (state.run === null) return;
     byId("run-head").replaceChildren(...head());
     byId("run-figures").replaceChildren(...figures());
   };

@@ -1,7 +1,7 @@
 // Colours of distances from the reference, logarithmic: blue (1e-14), purple, orange (1).
 "use strict";
 {
-  const { element } = qddotReport;
+  const { element, words } = qddotReport;
   const DECADES = 14;
   const TICKS = [-14, -10, -6, -2, 0];
   // All about as light as each other, so that a face's shade stays to be seen, and none pale on
@@ -41,31 +41,44 @@
   /** The relative distance that a packed one stands for. */
   const distanceOf = (code) => (code === 0 ? 0 : 10 ** (((code - 1) / 254) * DECADES - DECADES));
 
-  /** A bar with its numbers, and a pointer at the largest distance, which `point(code)` moves. */
-  function legend() {
+  // Where the scale says nothing: below what is known of the reference.
+  function unknownPart(known) {
+    const share = (100 * (Math.log10(known) + DECADES)) / DECADES;
+    const part = element("i", { class: "scale-unknown" });
+    part.style.width = `${Math.min(Math.max(share, 0), 100)}%`;
+    return part;
+  }
+
+  /** A bar with its numbers, and a pointer at the largest distance, which `point(code)` moves;
+      `known`: the least distance that means something, or null. */
+  function legend(known) {
     const bar = element("div", { class: "scale-bar" });
     bar.style.background = `linear-gradient(to right, ${STOPS.join(", ")})`;
+    if (known > 0) bar.append(unknownPart(known));
     const ticks = element("div", { class: "scale-ticks" });
     for (const power of TICKS) {
-      const words = power === 0 ? "1" : power === -DECADES ? `≤ 1e${power}` : `1e${power}`;
-      const tick = element("span", {}, words);
+      const text = power === 0 ? "1" : power === -DECADES ? `≤ 1e${power}` : `1e${power}`;
+      const tick = element("span", {}, text);
       tick.style.left = `${(100 * (power + DECADES)) / DECADES}%`;
       ticks.append(tick);
     }
     const pointer = element("i");
-    const words = element("p", { "aria-live": "off" });
+    const sentence = element("p", { "aria-live": "off" });
     const node = element(
       "div",
       { class: "scale" },
-      words,
+      sentence,
       element("div", { class: "scale-now", "aria-hidden": "true" }, pointer),
       bar,
       ticks,
+      known > 0
+        ? element("p", {}, `Pale: below ${words.about(known)} the reference itself may be off.`)
+        : null,
     );
     function point(code) {
       pointer.style.left = `${(100 * Math.max(0, code - 1)) / 254}%`;
-      const far = code === 0 ? "at most 1e-14" : qddotReport.words.number(distanceOf(code));
-      words.textContent = `Distance of a node from the reference, relative to the largest displacement. Largest now: ${far}`;
+      const far = code === 0 ? "at most 1e-14" : words.about(distanceOf(code));
+      sentence.textContent = `Distance of a node from the reference, relative to the largest displacement. Largest now: ${far}`;
     }
     return { node, point };
   }

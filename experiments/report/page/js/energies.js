@@ -1,7 +1,7 @@
 // The energies of the chosen run over time, and how far its total drifts.
 "use strict";
 {
-  const { element, byId, report, state, plot, words } = qddotReport;
+  const { element, byId, report, state, plot, words, keptMotion } = qddotReport;
   const KINDS = [
     ["kinetic", "#0072B2"],
     ["potential", "#B35900"],
@@ -53,8 +53,9 @@
 
   /** Draws them, or nothing where the run's motion was not kept. */
   qddotReport.drawEnergies = () => {
+    for (const drawing of section.querySelectorAll(".js-plotly-plot")) Plotly.purge(drawing);
     section.replaceChildren();
-    const run = report.motion?.runs.find((one) => one.point === state.run && state.run !== null);
+    const run = keptMotion(state.run);
     if (!run?.energy) return;
     const reference = report.motion.runs.find((one) => one.role === "reference" && one.energy);
     const parts = element("div", {

@@ -4,7 +4,6 @@
   const { byId, report, words, state, plot } = qddotReport;
   const { points, methods } = report;
   const drawing = byId("failures-drawing");
-  const NARROW = 560;
   const PALE = 0.25;
   const GAP = 0.03;
   const EDGES = { t: 4, b: 46 };
@@ -122,7 +121,7 @@
     const knobs = [...new Set(rows.flatMap(({ runs }) => runs).map((point) => points.knob[point]))];
     drawing.style.height = `${height + EDGES.t + EDGES.b}px`;
     const data = knobs.map((knob, place) => trace(rows, knob, place));
-    const narrow = drawing.clientWidth < NARROW;
+    const narrow = drawing.clientWidth < plot.NARROW;
     Plotly.react(
       drawing,
       [...data, ringTrace(rows, knobs)],

@@ -1,7 +1,7 @@
 // The runs whose motion was kept: the most telling as buttons, all of many in a menu.
 "use strict";
 {
-  const { element, report, state, choose } = qddotReport;
+  const { element, report, state, choose, visit } = qddotReport;
   const MOST_BUTTONS = 6;
 
   function button(run) {
@@ -12,7 +12,7 @@
         type: "button",
         "aria-pressed": chosen,
         title: run.why,
-        click: () => choose({ run: run.point }),
+        click: () => visit({ run: run.point }),
       },
       run.label,
     );

@@ -6,6 +6,7 @@
   const strong = methods.map((_, method) => method).filter((method) => methods[method].strong);
   const boxes = [];
   const familyBoxes = [];
+  const noHit = element("p", { class: "quiet", role: "status", hidden: true }, "No method has it.");
 
   /** The methods that are drawn strongly. */
   qddotReport.shown = new Set(strong);
@@ -50,9 +51,10 @@
 
   function familyGroup(family, members) {
     const box = element("input", { type: "checkbox", change: () => toggle(members, box.checked) });
-    familyBoxes.push({ box, members });
     const head = element("label", {}, box, element("span", {}, families[family].title));
-    return element("fieldset", {}, element("legend", {}, head), ...members.map(methodLine));
+    const group = element("fieldset", {}, element("legend", {}, head), ...members.map(methodLine));
+    familyBoxes.push({ box, members, group });
+    return group;
   }
 
   function search(words) {
@@ -61,6 +63,9 @@
       const text = `${methods[method].name} ${methods[method].line ?? ""}`.toLowerCase();
       label.hidden = !text.includes(wanted);
     });
+    for (const { group, members } of familyBoxes)
+      group.hidden = members.every((method) => boxes[method].label.hidden);
+    noHit.hidden = familyBoxes.some(({ group }) => !group.hidden);
   }
 
   /** Builds the list. */
@@ -90,7 +95,7 @@
         button("All", () => methods.keys()),
         button("None", () => []),
       ),
-      element("div", { class: "legend-list" }, ...groups),
+      element("div", { class: "legend-list" }, noHit, ...groups),
       element(
         "div",
         { class: "legend-key" },

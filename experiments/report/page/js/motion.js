@@ -1,16 +1,15 @@
 // The motion of the chosen run beside the reference's.
 "use strict";
 {
-  const { element, byId, report, words, state } = qddotReport;
-  const { motion, points } = report;
+  const { element, byId, report, state, keptMotion } = qddotReport;
+  const { sentence, endsEarly, withoutMotion, viewOf, knownTo, explain } = qddotReport.motionWords;
+  const { motion } = report;
   const section = byId("motion");
   // The reference in grey: dark lines, lighter faces, on which shade is seen.
   const NEUTRAL = motion?.faces ? [0.24, 0.25, 0.27] : [0.07, 0.075, 0.085];
   // Of the length of a line of nodes: how far up its largest displacement is drawn.
   const LIFT = 0.2;
   const FEWEST_LIFTED = 8;
-  // Of a motion that a user makes of a run without one.
-  const FRAMES = 100;
   // A packed relative distance of 0.3.
   const FAR = 246;
   let stage = null;
@@ -20,41 +19,11 @@
   let turn = 0;
 
   const reference = motion?.runs.find((run) => run.role === "reference") ?? null;
-  const runOf = (point) => motion?.runs.find((run) => run.point === point) ?? null;
-  const sentence = (text) => element("p", { class: "quiet" }, text);
-
-  function withoutMotion() {
-    const command = points.command[state.run];
-    if (!command || !report.until) return sentence("No motion of this run was kept.");
-    return element(
-      "div",
-      {},
-      sentence("No motion of this run was kept. This command writes it for ParaView:"),
-      qddotReport.commandLine(
-        `${command} --motion motion.vtkhdf --every ${report.until / FRAMES}`,
-      ),
-    );
-  }
-
-  function stopWords(run) {
-    if (run.outcome === "reached_end") return null;
-    const why = run.point !== null ? points.cause[run.point] : null;
-    return `stopped at t = ${words.seconds(run.t_reached)}: ${why ?? words.plain(run.outcome)}`;
-  }
-
-  function viewOf(run) {
-    const words = element(
-      "div",
-      { class: "view-words" },
-      element("b", {}, run.label),
-      run.role === "reference" ? "the reference" : run.why,
-    );
-    const stop = stopWords(run);
-    if (stop) words.append(element("div", {}, element("span", { class: "view-stop" }, stop)));
-    if (run.left_box)
-      words.append(element("div", { class: "quiet" }, "parts of it leave what is kept"));
-    return element("div", { class: "view" }, words);
-  }
+  const lost = element(
+    "p",
+    { class: "bad", role: "status", hidden: true },
+    "The browser took away what the motion is drawn with; it is drawn again when it comes back.",
+  );
 
   // A line of nodes moves along itself: its displacements are drawn upwards, or nobody would see
   // them.
@@ -105,7 +74,7 @@
       if (largest !== null) scene.scale?.point(largest);
       body.update();
       view.style.background =
-        t > run.times.at(-1) && run.outcome !== "reached_end" ? "#fbe9e5" : "";
+        t > run.times.at(-1) && (run.outcome !== "reached_end" || endsEarly(run)) ? "#fbe9e5" : "";
     }
     stage.draw();
   }
@@ -147,32 +116,19 @@
     return { low, high };
   }
 
-  function explain(lift) {
-    const move =
-      motion.dimension < 3 ? "Drag to move" : "Drag to turn, with the right button to move";
-    const lines = [
-      ...motion.notes,
-      `${move}; pinch, or click and turn the wheel, to zoom. Dark squares are pinned nodes. Between kept frames nodes move straight.`,
-    ];
-    if (lift)
-      lines.push(
-        `Nodes move along the line; their displacement is drawn upwards as well, ${words.ratio(lift.factor)} as large.`,
-      );
-    return sentence(lines.join(" "));
-  }
-
   /** Draws the motion of the chosen run, or says why there is none. */
   qddotReport.drawMotion = async () => {
     const mine = ++turn;
     player?.pause();
-    const heading = element("h3", {}, "Its motion beside the reference");
+    const beside = reference ? "Its motion beside the reference" : "Its motion";
+    const heading = element("h3", {}, beside);
     const say = (...nodes) => section.replaceChildren(heading, ...nodes.filter(Boolean));
     scene = null;
     if (!motion || !motion.runs.length)
       return say(sentence("No motions were kept."), state.run === null ? null : withoutMotion());
     if (!qddotReport.canInflate())
       return say(sentence("This browser cannot unpack the motions: it lacks DecompressionStream."));
-    const chosen = state.run === null ? null : runOf(state.run);
+    const chosen = keptMotion(state.run);
     const runs = [...new Set([reference, chosen].filter(Boolean))];
     const missing = state.run !== null && !chosen ? withoutMotion() : null;
     if (!runs.length) return say(qddotReport.keptMotions(), missing);
@@ -181,7 +137,7 @@
     const holder = element("div", { class: views.length > 1 ? "views" : "views alone" }, ...views);
     const opening = stage === null;
     try {
-      stage ??= qddotReport.motionStage(motion.dimension);
+      stage ??= qddotReport.motionStage(motion.dimension, (gone) => (lost.hidden = !gone));
     } catch {
       return say(
         qddotReport.keptMotions(),
@@ -191,13 +147,27 @@
         ),
       );
     }
-    const { unpacked, bounds } = await build(runs);
+    let built = null;
+    try {
+      built = await build(runs);
+    } catch {
+      built = null;
+    }
     if (mine !== turn) return;
+    if (!built)
+      return say(
+        qddotReport.keptMotions(),
+        missing,
+        sentence("The motion cannot be unpacked: this file is damaged."),
+      );
+    const { unpacked, bounds } = built;
     const lift = lifted(bounds);
     const bodies = unpacked.map(() =>
       qddotReport.motionBody({ nodes: motion.nodes, pinned: motion.pinned, ...lists }),
     );
-    const scale = unpacked.some((run) => run.distances) ? qddotReport.distanceScale.legend() : null;
+    const scale = unpacked.some((run) => run.distances)
+      ? qddotReport.distanceScale.legend(knownTo(reference))
+      : null;
     const wide = liftBounds(bounds, lift);
     const middle = wide.low.map((low, axis) => (low + wide.high[axis]) / 2);
     scene = {
@@ -208,9 +178,19 @@
       parts: unpacked.map((run, at) => ({ run, body: bodies[at], view: views[at] })),
     };
     const until = Math.max(...unpacked.map((run) => run.times.at(-1)));
-    player = qddotReport.player(until, show);
-    player.node.append(...buttons());
-    say(qddotReport.keptMotions(), missing, holder, player.node, scale?.node, explain(lift));
+    // A single frame has no time to go through.
+    player = until > 0 ? qddotReport.player(until, show) : null;
+    const controls = player?.node ?? element("div", { class: "player" });
+    controls.append(...buttons());
+    say(
+      qddotReport.keptMotions(),
+      missing,
+      holder,
+      lost,
+      controls,
+      scale?.node,
+      ...explain(lift?.factor ?? null),
+    );
     stage.canvas.setAttribute(
       "aria-label",
       `Motion of ${runs.map((run) => run.label).join(" and ")}`,
@@ -218,7 +198,12 @@
     stage.show(holder, views, bodies);
     // The reader's own view stays from run to run.
     if (opening || !reference) stage.look(wide);
-    player.go(openingTime(unpacked.at(-1), until));
+    const begin = openingTime(unpacked.at(-1), until);
+    if (player) player.go(begin);
+    else show(begin);
     section.dataset.ready = state.run ?? "";
   };
+
+  /** Draws the present moment again, at once: paper does not wait for the next frame. */
+  qddotReport.redrawMotion = () => scene && stage.drawNow();
 }

@@ -22,11 +22,14 @@
     const perFrame = 3 * motion.nodes;
     const places = integrate(await qddotReport.bytes(run.positions), perFrame);
     const distances = run.distances ? await qddotReport.bytes(run.distances) : null;
+    const count = run.times.length * motion.nodes;
+    if (places.length !== 3 * count || (distances && distances.length !== count))
+      throw new RangeError(`The motion of ${run.label} has not ${count} places.`);
     return { ...run, perFrame, places, distances };
   }
 
   /** A run with its frames unpacked: `places` (frames x nodes x 3) and `distances` (frames x nodes)
-      or null. */
+      or null. Rejects where its blobs cannot be unpacked. */
   qddotReport.unpackedRun = async (run) => {
     if (!unpacked.has(run)) {
       // A few are kept, so that a reader who looks at many needs no more memory for it.
@@ -34,9 +37,19 @@
         const old = [...unpacked.keys()].find((one) => one.role !== "reference");
         unpacked.delete(old);
       }
-      unpacked.set(run, unpack(run));
+      const attempt = unpack(run);
+      unpacked.set(run, attempt);
+      // What failed is tried again when it is asked for again.
+      attempt.catch(() => unpacked.delete(run));
     }
     return unpacked.get(run);
+  };
+
+  /** The kept motion of a point, or null: where the point stands for the reference too, the one
+      that was compared with it. */
+  qddotReport.keptMotion = (point) => {
+    const kept = point === null ? [] : (motion?.runs ?? []).filter((run) => run.point === point);
+    return kept.find((run) => run.role === "run") ?? kept[0] ?? null;
   };
 
   /** The pairs or triples of nodes in a blob of 32-bit integers. */

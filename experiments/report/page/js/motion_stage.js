@@ -34,8 +34,9 @@
   }
 
   /** A stage, made once for the page; throws where there is no WebGL. show(holder, places, bodies)
-      puts its canvas behind the elements `places` of the holder and draws a body into each. */
-  qddotReport.motionStage = (dimension) => {
+      puts its canvas behind the elements `places` of the holder and draws a body into each;
+      `lost(gone)` hears when the browser takes WebGL away and gives it back. */
+  qddotReport.motionStage = (dimension, lost) => {
     const canvas = document.createElement("canvas");
     canvas.setAttribute("role", "img");
     // Where a pixel of the page is several of the screen, edges are smooth enough without more
@@ -157,8 +158,16 @@
       draw();
     }
 
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      lost(true);
+    });
+    canvas.addEventListener("webglcontextrestored", () => {
+      lost(false);
+      draw();
+    });
     controls.addEventListener("change", draw);
     const resized = new ResizeObserver(draw);
-    return { canvas, show, look, draw, zoom };
+    return { canvas, show, look, draw, drawNow, zoom };
   };
 }

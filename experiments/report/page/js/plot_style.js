@@ -18,6 +18,8 @@
   // Triangles look smaller than squares of the same size, and matplotlib's are larger too.
   const SIZES = { o: 7, s: 6.5, "^": 8.5, v: 8.5, D: 7, P: 8, X: 7.5 };
   const MOST_TICKS = 12;
+  // In px: drawings that are narrower spare words.
+  const NARROW = 560;
   const FONT = {
     family: "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif",
     size: 13,
@@ -43,7 +45,7 @@
     return {
       color,
       width,
-      dash: dash.length ? dash.map((part) => `${(part * width).toFixed(1)}px`).join(",") : "solid",
+      dash: dash.length ? dash.map((part) => `${part.toFixed(1)}px`).join(",") : "solid",
     };
   }
 
@@ -103,6 +105,7 @@
     INK,
     FAINT,
     GRID,
+    NARROW,
     SYMBOLS,
     plainWords,
     markerOf,

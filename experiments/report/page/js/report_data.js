@@ -31,11 +31,10 @@
     return error > MOST_ERROR ? `error above ${MOST_ERROR}` : "no such number";
   }
 
-  /** How a method is drawn: its family's line, or the one of a stock way of another method. */
+  /** How a method is drawn: its colour and mark, and its family's line; dashes in px. */
   function lookOf(method) {
-    const { color, marker, family, stock_of: stockOf } = methods[method];
+    const { color, marker, family } = methods[method];
     const { dash, filled, width } = report.families[family];
-    if (stockOf) return { color, marker, dash: [1, 1.4], filled: false, width: 1.1 };
     return { color, marker, dash, filled, width };
   }
 

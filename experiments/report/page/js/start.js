@@ -27,13 +27,11 @@
     qddotReport.drawChart();
     qddotReport.drawFailures();
     byId("cloud").addEventListener("change", qddotReport.drawChart);
-    byId("whole").addEventListener("click", () => {
-      byId("whole").hidden = true;
-      qddotReport.drawChart();
-    });
+    byId("whole").addEventListener("click", qddotReport.showWholeChart);
     qddotReport.drawRunChoice();
     drawRun();
     qddotReport.drawBackground();
+    qddotReport.fitCharts();
     addEventListener("scroll", qddotReport.hideTooltip, { passive: true });
     document.documentElement.dataset.drawn = "yes";
   }

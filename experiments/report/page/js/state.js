@@ -1,13 +1,18 @@
 // What the reader chose: the run, the kind of error and the ordinate. It stands in the address
-// after "#", so that a link leads to a run; what is no such choice there is passed over.
+// after "#", so that a link leads to a run and the way back to the run before; what is no such
+// choice there is passed over.
 "use strict";
 {
-  const { report, runsOf } = qddotReport;
+  const { report, runsOf, isDrawn } = qddotReport;
   const { points, methods } = report;
   const listeners = [];
   const ordinates = [
     "time_s",
-    ...report.counts.filter((column) => points[column]?.some((value) => value > 0)),
+    ...report.counts.filter((ordinate) =>
+      report.quantities.some(({ column }) =>
+        points.method.some((_, point) => isDrawn(point, column, ordinate)),
+      ),
+    ),
   ];
   const state = {
     run: openingRun(),
@@ -21,7 +26,8 @@
     return report.judged_by === "energy" ? "error_energy_max" : "error_position";
   }
 
-  // The first answer in the middle of the table; else the first run with a motion, else any.
+  // The first answer whose motion was kept; else the first run with a motion, the first answer, any
+  // run.
   function openingRun() {
     const answers = report.answers.filter((answer) => answer.point !== null);
     const kept = (report.motion?.runs ?? []).filter(
@@ -62,24 +68,40 @@
     return `#${words}`;
   }
 
-  /** Changes some of the choices and tells all who listen what changed. */
-  function choose(changes) {
+  // A browser may refuse a page on disk to change its address; the choice stands all the same.
+  function write(method) {
+    try {
+      history[method](null, "", address());
+    } catch {
+      return;
+    }
+  }
+
+  function change(changes, method) {
     const changed = Object.keys(changes).filter((key) => state[key] !== changes[key]);
     if (!changed.length) return;
     Object.assign(state, changes);
-    try {
-      history.replaceState(null, "", address());
-    } catch {
-      // A browser may refuse that to a page on disk; the choice stands all the same.
-    }
+    write(method);
     for (const listener of listeners) listener(changed);
   }
 
-  addEventListener("hashchange", () => choose(addressed(location.hash)));
+  /** Changes some of the choices and tells all who listen what changed. */
+  const choose = (changes) => change(changes, "replaceState");
+
+  /** The same as a step that the browser's way back undoes. */
+  const visit = (changes) => change(changes, "pushState");
+
   Object.assign(state, addressed(location.hash));
+  const opening = { ...state };
+  addEventListener("popstate", () => {
+    choose(location.hash ? addressed(location.hash) : opening);
+    // A link within the page, such as "#answers", leaves the choice in the address.
+    if (location.hash && !location.hash.includes("=")) write("replaceState");
+  });
   Object.assign(qddotReport, {
     state,
     choose,
+    visit,
     ordinates,
     onChoice: (listener) => listeners.push(listener),
   });

@@ -19,7 +19,7 @@
       d: "M1 7h26",
       stroke: color,
       "stroke-width": width,
-      "stroke-dasharray": dash.length ? dash.map((part) => part * width).join(" ") : null,
+      "stroke-dasharray": dash.length ? dash.join(" ") : null,
     };
     const mark = {
       d: SHAPES[marker] ?? SHAPES.o,

@@ -1,7 +1,7 @@
 // The words beside the pointer: a run's name, errors, cost and counts.
 "use strict";
 {
-  const { element, byId, report, words, named, state } = qddotReport;
+  const { element, byId, report, words, named, state, visit } = qddotReport;
   const { points, methods } = report;
   const MOST_COUNTS = 5;
 
@@ -51,5 +51,21 @@
 
   qddotReport.hideTooltip = () => {
     byId("tooltip").hidden = true;
+  };
+
+  /** Lets the marks of one of Plotly's drawings show their run on hover and choose it on a click. */
+  qddotReport.listenToMarks = (drawing) => {
+    const pointOf = (event) =>
+      event.points?.map((mark) => mark.customdata).find((point) => typeof point === "number");
+    drawing.on("plotly_hover", (event) => {
+      const point = pointOf(event);
+      if (point !== undefined)
+        qddotReport.showTooltip(point, event.event.clientX, event.event.clientY);
+    });
+    drawing.on("plotly_unhover", qddotReport.hideTooltip);
+    drawing.on("plotly_click", (event) => {
+      const point = pointOf(event);
+      if (point !== undefined) visit({ run: point });
+    });
   };
 }

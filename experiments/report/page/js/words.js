@@ -13,6 +13,13 @@
     return value.toExponential(1).replace(".0e", "e").replace("e+", "e");
   }
 
+  /** A number that is known to about one digit: "about 6e-3". */
+  function about(value) {
+    if (!known(value) || value === 0) return number(value);
+    const rough = Number(value.toPrecision(1));
+    return `about ${number(rough)}`;
+  }
+
   /** A number to as many digits as its file holds, for knobs: 0.0005, 6.17e-5. */
   function exact(value) {
     if (!known(value)) return "–";
@@ -45,6 +52,9 @@
       : number(value);
   }
 
+  /** A count of things in words: "1 run", "12 runs". */
+  const things = (value, name) => `${count(value)} ${value === 1 ? name : `${name}s`}`;
+
   /** How many times as much: "1.04 ×", "120 ×". */
   function ratio(value) {
     return known(value) ? `${value < 10 ? value.toPrecision(3) : count(Math.round(value))} ×` : "–";
@@ -62,5 +72,5 @@
   /** What a knob is called at an axis: "step size h". */
   const knobTitle = (name) => KNOBS[name] ?? plain(name);
 
-  qddotReport.words = { number, exact, seconds, count, ratio, knob, knobTitle, plain };
+  qddotReport.words = { number, about, exact, seconds, count, things, ratio, knob, knobTitle, plain };
 }
