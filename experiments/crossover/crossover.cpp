@@ -190,7 +190,7 @@ class Sweeps {
                  std::map<const Method*, std::vector<Point>>& points) {
     std::vector<const Method*> fitting = methods_;
     std::erase_if(fitting, [&](const Method* m) { return !applies_to(*m, one.scene->system()); });
-    // Of ratios whose references are still to be made nobody knows how long they take.
+    // Nobody knows how long ratios take whose references are still to be made.
     std::optional<SweepBound> bound;
     if (one.is_last) bound.emplace(*one.scene, until, effort_);
     SweepProgress shown(fitting, std::move(bound), fmt::format("ratio {:g}: ", one.ratio));

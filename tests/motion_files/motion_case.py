@@ -155,7 +155,7 @@ def mixed_cells(numbers):
 
 
 def xdmf_frames(path):
-    """Of each frame its time and {name: (array, dimensions as said)}, read through HDF5."""
+    """The time of each frame and {name: (array, dimensions as said)}, read through HDF5."""
     frames = []
     root = ElementTree.parse(path).getroot()
     assert root.tag == "Xdmf" and root.get("Version") == "3.0"

@@ -7,7 +7,7 @@
   const section = byId("motion");
   // The reference in grey: dark lines, lighter faces, on which shade is seen.
   const NEUTRAL = motion?.faces ? [0.24, 0.25, 0.27] : [0.07, 0.075, 0.085];
-  // Of the length of a line of nodes: how far up its largest displacement is drawn.
+  // How far up the largest displacement of a line of nodes is drawn, as a part of its length.
   const LIFT = 0.2;
   const FEWEST_LIFTED = 8;
   // A packed relative distance of 0.3.

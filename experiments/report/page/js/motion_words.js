@@ -4,7 +4,7 @@
 {
   const { element, report, words, state } = qddotReport;
   const { motion, points } = report;
-  // Of a motion that a user makes of a run without one.
+  // How many frames a user is told to make of a run without a motion.
   const FRAMES = 100;
   const ROUNDING = 1e-6;
 
