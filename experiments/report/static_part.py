@@ -25,7 +25,7 @@ def visible(text):
 def how_long(ratio):
     """How many times as long a run takes, in words."""
     times = f"{ratio:.3g}"
-    return "as long" if times == "1" else f"{times} × as long"
+    return "just as long" if times == "1" else f"{times} × as long"
 
 
 def cells(answer, runs):

@@ -6,6 +6,7 @@ import math
 import os
 import shutil
 import unittest
+from pathlib import Path
 from unittest import mock
 
 import h5py
@@ -158,13 +159,15 @@ class Missing(Folder):
         rows = self.rows("motions.csv")[1:]
         rows.sort(key=lambda row: row["outcome"] != "diverged")
         self.rewrite("motions.csv", rows)
-        with h5py.File(self.folder / rows[0]["file"]) as file:
+        with h5py.File(self.folder / rows[0]["file"], "r+") as file:
             self.assertGreater(np.abs(file["VTKHDF/Points"]).max(), 100)
+            # The second frame of the nine nodes is not far beyond what is believed.
+            file["VTKHDF/Points"][9:18, 2] = 12
         motion = self.page().data["motion"]
         self.assertEqual(motion["runs"][0]["outcome"], "diverged")
         self.assertTrue(motion["runs"][0]["left_box"])
-        # Ten times the sheet's side, which is 1 m, to each side.
-        self.assertTrue(1 <= motion["size"] <= 20, motion["size"])
+        # The sheet's side is 1 m, and its nodes move by less than that before they diverge.
+        self.assertTrue(1 <= motion["size"] <= 3, motion["size"])
 
     def test_a_single_node_without_a_reference_moves_as_far_as_it_does(self):
         made_folder.make_folder(self.folder, side=1, frames=4, runs=1, dimension=1)
@@ -342,6 +345,8 @@ class Broken(Folder):
             # Another packer writes all of its page between this one's writing and renaming.
             if others:
                 report.write_whole(path, others.pop())
+            # Elsewhere may be another disk, from which nothing is renamed in one go.
+            self.assertTrue(Path(source).is_relative_to(self.folder))
             replace(source, target)
 
         with mock.patch("os.replace", replace_late):

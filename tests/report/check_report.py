@@ -72,7 +72,14 @@ class Contents(Folder):
         self.assertTrue(methods["symmetric4"]["strong"])
 
     def test_colours_are_those_of_the_picture_of_the_folder(self):
-        methods = self.make(has_motions=False).data["methods"]
+        made_folder.make_folder(self.folder, has_motions=False)
+        rows = self.rows()
+        # So many slow methods before the others that some stay pale and take the last colours.
+        slow = [row for row in rows if row["method"] == "explicit_euler"]
+        slow = [row | {"method": f"slow{number}"} for number in range(9) for row in slow]
+        self.rewrite("points.csv", slow + rows)
+        methods = self.page().data["methods"]
+        self.assertEqual({method["strong"] for method in methods}, {True, False})
         view = quantities.view(
             self.folder,
             quantities.POSITION,
@@ -330,7 +337,11 @@ class WithoutScripts(Folder):
         self.assertNotIn("limit of stability", self.page().text)
 
     def test_as_long_is_not_once_as_long(self):
-        for ratio, words in ((1.0, "as long"), (1.004, "as long"), (1.04, "1.04 × as long")):
+        for ratio, words in (
+            (1.0, "just as long"),
+            (1.004, "just as long"),
+            (1.04, "1.04 × as long"),
+        ):
             self.assertEqual(static_part.how_long(ratio), words)
 
     def test_the_chart_is_no_wider_than_the_page(self):
