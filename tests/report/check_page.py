@@ -6,12 +6,12 @@ import unittest
 from selenium.webdriver.common.keys import Keys
 
 from browser import Browser
+from check_page_motion import Moving  # They run with the tests of this file.
 from packed_folder import Folder
 from page_in_browser import CHOSEN, Page
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'&lt;"
 RING = "return JSON.stringify(document.getElementById('chart-drawing').data.at(-1).x)"
-READY = "return document.getElementById('motion').dataset.ready === String(qddotReport.state.run)"
 
 
 class Choosing(Page):
@@ -34,6 +34,59 @@ class Choosing(Page):
         self.assertIn(f"run={name}", self.browser.driver.current_url)
         self.assertNotEqual(self.browser.run(RING), "[]")
 
+    def test_marks_answer_again_after_a_choice_that_had_none(self):
+        self.load(self.made)
+        self.browser.run("qddotReport.choose({ ordinate: 'none' })")
+        self.assertIn("No run gave a point", self.browser.text("#chart"))
+        self.browser.run("qddotReport.choose({ ordinate: 'time_s' })")
+        point = self.point("points.outcome[i] === 'reached_end' && points.error_position[i] < 1e-3")
+        self.move_to("chart-drawing", point).click().perform()
+        self.browser.wait("return qddotReport.state.run === arguments[0]", point)
+        # No run of the made folder has factorizations.
+        offered = "return [...document.getElementById('ordinate').options].map(one => one.value)"
+        self.assertNotIn("factorizations", self.browser.run(offered))
+        self.assertIn("force_evaluations", self.browser.run(offered))
+
+    def test_a_zoom_stays_until_it_is_undone(self):
+        self.load(self.made)
+        ranges = (
+            "const { xaxis, yaxis } = document.getElementById('chart-drawing').layout;"
+            "return [...xaxis.range, ...yaxis.range]"
+        )
+        whole = self.browser.run(ranges)
+        # Upwards alone: one axis is enough.
+        self.drag("#chart-drawing .nsewdrag", 0, 120)
+        self.browser.wait("return !document.getElementById('whole').hidden")
+        zoomed = self.browser.run(ranges)
+        self.assertNotEqual(zoomed[2:], whole[2:])
+        self.browser.find("#cloud").click()
+        self.assertEqual(self.browser.run(ranges), zoomed)
+        self.browser.driver.set_window_size(700, 900)
+        self.addCleanup(self.browser.driver.set_window_size, 1400, 1000)
+        narrow = "return document.getElementById('failures-drawing').layout.margin.l"
+        fits = (
+            "const drawing = document.getElementById('chart-drawing');"
+            "return drawing._fullLayout.width === drawing.clientWidth"
+        )
+        before = self.browser.run(narrow)
+        self.browser.driver.set_window_size(520, 900)
+        self.browser.wait(f"{narrow} !== arguments[0]", before)
+        self.assertTrue(self.browser.run(fits))
+        self.assertEqual(self.browser.run(ranges), zoomed)
+        self.browser.find("#whole").click()
+        self.assertEqual(self.browser.run(ranges), whole)
+        self.assertFalse(self.browser.find("#whole").is_displayed())
+
+    def test_charts_on_paper_are_as_wide_as_the_sheet(self):
+        self.load(self.made)
+        width = "return document.querySelector('#chart-drawing .main-svg').clientWidth"
+        wide = self.browser.run(width)
+        self.browser.run("dispatchEvent(new Event('beforeprint'))")
+        # A4 has 210 mm, less 14 mm on either side, at 96 px an inch.
+        self.assertLessEqual(self.browser.run(width), (210 - 28) * 96 / 25.4)
+        self.browser.run("dispatchEvent(new Event('afterprint'))")
+        self.assertEqual(self.browser.run(width), wide)
+
     def test_a_failed_run_tells_its_cause_and_can_be_chosen(self):
         self.load(self.made)
         point = self.point("points.outcome[i] === 'diverged'")
@@ -46,10 +99,22 @@ class Choosing(Page):
 
     def test_a_row_of_the_answers_is_chosen_by_enter(self):
         self.load(self.made)
-        row = self.browser.find(".answers tbody tr[tabindex]:last-child")
-        row.send_keys(Keys.ENTER)
-        self.assertEqual(self.browser.run(CHOSEN), int(row.get_attribute("data-point")))
-        self.assertEqual(row.get_attribute("aria-selected"), "true")
+        opening = self.browser.run(CHOSEN)
+        row = self.browser.find(".answers tbody tr[data-point]:last-child")
+        button = row.find_element("tag name", "button")
+        button.send_keys(Keys.ENTER)
+        point = int(row.get_attribute("data-point"))
+        self.assertNotEqual(point, opening)
+        self.assertEqual(self.browser.run(CHOSEN), point)
+        self.assertEqual(button.get_attribute("aria-pressed"), "true")
+        self.browser.driver.back()
+        self.browser.wait("return qddotReport.state.run === arguments[0]", opening)
+        self.browser.driver.forward()
+        self.browser.wait("return qddotReport.state.run === arguments[0]", point)
+        # The link to the answers leaves the run in the address.
+        self.browser.find(".skip").send_keys(Keys.ENTER)
+        self.browser.wait("return location.hash.includes('run=')")
+        self.assertEqual(self.browser.run(CHOSEN), point)
 
     def test_every_answer_stands_in_the_table(self):
         self.load(self.made)
@@ -67,6 +132,10 @@ class Choosing(Page):
             "const { report, state } = qddotReport;"
             "return report.methods[report.points.method[state.run]].name === 'verlet'"
         )
+        runs = "#run-choice label:nth-child(2)"
+        self.assertIn("relative position error", self.browser.text(runs))
+        self.browser.run("qddotReport.choose({ column: 'error_energy_max' })")
+        self.assertNotIn("position", self.browser.text(runs))
         before = self.browser.run(CHOSEN)
         self.browser.find("#run-choice button[aria-label='Finer run']").click()
         self.assertNotEqual(self.browser.run(CHOSEN), before)
@@ -87,6 +156,8 @@ class Choosing(Page):
         self.assertEqual([one.text for one in shown], ["verlet"])
         shown[0].click()
         self.assertEqual(self.browser.run(strong), ["verlet"])
+        self.browser.find("#legend input[type=search]").send_keys("?")
+        self.assertIn("No method has it.", self.browser.text("#legend"))
         self.browser.find(".legend-buttons button:nth-child(2)").click()
         self.assertEqual(
             len(self.browser.run(strong)),
@@ -134,102 +205,6 @@ class Choosing(Page):
                 rubbish,
             )
             self.assertEqual(self.browser.run(CHOSEN), opening, rubbish)
-
-
-class Moving(Page):
-    """The motion of a run beside the reference's."""
-
-    def kept(self, condition="true"):
-        """The run of a kept motion for which a condition of `run` holds."""
-        return self.browser.run(
-            "return qddotReport.report.motion.runs.find("
-            f"run => run.role === 'run' && {condition}).point"
-        )
-
-    def test_slider_and_play_move_it(self):
-        self.load(self.made)
-        self.choose(self.kept("run.outcome === 'reached_end'"))
-        self.browser.wait(READY)
-        slider = self.browser.find(".player input[type=range]")
-        slider.send_keys(Keys.HOME)
-        self.assertEqual(self.browser.text(".player output"), "t = 0 s")
-        slider.send_keys(Keys.ARROW_RIGHT)
-        self.assertNotEqual(self.browser.text(".player output"), "t = 0 s")
-        before = int(self.browser.run("return document.querySelector('.views').dataset.draws"))
-        # The fastest, so that the pass is short.
-        self.browser.run(
-            "const menu = document.querySelector('.player select'); menu.selectedIndex = 0;"
-            "menu.dispatchEvent(new Event('change'))"
-        )
-        play = self.browser.find(".player .play")
-        play.click()
-        self.browser.wait(
-            "return Number(document.querySelector('.views').dataset.draws) > arguments[0]",
-            before,
-        )
-        self.browser.wait(
-            "return document.querySelector('.play').getAttribute('aria-pressed') === 'false'"
-        )
-        self.assertEqual(slider.get_attribute("value"), "1000")
-
-    def test_two_views_stand_beside_each_other_and_show_something(self):
-        self.load(self.made)
-        self.choose(self.kept("run.outcome === 'reached_end'"))
-        self.browser.wait(READY)
-        self.assertEqual(len(self.browser.driver.find_elements("css selector", ".view")), 2)
-        # The canvas is read in the frame in which it is drawn: later it is empty.
-        inks = self.browser.driver.execute_async_script("""
-            const done = arguments[0];
-            document.querySelector(".player input").dispatchEvent(new Event("input"));
-            requestAnimationFrame(() => {
-              const canvas = document.querySelector(".views canvas");
-              const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
-              copy.drawImage(canvas, 0, 0);
-              const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
-              const inks = [0, 0];
-              for (let i = 0; i < data.length; i += 4) {
-                const left = (i / 4) % canvas.width < canvas.width / 2;
-                const light = data[i] + data[i + 1] + data[i + 2];
-                if (data[i + 3] > 0 && light < 600) inks[left ? 0 : 1]++;
-              }
-              done(inks);
-            });
-        """)
-        for ink in inks:
-            self.assertGreater(ink, 1000)
-
-    def test_a_run_that_failed_plays_up_to_there_and_says_so(self):
-        self.load(self.made)
-        self.choose(self.kept("run.outcome !== 'reached_end'"))
-        self.browser.wait(READY)
-        self.assertIn("stopped at t = ", self.browser.text(".views"))
-
-    def test_a_run_without_a_motion_gets_the_command_that_makes_one(self):
-        self.load(self.made)
-        point = self.point("!qddotReport.report.motion.runs.some(run => run.point === i)")
-        self.choose(point)
-        self.browser.wait(
-            "return document.getElementById('motion').innerText.includes('--motion motion.vtkhdf --every ')"
-        )
-
-    def test_without_motions_the_page_says_so(self):
-        page = self.packed("motionless", has_motions=False)
-        self.load(page)
-        self.assertIn("No motions were kept.", self.browser.text("#motion"))
-
-    def shown_flat(self, dimension):
-        """What the page says of the motion of a scene of this dimension."""
-        self.load(self.packed(f"flat{dimension}", dimension=dimension, side=9))
-        self.choose(self.kept("run.outcome === 'reached_end'"))
-        self.browser.wait(READY)
-        self.browser.wait("return Number(document.querySelector('.views').dataset.draws) > 0")
-        return self.browser.text("#motion")
-
-    def test_a_line_is_drawn_with_its_displacements_upwards(self):
-        self.assertIn("drawn upwards", self.shown_flat(1))
-
-    def test_a_plane_is_drawn_as_it_is(self):
-        self.assertNotIn("drawn upwards", self.shown_flat(2))
 
 
 class Odd(Page):
@@ -281,12 +256,14 @@ class Odd(Page):
         )
 
     def test_a_telephone_needs_no_scrolling_sideways(self):
-        other = Browser(400, 800)
-        self.addCleanup(other.close)
-        other.screen(400, 800)
-        other.load(self.made)
-        other.wait("return document.querySelector('.views canvas') !== null")
-        width, window = other.run("return [document.documentElement.scrollWidth, innerWidth]")
+        self.browser.screen(400, 800)
+        self.addCleanup(
+            self.browser.driver.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {}
+        )
+        self.load(self.made)
+        self.browser.wait("return document.querySelector('.views canvas') !== null")
+        size = "return [document.documentElement.scrollWidth, innerWidth]"
+        width, window = self.browser.run(size)
         self.assertEqual(window, 400)
         self.assertLessEqual(width, window)
 

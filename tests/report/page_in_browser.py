@@ -86,6 +86,14 @@ class Page(unittest.TestCase):
         )
         return actions
 
+    def drag(self, selector, across, up):
+        """Drags from a place in an element, right of and below its middle."""
+        actions = ActionChains(self.browser.driver)
+        node = self.browser.find(selector)
+        self.browser.run("arguments[0].scrollIntoView({ block: 'center' })", node)
+        actions.move_to_element_with_offset(node, 50, 50).click_and_hold()
+        actions.move_by_offset(across, -up).release().perform()
+
     def choose(self, point):
         """Chooses a run and waits for what belongs to it."""
         self.browser.run("qddotReport.choose({run: arguments[0]})", point)

@@ -108,6 +108,7 @@
     const floor = floorShapes(view);
     const layout = {
       ...plot.layout(),
+      ...plot.sizeOf(drawing),
       ...chartView.axes(view, narrow),
       uirevision: `${view.column} ${view.ordinate}`,
       margin,

@@ -10,8 +10,16 @@
   const FAINT_LINE = { color: "#b5b5b0", width: 4 };
   const section = byId("energies");
 
-  const layout = (title, yaxis) => ({
+  const drawing = (label) =>
+    element("div", { class: "drawing", role: "img", "aria-label": label });
+  // Both are drawn into again for each run, so that nothing of Plotly's is left behind.
+  const parts = drawing("Kinetic, potential and total energy over time");
+  const errors = drawing("Relative error of the total energy over time");
+
+  const layout = (node, title, yaxis) => ({
     ...plot.layout(),
+    ...plot.sizeOf(node),
+    uirevision: state.run,
     margin: { l: 66, r: 14, t: 8, b: 42 },
     xaxis: {
       title: { text: "t in s", standoff: 4, font: { size: 12 } },
@@ -53,21 +61,10 @@
 
   /** Draws them, or nothing where the run's motion was not kept. */
   qddotReport.drawEnergies = () => {
-    for (const drawing of section.querySelectorAll(".js-plotly-plot")) Plotly.purge(drawing);
     section.replaceChildren();
     const run = keptMotion(state.run);
     if (!run?.energy) return;
     const reference = report.motion.runs.find((one) => one.role === "reference" && one.energy);
-    const parts = element("div", {
-      class: "drawing",
-      role: "img",
-      "aria-label": "Kinetic, potential and total energy over time",
-    });
-    const errors = element("div", {
-      class: "drawing",
-      role: "img",
-      "aria-label": "Relative error of the total energy over time",
-    });
     section.append(
       element("h3", {}, "Its energies"),
       key(),
@@ -89,7 +86,7 @@
         line: FAINT_LINE,
         hoverinfo: "skip",
       });
-    Plotly.newPlot(parts, lines, layout("energy in J", {}), plot.config);
+    Plotly.react(parts, lines, layout(parts, "energy in J", {}), plot.config);
     const scale = largest((reference ?? run).energy.kinetic) || 1;
     const relative = (energy) => ({ x: energy.t, y: drift(energy, scale), mode: "lines" });
     const drifts = [
@@ -110,10 +107,10 @@
         )
       : [1e-16, 1];
     const title = "|E − E(0)| / largest kinetic";
-    Plotly.newPlot(
+    Plotly.react(
       errors,
       drifts,
-      layout(title, plot.decades(...range, plot.powerOfTen)),
+      layout(errors, title, plot.decades(...range, plot.powerOfTen)),
       plot.config,
     );
     section.append(

@@ -96,6 +96,7 @@
     ]);
     return {
       ...plot.layout(),
+      ...plot.sizeOf(drawing),
       ...Object.fromEntries(axes),
       margin: { l: narrow ? 104 : 132, r: 12, ...EDGES },
       yaxis: {

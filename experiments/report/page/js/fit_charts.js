@@ -7,11 +7,7 @@
   function drawCharts() {
     qddotReport.drawChart();
     qddotReport.drawFailures();
-  }
-
-  function resizeEnergies() {
-    for (const drawing of byId("energies").querySelectorAll(".js-plotly-plot"))
-      Plotly.Plots.resize(drawing);
+    qddotReport.drawEnergies();
   }
 
   /** From now on charts follow the width that they have. */
@@ -33,7 +29,6 @@
     const printing = (on) => {
       document.documentElement.classList.toggle("printing", on);
       drawCharts();
-      resizeEnergies();
       qddotReport.redrawMotion();
       drawn = size();
     };

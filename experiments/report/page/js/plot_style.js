@@ -86,7 +86,6 @@
   // No motion of the page by its own: Plotly's drawings stand still and ask nobody for anything.
   const config = {
     displayModeBar: false,
-    responsive: true,
     showTips: false,
     doubleClick: "reset",
     showLink: false,
@@ -99,6 +98,12 @@
     hovermode: "closest",
     hoverdistance: 16,
     dragmode: matchMedia("(pointer: coarse)").matches ? false : "zoom",
+  });
+
+  /** The room of a drawing that is drawn anew when that changes; Plotly itself keeps the first. */
+  const sizeOf = ({ clientWidth, clientHeight }) => ({
+    width: clientWidth,
+    height: clientHeight,
   });
 
   qddotReport.plot = {
@@ -115,6 +120,7 @@
     widened,
     config,
     layout,
+    sizeOf,
     seconds: words.seconds,
   };
 }
