@@ -266,6 +266,12 @@ class Odd(Page):
         width, window = self.browser.run(size)
         self.assertEqual(window, 400)
         self.assertLessEqual(width, window)
+        self.browser.find(".answers .pick").click()
+        self.browser.find(".answers .chosen .see-run").click()
+        # Scrolling is smooth: it takes a while.
+        self.browser.wait(
+            "return Math.abs(document.getElementById('run').getBoundingClientRect().top) < 100"
+        )
 
     def test_without_webgl_a_sentence_stands_in_its_place(self):
         other = Browser(flags=("--disable-gpu", "--disable-3d-apis"))

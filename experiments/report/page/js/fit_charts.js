@@ -29,7 +29,7 @@
     const printing = (on) => {
       document.documentElement.classList.toggle("printing", on);
       drawCharts();
-      qddotReport.redrawMotion();
+      qddotReport.printMotion(on);
       drawn = size();
     };
     addEventListener("beforeprint", () => printing(true));

@@ -204,6 +204,6 @@
     section.dataset.ready = state.run ?? "";
   };
 
-  /** Draws the present moment again, at once: paper does not wait for the next frame. */
-  qddotReport.redrawMotion = () => scene && stage.drawNow();
+  /** Makes the motion ready for paper, or for the screen again. */
+  qddotReport.printMotion = (onPaper) => scene && stage.still(onPaper);
 }

@@ -151,6 +151,20 @@
       draw();
     }
 
+    /** Draws at once and lays a still picture over the views, for paper, which would show the last
+        frame of the screen; or takes the picture away. */
+    function still(wanted) {
+      holder.querySelector(".still")?.remove();
+      drawNow();
+      if (!wanted) return;
+      const picture = document.createElement("canvas");
+      picture.className = "still";
+      picture.style.cssText = canvas.style.cssText;
+      [picture.width, picture.height] = [canvas.width, canvas.height];
+      picture.getContext("2d").drawImage(canvas, 0, 0);
+      holder.append(picture);
+    }
+
     function zoom(factor) {
       if (flat) eye.zoom *= factor;
       else eye.position.sub(controls.target).divideScalar(factor).add(controls.target);
@@ -168,6 +182,6 @@
     });
     controls.addEventListener("change", draw);
     const resized = new ResizeObserver(draw);
-    return { canvas, show, look, draw, drawNow, zoom };
+    return { canvas, show, look, draw, still, zoom };
   };
 }
