@@ -244,6 +244,7 @@ class Odd(Page):
         page = self.packed("hostile", spoil)
         self.load(page)
         self.assertEqual(self.browser.text("h1"), HOSTILE)
+        self.assertEqual(self.browser.driver.title, f"{HOSTILE} – qddot report")
         method = self.browser.run(
             "return qddotReport.report.methods.findIndex(one => one.name === arguments[0])", HOSTILE
         )

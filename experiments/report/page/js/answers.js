@@ -110,6 +110,8 @@
 
   /** Writes the head and the table. */
   qddotReport.drawAnswers = () => {
+    // Among the tabs of a browser the scene's name alone would not tell what it is.
+    document.title = `${report.title} – qddot report`;
     const runs = points.method.length;
     const span = report.until === null ? "" : ` over ${words.exact(report.until)} s of motion`;
     byId("lead").append(
