@@ -32,10 +32,6 @@
     return answer.others.map((other) => element("div", {}, ...beside(other.point, other.ratio)));
   }
 
-  // In the row, what is wrong; what to do about it stands beside the run.
-  const shortWarning = (text) =>
-    text.replace(/The step is ([^;]* limit of stability)[^;]*;[^.]*\./, "$1.");
-
   // The address keeps the choice, so the link is not followed.
   function seeRun(event) {
     event.preventDefault();
@@ -70,7 +66,7 @@
         HEADS.take,
         element("span", { class: "take" }, pick),
         methods[method].line && element("span", { class: "line" }, methods[method].line),
-        warning && element("span", { class: "warning", title: warning }, shortWarning(warning)),
+        warning && element("span", { class: "warning" }, warning),
         element("a", { class: "see-run", href: "#run", click: seeRun }, "see its run ↓"),
       ),
       cell(
@@ -128,6 +124,8 @@
     byId("answers-table").append(
       report.answers.length ? table() : element("p", { class: "quiet" }, "No run gave an answer."),
     );
+    if (report.answers_note)
+      byId("answers-table").append(element("p", { class: "about" }, report.answers_note));
     byId("answers").hidden = false;
     mark();
     qddotReport.onChoice(mark);
