@@ -1,7 +1,19 @@
 // The head of the chosen run, the menus that choose one, and its figures.
 "use strict";
 {
-  const { element, byId, report, runsOf, words, swatch, state, choose, visit, onChoice, keptMotion } = qddotReport;
+  const {
+    element,
+    byId,
+    report,
+    runsOf,
+    words,
+    swatch,
+    state,
+    choose,
+    visit,
+    onChoice,
+    keptMotion,
+  } = qddotReport;
   const { points, methods, families } = report;
   const PHASES = [
     ["force", "forces"],
@@ -111,11 +123,7 @@
       ),
       method.line && element("p", { class: "quiet" }, method.line),
       points.cause[point] &&
-        element(
-          "p",
-          { class: "bad" },
-          `${ending(point)}: ${points.cause[point]}`,
-        ),
+        element("p", { class: "bad" }, `${ending(point)}: ${points.cause[point]}`),
       element(
         "ul",
         { class: "run-facts" },

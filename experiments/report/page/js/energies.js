@@ -10,8 +10,7 @@
   const FAINT_LINE = { color: "#b5b5b0", width: 4 };
   const section = byId("energies");
 
-  const drawing = (label) =>
-    element("div", { class: "drawing", role: "img", "aria-label": label });
+  const drawing = (label) => element("div", { class: "drawing", role: "img", "aria-label": label });
   // Both are drawn into again for each run, so that nothing of Plotly's is left behind.
   const parts = drawing("Kinetic, potential and total energy over time");
   const errors = drawing("Relative error of the total energy over time");

@@ -147,12 +147,7 @@
         ),
       );
     }
-    let built = null;
-    try {
-      built = await build(runs);
-    } catch {
-      built = null;
-    }
+    const built = await build(runs).catch(() => null);
     if (mine !== turn) return;
     if (!built)
       return say(

@@ -72,5 +72,16 @@
   /** What a knob is called at an axis: "step size h". */
   const knobTitle = (name) => KNOBS[name] ?? plain(name);
 
-  qddotReport.words = { number, about, exact, seconds, count, things, ratio, knob, knobTitle, plain };
+  qddotReport.words = {
+    number,
+    about,
+    exact,
+    seconds,
+    count,
+    things,
+    ratio,
+    knob,
+    knobTitle,
+    plain,
+  };
 }
