@@ -140,6 +140,10 @@ void KeptMotions::add(const ChosenRun& run, const Options& options, const Refere
   const Options own = options_for(method, run.point->value, scene_, options);
   const std::size_t every = spacing(*run.point, times_.size());
   auto states = states_at(thinned(times_, every), scene_, method, own, seconds);
+  // A step that fails as a whole is seen on its way, as shorter steps may not fail.
+  if (run.point->outcome != Outcome::reached_end) {
+    std::erase_if(states, [&](const State& state) { return state.t > run.point->t_reached; });
+  }
   const auto [summary, whole] = timed_run(scene_, times_.back(), method, own, seconds);
   const auto [file, frames] =
       write(fmt::format("{}_{:.12g}", method.name, run.point->value), states, every, false);

@@ -16,9 +16,10 @@ namespace {
 // A chart of a pendulum with runs that diverge, made once, and its motions.
 struct Kept {
   Folder folder{};
-  Exit measured = run("work_precision", {"--scene", "pendulum", "--until", "1", "--methods",
-                                         "explicit_euler,verlet,kahan_li8,ida", "--point-limit",
-                                         "0.3", "--repeats", "1", "--out", folder.path()});
+  Exit measured =
+      run("work_precision", {"--scene", "pendulum", "--until", "1", "--methods",
+                             "explicit_euler,verlet,kahan_li8,discrete_gradient,ida",
+                             "--point-limit", "0.3", "--repeats", "1", "--out", folder.path()});
   Table points = read_csv(folder / "points.csv");
   nlohmann::json reference = nlohmann::json::parse(read_all(folder / "reference.json"));
   Exit result = keep({"--frames", "40", "--runs", "1000"});
