@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <optional>
 
 #include <fmt/format.h>
 
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/method_options.hpp"
 #include "experiments/command/written_table.hpp"
+#include "qddot/integrators/find_outcome.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -38,13 +38,6 @@ const std::vector<std::string> columns = {"method",
 constexpr std::array of_a_run = {"--no-reduce",  "--max-order",       "--stability-detection",
                                  "--iterations", "--solve-tolerance", "--spectral-radius",
                                  "--solver"};
-
-std::optional<Outcome> find_outcome(const std::string& word) {
-  for (int i = 0; i <= static_cast<int>(Outcome::no_discrete_gradient); ++i) {
-    if (name(static_cast<Outcome>(i)) == word) return static_cast<Outcome>(i);
-  }
-  return {};
-}
 
 Point point_of(const WrittenTable& table, std::size_t row, const std::string& path) {
   const auto number = [&](const char* column) { return table.number(row, column); };

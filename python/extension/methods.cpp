@@ -1,6 +1,7 @@
 #include <array>
 
 #include "python/extension/bindings.hpp"
+#include "qddot/integrators/find_outcome.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 
 namespace qddot::python {
@@ -70,9 +71,7 @@ Options options_of(const py::dict& given) {
 void add_methods(py::module_& module) {
   module.def("methods", &records);
   module.def("advice", [](const std::string& outcome) {
-    for (int i = 0; i <= static_cast<int>(Outcome::no_discrete_gradient); ++i) {
-      if (name(static_cast<Outcome>(i)) == outcome) return advice(static_cast<Outcome>(i));
-    }
+    if (const auto found = find_outcome(outcome)) return advice(*found);
     throw std::invalid_argument(outcome + " is no outcome");
   });
 }

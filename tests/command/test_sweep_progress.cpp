@@ -28,7 +28,8 @@ class DrawnStudy {
   double now = 0;  // [s]
 
   void begin(const Method& method, double w) {
-    // What is known of each method: a limit near the theory's, an order that is nearly its own, its iterations.
+    // What is known of each method: a limit near the theory's, an order that is nearly its own, its
+    // iterations.
     const double theory = std::clamp(linear_limit(method), 0.5, 10.0);
     stable_steps_ =
         method.is(Trait::implicit) && draw() < 0.5 ? 0 : between(0.7, 2) * until * w / theory;

@@ -4,15 +4,12 @@
 Call: check_pc2.py --bin FOLDER.
 """
 
-import argparse
 import json
-import os
 import struct
-import tempfile
 
 import numpy as np
 
-from motion_case import FLOAT, SCENES, Place, assert_close, run_words, table
+from motion_case import FLOAT, SCENES, assert_close, run_words, table, tried_place
 
 HEADER = struct.Struct("<12siiffi")
 
@@ -79,11 +76,7 @@ def check_accuracy(place):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--bin", required=True, help="the folder of the programs")
-    simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
-    with tempfile.TemporaryDirectory(prefix="motion.") as folder:
-        place = Place(simulate, folder)
+    with tried_place(__doc__) as place:
         assert set(SCENES) == {"massless", "cloth", "plane", "line", "meshed"}
         check_scene(place, "cloth", 32, 102)
         check_scene(place, "plane", 0, 3)

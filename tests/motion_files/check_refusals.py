@@ -4,14 +4,12 @@
 Call: check_refusals.py --bin FOLDER.
 """
 
-import argparse
 import os
 import resource
 import signal
 import subprocess
-import tempfile
 
-from motion_case import Place, run_words
+from motion_case import run_words, tried_place
 
 HUGE = """
 dimension = 1
@@ -108,11 +106,7 @@ def limit(most):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--bin", required=True, help="the folder of the programs")
-    simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
-    with tempfile.TemporaryDirectory(prefix="motion.") as folder:
-        place = Place(simulate, folder)
+    with tried_place(__doc__) as place:
         check_refusals(place)
         check_replacing(place)
         check_full_disk(place)

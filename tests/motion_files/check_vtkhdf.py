@@ -4,10 +4,8 @@
 Call: check_vtkhdf.py --bin FOLDER.
 """
 
-import argparse
 import json
 import os
-import tempfile
 import tomllib
 
 import h5py
@@ -17,11 +15,11 @@ from motion_case import (
     FLOAT,
     SCENES,
     SHORT,
-    Place,
     assert_close,
     mixed_cells,
     run_words,
     table,
+    tried_place,
     xdmf_frames,
 )
 
@@ -211,11 +209,7 @@ def check_failed_run(place):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--bin", required=True, help="the folder of the programs")
-    simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
-    with tempfile.TemporaryDirectory(prefix="motion.") as folder:
-        place = Place(simulate, folder)
+    with tried_place(__doc__) as place:
         assert set(SCENES) == {"massless", "cloth", "plane", "line", "meshed"}
         check_scene(place, "cloth", cloth_faces(5), [])
         check_scene(place, "plane", [], [3])
@@ -225,7 +219,7 @@ def main():
         check_fields(place)
         check_many_frames(place)
         check_failed_run(place)
-        assert not [name for name in os.listdir(folder) if name.endswith(".part")]
+        assert not [name for name in os.listdir(place.folder) if name.endswith(".part")]
 
 
 if __name__ == "__main__":

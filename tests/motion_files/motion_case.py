@@ -1,8 +1,11 @@
 """Runs simulate for a motion and its table, and reads both back."""
 
+import argparse
+import contextlib
 import csv
 import os
 import subprocess
+import tempfile
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 
@@ -178,3 +181,13 @@ def xdmf_frames(path):
             assert int(item.get("Precision")) == found[name].dtype.itemsize
         frames.append((float(grid.find("Time").get("Value")), found))
     return frames
+
+
+@contextlib.contextmanager
+def tried_place(description):
+    """A place with the program of the folder that the command line names, gone at the end."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--bin", required=True, help="the folder of the programs")
+    simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
+    with tempfile.TemporaryDirectory(prefix="motion.") as folder:
+        yield Place(simulate, folder)
