@@ -1,43 +1,74 @@
 #include "experiments/motion_files/frame.hpp"
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
 #include "experiments/motion_files/cells.hpp"
+#include "experiments/motion_files/on_all_cores.hpp"
 
 namespace qddot::motion_files {
 namespace {
 
-// Whether the exponent is not the one of infinities and of what is no number.
-bool is_finite(float value) {
-  constexpr std::uint32_t exponent = 0x7f800000;
-  return (std::bit_cast<std::uint32_t>(value) & exponent) != exponent;
+// In bit 31: whether the exponent is the one of infinities and of what is no number.
+inline std::uint32_t overflow(float value) {
+  constexpr std::uint32_t exponent = 0x7f800000, last_of_exponent = 0x00800000;
+  return (std::bit_cast<std::uint32_t>(value) & exponent) + last_of_exponent;
 }
 
-// These make a number a float; `is_fine` is false from then on where it is none. No branches, so
-// that loops over them are done in vectors.
-float whole(double value, bool& is_fine) {
+// These make a number a float and put into `overflows` whether there is none.
+inline float whole(double value, std::uint32_t& overflows) {
   const auto result = static_cast<float>(value);
-  is_fine &= is_finite(result);
+  overflows |= overflow(result);
   return result;
 }
 
-float short_form(double value, bool& is_fine) {
-  const float result = rounded(whole(value, is_fine));
-  is_fine &= is_finite(result);
+// The nearest with kept_bits; halves go to the even one.
+inline float short_form(double value, std::uint32_t& overflows) {
+  constexpr int dropped = 23 - kept_bits;  // of the 23 that a float has behind the first
+  constexpr std::uint32_t mask = (std::uint32_t(1) << dropped) - 1;
+  auto bits = std::bit_cast<std::uint32_t>(whole(value, overflows));
+  bits += (mask >> 1) + (bits >> dropped & 1);
+  const auto result = std::bit_cast<float>(bits & ~mask);
+  overflows |= overflow(result);
   return result;
+}
+
+// Makes `width` numbers of each of the items from `first` to `end` floats. `fetch`(i, numbers)
+// looks for those of item i; `form`(k, number, overflows) makes number k of all a float, without
+// branches: a block of them is in the first cache and is done in vectors. Returns the overflows.
+template <std::size_t width, class Fetch, class Form>
+std::uint32_t fill(float* floats, std::size_t first, std::size_t end, const Fetch& fetch,
+                   const Form& form) {
+  constexpr std::size_t block = 128;
+  std::array<double, width * block> numbers;
+  std::uint32_t overflows = 0;
+  for (; first < end; first += block) {
+    const std::size_t count = std::min(block, end - first);
+    for (std::size_t i = 0; i < count; ++i) fetch(first + i, &numbers[width * i]);
+    float* const to = floats + width * first;
+    for (std::size_t k = 0; k < width * count; ++k)
+      to[k] = form(width * first + k, numbers[k], overflows);
+  }
+  return overflows;
+}
+
+// Likewise of all items, on all cores; whether all are floats.
+template <std::size_t width, class Fetch, class Form>
+bool fill(float* floats, std::size_t items, const Fetch& fetch, const Form& form) {
+  constexpr std::size_t slab =
+      1 << 15;  // items: enough to make a thread's start little beside them
+  std::atomic<std::uint32_t> overflows = 0;
+  on_all_cores((items + slab - 1) / slab, [&](std::size_t k) {
+    overflows |= fill<width>(floats, k * slab, std::min(items, (k + 1) * slab), fetch, form);
+  });
+  return overflows >> 31 == 0;
 }
 
 }  // namespace
-
-float rounded(float value) {
-  constexpr int dropped = 23 - kept_bits;  // of the 23 that a float has behind the first
-  constexpr std::uint32_t mask = (std::uint32_t(1) << dropped) - 1;
-  auto bits = std::bit_cast<std::uint32_t>(value);
-  bits += (mask >> 1) + (bits >> dropped & 1);
-  return std::bit_cast<float>(bits & ~mask);
-}
 
 Framing::Framing(const Scene& start, const ReducedScene& scene, const Fields& wanted)
     : scene_(scene),
@@ -45,63 +76,75 @@ Framing::Framing(const Scene& start, const ReducedScene& scene, const Fields& wa
       lengths_(strain_lengths(start, scene.expand(scene.initial()))) {
   for (const Node& node : start.nodes) masses_.push_back(node.pinned ? 0 : node.mass);
   const Cells cells = cells_of(start);
-  springs_ = cells.lines;
+  for (const auto& [a, b] : cells.lines)
+    springs_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
   first_line_ = cells.points.size();
   cells_ = cells.count();
 }
 
 const Frame* Framing::of(const State& state, const State* reference) {
-  bool is_fine = std::isfinite(state.t);
   frame_.time = state.t;
-  const std::vector<Node> nodes = scene_.expand(state);
-  take_positions(nodes, is_fine);
-  if (wanted_.velocity) take_velocities(nodes, is_fine);
-  if (wanted_.kinetic_energy) take_energies(nodes, is_fine);
-  if (wanted_.strain) take_strains(nodes, is_fine);
-  if (reference) take_distances(nodes, scene_.expand(*reference), is_fine);
+  scene_.expand(state, nodes_);
+  bool is_fine = std::isfinite(state.t);
+  is_fine &= take_positions();
+  if (wanted_.velocity) is_fine &= take_velocities();
+  if (wanted_.kinetic_energy) is_fine &= take_energies();
+  if (wanted_.strain) is_fine &= take_strains();
+  if (reference) is_fine &= take_distances(*reference);
   return is_fine ? &frame_ : nullptr;
 }
 
-void Framing::take_positions(const std::vector<Node>& nodes, bool& is_fine) {
-  frame_.positions.resize(3 * nodes.size());
-  float* to = frame_.positions.data();
-  for (const Node& node : nodes) {
-    for (const double x : node.position) *to++ = whole(x, is_fine);
-  }
+bool Framing::take_positions() {
+  frame_.positions.resize(3 * nodes_.size());
+  return fill<3>(
+      frame_.positions.data(), nodes_.size(),
+      [&](std::size_t i, double* x) { Eigen::Map<Eigen::Vector3d>{x} = nodes_[i].position; },
+      [](std::size_t, double x, auto& overflows) { return whole(x, overflows); });
 }
 
-void Framing::take_velocities(const std::vector<Node>& nodes, bool& is_fine) {
-  frame_.velocities.resize(3 * nodes.size());
-  float* to = frame_.velocities.data();
-  for (const Node& node : nodes) {
-    for (const double v : node.velocity) *to++ = short_form(v, is_fine);
-  }
+bool Framing::take_velocities() {
+  frame_.velocities.resize(3 * nodes_.size());
+  return fill<3>(
+      frame_.velocities.data(), nodes_.size(),
+      [&](std::size_t i, double* v) { Eigen::Map<Eigen::Vector3d>{v} = nodes_[i].velocity; },
+      [](std::size_t, double v, auto& overflows) { return short_form(v, overflows); });
 }
 
-void Framing::take_energies(const std::vector<Node>& nodes, bool& is_fine) {
-  frame_.kinetic_energies.resize(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double energy = 0.5 * masses_[i] * nodes[i].velocity.squaredNorm();
-    frame_.kinetic_energies[i] = short_form(energy, is_fine);
-  }
+bool Framing::take_energies() {
+  frame_.kinetic_energies.resize(nodes_.size());
+  return fill<1>(
+      frame_.kinetic_energies.data(), nodes_.size(),
+      [&](std::size_t i, double* square) { *square = nodes_[i].velocity.squaredNorm(); },
+      [&](std::size_t i, double square, auto& overflows) {
+        return short_form(0.5 * masses_[i] * square, overflows);
+      });
 }
 
-void Framing::take_strains(const std::vector<Node>& nodes, bool& is_fine) {
+bool Framing::take_strains() {
   frame_.strains.resize(cells_, 0);
-  float* to = frame_.strains.data() + first_line_;
-  for (std::size_t i = 0; i < springs_.size(); ++i) {
-    const auto& from = nodes[springs_[i][0]].position;
-    const double length = (nodes[springs_[i][1]].position - from).norm();
-    const double strain = lengths_[i] > 0 ? (length - lengths_[i]) / lengths_[i] : 0;
-    *to++ = short_form(strain, is_fine);
-  }
+  return fill<1>(
+      frame_.strains.data() + first_line_, springs_.size(),
+      [&](std::size_t i, double* square) {
+        const auto& [a, b] = springs_[i];
+        *square = (nodes_[b].position - nodes_[a].position).squaredNorm();
+      },
+      [&](std::size_t i, double square, auto& overflows) {
+        const double length = lengths_[i], strain = (std::sqrt(square) - length) / length;
+        return short_form(length > 0 ? strain : 0, overflows);
+      });
 }
 
-void Framing::take_distances(const std::vector<Node>& nodes, const std::vector<Node>& exact,
-                             bool& is_fine) {
-  frame_.distances.resize(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    frame_.distances[i] = short_form((nodes[i].position - exact[i].position).norm(), is_fine);
+bool Framing::take_distances(const State& reference) {
+  scene_.expand(reference, exact_nodes_);
+  frame_.distances.resize(nodes_.size());
+  return fill<1>(
+      frame_.distances.data(), nodes_.size(),
+      [&](std::size_t i, double* square) {
+        *square = (nodes_[i].position - exact_nodes_[i].position).squaredNorm();
+      },
+      [](std::size_t, double square, auto& overflows) {
+        return short_form(std::sqrt(square), overflows);
+      });
 }
 
 }  // namespace qddot::motion_files

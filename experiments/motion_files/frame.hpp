@@ -11,9 +11,6 @@ namespace qddot::motion_files {
 // colour scale of 256 shades. The zeros behind them are what makes files small.
 constexpr int kept_bits = 7;
 
-// The nearest of the numbers with so many bits, of a finite one; halves go to the even one.
-float rounded(float value);
-
 // The numbers of one frame, as a file holds them: node after node, x, y and z of each.
 struct Frame {
   double time = 0;               // [s]
@@ -34,19 +31,23 @@ class Framing {
   // The frame of that state, with distances where there is a reference; it is overwritten by the
   // next. None where a number is not finite or beyond 32-bit floats.
   const Frame* of(const State& state, const State* reference);
+  const Fields& wanted() const { return wanted_; }
+  // All nodes of the last frame.
+  const std::vector<Node>& nodes() const { return nodes_; }
 
  private:
-  void take_positions(const std::vector<Node>& nodes, bool& is_fine);
-  void take_velocities(const std::vector<Node>& nodes, bool& is_fine);
-  void take_energies(const std::vector<Node>& nodes, bool& is_fine);
-  void take_strains(const std::vector<Node>& nodes, bool& is_fine);
-  void take_distances(const std::vector<Node>& nodes, const std::vector<Node>& exact,
-                      bool& is_fine);
+  // Each fills a field of the frame; whether all its numbers are 32-bit floats.
+  bool take_positions();
+  bool take_velocities();
+  bool take_energies();
+  bool take_strains();
+  bool take_distances(const State& reference);
 
   const ReducedScene& scene_;
   Fields wanted_;
   std::vector<double> masses_;  // [kg], zero where pinned
-  std::vector<std::array<std::size_t, 2>> springs_;
+  std::vector<std::array<std::uint32_t, 2>> springs_;
+  std::vector<Node> nodes_, exact_nodes_;
   std::vector<double> lengths_;
   std::size_t first_line_, cells_;
   Frame frame_;

@@ -1,6 +1,10 @@
 #include "experiments/motion_files/hdf5.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
+
+#include "experiments/motion_files/deflate.hpp"
 
 namespace qddot::motion_files::hdf5 {
 namespace {
@@ -23,20 +27,41 @@ std::string reason() {
   return found.substr(first, found.find('\'', first) - first);
 }
 
+// Rows of a chunk; smaller sets are left as they are.
+constexpr std::size_t chunk_rows = 1 << 14;
+
 template <class Value>
-void write_all(const Handle& parent, const std::string& name, hid_t type, const Value* values,
-               const std::vector<hsize_t>& size) {
+void write_chunks(const Handle& set, const std::vector<Value>& values, std::size_t columns) {
+  const std::size_t in_chunk = chunk_rows * columns;
+  for (std::size_t first = 0; first < values.size(); first += in_chunk) {
+    const std::span some =
+        std::span(values).subspan(first, std::min(in_chunk, values.size() - first));
+    Bytes bytes(sizeof(Value) * in_chunk);
+    shuffle<Value>(some, bytes.data(), in_chunk);
+    const Bytes packed = deflated(bytes);
+    const hsize_t place[] = {first / columns, 0};
+    checked(H5Dwrite_chunk(set.id(), H5P_DEFAULT, 0, place, packed.size(), packed.data()));
+  }
+}
+
+template <class Value>
+void write_all(const Handle& parent, const std::string& name, hid_t type,
+               const std::vector<Value>& values, std::size_t columns) {
+  std::vector<hsize_t> size = {values.size() / columns};
+  if (columns > 1) size.push_back(columns);
   const Handle space = new_space(size), properties = new_properties(H5P_DATASET_CREATE);
-  constexpr hsize_t chunk = 1 << 14;  // rows: smaller sets are left as they are
-  if (size[0] > chunk) {
-    std::vector<hsize_t> chunks = size;
-    chunks[0] = chunk;
-    checked(H5Pset_chunk(properties.id(), static_cast<int>(chunks.size()), chunks.data()));
-    checked(H5Pset_shuffle(properties.id()));
-    checked(H5Pset_deflate(properties.id(), 1));
+  const bool is_packed = size[0] > chunk_rows;
+  if (is_packed) {
+    std::vector<hsize_t> chunk = size;
+    chunk[0] = chunk_rows;
+    checked(H5Pset_chunk(properties.id(), static_cast<int>(chunk.size()), chunk.data()));
+    pass_filters(properties);
   }
   const Handle set = new_dataset(parent, name, type, space, properties);
-  if (size[0] > 0) checked(H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  if (is_packed)
+    write_chunks(set, values, columns);
+  else if (!values.empty())
+    checked(H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
 }
 
 void put_attribute(const Handle& object, const std::string& name, hid_t type, const Handle& space,
@@ -83,15 +108,18 @@ Handle new_dataset(const Handle& parent, const std::string& name, hid_t type, co
           H5Dclose};
 }
 
+void pass_filters(const Handle& properties) {
+  checked(H5Pset_shuffle(properties.id()));
+  checked(H5Pset_deflate(properties.id(), 1));
+}
+
 void write(const Handle& parent, const std::string& name, const std::vector<std::int64_t>& values,
            std::size_t columns) {
-  std::vector<hsize_t> size = {values.size() / columns};
-  if (columns > 1) size.push_back(columns);
-  write_all(parent, name, H5T_STD_I64LE, values.data(), size);
+  write_all(parent, name, H5T_STD_I64LE, values, columns);
 }
 
 void write(const Handle& parent, const std::string& name, const std::vector<double>& values) {
-  write_all(parent, name, H5T_IEEE_F64LE, values.data(), {values.size()});
+  write_all(parent, name, H5T_IEEE_F64LE, values, 1);
 }
 
 void write_attribute(const Handle& object, const std::string& name,

@@ -60,6 +60,9 @@ Handle new_space(const std::vector<hsize_t>& size, bool may_grow = false);
 Handle new_dataset(const Handle& parent, const std::string& name, hid_t type, const Handle& space,
                    const Handle& properties);
 
+// Has the chunks of a dataset with these properties shuffled, then deflated (see deflate.hpp).
+void pass_filters(const Handle& properties);
+
 // Writes a dataset of whole numbers or of times, all at once.
 void write(const Handle& parent, const std::string& name, const std::vector<std::int64_t>& values,
            std::size_t columns = 1);

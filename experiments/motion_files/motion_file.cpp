@@ -52,11 +52,12 @@ std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& st
                                         const ReducedScene& scene, bool has_reference,
                                         const Fields& fields) {
   files_of_motion(path, "motion");
-  if (!Framing(start, scene, is_pc2(path) ? no_fields : fields).of(scene.initial(), nullptr))
+  Framing framing(start, scene, is_pc2(path) ? no_fields : fields);
+  if (!framing.of(scene.initial(), nullptr))
     throw InvalidInput(fmt::format(
         "{}: the scene starts with numbers beyond 32-bit floats, which end at 3.4e38", path));
-  if (is_pc2(path)) return open_pc2(path, start, scene);
-  return open_vtkhdf(path, start, scene, has_reference, fields);
+  if (is_pc2(path)) return open_pc2(path, start, std::move(framing));
+  return open_vtkhdf(path, start, std::move(framing), has_reference);
 }
 
 }  // namespace qddot::motion_files

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -54,14 +55,14 @@ std::string obj_text(const Scene& start, const std::vector<Node>& nodes) {
 
 class Pc2File final : public MotionFile {
  public:
-  Pc2File(const std::vector<std::string>& files, const Scene& start, const ReducedScene& scene)
-      : framing_(start, scene, no_fields),
+  Pc2File(const std::vector<std::string>& files, const Scene& start, Framing framing)
+      : framing_(std::move(framing)),
         points_(start.nodes.size()),
         file_(files[0], {}, files[2]),
         obj_(files[1]),
         sidecar_(files[2]) {
     file_.write(header(points_, 0));
-    obj_.write(obj_text(start, scene.expand(scene.initial())));
+    obj_.write(obj_text(start, framing_.nodes()));
   }
 
   bool add(const State& state, const State*) override {
@@ -96,12 +97,11 @@ class Pc2File final : public MotionFile {
 
 }  // namespace
 
-std::unique_ptr<MotionFile> open_pc2(const std::string& path, const Scene& start,
-                                     const ReducedScene& scene) {
+std::unique_ptr<MotionFile> open_pc2(const std::string& path, const Scene& start, Framing framing) {
   if (start.nodes.size() > most_points)
     throw InvalidInput(fmt::format("{}: the scene has {} nodes; a .pc2 has {} points at most", path,
                                    start.nodes.size(), most_points));
-  return std::make_unique<Pc2File>(files_of_motion(path, "motion"), start, scene);
+  return std::make_unique<Pc2File>(files_of_motion(path, "motion"), start, std::move(framing));
 }
 
 }  // namespace qddot::motion_files

@@ -2,13 +2,12 @@
 
 #include <memory>
 
-#include "experiments/motion_files/motion_file.hpp"
+#include "experiments/motion_files/frame.hpp"
 
 namespace qddot::motion_files {
 
 // A motion as a point cache of version 1, positions alone, and an .obj beside it of the nodes at
-// the start, with the faces and all springs (see open_motion).
-std::unique_ptr<MotionFile> open_pc2(const std::string& path, const Scene& start,
-                                     const ReducedScene& scene);
+// the start, with the faces and all springs (see open_motion). `framing` has framed the start.
+std::unique_ptr<MotionFile> open_pc2(const std::string& path, const Scene& start, Framing framing);
 
 }  // namespace qddot::motion_files

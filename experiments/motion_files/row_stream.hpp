@@ -1,20 +1,22 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "experiments/motion_files/deflate.hpp"
 #include "experiments/motion_files/hdf5.hpp"
 
 namespace qddot::motion_files {
 
-// Part of one column of a dataset, as HDF5 keeps it: as it is, or compressed as HDF5's filters
-// shuffle and deflate do, so that any reader of HDF5 has it back.
+// Consecutive rows of one column of a dataset.
 struct Chunk {
-  hsize_t row = 0, column = 0;
-  bool is_packed = true;
-  std::vector<float> values;
-  std::vector<unsigned char> packed;
+  hsize_t row = 0, column = 0;  // of the first
+  std::size_t count = 0;        // of the rows that are there
+  Bytes bytes;                  // the rows, shuffled where they are to be compressed
+  Bytes packed;                 // as HDF5 keeps them, once all rows are there
 };
 
 // A dataset of 32-bit floats, rows x columns, that grows by the rows of frame after frame. Each
@@ -25,29 +27,38 @@ class RowStream {
   RowStream(const hdf5::Handle& parent, const std::string& name, std::size_t rows_a_frame,
             std::size_t columns, bool is_packed = true);
 
-  // Takes the rows of a frame, row after row; they wait for their chunk to be full.
-  void append(const std::vector<float>& rows);
-  // The chunks that are full, to be packed and written.
-  std::vector<Chunk>& full() { return full_; }
-  // Calls what is left full, in a chunk whose other rows are zero and beyond the last.
+  // Numbers of a frame that belong in one chunk: from[0], from[stride], ...
+  struct Piece {
+    Chunk* chunk;
+    const float* from;
+    std::size_t count;
+  };
+  // Takes the rows of a frame, row after row: the pieces that are to be put in their chunks. Rows
+  // must stay until they are.
+  std::vector<Piece> append(const std::vector<float>& rows);
+  // Puts a piece in its chunk and compresses that if it is full. Different pieces of a frame may be
+  // put by different threads.
+  void put(const Piece& piece) const;
+  // Compresses chunks that are not full, whose other rows are zero and beyond the last.
   void complete();
-  // Writes the packed chunks.
-  void write();
+  // Writes the chunks that are compressed; whether there were any.
+  bool write();
   // A dataset that is the rows of that frame here, without a copy of them.
   void show_frame(const hdf5::Handle& parent, const std::string& name, std::size_t frame) const;
 
  private:
   std::vector<hsize_t> size(hsize_t rows) const;
+  void pack(Chunk& chunk) const;
 
   std::string name_;  // its path in the file
-  hsize_t rows_a_frame_, columns_, rows_a_chunk_;
-  hsize_t rows_ = 0;  // appended so far
+  std::size_t rows_a_frame_, columns_, rows_a_chunk_;
+  bool is_packed_;
+  std::size_t rows_ = 0;  // appended so far
   hdf5::Handle set_;
-  std::vector<Chunk> open_;  // one a column
-  std::vector<Chunk> full_;
+  std::deque<Chunk> chunks_;  // from the first that is not written, row by row
 };
 
-// Packs the full chunks of all streams, on all cores, then writes them; whether there were any.
-bool write_full(const std::vector<RowStream*>& streams);
+// Appends rows to streams, on all cores.
+void append(const std::vector<std::pair<RowStream*, const std::vector<float>*>>& rows);
 
 }  // namespace qddot::motion_files

@@ -68,9 +68,9 @@ struct Stream {
 
 class VtkhdfFile final : public MotionFile {
  public:
-  VtkhdfFile(const std::vector<std::string>& files, const Scene& start, const ReducedScene& scene,
-             bool has_reference, const Fields& fields)
-      : framing_(start, scene, fields),
+  VtkhdfFile(const std::vector<std::string>& files, const Scene& start, Framing framing,
+             bool has_reference)
+      : framing_(std::move(framing)),
         file_(files[0], {}, files[2]),
         xdmf_(files[1], xdmf_beginning),
         sidecar_(files[2]),
@@ -81,7 +81,7 @@ class VtkhdfFile final : public MotionFile {
       root_ = hdf5::new_group(hdf5_, "VTKHDF");
       frames_ = hdf5::new_group(hdf5_, "Frames");
       write_topology(cells, start.nodes.size());
-      open_streams(start.nodes.size(), cells.count(), fields);
+      open_streams(start.nodes.size(), cells.count(), framing_.wanted());
     });
   }
 
@@ -93,9 +93,11 @@ class VtkhdfFile final : public MotionFile {
       return false;
     }
     trying([&] {
-      for (Stream& stream : streams_) stream.out.append(frame->*stream.numbers);
+      std::vector<std::pair<RowStream*, const std::vector<float>*>> rows;
+      for (Stream& stream : streams_) rows.emplace_back(&stream.out, &(frame->*stream.numbers));
+      append(rows);
       times_.push_back(frame->time);
-      if (write_full(outs())) hdf5::checked(H5Fflush(hdf5_.id(), H5F_SCOPE_LOCAL));
+      if (write_full()) hdf5::checked(H5Fflush(hdf5_.id(), H5F_SCOPE_LOCAL));
     });
     return true;
   }
@@ -103,7 +105,7 @@ class VtkhdfFile final : public MotionFile {
   void complete(const nlohmann::json& origin) override {
     trying([&] {
       for (Stream& stream : streams_) stream.out.complete();
-      write_full(outs());
+      write_full();
       write_steps();
       for (std::size_t k = 0; k < times_.size(); ++k) {
         const Handle frame = hdf5::new_group(frames_, frame_name(k));
@@ -133,10 +135,11 @@ class VtkhdfFile final : public MotionFile {
     }
   }
 
-  std::vector<RowStream*> outs() {
-    std::vector<RowStream*> all;
-    for (Stream& stream : streams_) all.push_back(&stream.out);
-    return all;
+  // Writes the chunks that are full; whether there were any.
+  bool write_full() {
+    bool is_any = false;
+    for (Stream& stream : streams_) is_any |= stream.out.write();
+    return is_any;
   }
 
   // What is the same in all frames.
@@ -214,15 +217,14 @@ class VtkhdfFile final : public MotionFile {
 }  // namespace
 
 std::unique_ptr<MotionFile> open_vtkhdf(const std::string& path, const Scene& start,
-                                        const ReducedScene& scene, bool has_reference,
-                                        const Fields& fields) {
+                                        Framing framing, bool has_reference) {
   if (!can_be_named(std::filesystem::path(path).filename().string()))
     throw InvalidInput(
         fmt::format("{}: the .xdmf beside it cannot name that file; allowed are names in UTF-8 "
                     "without control characters, colons and blanks at their ends",
                     path));
-  return std::make_unique<VtkhdfFile>(files_of_motion(path, "motion"), start, scene, has_reference,
-                                      fields);
+  return std::make_unique<VtkhdfFile>(files_of_motion(path, "motion"), start, std::move(framing),
+                                      has_reference);
 }
 
 }  // namespace qddot::motion_files

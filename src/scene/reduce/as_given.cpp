@@ -22,8 +22,8 @@ AsGiven::AsGiven(std::shared_ptr<const System> system, State initial, int dimens
   }
 }
 
-std::vector<Node> AsGiven::expand(const State& state, bool) const {
-  std::vector<Node> nodes(static_cast<std::size_t>(system_->size() / dimension_));
+void AsGiven::expand(const State& state, bool, std::vector<Node>& nodes) const {
+  nodes.resize(static_cast<std::size_t>(system_->size() / dimension_));
   Index at = 0;
   for (Node& node : nodes) {
     node.position.head(dimension_) = state.q.segment(at, dimension_);
@@ -31,7 +31,6 @@ std::vector<Node> AsGiven::expand(const State& state, bool) const {
     node.mass = system_->mass()[at];
     at += dimension_;
   }
-  return nodes;
 }
 
 std::vector<std::size_t> AsGiven::massless_nodes() const {

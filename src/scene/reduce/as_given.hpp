@@ -17,7 +17,7 @@ class AsGiven final : public WayBack {
   const System& system() const override { return *system_; }
   const State& initial() const override { return initial_; }
   int dimension() const override { return dimension_; }
-  std::vector<Node> expand(const State& state, bool falls) const override;
+  void expand(const State& state, bool falls, std::vector<Node>& nodes) const override;
   double kinetic(const State& state) const override { return system_->kinetic(state.v); }
   double potential(const State& state) const override { return system_->potential(state.q); }
   double energy(const State& state) const override { return total_energy(*system_, state); }

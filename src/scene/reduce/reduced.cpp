@@ -192,7 +192,8 @@ void Reduced::check(const Scene& scene) const {
   for (const Series& series : series_) {
     for (const auto& joint : series.joints) ++places[joint.node];
   }
-  const std::vector<Node> nodes = expand(initial_, true);
+  std::vector<Node> nodes;
+  expand(initial_, true, nodes);
   std::vector<Eigen::Vector3d> x, v;
   std::vector<double> mass;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -211,8 +212,8 @@ void Reduced::check(const Scene& scene) const {
     throw defect(energy_instead_of(potential(initial_), p.value));
 }
 
-std::vector<Node> Reduced::expand(const State& state, bool falls) const {
-  std::vector<Node> nodes = nodes_;
+void Reduced::expand(const State& state, bool falls, std::vector<Node>& nodes) const {
+  if (nodes.empty()) nodes = nodes_;
   Index at = 0;
   for (const Part& part : parts_) {
     const Index n = part.initial().q.size();
@@ -223,11 +224,11 @@ std::vector<Node> Reduced::expand(const State& state, bool falls) const {
   }
   for (const Flying& flying : flying_) {
     Node& node = nodes[flying.node];
+    node.position = nodes_[flying.node].position;
     if (falls) node.position += flying.displacement(state.t);
     node.velocity = falls ? flying.velocity_at(state.t) : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
   for (const Series& series : series_) series.place(nodes);
-  return nodes;
 }
 
 std::vector<std::vector<std::size_t>> Reduced::nodes_by_part() const {

@@ -26,7 +26,7 @@ class Reduced final : public WayBack {
   const std::vector<Finding>& findings() const override { return findings_; }
   const std::vector<Part>& parts() const override { return parts_; }
 
-  std::vector<Node> expand(const State& state, bool falls) const override;
+  void expand(const State& state, bool falls, std::vector<Node>& nodes) const override;
   double kinetic(const State& state) const override;
   double potential(const State& state) const override;
   double energy(const State& state) const override;

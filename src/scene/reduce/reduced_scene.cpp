@@ -20,10 +20,17 @@ const System& ReducedScene::system() const { return way_back_->system(); }
 const State& ReducedScene::initial() const { return way_back_->initial(); }
 int ReducedScene::dimension() const { return way_back_->dimension(); }
 std::vector<Node> ReducedScene::expand(const State& state) const {
-  return way_back_->expand(state, true);
+  std::vector<Node> nodes;
+  expand(state, nodes);
+  return nodes;
+}
+void ReducedScene::expand(const State& state, std::vector<Node>& nodes) const {
+  way_back_->expand(state, true, nodes);
 }
 std::vector<Node> ReducedScene::expand_beside_falls(const State& state) const {
-  return way_back_->expand(state, false);
+  std::vector<Node> nodes;
+  way_back_->expand(state, false, nodes);
+  return nodes;
 }
 double ReducedScene::kinetic(const State& state) const { return way_back_->kinetic(state); }
 double ReducedScene::potential(const State& state) const { return way_back_->potential(state); }

@@ -55,6 +55,8 @@ class ReducedScene {
   // Positions [m] and velocities [m/s] of all nodes of the scene in `state`; pinned ones rest. What
   // moves in closed form is where it is at state.t.
   std::vector<Node> expand(const State& state) const;
+  // The same in memory that is there: `nodes` is empty, or what this scene was expanded to before.
+  void expand(const State& state, std::vector<Node>& nodes) const;
   // The same without what moves in closed form: parts as seen from the frames that fall with them,
   // other nodes at rest where they started. What is integrated can be measured by that alone.
   std::vector<Node> expand_beside_falls(const State& state) const;

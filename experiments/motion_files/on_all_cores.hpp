@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <future>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace qddot::motion_files {
+
+// Calls work(0) ... work(count - 1), on as many cores as there are; throws what one of them threw.
+template <class Work>
+void on_all_cores(std::size_t count, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  const auto some = [&] {
+    for (std::size_t k = next++; k < count; k = next++) work(k);
+  };
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::future<void>> others;
+  try {
+    while (others.size() + 1 < std::min(cores, count))
+      others.push_back(std::async(std::launch::async, some));
+  } catch (const std::system_error&) {  // no more threads: those there are do it
+  }
+  some();
+  for (auto& other : others) other.get();
+}
+
+}  // namespace qddot::motion_files
