@@ -3,12 +3,27 @@
 #include <isa-l/igzip_lib.h>
 #include <stdexcept>
 
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
+
 namespace qddot::motion_files {
 namespace {
 
 // What a stream may be longer than its bytes: headers of stored blocks, five bytes for each 65535
 // and for one more, and the six of the stream itself.
 std::size_t room_for(std::size_t bytes) { return bytes + 5 * (bytes / 65535 + 2) + 6; }
+
+// ISA-L leaves numbers in the upper halves of the vector registers. All of SSE then takes up to
+// three times as long (measured on Zen 4).
+#ifdef __x86_64__
+__attribute__((target("avx"))) void clear_avx() { _mm256_zeroupper(); }
+void clear_upper_halves() {
+  if (__builtin_cpu_supports("avx")) clear_avx();
+}
+#else
+void clear_upper_halves() {}
+#endif
 
 }  // namespace
 
@@ -27,8 +42,9 @@ Bytes deflated(std::span<const unsigned char> bytes) {
   stream.next_out = room.data();
   stream.avail_out = static_cast<std::uint32_t>(room.size());
   stream.end_of_stream = 1;
-  if (isal_deflate_stateless(&stream) != COMP_OK)
-    throw std::logic_error("deflate found no room for a chunk");
+  const int status = isal_deflate_stateless(&stream);
+  clear_upper_halves();
+  if (status != COMP_OK) throw std::logic_error("deflate found no room for a chunk");
   return {room.data(), room.data() + stream.total_out};
 }
 
