@@ -59,8 +59,8 @@ std::uint32_t fill(float* floats, std::size_t first, std::size_t end, const Fetc
 // Likewise of all items, on all cores; whether all are floats.
 template <std::size_t width, class Fetch, class Form>
 bool fill(float* floats, std::size_t items, const Fetch& fetch, const Form& form) {
-  constexpr std::size_t slab =
-      1 << 15;  // items: enough to make a thread's start little beside them
+  // So many items make a thread's start little beside them.
+  constexpr std::size_t slab = 1 << 15;
   std::atomic<std::uint32_t> overflows = 0;
   on_all_cores((items + slab - 1) / slab, [&](std::size_t k) {
     overflows |= fill<width>(floats, k * slab, std::min(items, (k + 1) * slab), fetch, form);

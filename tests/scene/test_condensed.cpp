@@ -190,4 +190,30 @@ BOOST_AUTO_TEST_CASE(nodes_on_no_spring_fly_in_closed_form) {
   BOOST_TEST(reduced.potential(later) == 16. * 5);
 }
 
+// Pinned, condensed, flying and falling nodes, and one with unknowns of its own.
+BOOST_AUTO_TEST_CASE(a_scene_is_expanded_to_the_same_in_memory_that_holds_another_state) {
+  Scene scene = two_in_series(1.2);
+  scene.gravity = {0, 0, -8};
+  scene.nodes.push_back({.position = {1, 2, 3}, .velocity = {4, 5, 6}, .mass = 2});
+  for (const double x : {5, 6})
+    scene.nodes.push_back({.position = {x, 5, 5}, .velocity = {0, x, 0}, .mass = 1});
+  scene.springs.push_back({{4, 5}, {100, 0.8}});
+  const ReducedScene reduced(scene);
+  BOOST_REQUIRE(reduced.findings().size() >= 4);
+  const State& start = reduced.initial();
+  const State later{0.5, start.q + 0.01 * start.v, 2 * start.v};
+  std::vector<Node> nodes;
+  for (const State& state : {later, start, later}) {
+    reduced.expand(state, nodes);
+    const std::vector<Node> fresh = reduced.expand(state);
+    BOOST_REQUIRE(nodes.size() == fresh.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      BOOST_TEST((nodes[i].position == fresh[i].position));
+      BOOST_TEST((nodes[i].velocity == fresh[i].velocity));
+      BOOST_TEST(nodes[i].mass == fresh[i].mass);
+      BOOST_TEST(nodes[i].pinned == fresh[i].pinned);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

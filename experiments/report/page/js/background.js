@@ -23,7 +23,7 @@
     const count =
       drawn === unknowns
         ? `All ${words.count(unknowns)} unknowns are integrated.`
-        : `Of ${words.count(drawn)} unknowns as drawn, ${words.count(unknowns)} are integrated.`;
+        : `${words.count(unknowns)} of the ${words.count(drawn)} unknowns as drawn are integrated.`;
     const found = findings.map(({ name, what }) =>
       element("li", {}, element("b", {}, `${words.plain(name)}: `), what),
     );
