@@ -56,17 +56,10 @@ std::uint32_t fill(float* floats, std::size_t first, std::size_t end, const Fetc
   return overflows;
 }
 
-// Likewise of all items, on all cores; whether all are floats.
-template <std::size_t width, class Fetch, class Form>
-bool fill(float* floats, std::size_t items, const Fetch& fetch, const Form& form) {
-  // So many items make a thread's start little beside them.
-  constexpr std::size_t slab = 1 << 15;
-  std::atomic<std::uint32_t> overflows = 0;
-  on_all_cores((items + slab - 1) / slab, [&](std::size_t k) {
-    overflows |= fill<width>(floats, k * slab, std::min(items, (k + 1) * slab), fetch, form);
-  });
-  return overflows >> 31 == 0;
-}
+// Items that one core does at a time: so many make a thread's start little beside them.
+constexpr std::size_t slab = 1 << 15;
+
+std::size_t slabs(std::size_t items) { return (items + slab - 1) / slab; }
 
 }  // namespace
 
@@ -83,67 +76,64 @@ Framing::Framing(const Scene& start, const ReducedScene& scene, const Fields& wa
 }
 
 const Frame* Framing::of(const State& state, const State* reference) {
-  frame_.time = state.t;
   scene_.expand(state, nodes_);
-  bool is_fine = std::isfinite(state.t);
-  is_fine &= take_positions();
-  if (wanted_.velocity) is_fine &= take_velocities();
-  if (wanted_.kinetic_energy) is_fine &= take_energies();
-  if (wanted_.strain) is_fine &= take_strains();
-  if (reference) is_fine &= take_distances(*reference);
-  return is_fine ? &frame_ : nullptr;
+  if (reference) scene_.expand(*reference, exact_nodes_);
+  frame_.time = state.t;
+  const std::size_t nodes = nodes_.size(), springs = wanted_.strain ? springs_.size() : 0;
+  frame_.positions.resize(3 * nodes);
+  if (wanted_.velocity) frame_.velocities.resize(3 * nodes);
+  if (wanted_.kinetic_energy) frame_.kinetic_energies.resize(nodes);
+  if (wanted_.strain) frame_.strains.resize(cells_, 0);
+  frame_.distances.resize(reference ? nodes : 0);
+  std::atomic<std::uint32_t> overflows = 0;
+  on_all_cores(slabs(nodes) + slabs(springs), [&](std::size_t k) {
+    const bool is_of_nodes = k < slabs(nodes);
+    const std::size_t first = (is_of_nodes ? k : k - slabs(nodes)) * slab;
+    overflows |= is_of_nodes ? take_nodes(first, std::min(nodes, first + slab))
+                             : take_strains(first, std::min(springs, first + slab));
+  });
+  return std::isfinite(state.t) && overflows >> 31 == 0 ? &frame_ : nullptr;
 }
 
-bool Framing::take_positions() {
-  frame_.positions.resize(3 * nodes_.size());
-  return fill<3>(
-      frame_.positions.data(), nodes_.size(),
+std::uint32_t Framing::take_nodes(std::size_t first, std::size_t end) {
+  std::uint32_t overflows = fill<3>(
+      frame_.positions.data(), first, end,
       [&](std::size_t i, double* x) { Eigen::Map<Eigen::Vector3d>{x} = nodes_[i].position; },
-      [](std::size_t, double x, auto& overflows) { return whole(x, overflows); });
+      [](std::size_t, double x, auto& found) { return whole(x, found); });
+  if (wanted_.velocity)
+    overflows |= fill<3>(
+        frame_.velocities.data(), first, end,
+        [&](std::size_t i, double* v) { Eigen::Map<Eigen::Vector3d>{v} = nodes_[i].velocity; },
+        [](std::size_t, double v, auto& found) { return short_form(v, found); });
+  if (wanted_.kinetic_energy)
+    overflows |= fill<1>(
+        frame_.kinetic_energies.data(), first, end,
+        [&](std::size_t i, double* square) { *square = nodes_[i].velocity.squaredNorm(); },
+        [&](std::size_t i, double square, auto& found) {
+          return short_form(0.5 * masses_[i] * square, found);
+        });
+  if (!frame_.distances.empty())
+    overflows |= fill<1>(
+        frame_.distances.data(), first, end,
+        [&](std::size_t i, double* square) {
+          *square = (nodes_[i].position - exact_nodes_[i].position).squaredNorm();
+        },
+        [](std::size_t, double square, auto& found) {
+          return short_form(std::sqrt(square), found);
+        });
+  return overflows;
 }
 
-bool Framing::take_velocities() {
-  frame_.velocities.resize(3 * nodes_.size());
-  return fill<3>(
-      frame_.velocities.data(), nodes_.size(),
-      [&](std::size_t i, double* v) { Eigen::Map<Eigen::Vector3d>{v} = nodes_[i].velocity; },
-      [](std::size_t, double v, auto& overflows) { return short_form(v, overflows); });
-}
-
-bool Framing::take_energies() {
-  frame_.kinetic_energies.resize(nodes_.size());
+std::uint32_t Framing::take_strains(std::size_t first, std::size_t end) {
   return fill<1>(
-      frame_.kinetic_energies.data(), nodes_.size(),
-      [&](std::size_t i, double* square) { *square = nodes_[i].velocity.squaredNorm(); },
-      [&](std::size_t i, double square, auto& overflows) {
-        return short_form(0.5 * masses_[i] * square, overflows);
-      });
-}
-
-bool Framing::take_strains() {
-  frame_.strains.resize(cells_, 0);
-  return fill<1>(
-      frame_.strains.data() + first_line_, springs_.size(),
+      frame_.strains.data() + first_line_, first, end,
       [&](std::size_t i, double* square) {
         const auto& [a, b] = springs_[i];
         *square = (nodes_[b].position - nodes_[a].position).squaredNorm();
       },
-      [&](std::size_t i, double square, auto& overflows) {
+      [&](std::size_t i, double square, auto& found) {
         const double length = lengths_[i], strain = (std::sqrt(square) - length) / length;
-        return short_form(length > 0 ? strain : 0, overflows);
-      });
-}
-
-bool Framing::take_distances(const State& reference) {
-  scene_.expand(reference, exact_nodes_);
-  frame_.distances.resize(nodes_.size());
-  return fill<1>(
-      frame_.distances.data(), nodes_.size(),
-      [&](std::size_t i, double* square) {
-        *square = (nodes_[i].position - exact_nodes_[i].position).squaredNorm();
-      },
-      [](std::size_t, double square, auto& overflows) {
-        return short_form(std::sqrt(square), overflows);
+        return short_form(length > 0 ? strain : 0, found);
       });
 }
 

@@ -36,12 +36,10 @@ class Framing {
   const std::vector<Node>& nodes() const { return nodes_; }
 
  private:
-  // Each fills a field of the frame; whether all its numbers are 32-bit floats.
-  bool take_positions();
-  bool take_velocities();
-  bool take_energies();
-  bool take_strains();
-  bool take_distances(const State& reference);
+  // These fill the fields of nodes and of springs, from number `first` to `end`. Bit 31 is set
+  // where one of the numbers is not finite or beyond 32-bit floats.
+  std::uint32_t take_nodes(std::size_t first, std::size_t end);
+  std::uint32_t take_strains(std::size_t first, std::size_t end);
 
   const ReducedScene& scene_;
   Fields wanted_;

@@ -122,10 +122,15 @@ Part::Motion Part::motion(std::size_t i, const Eigen::Ref<const Vec>& q,
   const Image& image = images_[i];
   const Unknowns& unknowns = layout_[static_cast<std::size_t>(image.original)];
   Eigen::Vector3d y = Eigen::Vector3d::Zero(), w = Eigen::Vector3d::Zero();
-  for (int a = 0; a < unknowns.count; ++a) {
-    const int d = unknowns.axis[static_cast<std::size_t>(a)];
-    y[d] = image.signs[d] * q[unknowns.first + a];
-    w[d] = image.signs[d] * v[unknowns.first + a];
+  if (unknowns.count == 3) {  // as most nodes in space
+    y = image.signs.cwiseProduct(q.segment<3>(unknowns.first));
+    w = image.signs.cwiseProduct(v.segment<3>(unknowns.first));
+  } else {
+    for (int a = 0; a < unknowns.count; ++a) {
+      const int d = unknowns.axis[static_cast<std::size_t>(a)];
+      y[d] = image.signs[d] * q[unknowns.first + a];
+      w[d] = image.signs[d] * v[unknowns.first + a];
+    }
   }
   return {mirrors_.frame.from_point(y), mirrors_.frame.from_direction(w)};
 }
