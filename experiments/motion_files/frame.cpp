@@ -56,7 +56,7 @@ std::uint32_t fill(float* floats, std::size_t first, std::size_t end, const Fetc
   return overflows;
 }
 
-// Items that one core does at a time: so many make a thread's start little beside them.
+// Items that one core does at a time.
 constexpr std::size_t slab = 1 << 15;
 
 std::size_t slabs(std::size_t items) { return (items + slab - 1) / slab; }
@@ -86,7 +86,7 @@ const Frame* Framing::of(const State& state, const State* reference) {
   if (wanted_.strain) frame_.strains.resize(cells_, 0);
   frame_.distances.resize(reference ? nodes : 0);
   std::atomic<std::uint32_t> overflows = 0;
-  on_all_cores(slabs(nodes) + slabs(springs), [&](std::size_t k) {
+  on_all_cores(slabs(nodes) + slabs(springs), nodes + springs, [&](std::size_t k) {
     const bool is_of_nodes = k < slabs(nodes);
     const std::size_t first = (is_of_nodes ? k : k - slabs(nodes)) * slab;
     overflows |= is_of_nodes ? take_nodes(first, std::min(nodes, first + slab))

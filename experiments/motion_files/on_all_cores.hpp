@@ -11,13 +11,16 @@
 namespace qddot::motion_files {
 
 // Calls work(0) ... work(count - 1), on as many cores as there are; throws what one of them threw.
+// `numbers`: how many are worked on; a few are done before another thread has started.
 template <class Work>
-void on_all_cores(std::size_t count, const Work& work) {
+void on_all_cores(std::size_t count, std::size_t numbers, const Work& work) {
+  constexpr std::size_t worth_a_thread = 1 << 15;
   std::atomic<std::size_t> next = 0;
   const auto some = [&] {
     for (std::size_t k = next++; k < count; k = next++) work(k);
   };
-  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t cores =
+      numbers < worth_a_thread ? 1 : std::max(1U, std::thread::hardware_concurrency());
   std::vector<std::future<void>> others;
   try {
     while (others.size() + 1 < std::min(cores, count))

@@ -120,16 +120,14 @@ void RowStream::show_frame(const Handle& parent, const std::string& name, std::s
 }
 
 void append(const std::vector<std::pair<RowStream*, const std::vector<float>*>>& rows) {
-  constexpr std::size_t worth_a_thread = 1 << 15;  // numbers: it takes as long to start one
   std::vector<std::pair<RowStream*, RowStream::Piece>> pieces;
   std::size_t all_numbers = 0;
   for (const auto& [stream, numbers] : rows) {
     for (const auto& piece : stream->append(*numbers)) pieces.emplace_back(stream, piece);
     all_numbers += numbers->size();
   }
-  const auto put = [&](std::size_t k) { pieces[k].first->put(pieces[k].second); };
-  if (all_numbers > worth_a_thread) return on_all_cores(pieces.size(), put);
-  for (std::size_t k = 0; k < pieces.size(); ++k) put(k);
+  on_all_cores(pieces.size(), all_numbers,
+               [&](std::size_t k) { pieces[k].first->put(pieces[k].second); });
 }
 
 }  // namespace qddot::motion_files
