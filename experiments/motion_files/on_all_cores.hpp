@@ -11,7 +11,8 @@
 namespace qddot::motion_files {
 
 // Calls work(0) ... work(count - 1), on as many cores as there are; throws what one of them threw.
-// `numbers`: how many are worked on; a few are done before another thread has started.
+// `numbers`: how many are worked on; a few are done before another thread has started. OpenMP's
+// threads are a run's own, bounded by --threads and OMP_NUM_THREADS, and none of these may throw.
 template <class Work>
 void on_all_cores(std::size_t count, std::size_t numbers, const Work& work) {
   constexpr std::size_t worth_a_thread = 1 << 15;

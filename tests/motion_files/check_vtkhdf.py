@@ -188,38 +188,16 @@ def check_many_frames(place):
 
 def check_large(place):
     """A frame is several chunks, which several threads fill; topology is in chunks, too."""
-    place.write("large.toml", '[generator]\nkind = "cloth"\nnodes = 130\n')
-    words = (
-        "--scene large.toml --method verlet --step-size 2e-5 --until 0.01 --every 0.002 --motion "
-    )
-    ended = place.run(words + "l.vtkhdf --trajectory l_t.csv")
-    assert ended.returncode == 0, ended.stderr
-    _, positions, velocities = table(place.path("l_t.csv"))
-    scene = scene_of(place, "large")
-    springs = np.array([spring["nodes"] for spring in scene["springs"]])
-    lengths = np.array([spring["rest_length"] for spring in scene["springs"]])
-    masses = np.array([0 if node.get("pinned") else node["mass"] for node in scene["nodes"]])
-    with h5py.File(place.path("l.vtkhdf")) as file:
+    soft = "structural_stiffness = 10.0\nshear_stiffness = 5.0\nbending_stiffness = 1.0\n"
+    place.write("large.toml", f'[generator]\nkind = "cloth"\nnodes = 130\n{soft}')
+    check_scene(place, "large", cloth_faces(130), [])
+    with h5py.File(place.path("m_large.vtkhdf")) as file:
         root = file["VTKHDF"]
         strain, lines = root["CellData/strain"], root["Lines/Connectivity"]
-        assert strain.chunks[0] < len(strain) / len(positions) and len(lines) > 2 * lines.chunks[0]
-        assert np.array_equal(lines[...].reshape(-1, 2), springs)
-        assert np.array_equal(root["Polygons/Connectivity"][...].reshape(-1, 3), cloth_faces(130))
-        assert np.array_equal(root["Lines/Offsets"][...], 2 * np.arange(len(springs) + 1))
-        assert_close(root["Points"][...].reshape(positions.shape), positions, FLOAT)
-        data = root["PointData"]
-        assert_close(data["velocity"][...].reshape(velocities.shape), velocities, SHORT)
-        energies = 0.5 * masses * (velocities**2).sum(axis=2)
-        assert_close(data["kinetic_energy"][...].reshape(energies.shape), energies, SHORT * 1.0001)
-        ends = positions[:, springs]
-        wanted = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2) / lengths - 1
-        found = strain[...].reshape(len(positions), -1)
-        # As in check_strains: a length's rounding beside the strain's own.
-        assert (np.abs(found[:, : len(springs)] - wanted) <= SHORT * np.abs(wanted) + 1e-14).all()
-        assert not found[:, len(springs) :].any() and np.abs(wanted).max() > 1e-4
-        assert np.array_equal(file["Frames/000003/strain"][...], found[3])
+        assert strain.chunks[0] < len(file["Frames/000000/strain"])
+        assert len(lines) > 2 * lines.chunks[0]
         points = root["Points"][...]
-    place.run(words + "alone.vtkhdf --motion-fields none")
+    place.run(run_words("large", "--motion alone.vtkhdf --motion-fields none"))
     with h5py.File(place.path("alone.vtkhdf")) as file:
         assert file["VTKHDF/Points"].compression is None
         assert np.array_equal(file["VTKHDF/Points"][...], points)

@@ -128,7 +128,7 @@ class Chain:
         return qddot.System(np.ones(self.nodes), dimension=2, **{**given, **changes})
 
 
-def library(source):
+def compiled(source):
     """A C library of that source, loaded by ctypes; it stays as long as the process."""
     import ctypes
 

@@ -51,7 +51,7 @@ class OwnForces(unittest.TestCase):
         import cffi
         import ctypes
 
-        library = problems.library(problems.DUFFING_C)
+        library = problems.compiled(problems.DUFFING_C)
         library.potential.restype = ctypes.c_double
         ffi = cffi.FFI()
         ffi.cdef(
