@@ -18,6 +18,7 @@
 // With --step-costs, nothing of this: step_costs.csv has what a step of each method takes, which is
 // what forecasts begin with.
 #include <exception>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -65,7 +66,22 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--out", a.out, "the folder for cases.csv and worth.csv");
 }
 
+std::vector<std::uint64_t> numbers_of(const Arguments& a) {
+  std::vector<std::uint64_t> numbers(static_cast<std::size_t>(a.cases));
+  std::iota(numbers.begin(), numbers.end(), static_cast<std::uint64_t>(a.first));
+  return numbers;
+}
+
+std::string share_of(std::uint64_t number) { return fmt::format("{}", number); }
+
+Shares shares_of(const std::vector<std::uint64_t>& numbers) {
+  Shares shares{.chosen_by = {"--cases", "--first"}};
+  for (const std::uint64_t number : numbers) shares.names.push_back(share_of(number));
+  return shares;
+}
+
 int step_costs(const Arguments& a, const std::vector<std::string>& command_line) {
+  require_folder(a.out);
   CsvFile csv(a.out + "/step_costs.csv", {"method", "unknowns", "steps_of_verlet"});
   for (const MeasuredCost& cost : measured_costs()) {
     fmt::print("{:<26}", cost.method->name);
@@ -87,20 +103,21 @@ int advice(const CommandLine& line, const Arguments& a,
   require_repeats(a.repeats);
   require_within(a.jobs, 1, most_jobs, "--jobs");
   require_positive(a.reference_seconds, "--reference-seconds", "the seconds of a reference");
-  require_folder(a.out);
   if (a.step_costs) return step_costs(a, command_line);
-  Study study(line, a.out, {"cases.csv", "worth.csv"}, {{"code", code_hash()}});
+  std::vector<std::uint64_t> numbers = numbers_of(a);
+  Study study(line, a.out, {"cases.csv", "worth.csv"}, {{"code", code_hash()}}, shares_of(numbers));
   if (const auto status = study.completed()) return *status;
+  std::erase_if(numbers, [&](std::uint64_t number) { return !study.takes(share_of(number)); });
   CsvFile cases_csv(a.out + "/cases.csv", case_columns().header());
   CsvFile worth_csv(a.out + "/worth.csv", {"figure", "value", "cases", "meaning"});
 
-  std::vector<CaseResult> results(static_cast<std::size_t>(a.cases));
+  std::vector<CaseResult> results(numbers.size());
   study.measure([&] {
     std::exception_ptr error;
     progress().begin(results.size());
 #pragma omp parallel for schedule(dynamic) num_threads(a.jobs)
     for (std::size_t i = 0; i < results.size(); ++i) {
-      const auto number = static_cast<std::uint64_t>(a.first) + i;
+      const std::uint64_t number = numbers[i];
       try {
         const auto record = study.piece(fmt::format("case {}", number), [&] {
           return record_of(result_of(drawn_case(number), a.reference_seconds, a.repeats));
@@ -117,6 +134,7 @@ int advice(const CommandLine& line, const Arguments& a,
     }
     if (error) std::rethrow_exception(error);
   });
+  if (study.is_share()) return study.conclude(done);
   std::erase_if(results, [](const CaseResult& result) { return result.name.empty(); });
   for (const CaseResult& result : results) case_columns().write_row(cases_csv, result);
   fmt::print("{:<24} {:>8} {:>6}  {}\n", "figure", "value", "cases", "of what");
@@ -137,6 +155,7 @@ int main(int argc, char** argv) {
       {.name = "advice",
        .summary = "Measures what answers are worth that were asked for by their accuracy.",
        .has_threads = true,
-       .has_resume = true},
+       .has_resume = true,
+       .has_shares = true},
       declare, advice, argc, argv);
 }

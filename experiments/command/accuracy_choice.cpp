@@ -19,12 +19,12 @@ AccuracyOf accuracy_of(const std::string& of) {
   throw InvalidInput(fmt::format("--accuracy-of {}: allowed are positions, path and energy", of));
 }
 
-void require_allowed_accuracy(double accuracy) {
+void require_allowed_accuracy(double accuracy, const std::string& option) {
   if (accuracy >= least_accuracy && accuracy < 1) return;
   throw InvalidInput(
-      fmt::format("--accuracy {:g} is not allowed; it is a relative error, from 1e-14, where "
+      fmt::format("{} {:g} is not allowed; it is a relative error, from 1e-14, where "
                   "rounding decides, to below 1, where nothing is known",
-                  accuracy));
+                  option, accuracy));
 }
 
 std::string knob_in_words(const Method& method, double value) {

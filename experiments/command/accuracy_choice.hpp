@@ -16,8 +16,8 @@ void add_accuracy_of_option(CommandLine& line, std::string& of);
 // What that names; throws InvalidInput for anything but positions, path and energy.
 AccuracyOf accuracy_of(const std::string& of);
 
-// Throws InvalidInput unless the accuracy is one that can be had.
-void require_allowed_accuracy(double accuracy);
+// Throws InvalidInput unless the accuracy that the option was given is one that can be had.
+void require_allowed_accuracy(double accuracy, const std::string& option = "--accuracy");
 
 // A knob with its value, and a time, for people: "h = 0.00057 s", "4.2 ms".
 std::string knob_in_words(const Method& method, double value);

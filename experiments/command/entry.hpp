@@ -12,7 +12,7 @@ namespace qddot::command {
 // What --help says of a program, and which options it shares with others.
 struct Entry {
   std::string name, summary;
-  bool has_threads = false, has_resume = false;
+  bool has_threads = false, has_resume = false, has_shares = false;
 };
 
 // main() of a program. declare(line, arguments) adds the program's own options; body(line,
@@ -25,6 +25,7 @@ int enter(const Entry& entry, const Declare& declare, const Body& body, int argc
   declare(line, arguments);
   if (entry.has_threads) add_threads_option(line);
   if (entry.has_resume) add_resume_option(line);
+  if (entry.has_shares) add_share_options(line);
   return run_program(line, argc, argv, [&] {
     return body(line, arguments, std::vector<std::string>(argv, argv + argc));
   });

@@ -43,14 +43,14 @@ std::uint32_t get(const std::uint8_t* bytes) {
   return x;
 }
 
-struct Contents {
-  bool is_own = false;  // a journal, or the beginning of one
-  nlohmann::json key{};
-  std::map<std::string, nlohmann::json> pieces{};
-  std::size_t whole = 0;  // bytes up to the end of the last whole record
-};
+// Text that is no UTF-8 is mended.
+std::string json_in_words(const nlohmann::json& json) {
+  return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
 
-Contents read(const std::string& path) {
+}  // namespace
+
+Journal::Contents Journal::read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const Bytes bytes{std::istreambuf_iterator<char>(file), {}};
   const std::string_view beginning(reinterpret_cast<const char*>(bytes.data()),
@@ -74,27 +74,19 @@ Contents read(const std::string& path) {
   return contents;
 }
 
-// Text that is no UTF-8 is mended.
-std::string json_in_words(const nlohmann::json& json) {
-  return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
-// In which entry two keys differ, with both values.
 std::string difference(const nlohmann::json& there, const nlohmann::json& asked) {
   for (const auto& [name, value] : asked.items()) {
     const nlohmann::json other = there.is_object() ? there.value(name, nlohmann::json()) : nullptr;
     if (other == value) continue;
-    if (value.is_object() && other.is_object()) return difference(other, value);
+    if (value.is_object() && other.is_object()) return command::difference(other, value);
     return fmt::format("its {} is {} instead of {}", name, json_in_words(other),
                        json_in_words(value));
   }
   for (const auto& [name, value] : there.items()) {
     if (!asked.contains(name)) return fmt::format("it was made with {}", name);
   }
-  return "it is of another study";
+  return "";
 }
-
-}  // namespace
 
 Journal::Journal(const std::string& path, const nlohmann::json& key, bool goes_on) : path_(path) {
   file_ =
@@ -108,7 +100,8 @@ Journal::Journal(const std::string& path, const nlohmann::json& key, bool goes_o
     if (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
       throw InvalidInput(fmt::format("{}: is no file; allowed is another folder", path));
     }
-    if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    // Some file systems have no locks.
+    if (::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       throw InvalidInput(fmt::format(
           "{}: another process is writing it; allowed is another folder, or to wait", path));
     }

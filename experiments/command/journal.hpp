@@ -18,6 +18,16 @@ namespace qddot::command {
 // keeps every double. Reading ends at the first record that is not whole. Thread-safe.
 class Journal {
  public:
+  // What a file of that kind holds. `is_own`: it is one, or the beginning of one.
+  struct Contents {
+    bool is_own = false;
+    nlohmann::json key{};
+    std::map<std::string, nlohmann::json> pieces{};
+    std::size_t whole = 0;  // bytes up to the end of the last whole record
+  };
+  // Reads it, whoever may be writing it; nothing is whole in a file that is not there.
+  static Contents read(const std::string& path);
+
   // Starts an empty one, or, if `goes_on`, goes on with the pieces of the file that is there.
   // Throws InvalidInput if another process is writing it, if it is to go on and its key is another
   // one, which is then named, if it is no journal and may not be replaced, or if it cannot be
@@ -47,5 +57,8 @@ class Journal {
   std::size_t dropped_ = 0;
   mutable std::mutex mutex_;
 };
+
+// In which entry two keys differ, with both values, in words; empty where they do not.
+std::string difference(const nlohmann::json& there, const nlohmann::json& asked);
 
 }  // namespace qddot::command

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <fstream>
+#include <unistd.h>
 
 #include <Eigen/Core>
 #include <Spectra/Util/Version.h>
@@ -26,8 +27,7 @@ std::string sundials_version() {
   return SUNDIALSGetVersion(version.data(), version.size()) == 0 ? version.data() : "unknown";
 }
 
-}  // namespace
-
+// The processor's name.
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -36,15 +36,25 @@ std::string processor() {
   return "unknown";
 }
 
+}  // namespace
+
+std::string host() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string date_now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
 std::string code_hash() { return build_info::source_hash; }
 
-nlohmann::json provenance(const std::vector<std::string>& command_line) {
-  return {{"command_line", command_line},
-          {"version", build_info::version},
-          {"source_hash", build_info::source_hash},
-          {"compiler", build_info::compiler},
-          {"flags", build_info::flags},
-          {"kernels", kernels::levels()[static_cast<std::size_t>(kernels::level())]},
+nlohmann::json build() {
+  return {{"code", code_hash()}, {"compiler", build_info::compiler}, {"flags", build_info::flags}};
+}
+
+nlohmann::json machine() {
+  return {{"kernels", kernels::levels()[static_cast<std::size_t>(kernels::level())]},
           {"roots", kernels::names_of_roots()[static_cast<std::size_t>(kernels::roots())]},
           {"cpu", processor()},
           {"libraries",
@@ -55,8 +65,18 @@ nlohmann::json provenance(const std::vector<std::string>& command_line) {
             {"sundials", sundials_version()},
             {"cholmod", fmt::format("{}.{}.{}", CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION,
                                     CHOLMOD_SUBSUB_VERSION)},
-            {"boost", BOOST_LIB_VERSION}}},
-          {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
+            {"boost", BOOST_LIB_VERSION}}}};
+}
+
+nlohmann::json provenance(const std::vector<std::string>& command_line) {
+  nlohmann::json origin = {{"command_line", command_line},
+                           {"version", build_info::version},
+                           {"source_hash", build_info::source_hash},
+                           {"compiler", build_info::compiler},
+                           {"flags", build_info::flags},
+                           {"date", date_now()}};
+  origin.update(machine());
+  return origin;
 }
 
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& scene) {

@@ -23,8 +23,17 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,
                           const Scene& start, const ReducedScene& reduced);
 
-// The processor's name.
-std::string processor();
+// What of a machine decides how long its runs take and how they round: processor ("cpu"), level of
+// the kernels, roots, libraries.
+nlohmann::json machine();
+// What is built alike wherever results are: hash of the sources ("code"), compiler and flags.
+nlohmann::json build();
+
+// This machine's name in its network.
+std::string host();
+
+// Now, by this machine's clock, as 2026-01-31T12:00:00Z (UTC).
+std::string date_now();
 
 // Hash of all sources that decide a motion; changes when the code does.
 std::string code_hash();

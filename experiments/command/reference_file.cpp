@@ -13,6 +13,7 @@
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
+#include "experiments/command/shares.hpp"
 #include "experiments/command/whole_file.hpp"
 #include "qddot/measure/motion/duration.hpp"
 #include "qddot/measure/motion/interruption.hpp"
@@ -172,6 +173,19 @@ Reference made(const ReducedScene& scene, const Scene& start, double until,
   }
 }
 
+std::string file_in(const std::string& folder) { return folder + "/reference.json"; }
+
+// What a reference in a file is of.
+nlohmann::json key_of(const Scene& drawn, const ReducedScene& scene, double until,
+                      std::optional<double> needed) {
+  nlohmann::json key = {{"scene_hash", content_hash(drawn)},
+                        {"unknowns", scene.system().size()},
+                        {"until", until},
+                        {"source_hash", code_hash()}};
+  if (needed) key["needed"] = *needed;
+  return key;
+}
+
 }  // namespace
 
 nlohmann::json to_json(const Reference& r) {
@@ -232,12 +246,8 @@ void require_reference_exists(const ReducedScene& scene, const std::string& sour
 Reference reference_for(const Scene& drawn, const Scene& start, const ReducedScene& scene,
                         double until, const std::string& folder, const nlohmann::json& origin,
                         std::optional<double> needed) {
-  const std::string file = folder + "/reference.json";
-  nlohmann::json key = {{"scene_hash", content_hash(drawn)},
-                        {"unknowns", scene.system().size()},
-                        {"until", until},
-                        {"source_hash", code_hash()}};
-  if (needed) key["needed"] = *needed;
+  const std::string file = file_in(folder);
+  const nlohmann::json key = key_of(drawn, scene, until, needed);
   const nlohmann::json found = read_json(file);
   if (found.is_object() && found.value("key", nlohmann::json()) == key) {
     if (auto reference = stored(found, scene, until)) return *reference;
@@ -263,6 +273,18 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
   whole.write(written(json, 1) + "\n");
   whole.commit();
   return reference;
+}
+
+Reference kept_reference(const Scene& drawn, const ReducedScene& scene, double until,
+                         const std::string& folder) {
+  const nlohmann::json found = read_json(file_in(folder));
+  if (found.is_object() &&
+      found.value("key", nlohmann::json()) == key_of(drawn, scene, until, std::nullopt)) {
+    if (auto reference = stored(found, scene, until)) return *reference;
+  }
+  throw InvalidInput(fmt::format(
+      "{}: it is missing or not the reference of this scene to {} s; the share {} makes it",
+      file_in(folder), until, reference_share));
 }
 
 }  // namespace qddot::command

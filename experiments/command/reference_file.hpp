@@ -29,4 +29,8 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
                         double until, const std::string& folder, const nlohmann::json& origin,
                         std::optional<double> needed = {});
 
+// The reference that reference_for would find. Throws InvalidInput where there is none.
+Reference kept_reference(const Scene& drawn, const ReducedScene& scene, double until,
+                         const std::string& folder);
+
 }  // namespace qddot::command

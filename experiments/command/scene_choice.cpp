@@ -111,4 +111,10 @@ std::vector<const Method*> select_methods(const std::vector<std::string>& list,
   return selected;
 }
 
+std::vector<std::string> names_of(const std::vector<const Method*>& methods) {
+  std::vector<std::string> names;
+  for (const Method* method : methods) names.push_back(method->name);
+  return names;
+}
+
 }  // namespace qddot::command

@@ -43,4 +43,7 @@ void require_fit(const Method& method, const ReducedScene& scene, const std::str
 std::vector<const Method*> select_methods(const std::vector<std::string>& list,
                                           const ReducedScene& scene, const std::string& source);
 
+// The methods' names.
+std::vector<std::string> names_of(const std::vector<const Method*>& methods);
+
 }  // namespace qddot::command

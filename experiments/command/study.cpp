@@ -7,12 +7,16 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/interruptible.hpp"
+#include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/reference/no_reference.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::command {
 
@@ -24,8 +28,9 @@ constexpr double patience_with_a_step = 30;
 
 // What the user asked for, but for where results go and how the program is to be run.
 nlohmann::json options_of(const CommandLine& line) {
-  constexpr std::array other = {"--out",        "--scene",    "--resume", "--force",
-                                "--time-limit", "--progress", "--help",   "--version"};
+  constexpr std::array other = {"--out",         "--scene",    "--resume",  "--force",
+                                "--time-limit",  "--progress", "--help",    "--version",
+                                "--list-shares", "--share",    "--journal", "--kept"};
   nlohmann::json options = nlohmann::json::object();
   for (const auto& [name, values] : line.given()) {
     if (std::ranges::find(other, name) == other.end()) options[name] = values;
@@ -56,16 +61,74 @@ void add_resume_option(CommandLine& line) {
 }
 
 Study::Study(const CommandLine& line, const std::string& folder,
-             const std::vector<std::string>& tables, const nlohmann::json& about)
+             const std::vector<std::string>& tables, const nlohmann::json& about,
+             const Shares& shares)
     : program_(line.program()),
       path_(folder + "/" + program_ + ".journal"),
       key_({{"program", program_},
             {"about", about},
             {"options", options_of(line)},
-            {"code", code_hash()},
-            {"processor", processor()}}) {
+            {"build", build()},
+            {"machine", machine()}}),
+      share_(share_of(line)),
+      is_kept_(line.has("--kept")) {
   progress().wipe();  // what was done before may have a line
-  const bool resumes = line.has("--resume");
+  if (is_divided() || line.has("--list-shares")) {
+    for (const std::string& option : shares.chosen_by) key_["options"].erase(option);
+  }
+  if (line.has("--list-shares")) {
+    list(shares);
+    return;
+  }
+  require_folder(folder);
+  if (is_share()) {
+    open_share(line, shares);
+  } else if (is_kept_) {
+    open_kept();
+  } else {
+    open(tables, folder, line.has("--resume"));
+  }
+}
+
+void Study::list(const Shares& shares) {
+  fmt::print("{}\n", nlohmann::json{{"key", key_}, {"shares", shares.names}}.dump(
+                         -1, ' ', true, nlohmann::json::error_handler_t::replace));
+  completed_ = done;
+}
+
+void Study::open_share(const CommandLine& line, const Shares& shares) {
+  if (std::ranges::find(shares.names, share_) == shares.names.end()) {
+    throw InvalidInput(fmt::format("--share: {} is no share of this study; allowed are {}", share_,
+                                   fmt::join(shares.names, ", ")));
+  }
+  path_ = journal_of(line);
+  require_given(path_, "--journal", "the file for what is measured of the share");
+  key_["share"] = share_;
+  journal_ = std::make_unique<Journal>(path_, key_, /*goes_on=*/true);
+  wait_for_answer(patience_with_a_step);
+  if (journal_->find(whole_mark(share_))) completed_ = done;
+}
+
+void Study::open_kept() {
+  Journal::Contents contents = Journal::read(path_);
+  if (contents.whole == 0) {
+    throw InvalidInput(
+        fmt::format("--kept: {} is missing or no journal; allowed is a folder that "
+                    "holds what was measured",
+                    path_));
+  }
+  // The machine is the one on which it was measured.
+  key_["machine"] = contents.key.value("machine", nlohmann::json());
+  if (const std::string what = difference(contents.key, key_); !what.empty()) {
+    throw InvalidInput(
+        fmt::format("--kept: {} is of another study: {}; allowed are the same "
+                    "scene, code and options",
+                    path_, what));
+  }
+  kept_ = std::move(contents.pieces);
+}
+
+void Study::open(const std::vector<std::string>& tables, const std::string& folder, bool resumes) {
   if (resumes && !std::filesystem::exists(path_)) {
     std::vector<std::string> paths;
     for (const std::string& table : tables) paths.push_back(folder + "/" + table);
@@ -90,7 +153,17 @@ Study::~Study() {
   if (journal_ && journal_->size() == 0) journal_->remove();
 }
 
+bool Study::takes(const std::string& share) const {
+  if (is_share()) return share == share_;
+  return !is_kept_ || kept_.contains(whole_mark(share));
+}
+
 nlohmann::json Study::piece(const std::string& name, const std::function<nlohmann::json()>& make) {
+  if (is_kept_) {
+    const auto known = kept_.find(name);
+    if (known != kept_.end()) return known->second;
+    throw InvalidInput(fmt::format("--kept: {} does not hold {}", path_, name));
+  }
   if (auto known = journal_->find(name)) return *known;
   stop_if_interrupted();
   nlohmann::json made = make();
@@ -104,28 +177,42 @@ void Study::measure(const std::function<void()>& body) {
     body();
   } catch (const Interrupted&) {
     why_ = interrupted();
+  } catch (const NoReference& error) {
+    if (!is_share()) throw;
+    failure_ = error.what();
   }
   progress().wipe();
+  if (is_share() && !why_) journal_->keep(whole_mark(share_), whole_record(failure_));
 }
 
 void Study::complete(CsvFile& table, nlohmann::json origin, int status) {
   origin["study"] = key_;
   origin["exit_status"] = why_ ? why_->status : status;
   origin["interrupted"] = why_ ? nlohmann::json(why_->by) : nullptr;
+  if (is_kept_) origin.update(key_.at("machine"));
   table.complete(origin);
   complete_.push_back(&table);
 }
 
 int Study::conclude(int status) {
   for (CsvFile* table : complete_) table->commit();
-  if (!why_) {
-    journal_->remove();
-    return status;
-  }
-  fmt::print(stderr,
-             "{}: interrupted by {}; {} pieces are kept, and --resume measures what is missing\n",
-             program_, why_->by, journal_->size());
+  if (!why_) return conclude_whole(status);
+  fmt::print(stderr, "{}: interrupted by {}; {} pieces are kept, and {} measures what is missing\n",
+             program_, why_->by, journal_ ? journal_->size() : kept_.size(),
+             is_share() ? "the same command" : "--resume");
   return why_->status;
+}
+
+int Study::conclude_whole(int status) {
+  if (is_kept_) {
+    std::filesystem::remove(path_);
+  } else if (!is_share()) {
+    journal_->remove();
+  } else if (!failure_.is_null()) {
+    fmt::print(stderr, "{}: {}\n", program_, in_one_line(failure_.get<std::string>()));
+    return end_not_reached;
+  }
+  return status;
 }
 
 int Study::finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status) {

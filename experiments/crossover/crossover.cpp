@@ -249,6 +249,15 @@ void tabulate(Csv& winners, Csv& of_kinds, Csv& points, const RatioStudy& one,
   }
 }
 
+// One ratio each, which then learns from no other.
+std::string share_of(const RatioStudy& one) { return fmt::format("{:.17g}", one.ratio); }
+
+Shares shares_of(const std::vector<RatioStudy>& all) {
+  Shares shares{.chosen_by = {"--ratios"}};
+  for (const RatioStudy& one : all) shares.names.push_back(share_of(one));
+  return shares;
+}
+
 nlohmann::json origin_of(const std::vector<std::string>& command_line, const std::string& family,
                          double until, const std::vector<RatioStudy>& all) {
   nlohmann::json origin = provenance(command_line, all.front().drawn);
@@ -324,11 +333,12 @@ int crossover(const CommandLine& line, Arguments a, const std::vector<std::strin
   std::vector<RatioStudy> all = ratio_studies(a, family, until);
   const auto methods = competitors(a, all.back());
   const auto competing = kinds_of(methods);
-  Sweeps sweeps(methods, a.effort);
-  require_folder(a.out);
   Study study(line, a.out, {"crossover.csv", "kinds.csv", "points.csv"},
-              {{"family", a.family}, {"until", until}, {"nodes", all.front().drawn.nodes.size()}});
+              {{"family", a.family}, {"until", until}, {"nodes", all.front().drawn.nodes.size()}},
+              shares_of(all));
   if (const auto status = study.completed()) return *status;
+  std::erase_if(all, [&](const RatioStudy& one) { return !study.takes(share_of(one)); });
+  Sweeps sweeps(methods, a.effort);
   CsvFile winners(a.out + "/crossover.csv", winner_columns);
   CsvFile of_kinds(a.out + "/kinds.csv", kind_columns);
   std::vector<std::string> columns = point_columns().header();
@@ -339,10 +349,12 @@ int crossover(const CommandLine& line, Arguments a, const std::vector<std::strin
   std::size_t complete = 0;
   study.measure([&] {
     for (RatioStudy& one : all) {
+      if (study.is_divided()) sweeps = Sweeps(methods, a.effort);
       is_whole = measure_ratio(study, a.out, command_line, until, sweeps, one) && is_whole;
       ++complete;
     }
   });
+  if (study.is_share()) return study.conclude(is_whole ? done : end_not_reached);
   const nlohmann::json origin = origin_of(command_line, a.family, until, all);
   for (const RatioStudy& one : all) tabulate(winners, of_kinds, points, one, competing);
   // What no method could win yet is not said to be lost.
@@ -365,6 +377,7 @@ int main(int argc, char** argv) {
       {.name = "crossover",
        .summary = "Measures from which stiffness on an implicit method is the fastest.",
        .has_threads = true,
-       .has_resume = true},
+       .has_resume = true,
+       .has_shares = true},
       declare, crossover, argc, argv);
 }

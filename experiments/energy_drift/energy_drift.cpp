@@ -146,6 +146,15 @@ std::vector<Job> jobs_of(const Arguments& a, double step_size, const ReducedScen
   return jobs;
 }
 
+// The methods' names, each once.
+std::vector<std::string> methods_of(const std::vector<Job>& jobs) {
+  std::vector<std::string> names;
+  for (const Job& job : jobs) {
+    if (names.empty() || names.back() != job.method->name) names.push_back(job.method->name);
+  }
+  return names;
+}
+
 // What is left of the jobs, for the user.
 class JobsLeft {
  public:
@@ -275,11 +284,12 @@ int energy_drift(const CommandLine& line, const Arguments& a,
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   const Course course = course_of(line, a, scene);
-  const std::vector<Job> jobs = jobs_of(a, course.step_size, scene);
-  require_folder(a.out);
+  std::vector<Job> jobs = jobs_of(a, course.step_size, scene);
   Study study(line, a.out, {"drift.csv", "summary.csv", "tolerance.csv"},
-              {{"scene", content_hash(drawn)}, {"name", drawn.name}});
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}},
+              {.names = methods_of(jobs), .chosen_by = {"--methods"}});
   if (const auto status = study.completed()) return *status;
+  std::erase_if(jobs, [&](const Job& job) { return !study.takes(job.method->name); });
   CsvFile paths(a.out + "/drift.csv", path_columns().header());
   CsvFile summary(a.out + "/summary.csv", summary_columns().header());
   CsvFile tolerance(a.out + "/tolerance.csv", tolerance_columns().header());
@@ -294,6 +304,7 @@ int energy_drift(const CommandLine& line, const Arguments& a,
     runs = run_all(study, jobs, a, scene, momenta, scales, course);
     if (runs.size() < jobs.size()) stop_if_interrupted();
   });
+  if (study.is_share()) return study.conclude(done);
 
   for (const DriftRun& run : runs) {
     for (const DriftPoint& point : run.path) path_columns().write_row(paths, {run, point});
@@ -329,6 +340,7 @@ int main(int argc, char** argv) {
   return qddot::command::enter<Arguments>(
       {.name = "energy_drift",
        .summary = "Finds out where each integrator's energy goes over a long run of one scene.",
-       .has_resume = true},
+       .has_resume = true,
+       .has_shares = true},
       declare, energy_drift, argc, argv);
 }

@@ -36,6 +36,24 @@ double of(const LinearStep& step, double (LinearStep::*number)() const) {
   return step.roots.empty() ? none : (step.*number)();
 }
 
+std::string rows_of(const Method& method, const std::vector<Mode>& modes, const ReducedScene& rest,
+                    double h) {
+  std::vector<Row> rows;
+  for (const Mode& mode : modes) rows.push_back({&method, &mode});
+#pragma omp parallel for schedule(dynamic)
+  for (Row& row : rows) fill(row, rest, h);
+  Csv csv;
+  for (const Row& row : rows) {
+    csv.row(
+        row.method->name, h, row.mode->rank, row.mode->omega, h * row.mode->omega,
+        of(row.predicted, &LinearStep::damping_ratio), of(row.measured, &LinearStep::damping_ratio),
+        of(row.predicted, &LinearStep::period_error), of(row.measured, &LinearStep::period_error),
+        of(row.predicted, &LinearStep::spectral_radius),
+        of(row.measured, &LinearStep::spectral_radius), row.verdict);
+  }
+  return std::string(csv.text());
+}
+
 }  // namespace
 
 const std::vector<std::string>& modal_columns() {
@@ -54,29 +72,21 @@ const std::vector<std::string>& modal_columns() {
   return columns;
 }
 
-void tabulate_modes(Csv& csv, const std::vector<const Method*>& methods, const ReducedScene& rest,
-                    double step_size) {
+void tabulate_modes(Study& study, Csv& csv, const std::vector<const Method*>& methods,
+                    const ReducedScene& rest, double step_size) {
+  std::vector<const Method*> stepping = methods;
+  std::erase_if(stepping, [&](const Method* method) {
+    return !has_linear_step(*method) || !applies_to(*method, rest.system());
+  });
   const auto modes = sampled_modes(rest.system(), rest.initial().q, modes_excited);
   if (modes.empty()) return;
   const double h = step_size > 0 ? step_size : 1 / modes.back().omega;
-  std::vector<Row> rows;
-  for (const Method* method : methods) {
-    if (!has_linear_step(*method) || !applies_to(*method, rest.system())) continue;
-    for (const Mode& mode : modes) rows.push_back({method, &mode});
-  }
-  progress().begin(rows.size());
-#pragma omp parallel for schedule(dynamic)
-  for (Row& row : rows) {
-    fill(row, rest, h);
-    progress().finish(fmt::format("{} in mode {}", row.method->name, row.mode->rank));
-  }
-  for (const Row& row : rows) {
-    csv.row(
-        row.method->name, h, row.mode->rank, row.mode->omega, h * row.mode->omega,
-        of(row.predicted, &LinearStep::damping_ratio), of(row.measured, &LinearStep::damping_ratio),
-        of(row.predicted, &LinearStep::period_error), of(row.measured, &LinearStep::period_error),
-        of(row.predicted, &LinearStep::spectral_radius),
-        of(row.measured, &LinearStep::spectral_radius), row.verdict);
+  progress().begin(stepping.size());
+  for (const Method* method : stepping) {
+    const auto rows = study.piece(fmt::format("modes {}", method->name),
+                                  [&] { return rows_of(*method, modes, rest, h); });
+    csv.rows(rows.get<std::string>());
+    progress().finish(fmt::format("{} in {} modes", method->name, modes.size()));
   }
 }
 

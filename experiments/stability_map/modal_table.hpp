@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "experiments/command/csv.hpp"
+#include "experiments/command/study.hpp"
 #include "experiments/stability_map/modal_step.hpp"
 
 namespace qddot::stability_map {
@@ -16,8 +17,9 @@ const std::vector<std::string>& modal_columns();
 // A row for each method that has a step of its own and each of a dozen natural modes of the scene
 // at rest: damping ratio, period error and spectral radius at the step h = `step_size` [s], or
 // 1/w_max where that is 0, predicted on an oscillator and measured by exciting the mode, and the
-// verdict; in its place, why a method does not make the steps. On all cores (OpenMP).
-void tabulate_modes(Csv& csv, const std::vector<const Method*>& methods, const ReducedScene& rest,
-                    double step_size);
+// verdict; in its place, why a method does not make the steps. On all cores (OpenMP); the rows of a
+// method are a piece of the study.
+void tabulate_modes(Study& study, Csv& csv, const std::vector<const Method*>& methods,
+                    const ReducedScene& rest, double step_size);
 
 }  // namespace qddot::stability_map

@@ -321,15 +321,16 @@ int stability_map(const CommandLine& line, const Arguments& a,
   if (line.has("--step-size")) require_step_size(a.step_size, "--step-size");
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
-  const auto methods = select_methods(a.methods, scene, a.scene.name);
+  auto methods = select_methods(a.methods, scene, a.scene.name);
   progress().stage("finding the equilibrium");
   const std::optional<Scene> rest = at_rest(start, a.scene.name);
   progress().stage("finding the modes of the rows");
   const auto rows = rows_of(a, start, rest);
-  require_folder(a.out);
   Study study(line, a.out, {"limits.csv", "linear.csv", "adaptive.csv", "modal.csv", "map.csv"},
-              {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}},
+              {.names = names_of(methods), .chosen_by = {"--methods"}});
   if (const auto status = study.completed()) return *status;
+  std::erase_if(methods, [&](const Method* method) { return !study.takes(method->name); });
   CsvFile limits_csv(a.out + "/limits.csv",
                      {"method", "h_limit_predicted", "h_limit_measured", "h_omega_limit_predicted",
                       "h_omega_limit_measured", "relative_difference"});
@@ -354,18 +355,14 @@ int stability_map(const CommandLine& line, const Arguments& a,
     tabulate_linear(linear_csv, methods);
     tabulate_adaptive(study, adaptive_csv, methods);
     if (rest) {
-      const auto modes = study.piece("modes", [&] {
-        Csv table;
-        tabulate_modes(table, methods, ReducedScene(*rest, Reductions::all_directions()),
-                       a.step_size);
-        return nlohmann::json(table.text());
-      });
-      modal_csv.rows(modes.get<std::string>());
+      const ReducedScene at_rest(*rest, Reductions::all_directions());
+      tabulate_modes(study, modal_csv, methods, at_rest, a.step_size);
     }
     cells = cells_of(a, followed(a, methods), rows);
     all = map_of(study, cells, {until, a.tolerated, a.cell_limit});
     if (std::ranges::any_of(all, [](const auto& result) { return !result; })) stop_if_interrupted();
   });
+  if (study.is_share()) return study.conclude(done);
   tabulate(limits_csv, limits, omega_max);
   tabulate(map_csv, cells, all);
 
@@ -388,6 +385,7 @@ int main(int argc, char** argv) {
   return qddot::command::enter<Arguments>(
       {.name = "stability_map",
        .summary = "Measures where each method is stable, and compares with theory.",
-       .has_resume = true},
+       .has_resume = true,
+       .has_shares = true},
       declare, stability_map, argc, argv);
 }

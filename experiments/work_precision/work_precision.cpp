@@ -13,7 +13,7 @@
 //  3. points.csv holds every point, the failed ones with the reason; front.csv, for each accuracy
 //     from 1e-1 to 1e-9, the fastest method known to have reached it: of the positions at the end
 //     or, where that is beyond the chaotic motion's horizon and nobody knows them, of the energy on
-//     the way.
+//     the way. With --accuracies those alone, and no method is measured more accurately than that.
 #include <algorithm>
 #include <functional>
 #include <optional>
@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/command/accuracy_choice.hpp"
 #include "experiments/command/command_line.hpp"
 #include "experiments/command/csv.hpp"
 #include "experiments/command/entry.hpp"
@@ -52,6 +53,7 @@ struct Arguments {
   std::string out;
   double until = 0;
   std::vector<std::string> methods;
+  std::vector<double> accuracies;
   Effort effort;
 };
 
@@ -59,6 +61,9 @@ void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
   line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
   line.add_option("--methods", a.methods, "a,b,... (default: all)").delimiter(',');
+  line.add_option("--accuracies", a.accuracies,
+                  "a,b,... the accuracies that matter (default: 1e-1 to 1e-9)")
+      .delimiter(',');
   line.add_option("--repeats", a.effort.repeats, "timed runs of each point")
       .take_last()
       .capture_default_str();
@@ -96,22 +101,44 @@ std::vector<Point> from_coarse_to_fine(const std::vector<std::vector<Point>>& ta
   return points;
 }
 
+// The accuracies of the front from coarse to fine, or the usual ones where none are asked for.
+std::vector<double> accuracies_of(const CommandLine& line, const Arguments& a) {
+  if (!line.has("--accuracies")) return usual_accuracies();
+  std::vector<double> asked = a.accuracies;
+  for (const double accuracy : asked) require_allowed_accuracy(accuracy, "--accuracies");
+  std::ranges::sort(asked, std::ranges::greater());
+  const auto twice = std::ranges::adjacent_find(asked);
+  if (twice != asked.end()) {
+    throw InvalidInput(fmt::format("--accuracies: {:g} is named twice; allowed is once", *twice));
+  }
+  return asked;
+}
+
+// The reference and, once it is made, each method.
+Shares shares_of(const std::vector<const Method*>& methods) {
+  Shares shares{.names = names_of(methods), .chosen_by = {"--methods"}};
+  shares.names.insert(shares.names.begin(), reference_share);
+  return shares;
+}
+
 int work_precision(const CommandLine& line, const Arguments& a,
                    const std::vector<std::string>& command_line) {
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
   require_repeats(a.effort.repeats);
   require_options(line, a.effort.options);
+  const std::vector<double> accuracies = accuracies_of(line, a);
   const Scene drawn = load(a.scene);
   const double until = end_time(a.until, line.has("--until"), drawn);
   const Scene start = started(drawn, a.scene);
   const ReducedScene scene(start, reductions_of(a.scene));
   require_reference_exists(scene, a.scene.name);
-  const auto selected = select_methods(a.methods, scene, a.scene.name);
-  require_folder(a.out);
+  auto selected = select_methods(a.methods, scene, a.scene.name);
   Study study(line, a.out, {"points.csv", "front.csv"},
-              {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}});
+              {{"scene", content_hash(drawn)}, {"name", drawn.name}, {"until", until}},
+              shares_of(selected));
   if (const auto status = study.completed()) return *status;
+  std::erase_if(selected, [&](const Method* method) { return !study.takes(method->name); });
   CsvFile points_csv(a.out + "/points.csv", point_columns().header());
   CsvFile front_csv(a.out + "/front.csv", front_columns);
 
@@ -121,26 +148,37 @@ int work_precision(const CommandLine& line, const Arguments& a,
   std::vector<std::vector<Point>> taken;  // by method
   study.measure([&] {
     progress().stage("making the reference");
-    reference = reference_for(drawn, start, scene, until, a.out, origin);
+    reference = study.measures(reference_share)
+                    ? reference_for(drawn, start, scene, until, a.out, origin)
+                    : kept_reference(drawn, scene, until, a.out);
     const Watch watch(start, scene, until, *reference);
     Effort effort = a.effort;
     effort.watch = &watch;
+    const auto is_last = [&](const Point& point) {
+      return line.has("--accuracies") &&
+             known(judged_error(point, *reference), certified(*reference)).at_most <=
+                 accuracies.back();
+    };
     SweepProgress shown(selected, SweepBound(scene, until, effort));
     effort.recall = shown.seen(points_of(study));
     for (const Method* method : selected) {
       taken.emplace_back();
-      sweep(*method, scene, until, *reference, effort, [&](const Point& point) {
-        shown.take(point);
-        taken.back().push_back(point);
-      });
+      sweep(
+          *method, scene, until, *reference, effort,
+          [&](const Point& point) {
+            shown.take(point);
+            taken.back().push_back(point);
+          },
+          is_last);
       shown.finish();
     }
   });
+  if (study.is_share()) return study.conclude(done);
 
   nlohmann::json origin_of_points = origin;
   if (reference) {
     const std::vector<Point> points = from_coarse_to_fine(taken);
-    auto front = fastest_at_each_accuracy(points, *reference);
+    auto front = fastest_at_each_accuracy(points, *reference, accuracies);
     add_stability_margins(front, scene);
     for (const Point& point : points)
       point_columns().write_row(points_csv, {drawn.name, point, reference->certified.position});
@@ -162,6 +200,7 @@ int main(int argc, char** argv) {
       {.name = "work_precision",
        .summary = "Measures speed against accuracy of every integrator on one scene.",
        .has_threads = true,
-       .has_resume = true},
+       .has_resume = true,
+       .has_shares = true},
       declare, work_precision, argc, argv);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <map>
 
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/measure/speed/judgement.hpp"
@@ -14,11 +15,21 @@ void keep_faster(const Point*& fastest, const Point& point) {
   if (!fastest || point.time < fastest->time) fastest = &point;
 }
 
+const std::vector<double>& usual_accuracies() {
+  static const std::vector<double> all = [] {
+    std::vector<double> powers;
+    for (int digit = 1; digit <= 9; ++digit) powers.push_back(std::pow(10.0, -digit));
+    return powers;
+  }();
+  return all;
+}
+
 std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
-                                               const Reference& reference) {
+                                               const Reference& reference,
+                                               const std::vector<double>& accuracies) {
   std::vector<FrontRow> rows;
-  for (int digit = 1; digit <= 9; ++digit) {
-    FrontRow row{.accuracy = std::pow(10.0, -digit)};
+  for (const double accuracy : accuracies) {
+    FrontRow row{.accuracy = accuracy};
     for (const Point& point : points) {
       if (point.outcome != Outcome::reached_end) continue;
       const Known error = known(judged_error(point, reference), certified(reference));
@@ -32,6 +43,20 @@ std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
     rows.push_back(row);
   }
   return rows;
+}
+
+std::vector<const Point*> fastest_of_each_method(const std::vector<Point>& points,
+                                                 const Reference& reference, double accuracy) {
+  std::map<const Method*, const Point*> fastest;
+  for (const Point& point : points) {
+    if (point.outcome != Outcome::reached_end) continue;
+    if (known(judged_error(point, reference), certified(reference)).at_most <= accuracy)
+      keep_faster(fastest[point.method], point);
+  }
+  std::vector<const Point*> sorted;
+  for (const auto& [method, point] : fastest) sorted.push_back(point);
+  std::ranges::sort(sorted, {}, &Point::time);
+  return sorted;
 }
 
 void add_stability_margins(std::vector<FrontRow>& rows, const ReducedScene& scene) {

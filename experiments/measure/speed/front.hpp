@@ -26,9 +26,18 @@ struct FrontRow {
 // Replaces `fastest`, which may be nullptr, by `point` if that one takes less time.
 void keep_faster(const Point*& fastest, const Point& point);
 
-// Rows for the accuracies 1e-1, 1e-2, ... 1e-9; pointers into `points`.
-std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
-                                               const Reference& reference);
+// 1e-1, 1e-2, ... 1e-9.
+const std::vector<double>& usual_accuracies();
+
+// A row for each accuracy; pointers into `points`.
+std::vector<FrontRow> fastest_at_each_accuracy(
+    const std::vector<Point>& points, const Reference& reference,
+    const std::vector<double>& accuracies = usual_accuracies());
+
+// The fastest point of each method whose error is known to be at most the accuracy, the fastest
+// first; pointers into `points`.
+std::vector<const Point*> fastest_of_each_method(const std::vector<Point>& points,
+                                                 const Reference& reference, double accuracy);
 
 // Finds the margins of the rows on the scene, whose largest frequency is looked for once.
 void add_stability_margins(std::vector<FrontRow>& rows, const ReducedScene& scene);

@@ -1,0 +1,44 @@
+#include "experiments/command/shares.hpp"
+
+#include <chrono>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/command/provenance.hpp"
+
+namespace qddot::command {
+namespace {
+
+// A share counts all that its process does, from loading the scene on.
+const auto process_began = std::chrono::steady_clock::now();
+
+std::string given(const CommandLine& line, const std::string& option) {
+  for (const auto& [name, values] : line.given()) {
+    if (name == option) return values.back();
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_share_options(CommandLine& line) {
+  static std::string share, journal;  // given() has what they were given
+  line.add_flag("--list-shares",
+                "print what processes can measure apart from each other, and the study's key");
+  line.add_option("--share", share, "measure this share alone, into --journal").take_last();
+  line.add_option("--journal", journal, "the file for what is measured of a share").take_last();
+  line.add_flag("--kept", "measure nothing: make the tables of what the folder's journal holds");
+}
+
+std::string share_of(const CommandLine& line) { return given(line, "--share"); }
+
+std::string journal_of(const CommandLine& line) { return given(line, "--journal"); }
+
+std::string whole_mark(const std::string& share) { return "whole " + share; }
+
+nlohmann::json whole_record(const nlohmann::json& failure) {
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - process_began;
+  return {{"host", host()}, {"date", date_now()}, {"seconds", took.count()}, {"failure", failure}};
+}
+
+}  // namespace qddot::command
