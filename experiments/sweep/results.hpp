@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/sweep/task.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+
+namespace qddot::sweep {
+
+using namespace measure;
+
+// What was measured on one scene by work_precision, in its folder.
+struct SceneResult {
+  std::string label;
+  std::size_t entry = 0;  // of the study's list
+  std::map<std::string, double> varied{};
+  double until = 0;  // [s]
+  Reference reference;
+  std::vector<Point> points;
+};
+
+// Reads what work_precision left in `folder`. Throws InvalidInput where it is not as it was
+// written.
+SceneResult read_result(const Task& task, const std::string& folder);
+
+// The accuracies of the task's study, from coarse to fine.
+std::vector<double> accuracies_of(const Task& task);
+
+// `path`, fastest.csv: at each accuracy the fastest method on each scene, the next, and how many
+// times as long that takes.
+void write_fastest(const std::string& path, const std::vector<SceneResult>& results,
+                   const std::vector<double>& accuracies, const nlohmann::json& origin);
+
+// `path`, crossovers.csv: between which neighbouring values of a parameter of a generator, or
+// horizons, all else alike, the fastest method changes, and where the two take equally long: where
+// the line through the logarithm of the ratio of their times, over the logarithm of the parameter,
+// is zero.
+void write_crossovers(const std::string& path, const std::vector<SceneResult>& results,
+                      const std::vector<double>& accuracies, const nlohmann::json& origin);
+
+// For people: how often each method is the fastest at each accuracy, and by how much.
+void print_winners(const std::vector<SceneResult>& results, const std::vector<double>& accuracies);
+
+}  // namespace qddot::sweep

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "experiments/sweep/study_file.hpp"
+#include "qddot/scene/toml_table.hpp"
+
+namespace qddot::sweep {
+
+// The scenes of one table of a study's list of scenes: { file = ... } or { generator = ... }, whose
+// lists and ranges multiply; `horizons` where it names no `until` itself. Throws InvalidInput where
+// it is wrong, or where there would be more than `most` scenes, before any is made.
+std::vector<StudyScene> scenes_of(const TomlTable& entry, const toml::table& table,
+                                  const std::vector<double>& horizons, double most);
+
+// The numbers above 0 at a key: one, or a list of at least one, each once; none where it is
+// missing.
+std::vector<double> positive_numbers(const TomlTable& table, const toml::table& values,
+                                     std::string_view key);
+
+}  // namespace qddot::sweep

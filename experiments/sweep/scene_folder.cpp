@@ -1,0 +1,79 @@
+#include "experiments/sweep/scene_folder.hpp"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "experiments/command/program.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/shares.hpp"
+#include "experiments/command/whole_file.hpp"
+#include "experiments/sweep/work_costs.hpp"
+
+namespace qddot::sweep {
+
+using namespace command;
+namespace {
+
+namespace fs = std::filesystem;
+
+// References that were made in the scene's own folder, beside other tables of it.
+void copy_references(const std::string& from, const std::string& to) {
+  std::error_code error;
+  if (fs::equivalent(from, to, error)) return;
+  for (const auto& entry : fs::recursive_directory_iterator(from)) {
+    if (entry.path().filename() != "reference.json") continue;
+    const fs::path copy = to / fs::relative(entry.path(), from);
+    fs::create_directories(copy.parent_path());
+    fs::copy_file(entry.path(), copy, fs::copy_options::overwrite_existing);
+  }
+}
+
+std::string cause_of(const ChildEnd& end) {
+  const bool is_done = end.status == done || end.status == end_not_reached;
+  return is_done && end.signal == 0 ? "" : end.cause();
+}
+
+}  // namespace
+
+std::string make_tables(const TaskFiles& files, const ScenePart& part, bool by_work) {
+  const Task& first = part.tasks.front();
+  require_folder(part.out);
+  copy_references(files.folder() + "/" + first.folder, part.out);
+  nlohmann::json key = first.key;
+  key["machine"] = by_work ? machine() : part.machine;
+  {
+    const WorkCosts costs =
+        by_work ? costs_for(first, files.folder() + "/" + first.folder) : WorkCosts();
+    Journal journal(fmt::format("{}/{}.journal", part.out, first.program), key, /*goes_on=*/false);
+    for (const Task& task : part.tasks) {
+      const auto contents = files.contents(task);
+      if (!contents) continue;  // somebody took it away meanwhile
+      for (const auto& [name, piece] : contents->pieces)
+        journal.keep(name, by_work ? sweep::by_work(piece, costs) : piece);
+    }
+  }
+  Command command{.program = program_path(first.program), .arguments = first.arguments};
+  for (const auto& word : {"--out", part.out.c_str(), "--kept", "--progress", "none"})
+    command.arguments.emplace_back(word);
+  return cause_of(run_child(command));
+}
+
+std::string run_script(const std::string& script, const std::string& folder) {
+  const std::string experiments = QDDOT_EXPERIMENTS;
+  const std::string page = experiments + "/report";
+  return cause_of(
+      run_child({.program = "/usr/bin/python3",  // Debian's own, which has matplotlib
+                 .arguments = {"-B", experiments + "/" + script, folder},
+                 .environment = {{"PYTHONPATH", experiments + "/plot:" + page}, {"LC_ALL", "C"}}}));
+}
+
+std::string draw(const ScenePart& part) {
+  const std::string program = part.tasks.front().program;
+  std::string cause = run_script(fmt::format("{0}/{0}.py", program), part.out);
+  if (cause.empty() && program == "work_precision")
+    cause = run_script("report/report.py", part.out);
+  return cause;
+}
+
+}  // namespace qddot::sweep

@@ -1,0 +1,113 @@
+#include "experiments/sweep/task.hpp"
+
+#include <cstdint>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "experiments/command/journal.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/whole_file.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::sweep {
+
+using namespace command;
+namespace {
+
+std::string path_of(const std::string& folder) { return folder + "/tasks.jsonl"; }
+
+std::string text_of(const nlohmann::json& json) {
+  return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+nlohmann::json to_json(const Task& task) {
+  return {{"id", task.id},           {"stage", task.stage}, {"folder", task.folder},
+          {"program", task.program}, {"share", task.share}, {"arguments", task.arguments},
+          {"varied", task.varied},   {"entry", task.entry}, {"key", task.key}};
+}
+
+Task task_of(const nlohmann::json& json) {
+  return {.id = json.at("id"),
+          .stage = json.at("stage"),
+          .folder = json.at("folder"),
+          .program = json.at("program"),
+          .share = json.at("share"),
+          .arguments = json.at("arguments"),
+          .key = json.at("key"),
+          .varied = json.at("varied"),
+          .entry = json.at("entry")};
+}
+
+bool is_sound(const Task& task) {
+  const auto is_name = [](const std::string& name) {
+    return !name.empty() && name.find('/') == name.npos && !name.starts_with('.');
+  };
+  return (task.stage == references || task.stage == points) && is_name(task.folder) &&
+         is_name(task.program) && task.id == id_of(task.key, task.share);
+}
+
+}  // namespace
+
+std::string id_of(nlohmann::json key, const std::string& share) {
+  key.erase("machine");
+  key["share"] = share;
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // 64-bit FNV-1a
+  for (const char c : text_of(key))
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x00000100000001b3ULL;
+  return fmt::format("{:016x}", hash);
+}
+
+std::vector<Task> read_tasks(const std::string& folder) {
+  const std::string path = path_of(folder);
+  std::ifstream file(path);
+  std::vector<Task> tasks;
+  std::string line;
+  while (std::getline(file, line)) {
+    const auto json = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
+    bool is_good = false;
+    try {
+      tasks.push_back(task_of(json));
+      is_good = is_sound(tasks.back());
+    } catch (const nlohmann::json::exception&) {  // written by somebody else
+    }
+    if (!is_good) {
+      throw InvalidInput(fmt::format(
+          "{}:{}: it is no task as sweep plan writes it; allowed is to plan the study again", path,
+          tasks.size() + !json.is_object()));
+    }
+  }
+  if (tasks.empty()) {
+    throw InvalidInput(fmt::format(
+        "{}: it is missing or empty; allowed is a folder that sweep plan has filled", path));
+  }
+  if (const auto what = difference(tasks.front().key.value("build", nlohmann::json()), build());
+      !what.empty()) {
+    throw InvalidInput(fmt::format(
+        "{}: it was planned by another build of qddot: {}; allowed are that build, or to plan the "
+        "study again",
+        path, what));
+  }
+  return tasks;
+}
+
+void write_tasks(const std::string& folder, const std::vector<Task>& tasks) {
+  // Its own, as its first line says of which sources it is.
+  WholeFile file(path_of(folder), R"({"arguments":)");
+  for (const Task& task : tasks) file.write(text_of(to_json(task)) + "\n");
+  file.complete();
+  file.commit();
+}
+
+Command command_of(const Task& task, const std::string& folder, const std::string& journal) {
+  Command command{.program = program_path(task.program), .arguments = task.arguments};
+  for (const auto& word :
+       {std::string("--out"), folder + "/" + task.folder, std::string("--share"), task.share,
+        std::string("--journal"), journal, std::string("--progress"), std::string("none")})
+    command.arguments.push_back(word);
+  // A core each: others measure beside it.
+  command.environment = {{"OMP_NUM_THREADS", "1"}, {"OPENBLAS_NUM_THREADS", "1"}};
+  return command;
+}
+
+}  // namespace qddot::sweep

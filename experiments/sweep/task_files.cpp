@@ -1,0 +1,144 @@
+#include "experiments/sweep/task_files.hpp"
+
+#include <cerrno>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <sys/file.h>
+#include <system_error>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "experiments/command/program.hpp"
+#include "experiments/command/provenance.hpp"
+#include "experiments/command/shares.hpp"
+#include "experiments/command/whole_file.hpp"
+
+namespace qddot::sweep {
+
+using namespace command;
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether a process holds the lock of a journal; it does as long as it lives.
+bool is_held(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool is = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return is;
+}
+
+// HOST.PID of tasks/begun/ID.HOST.PID.journal.
+std::string where(const std::string& path, const Task& task) {
+  return fs::path(path).stem().string().substr(task.id.size() + 1);
+}
+
+}  // namespace
+
+TaskFiles::TaskFiles(std::string folder, bool makes_folders) : folder_(std::move(folder)) {
+  if (!makes_folders) return;
+  for (const char* name : {"whole", "begun", "failed"}) require_folder(folder_ + "/tasks/" + name);
+}
+
+std::string TaskFiles::whole_path(const Task& task) const {
+  return fmt::format("{}/tasks/whole/{}.journal", folder_, task.id);
+}
+
+std::string TaskFiles::failed_path(const Task& task) const {
+  return fmt::format("{}/tasks/failed/{}.json", folder_, task.id);
+}
+
+std::vector<std::string> TaskFiles::begun_paths(const Task& task) const {
+  std::vector<std::string> paths;
+  std::error_code error;
+  fs::directory_iterator entry(folder_ + "/tasks/begun", error), end;
+  for (; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with(task.id + ".") && name.ends_with(".journal"))
+      paths.push_back(entry->path().string());
+  }
+  return paths;
+}
+
+std::optional<Journal::Contents> TaskFiles::contents(const Task& task) const {
+  Journal::Contents contents = Journal::read(whole_path(task));
+  if (!contents.pieces.contains(whole_mark(task.share))) return {};
+  if (id_of(contents.key, task.share) != task.id) return {};  // of other code, or somebody else's
+  return contents;
+}
+
+TaskState TaskFiles::state(const Task& task) const {
+  if (const auto whole = contents(task)) {
+    const auto& mark = whole->pieces.at(whole_mark(task.share));
+    TaskState state{.kind = TaskState::whole,
+                    .where = mark.value("host", ""),
+                    .seconds = mark.value("seconds", 0.0),
+                    .machine = whole->key.value("machine", nlohmann::json())};
+    if (const auto failure = mark.find("failure"); failure != mark.end() && failure->is_string()) {
+      state.kind = TaskState::without_reference;
+      state.cause = *failure;
+    }
+    return state;
+  }
+  const auto begun = begun_paths(task);
+  for (const std::string& path : begun) {
+    if (is_held(path)) return {.kind = TaskState::running, .where = where(path, task)};
+  }
+  std::ifstream file(failed_path(task));
+  const auto failure = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (failure.is_object())
+    return {.kind = TaskState::failed, .cause = failure.value("cause", "unknown")};
+  if (begun.empty()) return {};
+  return {.kind = TaskState::begun,
+          .cause = fmt::format("its process was ended ({})", where(begun.front(), task)),
+          .where = where(begun.front(), task)};
+}
+
+std::string TaskFiles::begin(const Task& task) const {
+  const std::string path =
+      fmt::format("{}/tasks/begun/{}.{}.{}.journal", folder_, task.id, host(), ::getpid());
+  nlohmann::json key = task.key;
+  key["machine"] = machine();
+  key["share"] = task.share;
+  std::vector<Journal::Contents> all;
+  for (const std::string& other : begun_paths(task)) all.push_back(Journal::read(other));
+  Journal journal(path, key, /*goes_on=*/false);
+  for (const Journal::Contents& kept : all) {
+    if (kept.key != key) continue;  // seconds of another machine
+    for (const auto& [name, value] : kept.pieces) {
+      if (!journal.find(name)) journal.keep(name, value);
+    }
+  }
+  return path;
+}
+
+bool TaskFiles::finish(const Task& task, const std::string& journal) const {
+  const Journal::Contents contents = Journal::read(journal);
+  if (!contents.pieces.contains(whole_mark(task.share)) ||
+      id_of(contents.key, task.share) != task.id)
+    return false;
+  // One that is there and not whole was damaged.
+  if (!this->contents(task)) ::unlink(whole_path(task).c_str());
+  if (::link(journal.c_str(), whole_path(task).c_str()) != 0 && errno != EEXIST &&
+      std::rename(journal.c_str(), whole_path(task).c_str()) != 0)
+    throw CannotWrite(fmt::format("{}: cannot be written: {}", whole_path(task),
+                                  std::generic_category().message(errno)));
+  for (const std::string& path : begun_paths(task)) {
+    if (path == journal || !is_held(path)) ::unlink(path.c_str());
+  }
+  ::unlink(failed_path(task).c_str());
+  return true;
+}
+
+void TaskFiles::fail(const Task& task, const std::string& cause) const {
+  WholeFile file(failed_path(task), "{\"cause\":");
+  const nlohmann::json record = {{"cause", cause}, {"host", host()}, {"date", date_now()}};
+  file.write(record.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) + "\n");
+  file.complete();
+  file.commit();
+}
+
+}  // namespace qddot::sweep

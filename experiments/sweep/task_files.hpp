@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/command/journal.hpp"
+#include "experiments/sweep/task.hpp"
+
+namespace qddot::sweep {
+
+using command::Journal;
+
+// What has become of a task.
+struct TaskState {
+  enum Kind {
+    whole,              // it is measured
+    without_reference,  // and there is no reference, which `cause` says
+    running,            // a process measures it, `where`
+    begun,              // one did, and was ended: some of its pieces are kept
+    failed,             // for a cause that may go away
+    missing,
+  };
+  Kind kind = missing;
+  std::string cause{}, where{};
+  double seconds = 0;        // that a whole one took
+  nlohmann::json machine{};  // that it was measured on
+
+  bool is_done() const { return kind == whole || kind == without_reference; }
+};
+
+// The files of the tasks of a sweep, in its folder:
+//   tasks/whole/ID.journal           what a task measured, never written again
+//   tasks/begun/ID.HOST.PID.journal  what a process is measuring, or measured until it was ended
+//   tasks/failed/ID.json             why a task failed last
+// They need no locks: a process writes a file of its own, which becomes ID.journal at once, by a
+// link that fails where another process was first. Locks only say whether somebody is at work.
+class TaskFiles {
+ public:
+  // Makes the folders if asked to. Throws InvalidInput where that cannot be done.
+  explicit TaskFiles(std::string folder, bool makes_folders = false);
+
+  const std::string& folder() const { return folder_; }
+  TaskState state(const Task& task) const;
+  // What a whole task measured; its mark says so. Nothing where it is not whole.
+  std::optional<Journal::Contents> contents(const Task& task) const;
+
+  // The file for this process to measure the task into, with the pieces that ended processes have
+  // kept. Throws InvalidInput or CannotWrite as Journal does.
+  std::string begin(const Task& task) const;
+  // The task is whole in the file that begin() gave: gives it its name, forgets that it failed and
+  // what others kept of it. False, and nothing done, where the file is not whole.
+  bool finish(const Task& task, const std::string& journal) const;
+  // Why it failed.
+  void fail(const Task& task, const std::string& cause) const;
+
+ private:
+  std::string whole_path(const Task& task) const;
+  std::string failed_path(const Task& task) const;
+  std::vector<std::string> begun_paths(const Task& task) const;
+
+  std::string folder_;
+};
+
+}  // namespace qddot::sweep
