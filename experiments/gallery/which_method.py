@@ -5,80 +5,40 @@ front.csv and the sidecar points.json. A row is a scene, from soft to stiff: the
 take, the lower.
 """
 
-import statistics
+import os
 import sys
 
-from matplotlib.patches import Rectangle
-
+import measurements
 import scene_row
+from fastest_table import Cells, draw_cells, draw_heads, draw_key, sundials_in_words
 from measurements import BadInput
+from names import shown
 from sheet import Sheet
-from style import COOL, FAINT, INK, STOCK, WARM, Look, power_of_ten, seconds, use_style
+from style import COOL, FAINT, use_style
 
-EXPONENTS = range(1, 10)
 WIDTH, MARGIN = 10.0, 0.15
-LEFT, COLUMN, ROW, GAP = 1.93, 0.76, 0.66, 0.06
-RIGHT = LEFT + COLUMN * len(EXPONENTS) + 0.14
+ROW, GAP = 0.66, 0.06
+CELLS = Cells(measurements.DECADES, 1.93, 0.76, ROW, name_depth=0.24, time_depth=ROW - 0.12)
 TOP, FOOT = 1.66, 0.62
-TINT = 0.26
-NAME_SIZES, TIME_SIZE, FACT_SIZE = (10.5, 10, 9.5, 9, 8.5, 8, 7.5), 8.5, 8.5
-
-# Warm kinds take forces alone; cool ones treat stiff springs apart or solve linear systems.
-COLORS = {
-    "Euler and Verlet": WARM[2],
-    "symmetric multistep": WARM[3],
-    "other explicit": WARM[0],
-    "multirate": COOL[1],
-    "implicit": COOL[0],
-    "SUNDIALS": FAINT,
+FACT_SIZE = 8.5
+TITLES = {
+    "pendulum": "elastic pendulum",
+    "cloth": "hanging cloth",
+    "lattice": "cantilever block",
+    "fpu": "Fermi-Pasta-Ulam",
+    "framed_cloth": "cloth, stiff frame",
+    "stiff_frame": "cloth, stiffer frame",
 }
 
 
-def broken(name):
-    """A name in two lines of as equal lengths as its underscores allow."""
-    words = name.split("_")
-    ways = [("_".join(words[:i]) + "_", "_".join(words[i:])) for i in range(1, len(words))]
-    return "\n".join(min(ways, key=lambda way: max(map(len, way)))) if ways else name
-
-
-def draw_name(sheet, middle, top, room, method, color):
-    """The name of a method, centred in a cell: in one line or two, as large as the room lets it be."""
-    style = {"color": color, "ha": "center", "va": "center", "linespacing": 1.05}
-    text = sheet.text(middle, top + 0.24, method, **style)
-    for size in NAME_SIZES:
-        for words in (method, broken(method)):
-            text.set_text(words)
-            text.set_size(size)
-            if sheet.text_width(text) < room - 0.05:
-                return
-
-
-def draw_cells(sheet, top, row):
-    """The cells of a scene: the fastest method, its time below each accuracy."""
-    axes = sheet.axes(LEFT, top, COLUMN * len(EXPONENTS), ROW)
-    axes.set_xlim(0, len(EXPONENTS))
-    axes.set_ylim(0, 1)
-    axes.set_axis_off()
-    for method, first, last in row.stretches:
-        look = Look(COLORS[row.kinds[method]], "o", STOCK)
-        box = {"facecolor": look.color, "alpha": TINT, "edgecolor": "none"}
-        axes.add_patch(Rectangle((first - 1, 0), last - first + 1, 1, **box))
-        for edge in (first - 1, last):
-            axes.axvline(edge, color="white", linewidth=3)
-        room = COLUMN * (last - first + 1)
-        middle = LEFT + COLUMN * (first - 1) + room / 2
-        draw_name(sheet, middle, top, room, method, look.text_color)
-    for exponent in EXPONENTS:
-        point = row.front.get(exponent)
-        words = seconds(float(f"{point.time:.2g}")) if point else "–"
-        height = top + (ROW - 0.12 if point else ROW / 2)
-        style = {
-            "size": TIME_SIZE,
-            "color": INK if point else FAINT,
-            "ha": "center",
-            "va": "center",
-        }
-        sheet.text(LEFT + COLUMN * (exponent - 0.5), height, words, **style)
+def read(directory):
+    """The row of the scene whose results are in a folder; raises measurements.BadInput where these are
+    not of work_precision."""
+    runs = measurements.read_runs(os.path.join(directory, "points.csv"))
+    front = measurements.read_front(os.path.join(directory, "front.csv"), runs)
+    name, facts = scene_row.read_sidecar(os.path.join(directory, "points.json"))
+    methods = scene_row.of_runs(runs, scene_row.by_accuracy(front))
+    return scene_row.Row(TITLES.get(name, shown(name)), **facts, **methods)
 
 
 def draw_scene(sheet, top, row):
@@ -91,34 +51,15 @@ def draw_scene(sheet, top, row):
 
 def draw_sundials(sheet, top, row):
     """How many times as long the best of SUNDIALS takes, to the right of the cells."""
-    ratios = row.ratios.values()
-    if not ratios:
-        sheet.text(RIGHT, top + ROW / 2, "none", size=10.5, color=FAINT, va="center")
+    ratio, lines = sundials_in_words(row)
+    if not ratio:
+        sheet.text(CELLS.right, top + ROW / 2, "none", size=10.5, color=FAINT, va="center")
         return
-    middle, low, high = map(rounded, (statistics.median(ratios), min(ratios), max(ratios)))
     style = {"size": 13, "weight": "bold", "color": COOL[0], "va": "center"}
-    sheet.text(RIGHT, top + 0.15, f"{middle} ×", **style)
-    lines = [f"{low} to {high}"] if low != high else []
-    if len(row.ratios) < len(row.front):
-        lines.append(f"none below {power_of_ten(10.0 ** -max(row.ratios))}")
+    sheet.text(CELLS.right, top + 0.15, ratio, **style)
     for line, words in enumerate(lines):
         height = top + 0.37 + 0.17 * line
-        sheet.text(RIGHT, height, words, size=FACT_SIZE, color=FAINT, va="center")
-
-
-def rounded(ratio):
-    """A ratio in two digits."""
-    return f"{ratio:.1f}" if ratio < 9.95 else f"{float(f'{ratio:.2g}'):.0f}"
-
-
-def draw_key(sheet, top, kinds):
-    """The colours of the kinds, side by side."""
-    left = MARGIN
-    for kind in filter(kinds.__contains__, COLORS):
-        box = {"facecolor": COLORS[kind], "alpha": TINT + 0.15, "edgecolor": "none", "pad": 4}
-        sheet.text(left + 0.05, top, "     ", size=9, va="center", bbox=box)
-        text = sheet.text(left + 0.36, top, kind, size=10, va="center")
-        left += 0.36 + sheet.text_width(text) + 0.3
+        sheet.text(CELLS.right, height, words, size=FACT_SIZE, color=FAINT, va="center")
 
 
 def draw_header(sheet, rows):
@@ -129,16 +70,10 @@ def draw_header(sheet, rows):
         f"the fastest of {most} methods on each scene, at each accuracy, and the time of its run"
     )
     sheet.text(MARGIN, 0.6, words, size=10.5, color=FAINT, va="center")
-    draw_key(sheet, 0.96, {row.kinds[point.method] for row in rows for point in row.front.values()})
-    head, upper, lower = {"size": 10, "va": "center"}, TOP - 0.39, TOP - 0.16
-    sheet.text(MARGIN, lower, "soft to stiff ▼", weight="bold", **head)
-    middle = LEFT + COLUMN * len(EXPONENTS) / 2
-    sheet.text(middle, upper, "position error at most", ha="center", color=FAINT, **head)
-    for exponent in EXPONENTS:
-        place = LEFT + COLUMN * (exponent - 0.5)
-        sheet.text(place, lower, power_of_ten(10.0**-exponent), ha="center", **head)
-    for height, words in ((upper, "SUNDIALS’"), (lower, "best takes")):
-        sheet.text(RIGHT, height, words, color=FAINT, **head)
+    draw_key(sheet, MARGIN, 0.96, WIDTH, set().union(*(row.front_kinds for row in rows)))
+    style = {"size": 10, "weight": "bold", "va": "center"}
+    sheet.text(MARGIN, TOP - 0.16, "soft to stiff ▼", **style)
+    draw_heads(sheet, TOP, CELLS, "position error")
 
 
 def draw_foot(sheet, top, rows):
@@ -164,7 +99,7 @@ def draw(rows):
     for index, row in enumerate(rows):
         top = TOP + index * (ROW + GAP)
         draw_scene(sheet, top, row)
-        draw_cells(sheet, top, row)
+        draw_cells(sheet, top, row, CELLS)
         draw_sundials(sheet, top, row)
     draw_foot(sheet, height - FOOT, rows)
     return sheet
@@ -178,7 +113,7 @@ def main(arguments):
     picture, *directories = arguments
     use_style()
     try:
-        draw([scene_row.read(directory) for directory in directories]).save(picture)
+        draw([read(directory) for directory in directories]).save(picture)
     except BadInput as error:
         print(error, file=sys.stderr)
         return 2

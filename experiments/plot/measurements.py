@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 # A relative error above this says only that the solution is lost.
 WORST_ERROR = 3.0
+# The accuracies of a front: 1e-1, ... 1e-9.
+DECADES = tuple(10.0**-digit for digit in range(1, 10))
 
 
 class BadInput(Exception):
@@ -175,10 +177,10 @@ def read_front(path, runs):
     return sorted(points, key=lambda point: -point.accuracy)
 
 
-def fastest_at_each_accuracy(runs):
-    """The points of the front at 1e-1, ... 1e-9."""
+def fastest_at_each_accuracy(runs, accuracies=DECADES):
+    """The points of the front at these accuracies."""
     points = []
-    for accuracy in (10.0**-digit for digit in range(1, 10)):
+    for accuracy in accuracies:
         good = [run for run in runs if run.counts and not run.failure and run.bound <= accuracy]
         if good:
             best = min(good, key=lambda run: run.time)

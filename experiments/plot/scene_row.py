@@ -1,0 +1,103 @@
+"""What was found on one scene, as the row of a table: the fastest method at each accuracy."""
+
+import json
+import math
+from dataclasses import dataclass, field
+
+import measurements
+from method_kinds import kind_of
+from style import seconds
+
+
+@dataclass(frozen=True)
+class Row:
+    """A scene: its title, how many nodes and springs it has, its end [s] and how many steps Verlet
+    takes to it at least (None where that is not known); by accuracy the fastest point, how many times
+    as long the best of SUNDIALS and, where it is known, the next method take; the kinds of methods, how
+    many they are, the processor, and whether its errors are those of the energy."""
+
+    title: str
+    nodes: int
+    springs: int
+    until: float
+    steps: float | None
+    processor: str
+    front: dict
+    ratios: dict
+    kinds: dict
+    methods: int
+    margins: dict = field(default_factory=dict)
+    is_by_energy: bool = False
+
+    @property
+    def size(self):
+        """How many nodes and springs, in words."""
+        return f"{counted(self.nodes, 'node')}, {counted(self.springs, 'spring')}"
+
+    @property
+    def duration(self):
+        """The end and the steps to it, in words."""
+        if not self.steps:
+            return seconds(self.until)
+        steps = round(self.steps, 1 - math.floor(math.log10(self.steps)))
+        return f"{seconds(self.until)}, {steps:,.0f} steps"
+
+    @property
+    def front_kinds(self):
+        """The kinds of the methods that are the fastest anywhere."""
+        return {self.kinds[point.method] for point in self.front.values()}
+
+    def stretches(self, accuracies):
+        """The neighbouring ones of these accuracies with one fastest method: (method, first, last
+        place)."""
+        found = []
+        for place, accuracy in enumerate(accuracies):
+            if accuracy not in self.front:
+                continue
+            method = self.front[accuracy].method
+            if found and found[-1][0] == method and found[-1][2] == place - 1:
+                found[-1] = (method, found[-1][1], place)
+            else:
+                found.append((method, place, place))
+        return found
+
+
+def by_accuracy(front):
+    """The points of a front by their accuracies, to the digits that tell two accuracies apart."""
+    return {float(f"{point.accuracy:.3g}"): point for point in front}
+
+
+def counted(number, noun):
+    """So many of something, in words."""
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
+def read_sidecar(path):
+    """What the sidecar of points.csv says: the scene's name, and size, end, steps and processor as a
+    row has them."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            about = json.load(file)
+        scene, until = about["scene"], float(about["until"])
+        step = about["reduced"]["largest_stable_step"]
+        return scene["name"], {
+            "nodes": scene["nodes"],
+            "springs": scene["springs"],
+            "until": until,
+            "steps": until / step if step else None,
+            "processor": about["cpu"],
+        }
+    except (OSError, LookupError, ValueError, TypeError, AttributeError) as error:
+        raise measurements.BadInput(f"{path} cannot be read: {error}.") from error
+
+
+def of_runs(runs, front):
+    """What a row says of methods: `runs` of one scene, and their front by accuracy."""
+    sundials = [run for run in runs if run.family == "sundials"]
+    best = by_accuracy(measurements.fastest_at_each_accuracy(sundials, front))
+    return {
+        "front": front,
+        "ratios": {key: best[key].time / point.time for key, point in front.items() if key in best},
+        "kinds": {run.method: kind_of(run) for run in runs if not run.failure},
+        "methods": len({run.method for run in runs}),
+    }
