@@ -87,7 +87,8 @@ def draw_time(sheet, middle, height, time, margin):
 
 
 def draw_cells(sheet, top, row, cells):
-    """The cells of a scene: the fastest method, its time below each accuracy."""
+    """The cells of a scene: the fastest method, its time below each accuracy; a dash where
+    one was asked for and none was found."""
     axes = sheet.axes(cells.left, top, cells.width, cells.row)
     axes.set_xlim(0, len(cells.accuracies))
     axes.set_ylim(0, 1)
@@ -106,7 +107,7 @@ def draw_cells(sheet, top, row, cells):
         if point:
             margin = row.margins.get(accuracy)
             draw_time(sheet, middle, top + cells.time_depth, point.time, margin)
-        else:
+        elif accuracy in row.accuracies:
             style = {"size": TIME_SIZE, "color": FAINT, "ha": "center", "va": "center"}
             sheet.text(middle, top + cells.row / 2, "–", **style)
 

@@ -14,7 +14,8 @@ class Row:
     """A scene: its title, how many nodes and springs it has, its end [s] and how many steps Verlet
     takes to it at least (None where that is not known); by accuracy the fastest point, how many times
     as long the best of SUNDIALS and, where it is known, the next method take; the kinds of methods, how
-    many they are, the processor, and whether its errors are those of the energy."""
+    many they are, the processor, the accuracies that were asked for, and whether they are those of the
+    energy."""
 
     title: str
     nodes: int
@@ -26,6 +27,7 @@ class Row:
     ratios: dict
     kinds: dict
     methods: int
+    accuracies: tuple = measurements.DECADES
     margins: dict = field(default_factory=dict)
     is_by_energy: bool = False
 

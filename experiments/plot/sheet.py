@@ -39,10 +39,13 @@ class Sheet:
 
     def wrapped(self, words, room, **style):
         """The words with commas between them, in as many lines of that width as they need."""
+        return self.filled([*(f"{word}," for word in words[:-1]), *words[-1:]], room, **style)
+
+    def filled(self, words, room, **style):
+        """The words in as many lines of that width as they need."""
         text = self.text(0, 0, "", **style)
         lines = [""]
-        for i, word in enumerate(words):
-            word += "," if i + 1 < len(words) else ""
+        for word in words:
             text.set_text(f"{lines[-1]} {word}".strip())
             if lines[-1] and self.text_width(text) > room:
                 lines.append("")

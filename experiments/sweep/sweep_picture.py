@@ -1,0 +1,210 @@
+"""The picture of a sweep: the table of the fastest methods, where they change, and what a reader must
+know of the numbers."""
+
+from dataclasses import dataclass
+
+from matplotlib import pyplot
+
+from fastest_table import (
+    KEY_LINE,
+    Cells,
+    draw_cells,
+    draw_heads,
+    draw_key,
+    sundials_in_words,
+)
+from scene_row import counted
+from scene_title import ONE_LINE_SIZES, draw_title
+from sheet import Sheet
+from style import COOL, FAINT, seconds
+
+MARGIN = 0.15
+ROW, GAP = 0.5, 0.06
+LEAST_WIDTH, SUNDIALS_WIDTH = 8.2, 1.5
+# All columns together are so wide, if none is too narrow or too wide then.
+CELLS_WIDTH, LEAST_COLUMN, MOST_COLUMN = 6.4, 0.95, 1.7
+LEAST_NAMES, MOST_NAMES = 1.5, 2.9
+FACT_SIZE, FOOT_SIZE, SUBTITLE_SIZE, CHANGE_SIZE = 8, 8.5, 10.5, 9
+LINE, CHANGE_LINE, INDENT = 0.19, 0.2, 0.16
+
+
+@dataclass(frozen=True)
+class Study:
+    """What is drawn: the rows, how many scenes there are in all and how many of these could not be
+    read, sentences on where the fastest method changes, whether times are work times costs, the
+    processor, and by what the sweep was interrupted, if it was."""
+
+    rows: list
+    scenes: int
+    unreadable: int
+    changes: list
+    is_work: bool
+    processor: str
+    interrupted: str | None
+
+    @property
+    def is_by_energy(self):
+        """Whether each of the rows is, as a set."""
+        return {row.is_by_energy for row in self.rows}
+
+
+def facts(row):
+    """What is said of a scene below its name."""
+    words = f"{counted(row.nodes, 'node')}, {row.duration}"
+    return f"{words}, by energy" if row.is_by_energy else words
+
+
+def subtitle(study):
+    """What the picture shows."""
+    rows = len(study.rows)
+    where = "on one scene" if rows == 1 else f"on each of {rows} scenes"
+    if rows + study.unreadable < study.scenes:
+        where = f"on the first {rows} of the {study.scenes} scenes in fastest.csv"
+    time = "its time by its work" if study.is_work else "the time of its run"
+    return (
+        f"the fastest of {max(row.methods for row in study.rows)} methods {where}, at each accuracy,"
+        f" {time} and how many times as long the next one takes"
+    )
+
+
+def foot(study):
+    """What a reader must know of the numbers, in sentences."""
+    core = f"on one core of {study.processor}"
+    said = [
+        (
+            f"Times are not those of whole runs: they are counts of a run’s work times what each costs {core}."
+            if study.is_work
+            else f"Times of whole runs {core}."
+        )
+    ]
+    if False in study.is_by_energy:
+        said.append("Errors at the end T, over the largest displacement.")
+    if True in study.is_by_energy:
+        said.append("By energy: a chaotic motion, whose accuracy is that of the energy on the way.")
+    said += [
+        "Steps: the fewest of Verlet, T ω/2 at the largest ω.",
+        "SUNDIALS’ best: how many times as long as the fastest, median over the accuracies, least to"
+        " most.",
+        "–: no run reached it in the time it had.",
+    ]
+    if study.unreadable:
+        verb, whose = ("is", "its folder") if study.unreadable == 1 else ("are", "their folders")
+        said.append(
+            f"{counted(study.unreadable, 'scene')} of fastest.csv {verb} left out: {whose} cannot be"
+            " read."
+        )
+    if study.interrupted:
+        said.append(f"The sweep was interrupted by {study.interrupted}: measurements are missing.")
+    return said
+
+
+class Plan:
+    """Where everything is: measured on a sheet that is thrown away, as the height of a sheet must be
+    known before anything is drawn on it."""
+
+    def __init__(self, study):
+        accuracies = sorted({key for row in study.rows for key in row.accuracies}, reverse=True)
+        column = min(max(CELLS_WIDTH / len(accuracies), LEAST_COLUMN), MOST_COLUMN)
+        scratch = Sheet(LEAST_WIDTH, 1.0)
+        self.names = self.room_for_names(scratch, study.rows)
+        left = MARGIN + self.names + 0.12
+        self.cells = Cells(tuple(accuracies), left, column, ROW, name_depth=0.18, time_depth=0.385)
+        self.width = max(self.cells.right + SUNDIALS_WIDTH, LEAST_WIDTH)
+        room = self.width - 2 * MARGIN
+        self.subtitle = scratch.filled(subtitle(study).split(), room, size=SUBTITLE_SIZE)
+        self.key = 0.76 + 0.2 * len(self.subtitle)
+        self.kinds = set().union(*(row.front_kinds for row in study.rows))
+        lines = self.draw_key(Sheet(self.width, 1.0)) if self.kinds else 0
+        self.top = self.key + 0.7 + KEY_LINE * (lines - 1)
+        self.changes = [
+            line for sentence in study.changes for line in self.hanging(scratch, sentence, room)
+        ]
+        self.below = self.top + len(study.rows) * (ROW + GAP) + 0.12
+        changes_height = 0.42 + CHANGE_LINE * len(self.changes) if self.changes else 0.0
+        self.foot = scratch.filled(" ".join(foot(study)).split(), room, size=FOOT_SIZE)
+        self.foot_top = self.below + changes_height
+        self.height = self.foot_top + LINE * len(self.foot) + 0.12
+        pyplot.close("all")
+
+    def draw_key(self, sheet):
+        """Draws the colours of the kinds; returns how many lines they take."""
+        return draw_key(sheet, MARGIN, self.key, self.width - MARGIN, self.kinds)
+
+    @staticmethod
+    def room_for_names(sheet, rows):
+        """How wide the names of scenes and what is said below them are, within limits."""
+        widths = []
+        for row in rows:
+            for words, style in (
+                (row.title, {"size": ONE_LINE_SIZES[0], "weight": "bold"}),
+                (facts(row), {"size": FACT_SIZE}),
+            ):
+                widths.append(sheet.text_width(sheet.text(0, 0, words, parse_math=False, **style)))
+        return min(max(max(widths) + 0.02, LEAST_NAMES), MOST_NAMES)
+
+    @staticmethod
+    def hanging(sheet, sentence, room):
+        """A sentence in lines, each with its indent: all but the first have one."""
+        lines = sheet.filled(sentence.split(), room - INDENT, size=CHANGE_SIZE)
+        return [(INDENT if place else 0.0, words) for place, words in enumerate(lines)]
+
+
+def draw_header(sheet, plan, errors):
+    """Title, key and the heads of the columns."""
+    sheet.text(MARGIN, 0.27, "Which method, when?", size=16, weight="bold", va="center")
+    for line, words in enumerate(plan.subtitle):
+        height = 0.6 + 0.2 * line
+        sheet.text(MARGIN, height, words, size=SUBTITLE_SIZE, color=FAINT, va="center")
+    if plan.kinds:
+        plan.draw_key(sheet)
+    sheet.text(MARGIN, plan.top - 0.16, "scene", size=10, weight="bold", va="center")
+    draw_heads(sheet, plan.top, plan.cells, errors)
+
+
+def draw_scene(sheet, plan, top, row):
+    """What is said of a scene, to the left of its cells."""
+    lines = draw_title(sheet, MARGIN, top + 0.15, plan.names, row.title)
+    height = top + (0.36 if lines == 1 else 0.4)
+    sheet.text(MARGIN, height, facts(row), size=FACT_SIZE, color=FAINT, va="center")
+
+
+def draw_sundials(sheet, plan, top, row):
+    """How many times as long the best of SUNDIALS takes, to the right of the cells."""
+    left = plan.cells.right
+    ratio, more = sundials_in_words(row)
+    if not ratio:
+        sheet.text(left, top + ROW / 2, "none" if row.front else "–", color=FAINT, va="center")
+        return
+    height = top + (0.16 if more else ROW / 2)
+    style = {"size": 12, "weight": "bold", "color": COOL[0], "va": "center"}
+    sheet.text(left, height, ratio, **style)
+    words = ", ".join(more)
+    sheet.text(left, top + 0.37, words, size=FACT_SIZE, color=FAINT, va="center")
+
+
+def draw_changes(sheet, plan):
+    """Where the fastest method changes, below the cells."""
+    words = "Where the fastest method changes"
+    sheet.text(MARGIN, plan.below + 0.1, words, size=10, weight="bold", va="center")
+    for line, (indent, words) in enumerate(plan.changes):
+        height = plan.below + 0.33 + CHANGE_LINE * line
+        sheet.text(MARGIN + indent, height, words, size=CHANGE_SIZE, va="center")
+
+
+def draw(study):
+    """The whole picture as a sheet."""
+    plan = Plan(study)
+    sheet = Sheet(plan.width, plan.height)
+    errors = "position error" if study.is_by_energy == {False} else "error"
+    draw_header(sheet, plan, errors)
+    for place, row in enumerate(study.rows):
+        top = plan.top + place * (ROW + GAP)
+        draw_scene(sheet, plan, top, row)
+        draw_cells(sheet, top, row, plan.cells)
+        draw_sundials(sheet, plan, top, row)
+    if plan.changes:
+        draw_changes(sheet, plan)
+    for line, words in enumerate(plan.foot):
+        height = plan.foot_top + 0.1 + LINE * line
+        sheet.text(MARGIN, height, words, size=FOOT_SIZE, color=FAINT, va="center")
+    return sheet
