@@ -17,7 +17,8 @@ KEY_LINE = 0.3
 @dataclass(frozen=True)
 class Cells:
     """Where the cells of a table are, in inches: the accuracies, where the first column begins, how
-    wide one is, how high a row, and how deep in it the names and the times are."""
+    wide one is, how high a row, how deep in it the names and the times are, and how large a name in two
+    lines may be."""
 
     accuracies: tuple
     left: float
@@ -25,6 +26,7 @@ class Cells:
     row: float
     name_depth: float
     time_depth: float
+    two_lines_size: float = NAME_SIZES[0]
 
     @property
     def width(self):
@@ -59,12 +61,13 @@ def broken(name):
     return "\n".join(min(ways, key=lambda way: max(map(len, way)))) if ways else name
 
 
-def draw_name(sheet, middle, height, room, method, color):
-    """The name of a method, centred in a cell: in one line or two, as large as the room lets it be."""
+def draw_name(sheet, middle, height, room, method, color, two_lines_size):
+    """The name of a method, centred in a cell: in one line or, up to a size, in two; as large as the
+    room lets it be."""
     style = {"color": color, "ha": "center", "va": "center", "linespacing": 1.05}
     text = sheet.text(middle, height, method, **style)
     for size in NAME_SIZES:
-        for words in (method, broken(method)):
+        for words in (method, broken(method))[: 2 if size <= two_lines_size else 1]:
             text.set_text(words)
             text.set_size(size)
             if sheet.text_width(text) < room - 0.05:
@@ -101,7 +104,8 @@ def draw_cells(sheet, top, row, cells):
             axes.axvline(edge, color="white", linewidth=3)
         room = cells.column * (last - first + 1)
         middle = cells.left + cells.column * first + room / 2
-        draw_name(sheet, middle, top + cells.name_depth, room, method, look.text_color)
+        height = top + cells.name_depth
+        draw_name(sheet, middle, height, room, method, look.text_color, cells.two_lines_size)
     for place, accuracy in enumerate(cells.accuracies):
         middle, point = cells.middle(place), row.front.get(accuracy)
         if point:
@@ -141,7 +145,14 @@ def draw_key(sheet, left, top, right, kinds):
                     ((left + indent) / sheet.width, 1 - (height + KEY_LINE) / sheet.height)
                 )
         place += width + 0.3
-    return line + 1
+    return line + 1 if kinds else 0
+
+
+def draw_accuracies(sheet, height, cells):
+    """The accuracies, in the middle of their columns."""
+    for place, accuracy in enumerate(cells.accuracies):
+        words = accuracy_in_words(accuracy)
+        sheet.text(cells.middle(place), height, words, size=10, ha="center", va="center")
 
 
 def draw_heads(sheet, bottom, cells, error):
@@ -149,8 +160,6 @@ def draw_heads(sheet, bottom, cells, error):
     head, upper, lower = {"size": 10, "va": "center"}, bottom - 0.39, bottom - 0.16
     middle = cells.left + cells.width / 2
     sheet.text(middle, upper, f"{error} at most", ha="center", color=FAINT, **head)
-    for place, accuracy in enumerate(cells.accuracies):
-        words = accuracy_in_words(accuracy)
-        sheet.text(cells.middle(place), lower, words, ha="center", **head)
+    draw_accuracies(sheet, lower, cells)
     for height, words in ((upper, "SUNDIALS’"), (lower, "best takes")):
         sheet.text(cells.right, height, words, color=FAINT, **head)

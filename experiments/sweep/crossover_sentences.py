@@ -19,13 +19,17 @@ def value_in_words(along, value):
 
 
 def common_beginning(low, high, along):
-    """What the names of two scenes begin with, in whole words: "chain" of chain_300 and chain_1000."""
+    """What the names of two scenes begin with, in whole words and but for what is varied: "chain" of
+    chain_nodes_300 and chain_nodes_1000."""
     words = []
     for left, right in zip(re.split(r"[_\s=,-]+", low), re.split(r"[_\s=,-]+", high)):
-        if left != right or left == along:
+        if left != right:
             break
         words.append(left)
-    return "_".join(words) or f"{low} to {high}"
+    beginning = "_".join(words)
+    if beginning != along:
+        beginning = beginning.removesuffix(f"_{along}")
+    return beginning or f"{low} to {high}"
 
 
 def change_in_words(crossover):

@@ -8,6 +8,7 @@ from matplotlib import pyplot
 from fastest_table import (
     KEY_LINE,
     Cells,
+    draw_accuracies,
     draw_cells,
     draw_heads,
     draw_key,
@@ -20,9 +21,13 @@ from style import COOL, FAINT, seconds
 
 MARGIN = 0.15
 ROW, GAP = 0.5, 0.06
-LEAST_WIDTH, SUNDIALS_WIDTH = 8.2, 1.5
+LEAST_WIDTH, LEAST_SUNDIALS = 9.2, 0.9
 # All columns together are so wide, if none is too narrow or too wide then.
-CELLS_WIDTH, LEAST_COLUMN, MOST_COLUMN = 6.4, 0.95, 1.7
+CELLS_WIDTH, LEAST_COLUMN, MOST_COLUMN = 6.4, 1.05, 1.7
+# How deep in a row names of methods and times are, and how large a name in two lines may be.
+DEPTHS, TWO_LINES_SIZE = (0.165, 0.395), 8
+# Under more rows the accuracies are said again.
+MOST_WITH_ONE_HEAD = 20
 LEAST_NAMES, MOST_NAMES = 1.5, 2.9
 FACT_SIZE, FOOT_SIZE, SUBTITLE_SIZE, CHANGE_SIZE = 8, 8.5, 10.5, 9
 LINE, CHANGE_LINE, INDENT = 0.19, 0.2, 0.16
@@ -43,9 +48,9 @@ class Study:
     interrupted: str | None
 
     @property
-    def is_by_energy(self):
-        """Whether each of the rows is, as a set."""
-        return {row.is_by_energy for row in self.rows}
+    def judges(self):
+        """What the errors of the rows are of."""
+        return {"energy" if row.is_by_energy else "position" for row in self.rows}
 
 
 def facts(row):
@@ -60,42 +65,43 @@ def subtitle(study):
     where = "on one scene" if rows == 1 else f"on each of {rows} scenes"
     if rows + study.unreadable < study.scenes:
         where = f"on the first {rows} of the {study.scenes} scenes in fastest.csv"
-    time = "its time by its work" if study.is_work else "the time of its run"
-    return (
-        f"the fastest of {max(row.methods for row in study.rows)} methods {where}, at each accuracy,"
-        f" {time} and how many times as long the next one takes"
-    )
+    time = "its time as computed from its work" if study.is_work else "the time of its run"
+    most = max(row.methods for row in study.rows)
+    return f"the fastest of {most} methods {where}, {time}, and how many times as long the next one takes"
 
 
 def foot(study):
-    """What a reader must know of the numbers, in sentences."""
+    """What a reader must know of the numbers, in paragraphs."""
     core = f"on one core of {study.processor}"
-    said = [
-        (
-            f"Times are not those of whole runs: they are counts of a run’s work times what each costs {core}."
-            if study.is_work
-            else f"Times of whole runs {core}."
-        )
-    ]
-    if False in study.is_by_energy:
-        said.append("Errors at the end T, over the largest displacement.")
-    if True in study.is_by_energy:
-        said.append("By energy: a chaotic motion, whose accuracy is that of the energy on the way.")
-    said += [
-        "Steps: the fewest of Verlet, T ω/2 at the largest ω.",
+    times = (
+        f"Times are computed, not measured: counts of a run’s work, each with what it costs {core}."
+        if study.is_work
+        else f"Times of whole runs {core}."
+    )
+    steps = "Steps: the fewest of Verlet, T ω/2 at the largest ω."
+    by_position = "Errors at the end T, over the largest displacement."
+    by_energy = (
+        "By energy: the motion is chaotic, and its errors are those of the energy on the way."
+    )
+    judges = study.judges
+    return [
+        " ".join([times, *([by_position] if "position" in judges else []), steps]),
+        *([by_energy] if "energy" in judges else []),
         "SUNDIALS’ best: how many times as long as the fastest, median over the accuracies, least to"
-        " most.",
-        "–: no run reached it in the time it had.",
+        " most. –: no run reached it in the time it had.",
+        *([left_out(study.unreadable)] if study.unreadable else []),
+        *(
+            [f"The sweep was interrupted by {study.interrupted}: measurements are missing."]
+            if study.interrupted
+            else []
+        ),
     ]
-    if study.unreadable:
-        verb, whose = ("is", "its folder") if study.unreadable == 1 else ("are", "their folders")
-        said.append(
-            f"{counted(study.unreadable, 'scene')} of fastest.csv {verb} left out: {whose} cannot be"
-            " read."
-        )
-    if study.interrupted:
-        said.append(f"The sweep was interrupted by {study.interrupted}: measurements are missing.")
-    return said
+
+
+def left_out(scenes):
+    """That so many scenes are not drawn."""
+    verb, whose = ("is", "its folder") if scenes == 1 else ("are", "their folders")
+    return f"{counted(scenes, 'scene')} of fastest.csv {verb} left out: {whose} cannot be read."
 
 
 class Plan:
@@ -108,27 +114,40 @@ class Plan:
         scratch = Sheet(LEAST_WIDTH, 1.0)
         self.names = self.room_for_names(scratch, study.rows)
         left = MARGIN + self.names + 0.12
-        self.cells = Cells(tuple(accuracies), left, column, ROW, name_depth=0.18, time_depth=0.385)
-        self.width = max(self.cells.right + SUNDIALS_WIDTH, LEAST_WIDTH)
+        self.cells = Cells(tuple(accuracies), left, column, ROW, *DEPTHS, TWO_LINES_SIZE)
+        right = self.cells.right + self.room_for_sundials(scratch, study.rows) + MARGIN
+        self.width = max(right, LEAST_WIDTH)
         room = self.width - 2 * MARGIN
         self.subtitle = scratch.filled(subtitle(study).split(), room, size=SUBTITLE_SIZE)
         self.key = 0.76 + 0.2 * len(self.subtitle)
         self.kinds = set().union(*(row.front_kinds for row in study.rows))
-        lines = self.draw_key(Sheet(self.width, 1.0)) if self.kinds else 0
-        self.top = self.key + 0.7 + KEY_LINE * (lines - 1)
+        self.top = self.key + 0.7 + KEY_LINE * (self.draw_key(scratch) - 1)
+        self.below = self.top + len(study.rows) * (ROW + GAP)
+        self.repeats_heads = len(study.rows) > MOST_WITH_ONE_HEAD
+        self.changes_top = self.below + (0.3 if self.repeats_heads else 0.12)
         self.changes = [
             line for sentence in study.changes for line in self.hanging(scratch, sentence, room)
         ]
-        self.below = self.top + len(study.rows) * (ROW + GAP) + 0.12
         changes_height = 0.42 + CHANGE_LINE * len(self.changes) if self.changes else 0.0
-        self.foot = scratch.filled(" ".join(foot(study)).split(), room, size=FOOT_SIZE)
-        self.foot_top = self.below + changes_height
+        self.foot_top = self.changes_top + changes_height
+        self.foot = [
+            line
+            for paragraph in foot(study)
+            for line in scratch.filled(paragraph.split(), room, size=FOOT_SIZE)
+        ]
         self.height = self.foot_top + LINE * len(self.foot) + 0.12
-        pyplot.close("all")
+        pyplot.close(scratch.figure)
 
     def draw_key(self, sheet):
         """Draws the colours of the kinds; returns how many lines they take."""
         return draw_key(sheet, MARGIN, self.key, self.width - MARGIN, self.kinds)
+
+    @staticmethod
+    def room_for_sundials(sheet, rows):
+        """How wide what is said of SUNDIALS is."""
+        words = (", ".join(sundials_in_words(row)[1]) for row in rows)
+        widths = (sheet.text_width(sheet.text(0, 0, line, size=FACT_SIZE)) for line in words)
+        return max(LEAST_SUNDIALS, *widths)
 
     @staticmethod
     def room_for_names(sheet, rows):
@@ -155,8 +174,7 @@ def draw_header(sheet, plan, errors):
     for line, words in enumerate(plan.subtitle):
         height = 0.6 + 0.2 * line
         sheet.text(MARGIN, height, words, size=SUBTITLE_SIZE, color=FAINT, va="center")
-    if plan.kinds:
-        plan.draw_key(sheet)
+    plan.draw_key(sheet)
     sheet.text(MARGIN, plan.top - 0.16, "scene", size=10, weight="bold", va="center")
     draw_heads(sheet, plan.top, plan.cells, errors)
 
@@ -185,9 +203,9 @@ def draw_sundials(sheet, plan, top, row):
 def draw_changes(sheet, plan):
     """Where the fastest method changes, below the cells."""
     words = "Where the fastest method changes"
-    sheet.text(MARGIN, plan.below + 0.1, words, size=10, weight="bold", va="center")
+    sheet.text(MARGIN, plan.changes_top + 0.1, words, size=10, weight="bold", va="center")
     for line, (indent, words) in enumerate(plan.changes):
-        height = plan.below + 0.33 + CHANGE_LINE * line
+        height = plan.changes_top + 0.33 + CHANGE_LINE * line
         sheet.text(MARGIN + indent, height, words, size=CHANGE_SIZE, va="center")
 
 
@@ -195,13 +213,15 @@ def draw(study):
     """The whole picture as a sheet."""
     plan = Plan(study)
     sheet = Sheet(plan.width, plan.height)
-    errors = "position error" if study.is_by_energy == {False} else "error"
+    errors = "position error" if study.judges == {"position"} else "error"
     draw_header(sheet, plan, errors)
     for place, row in enumerate(study.rows):
         top = plan.top + place * (ROW + GAP)
         draw_scene(sheet, plan, top, row)
         draw_cells(sheet, top, row, plan.cells)
         draw_sundials(sheet, plan, top, row)
+    if plan.repeats_heads:
+        draw_accuracies(sheet, plan.below + 0.1, plan.cells)
     if plan.changes:
         draw_changes(sheet, plan)
     for line, words in enumerate(plan.foot):
