@@ -17,8 +17,8 @@ KEY_LINE = 0.3
 @dataclass(frozen=True)
 class Cells:
     """Where the cells of a table are, in inches: the accuracies, where the first column begins, how
-    wide one is, how high a row, how deep in it the names and the times are, and how large a name in two
-    lines may be."""
+    wide one is, how high a row, how deep in it the names and the times are, and how large a name in
+    two lines may be."""
 
     accuracies: tuple
     left: float
@@ -62,8 +62,8 @@ def broken(name):
 
 
 def draw_name(sheet, middle, height, room, method, color, two_lines_size):
-    """The name of a method, centred in a cell: in one line or, up to a size, in two; as large as the
-    room lets it be."""
+    """The name of a method, centred in a cell: in one line or, up to a size, in two; as large as
+    the room lets it be."""
     style = {"color": color, "ha": "center", "va": "center", "linespacing": 1.05}
     text = sheet.text(middle, height, method, **style)
     for size in NAME_SIZES:
@@ -75,8 +75,8 @@ def draw_name(sheet, middle, height, room, method, color, two_lines_size):
 
 
 def draw_time(sheet, middle, height, time, margin):
-    """The time of a point and, smaller and to its right, how many times as long the next method takes,
-    where that is known; centred together."""
+    """The time of a point and, smaller and to its right, how many times as long the next method
+    takes, where that is known; centred together."""
     style = {"size": TIME_SIZE, "color": INK, "ha": "center", "va": "center"}
     text = sheet.text(middle, height, seconds(float(f"{time:.2g}")), **style)
     if margin is None:
@@ -117,8 +117,8 @@ def draw_cells(sheet, top, row, cells):
 
 
 def sundials_in_words(row):
-    """How many times as long the best of SUNDIALS takes, as median, and what more there is to say of
-    it: from least to most, and below which accuracy there is none."""
+    """How many times as long the best of SUNDIALS takes, as median, and what more there is to say
+    of it: from least to most, and below which accuracy there is none."""
     ratios = row.ratios.values()
     if not ratios:
         return "", []

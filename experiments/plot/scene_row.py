@@ -12,10 +12,10 @@ from style import seconds
 @dataclass(frozen=True)
 class Row:
     """A scene: its title, how many nodes and springs it has, its end [s] and how many steps Verlet
-    takes to it at least (None where that is not known); by accuracy the fastest point, how many times
-    as long the best of SUNDIALS and, where it is known, the next method take; the kinds of methods, how
-    many they are, the processor, the accuracies that were asked for, and whether they are those of the
-    energy."""
+    takes to it at least (None where that is not known); by accuracy the fastest point, how many
+    times as long the best of SUNDIALS and, where it is known, the next method take; the kinds of
+    methods, how many they are, the processor, the accuracies that were asked for, and whether they
+    are those of the energy."""
 
     title: str
     nodes: int
@@ -75,8 +75,8 @@ def counted(number, noun):
 
 
 def read_sidecar(path):
-    """What the sidecar of points.csv says: the scene's name, and size, end, steps and processor as a
-    row has them."""
+    """What the sidecar of points.csv says: the scene's name, and size, end, steps and processor as
+    a row has them."""
     try:
         with open(path, encoding="utf-8") as file:
             about = json.load(file)

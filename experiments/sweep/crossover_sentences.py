@@ -19,8 +19,8 @@ def value_in_words(along, value):
 
 
 def common_beginning(low, high, along):
-    """What the names of two scenes begin with, in whole words and but for what is varied: "chain" of
-    chain_nodes_300 and chain_nodes_1000."""
+    """What the names of two scenes begin with, in whole words and but for what is varied: "chain"
+    of chain_nodes_300 and chain_nodes_1000."""
     words = []
     for left, right in zip(re.split(r"[_\s=,-]+", low), re.split(r"[_\s=,-]+", high)):
         if left != right:
@@ -52,8 +52,8 @@ def listed(words):
 
 
 def sentences(crossovers):
-    """A sentence for each change, in the order of the file, at most MOST of them; then one that says
-    how many rows have none. Rows that differ by their accuracy alone share one."""
+    """A sentence for each change, in the order of the file, at most MOST of them; then one that
+    says how many rows have none. Rows that differ by their accuracy alone share one."""
     changes = {}
     for crossover in crossovers:
         changes.setdefault(change_in_words(crossover), []).append(crossover.accuracy)

@@ -1,5 +1,5 @@
-"""The picture of a sweep: the table of the fastest methods, where they change, and what a reader must
-know of the numbers."""
+"""The picture of a sweep: the table of the fastest methods, where they change, and what a reader
+must know of the numbers."""
 
 from dataclasses import dataclass
 
@@ -67,7 +67,8 @@ def subtitle(study):
         where = f"on the first {rows} of the {study.scenes} scenes in fastest.csv"
     time = "its time as computed from its work" if study.is_work else "the time of its run"
     most = max(row.methods for row in study.rows)
-    return f"the fastest of {most} methods {where}, {time}, and how many times as long the next one takes"
+    next_one = "how many times as long the next one takes"
+    return f"the fastest of {most} methods {where}, {time}, and {next_one}"
 
 
 def foot(study):
@@ -105,8 +106,8 @@ def left_out(scenes):
 
 
 class Plan:
-    """Where everything is: measured on a sheet that is thrown away, as the height of a sheet must be
-    known before anything is drawn on it."""
+    """Where everything is: measured on a sheet that is thrown away, as the height of a sheet must
+    be known before anything is drawn on it."""
 
     def __init__(self, study):
         accuracies = sorted({key for row in study.rows for key in row.accuracies}, reverse=True)

@@ -14,8 +14,8 @@ JUDGES = ("position", "energy")
 @dataclass
 class Scene:
     """The rows of one scene: its folder's name, what its errors are of, the accuracies, the fastest
-    points and how many times as long the next methods take, by accuracy, and where each point stands in
-    the file."""
+    points and how many times as long the next methods take, by accuracy, and where each point
+    stands in the file."""
 
     folder: str
     judge: str
@@ -27,8 +27,8 @@ class Scene:
 
 @dataclass(frozen=True)
 class Crossover:
-    """Between two values of what is varied the fastest method changes, at about `crossing`; None where
-    that is not known."""
+    """Between two values of what is varied the fastest method changes, at about `crossing`; None
+    where that is not known."""
 
     along: str
     accuracy: float
@@ -41,7 +41,8 @@ class Crossover:
 
 @dataclass(frozen=True)
 class Origin:
-    """Where times come from: whether they are work times costs, and the processor, if it is said."""
+    """Where times come from: whether they are work times costs, and the processor, if it is
+    said."""
 
     is_work: bool
     processor: str | None
