@@ -26,7 +26,8 @@ namespace {
 
 int complain(const CommandLine& line, const std::string& sentence, int status) {
   progress().wipe();
-  fmt::print(stderr, "{}: {}\n", line.program(), in_one_line(sentence));
+  // Unlike fmt::print it does not throw where a full disk takes no more of it.
+  std::fputs(fmt::format("{}: {}\n", line.program(), in_one_line(sentence)).c_str(), stderr);
   return status;
 }
 

@@ -1,6 +1,7 @@
 #include "experiments/command/shares.hpp"
 
 #include <chrono>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -12,9 +13,10 @@ namespace {
 // A share counts all that its process does, from loading the scene on.
 const auto process_began = std::chrono::steady_clock::now();
 
-std::string given(const CommandLine& line, const std::string& option) {
+// The last value of an option; nothing where it was not given.
+std::optional<std::string> given(const CommandLine& line, const std::string& option) {
   for (const auto& [name, values] : line.given()) {
-    if (name == option) return values.back();
+    if (name == option) return values.empty() ? "" : values.back();
   }
   return {};
 }
@@ -30,9 +32,13 @@ void add_share_options(CommandLine& line) {
   line.add_flag("--kept", "measure nothing: make the tables of what the folder's journal holds");
 }
 
-std::string share_of(const CommandLine& line) { return given(line, "--share"); }
+bool lists_shares(const CommandLine& line) { return given(line, "--list-shares").has_value(); }
 
-std::string journal_of(const CommandLine& line) { return given(line, "--journal"); }
+bool is_of_kept(const CommandLine& line) { return given(line, "--kept").has_value(); }
+
+std::string share_of(const CommandLine& line) { return given(line, "--share").value_or(""); }
+
+std::string journal_of(const CommandLine& line) { return given(line, "--journal").value_or(""); }
 
 std::string whole_mark(const std::string& share) { return "whole " + share; }
 

@@ -21,6 +21,9 @@ inline const std::string reference_share = "reference";
 
 // Adds --list-shares, --share, --journal and --kept (see study.hpp).
 void add_share_options(CommandLine& line);
+// Whether --list-shares and --kept were given; no program needs to have them.
+bool lists_shares(const CommandLine& line);
+bool is_of_kept(const CommandLine& line);
 // What --share and --journal were given; empty where they were not.
 std::string share_of(const CommandLine& line);
 std::string journal_of(const CommandLine& line);

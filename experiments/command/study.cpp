@@ -71,12 +71,12 @@ Study::Study(const CommandLine& line, const std::string& folder,
             {"build", build()},
             {"machine", machine()}}),
       share_(share_of(line)),
-      is_kept_(line.has("--kept")) {
+      is_kept_(is_of_kept(line)) {
   progress().wipe();  // what was done before may have a line
-  if (is_divided() || line.has("--list-shares")) {
+  if (is_divided() || lists_shares(line)) {
     for (const std::string& option : shares.chosen_by) key_["options"].erase(option);
   }
-  if (line.has("--list-shares")) {
+  if (lists_shares(line)) {
     list(shares);
     return;
   }
@@ -104,6 +104,14 @@ void Study::open_share(const CommandLine& line, const Shares& shares) {
   path_ = journal_of(line);
   require_given(path_, "--journal", "the file for what is measured of the share");
   key_["share"] = share_;
+  const Journal::Contents there = Journal::read(path_);
+  const std::string what = there.whole > 0 ? difference(there.key, key_) : "";
+  if (!what.empty()) {
+    throw InvalidInput(
+        fmt::format("--journal: {} is of another study: {}; allowed are the same scene, code and "
+                    "options, or another file",
+                    path_, what));
+  }
   journal_ = std::make_unique<Journal>(path_, key_, /*goes_on=*/true);
   wait_for_answer(patience_with_a_step);
   if (journal_->find(whole_mark(share_))) completed_ = done;

@@ -21,7 +21,7 @@ using namespace command;
 namespace {
 
 // What --scene takes.
-std::string scene_word(const StudyScene& scene, const std::string& study_folder,
+std::string scene_word(const StudyScene& scene, const std::string& study_path,
                        const std::string& folder) {
   if (!scene.text.empty()) {
     require_folder(folder + "/scenes");
@@ -33,7 +33,7 @@ std::string scene_word(const StudyScene& scene, const std::string& study_folder,
     return path;
   }
   if (scene.source.empty() || find_generator(scene.source)) return scene.source;
-  const auto path = std::filesystem::path(study_folder) / scene.source;
+  const auto path = std::filesystem::path(study_path).parent_path() / scene.source;
   return std::filesystem::absolute(path).lexically_normal().string();
 }
 
@@ -45,6 +45,8 @@ std::vector<std::string> arguments_of(const StudyFile& study, const StudyScene& 
   if (!study.accuracies.empty())
     words.insert(words.end(),
                  {"--accuracies", fmt::format("{}", fmt::join(study.accuracies, ","))});
+  if (!study.methods.empty())
+    words.insert(words.end(), {"--methods", fmt::format("{}", fmt::join(study.methods, ","))});
   for (const auto& [name, value] : study.options) {
     words.push_back("--" + name);
     if (!value.empty()) words.push_back(value);
@@ -54,30 +56,29 @@ std::vector<std::string> arguments_of(const StudyFile& study, const StudyScene& 
 
 // What the program can measure apart: its study's key and its shares.
 nlohmann::json listed(const StudyFile& study, const StudyScene& scene,
-                      const std::vector<std::string>& arguments) {
+                      const std::vector<std::string>& arguments, const std::string& study_path) {
   Command command{.program = program_path(study.program), .arguments = arguments};
   const auto add = [&](std::initializer_list<std::string> words) {
     command.arguments.insert(command.arguments.end(), words);
   };
-  if (!study.methods.empty()) add({"--methods", fmt::format("{}", fmt::join(study.methods, ","))});
   add({"--out", ".", "--list-shares", "--progress", "none"});
   const ChildEnd end = run_child(command);
   measure::stop_if_interrupted();
   const auto json = nlohmann::json::parse(end.out, nullptr, /*allow_exceptions=*/false);
   if (end.status == done && json.is_object()) return json;
-  throw InvalidInput(fmt::format("{}: {}", scene.label, end.cause()));
+  throw InvalidInput(fmt::format("{}: {}: {}", study_path, scene.label, end.cause()));
 }
 
 }  // namespace
 
-std::vector<Task> plan(const StudyFile& study, const std::string& study_folder,
+std::vector<Task> plan(const StudyFile& study, const std::string& study_path,
                        const std::string& folder) {
   std::vector<Task> tasks;
   progress().begin(study.scenes.size());
   for (const StudyScene& scene : study.scenes) {
     progress().now_at(scene.label);
-    const auto arguments = arguments_of(study, scene, scene_word(scene, study_folder, folder));
-    const nlohmann::json found = listed(study, scene, arguments);
+    const auto arguments = arguments_of(study, scene, scene_word(scene, study_path, folder));
+    const nlohmann::json found = listed(study, scene, arguments, study_path);
     for (const auto& share : found.at("shares")) {
       Task task{.id = id_of(found.at("key"), share),
                 .stage = share == reference_share ? references : points,

@@ -19,7 +19,10 @@ namespace {
 
 void say(const Task& task, const std::string& what) {
   progress().wipe();
-  fmt::print(stderr, "sweep: {}, {} ({}): {}\n", task.folder, task.share, task.id, what);
+  // Unlike fmt::print it does not throw where a full disk takes no more of it.
+  const std::string line =
+      fmt::format("sweep: {}, {} ({}): {}\n", task.folder, task.share, task.id, what);
+  std::fputs(line.c_str(), stderr);
 }
 
 // Measures one, or says and keeps why it failed.

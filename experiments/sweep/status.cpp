@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "experiments/command/program.hpp"
-#include "experiments/sweep/task_files.hpp"
+#include "experiments/sweep/machines.hpp"
 #include "qddot/measure/motion/duration.hpp"
 
 namespace qddot::sweep {
@@ -65,8 +65,9 @@ int print_status(const std::string& folder) {
   std::set<std::string> workers, without_reference;
   Durations durations;
   std::size_t failures = 0, skipped = 0;
+  std::vector<TaskState> states;
   for (const Task& task : tasks) {
-    const TaskState state = files.state(task);
+    const TaskState& state = states.emplace_back(files.state(task));
     if (without_reference.contains(task.folder)) {
       ++skipped;
       continue;
@@ -84,6 +85,8 @@ int print_status(const std::string& folder) {
   }
   for (const std::string& stage : {references, points}) print_stage(stage, counts[stage]);
   if (skipped > 0) fmt::print("{} tasks are skipped, as there is no reference\n", skipped);
+  if (const auto machines = machines_of(tasks, states); machines.size() > 1)
+    fmt::print("measured on unlike machines: {}\n", in_words(machines));
   for (const std::string& worker : workers) fmt::print("at work: {}\n", worker);
   if (left.empty()) {
     fmt::print("all is done, in {} of one core\n", measure::duration_in_words(durations.sum()));

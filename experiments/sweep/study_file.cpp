@@ -152,6 +152,8 @@ StudyFile read_study(const std::string& path) {
   study.accuracies = positive_numbers(file, table, "accuracies");
   if (!study.accuracies.empty() && program.name != "work_precision")
     file.fail("accuracies", "only work_precision takes them; allowed is to leave them out");
+  if (std::ranges::any_of(study.accuracies, [](double x) { return x < 1e-14 || x >= 1; }))
+    file.refuse("accuracies", "numbers from 1e-14 to below 1, each once");
   study.options = options_in(file, table, !program.takes_scenes);
   if (!program.takes_scenes) {
     for (const char* key : {"scenes", "until"}) {

@@ -112,7 +112,7 @@ int plan_study(const Arguments& a) {
   const bool is_new = !std::filesystem::exists(folder);
   std::vector<Task> tasks;
   try {
-    tasks = plan(study, std::filesystem::path(a.where).parent_path(), folder);
+    tasks = plan(study, a.where, folder);
     require_folder(folder);
   } catch (...) {  // nothing half planned is left behind
     if (is_new) std::filesystem::remove_all(folder);

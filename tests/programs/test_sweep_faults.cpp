@@ -1,0 +1,257 @@
+#include "tests/programs/sweeps.hpp"
+
+BOOST_AUTO_TEST_SUITE(sweep_faults)
+
+using namespace qddot;
+using command::Journal;
+
+namespace {
+
+// A sweep that is whole, but whose chain's Verlet was measured on another kind of machine.
+struct OnTwoMachines : Sweep {
+  OnTwoMachines() {
+    go("references");
+    go("points");
+    rewrite(task("chain", "verlet"), [](Journal::Contents& contents) {
+      contents.key["machine"]["cpu"] = "another processor";
+    });
+  }
+};
+
+std::set<std::string> column(const Table& table, const std::string& name) {
+  std::set<std::string> values;
+  for (std::size_t row = 0; row < table.rows.size(); ++row) values.insert(table.text(row, name));
+  return values;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(seconds_of_unlike_machines_are_never_put_on_one_front) {
+  const OnTwoMachines sweep;
+  const Exit refused = sweep.merge();
+  BOOST_TEST(complains(refused, 2, "sweep",
+                       {"another processor (1 tasks)", "(7 tasks)", "--per-machine", "--by work"}),
+             refused.err);
+  BOOST_TEST(!std::filesystem::exists(sweep.out + "/points.csv"));
+  BOOST_TEST(contains(run("sweep", {"status", sweep.out}).out,
+                      {"measured on unlike machines", "another processor"}));
+
+  const Exit apart = sweep.merge({"--per-machine", "--no-pictures"});
+  BOOST_TEST(apart.status == 0, apart.err);
+  const std::set<std::string> first =
+                                  column(read_csv(sweep.out + "/machine-1/points.csv"), "method"),
+                              second =
+                                  column(read_csv(sweep.out + "/machine-2/points.csv"), "method");
+  BOOST_TEST((first == std::set<std::string>{"blanes_moan4", "ida", "implicit_euler", "verlet"}));
+  BOOST_TEST((second == std::set<std::string>{"verlet"}));
+  BOOST_TEST(contains(read_all(sweep.out + "/machine-2/chain/points.json"), {"another processor"}));
+}
+
+BOOST_AUTO_TEST_CASE(by_work_times_are_counts_times_costs_on_this_machine) {
+  const OnTwoMachines sweep;
+  const Exit merged = sweep.merge({"--by", "work", "--no-pictures"});
+  BOOST_TEST(merged.status == 0, merged.err);
+  const auto costs = nlohmann::json::parse(read_all(sweep.out + "/chain/costs.json")).at("seconds");
+  BOOST_TEST(costs.at("force").get<double>() > 0);
+  BOOST_TEST(costs.at("factorization").get<double>() > 0);
+  const Table points = read_csv(sweep.out + "/chain/points.csv");
+  for (std::size_t row = 0; row < points.rows.size(); ++row) {
+    if (points.text(row, "outcome") != "reached_end") continue;
+    double work = 0;
+    for (const auto& [column, cost] : {std::pair("force_evaluations", "force"),
+                                       {"stiffness_evaluations", "stiffness"},
+                                       {"factorizations", "factorization"},
+                                       {"solves", "solve"}})
+      work += points.value(row, column) * costs.at(cost).get<double>();
+    // Four products and sums.
+    BOOST_TEST(points.value(row, "time_s") == work, boost::test_tools::tolerance(1e-15));
+  }
+  BOOST_TEST(contains(read_all(sweep.out + "/sweep.json"), {"\"times\": \"work\""}));
+  // Errors and counts are what was measured, and costs are not measured twice.
+  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
+  const std::string kept = read_all(sweep.out + "/chain/costs.json");
+  sweep.merge({"--by", "work", "--no-pictures"});
+  BOOST_TEST(read_all(sweep.out + "/chain/costs.json") == kept);
+}
+
+BOOST_AUTO_TEST_CASE(a_task_that_other_code_measured_does_not_count) {
+  const Sweep sweep;
+  sweep.go("references");
+  sweep.go("points");
+  sweep.rewrite(sweep.task("chain", "ida"),
+                [](Journal::Contents& contents) { contents.key["build"]["code"] = "other"; });
+  const Exit merged = sweep.merge();
+  BOOST_TEST(merged.status == 3);
+  BOOST_TEST(contains(merged.out, {"chain, ida: missing"}));
+  BOOST_TEST(!column(read_csv(sweep.out + "/chain/points.csv"), "method").contains("ida"));
+  BOOST_TEST(sweep.go("points").status == 0);
+  BOOST_TEST(sweep.merge().status == 0);
+  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
+}
+
+BOOST_AUTO_TEST_CASE(a_plan_of_another_build_is_refused) {
+  const Sweep sweep;
+  std::string text;
+  for (nlohmann::json task : sweep.tasks()) {
+    task["key"]["build"]["flags"] = "-O0";
+    text += task.dump() + "\n";
+  }
+  // By hand without a new name, it is no plan at all.
+  std::ofstream(sweep.out + "/tasks.jsonl") << text;
+  Exit end = sweep.go("points");
+  BOOST_TEST(complains(end, 2, "sweep", {"tasks.jsonl:1: it is no task as sweep plan writes it"}),
+             end.err);
+  for (const char* damage : {"", "{", "[1]\n", "{\"id\": 3}\n"}) {
+    std::ofstream(sweep.out + "/tasks.jsonl") << damage;
+    end = sweep.merge();
+    BOOST_TEST(complains(end, 2, "sweep", {"tasks.jsonl"}), end.err);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_scene_without_a_reference_is_skipped_and_the_rest_goes_on) {
+  const Sweep sweep(R"(scenes = ["pendulum", { file = "late.toml" }]
+methods = ["verlet"]
+until = 0.05
+accuracies = [1e-2]
+[options]
+repeats = 1
+)");
+  BOOST_TEST(sweep.planned.status == 2);  // the file is missing
+  const Sweep late(R"(scenes = [{ generator = "pendulum", until = [0.05, 1e9] }]
+methods = ["verlet"]
+accuracies = [1e-2]
+[options]
+repeats = 1
+)");
+  BOOST_TEST(late.go("references").status == 0);  // that there is none is known now
+  const Exit points = late.go("points");
+  BOOST_TEST(points.status == 0, points.err);
+  BOOST_TEST(contains(points.out, {"1 of 2 tasks are done, 1 are skipped"}), points.out);
+  const Exit merged = late.merge();
+  BOOST_TEST(merged.status == 3);
+  const Table missing = read_csv(late.out + "/missing.csv");
+  BOOST_TEST_REQUIRE(missing.rows.size() == 2u);
+  BOOST_TEST(missing.text(0, "state") == "no reference");
+  BOOST_TEST(contains(missing.text(0, "cause"), {"earlier end (--until)"}));
+  BOOST_TEST(missing.text(1, "state") == "skipped");
+  BOOST_TEST(read_csv(late.out + "/fastest.csv").rows.size() == 1u);
+  BOOST_TEST(contains(run("sweep", {"status", late.out}).out,
+                      {"1 without a reference", "1 tasks are skipped", "all is done"}));
+}
+
+BOOST_AUTO_TEST_CASE(points_wait_for_their_reference) {
+  const Sweep sweep;
+  const Exit end = sweep.go("points");
+  BOOST_TEST(end.status == 3);
+  BOOST_TEST(contains(end.out, {"0 of 8 tasks are done, 8 wait for a reference"}));
+  BOOST_TEST(sweep.measured().empty());
+}
+
+BOOST_AUTO_TEST_CASE(what_failed_is_listed_with_its_cause_and_a_command_that_measures_it) {
+  const Folder folder;
+  const std::string scene = folder.write("mine.toml", "[generator]\nkind = \"orbit\"\n");
+  const Sweep sweep(
+      fmt::format("scenes = [\"{}\"]\nuntil = 0.05\nmethods = [\"verlet\"]\n"
+                  "accuracies = [1e-2]\n[options]\nrepeats = 1\n",
+                  scene));
+  sweep.go("references");
+  folder.write("mine.toml", "[generator]\nkind = \"orbit\"\nmass = 2\n");
+  const Exit changed = sweep.go("points");
+  BOOST_TEST(changed.status == 3);
+  BOOST_TEST(contains(changed.err, {"mine, verlet", "its scene is", "instead of"}), changed.err);
+  BOOST_TEST(
+      contains(run("sweep", {"status", sweep.out}).out, {"failed: mine, verlet", "1 failed"}));
+  BOOST_TEST(sweep.merge().status == 3);
+  const Table missing = read_csv(sweep.out + "/missing.csv");
+  BOOST_TEST_REQUIRE(missing.rows.size() == 1u);
+  BOOST_TEST(missing.text(0, "state") == "failed");
+  BOOST_TEST(contains(missing.text(0, "cause"), {"its scene is"}));
+  folder.write("mine.toml", "[generator]\nkind = \"orbit\"\n");
+  BOOST_TEST(std::system((missing.text(0, "command") + " >/dev/null").c_str()) == 0);
+  BOOST_TEST(sweep.merge().status == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_damaged_file_is_measured_anew) {
+  const Sweep sweep;
+  sweep.go("references");
+  sweep.go("points");
+  const auto task = sweep.task("pendulum", "ida");
+  std::filesystem::resize_file(sweep.whole(task),
+                               std::filesystem::file_size(sweep.whole(task)) - 3);
+  BOOST_TEST(contains(run("sweep", {"status", sweep.out}).out, {"7 done, 1 not begun"}));
+  BOOST_TEST(sweep.go("points").status == 0);
+  BOOST_TEST(sweep.merge().status == 0);
+  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
+}
+
+BOOST_AUTO_TEST_CASE(a_full_disk_is_said_and_nothing_is_half_written) {
+  const Sweep sweep;
+  sweep.go("references");
+  // Files may grow to 1 kB, but for that of what is said.
+  const int status = std::system(
+      fmt::format("bash -c '(ulimit -f 1; exec {}/sweep run {} --stage points) 2>&1 >/dev/null | "
+                  "cat >{}; exit ${{PIPESTATUS[0]}}'",
+                  PROGRAM_FOLDER, sweep.out, sweep.folder / "said")
+          .c_str());
+  BOOST_TEST(WEXITSTATUS(status) == 3);
+  BOOST_TEST(contains(read_all(sweep.folder / "said"), {"cannot be written"}));
+  BOOST_TEST(sweep.measured().size() == 2u);
+  // Where not even that can be said, it ends in order all the same.
+  const int silent =
+      std::system(fmt::format("bash -c 'exec 2>{}; ulimit -f 0; exec {}/sweep run {} "
+                              "--stage points >/dev/null'",
+                              sweep.folder / "silent", PROGRAM_FOLDER, sweep.out)
+                      .c_str());
+  BOOST_TEST(WEXITSTATUS(silent) == 3);
+  BOOST_TEST(sweep.go("points").status == 0);
+  BOOST_TEST(sweep.merge().status == 0);
+  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
+}
+
+BOOST_AUTO_TEST_CASE(lines_for_slurm_and_parallel_hold_what_was_asked_for) {
+  const Sweep sweep;
+  const Exit slurm = run("sweep", {"submit", sweep.out, "--slurm", "--partition=short", "--time",
+                                   "2:00:00", "--shards", "5"});
+  BOOST_TEST(slurm.status == 0, slurm.err);
+  const std::string& lines = slurm.out;
+  BOOST_TEST(std::ranges::count(lines, '\n') == 3);
+  BOOST_TEST(contains(lines, {"references=$(sbatch ", "--array=1-2 ", "points=$(sbatch ",
+                              "--array=1-5 ", "--dependency=afterok:\"$references\"",
+                              "merge=$(sbatch ", "--dependency=afterany:\"$points\"",
+                              "--threads-per-core=1", "--partition=short --time 2:00:00 --wrap=",
+                              "--shard \"$SLURM_ARRAY_TASK_ID/5\""}),
+             lines);
+  const Exit parallel = run("sweep", {"submit", sweep.out, "--parallel", "--sshlogin", "a,b"});
+  BOOST_TEST(parallel.status == 0, parallel.err);
+  BOOST_TEST(contains(parallel.out, {"seq 2 | parallel ", "seq 8 | parallel ", "--sshlogin a,b ",
+                                     "--shard {}/8", "merge"}),
+             parallel.out);
+}
+
+BOOST_AUTO_TEST_CASE(bad_words_are_refused_in_one_sentence) {
+  const Sweep sweep;
+  const auto refused = [&](std::vector<std::string> words,
+                           const std::vector<std::string>& fragments) {
+    const Exit end = run("sweep", words);
+    BOOST_TEST(complains(end, 2, "sweep", fragments), exit_in_words(end, words));
+  };
+  const std::string& s = sweep.out;
+  refused({}, {"what to do is missing"});
+  refused({"sweep", s}, {"sweep is nothing that sweep does"});
+  refused({"run"}, {"the sweep's folder is missing"});
+  refused({"run", s}, {"--stage is missing"});
+  refused({"run", s, "--stage", "point"}, {"--stage point is not one"});
+  for (const char* shard : {"5/4", "0/4", "1", "1/", "/2", "a/b", "1/2/3", "-1/4", "1/-4", "1.5/2"})
+    refused({"run", s, "--stage", "points", std::string("--shard=") + shard},
+            {shard, "1/N to N/N"});
+  refused({"run", s, "--stage", "points", "--task", "0"}, {"0 is no task of points"});
+  refused({"run", s, "--stage", "points", "--go"}, {"--go is for sweep submit"});
+  refused({"run", sweep.folder.path(), "--stage", "points"}, {"tasks.jsonl: it is missing"});
+  refused({"merge", s, "--by", "time"}, {"--by time is not allowed"});
+  refused({"submit", s}, {"--slurm or --parallel"});
+  refused({"submit", s, "--slurm", "--shards", "0"}, {"--shards 0"});
+  refused({"status", sweep.folder / "nothing"}, {"tasks.jsonl: it is missing"});
+  refused({"plan", sweep.study}, {"--out is missing"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()
