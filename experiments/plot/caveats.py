@@ -5,14 +5,21 @@ import math
 from style import number, seconds
 
 
-def caveats(reference, interruption):
-    """The sentences, two lines each: `reference` as measurements.read_reference gives it, and by
-    what the study was interrupted, if it was."""
+def caveats(reference, interruption, is_work=False):
+    """The sentences, two lines each: `reference` as measurements.read_reference gives it, by what
+    the study was interrupted, if it was, and whether its times are counts times costs."""
     return [
+        *([WORK] if is_work else []),
         *([interruption_in_words(interruption)] if interruption else []),
         *([horizon_in_words(reference)] if reference.horizon else []),
         *([symmetry_in_words(reference)] if reference.symmetric_until is not None else []),
     ]
+
+
+WORK = (
+    "Times are not measured: they are counts of forces, stiffness matrices, factorisations and"
+    " solves,\ntimes what each of these takes on one machine. What else a step does counts nothing."
+)
 
 
 def interruption_in_words(interruption):

@@ -197,13 +197,23 @@ def displacements(scales):
     return (min(lengths, default=whole), max(lengths, default=whole))
 
 
-def interrupted_by(path):
-    """What ended the study of the table before it was complete, as the table's sidecar says."""
+def said_of(path, what):
+    """What the sidecar of a table says, None where it says nothing."""
     try:
         with open(f"{path.removesuffix('.csv')}.json", encoding="utf-8") as file:
-            return json.load(file).get("interrupted")
+            return json.load(file).get(what)
     except (OSError, ValueError, AttributeError):
         return None
+
+
+def interrupted_by(path):
+    """What ended the study of the table before it was complete."""
+    return said_of(path, "interrupted")
+
+
+def are_times_of_work(path):
+    """Whether the times in a table are counts times costs, which nobody measured."""
+    return said_of(path, "times") == "work"
 
 
 def read_reference(path):

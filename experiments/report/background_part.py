@@ -133,7 +133,8 @@ def chaos_in_words(reference):
 
 def study_notes(study):
     """What a reader must know of the study and its motion first, in sentences."""
-    notes = [sentence(words) for words in caveats(study.reference, study.interruption)]
+    known = caveats(study.reference, study.interruption, study.sidecar.get("times") == "work")
+    notes = [sentence(words) for words in known]
     notes += filter(None, [chaos_in_words(study.reference)])
     if not study.reference_file:
         notes.append("There is no reference.json: what the errors are certified to is not known.")

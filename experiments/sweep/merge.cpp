@@ -151,7 +151,8 @@ bool merge_machine(const TaskFiles& files, const std::string& folder, std::vecto
 }  // namespace
 
 int merge(const std::string& folder, const Merging& how) {
-  const std::vector<Task> tasks = read_tasks(folder);
+  std::vector<Task> tasks = read_tasks(folder);
+  std::ranges::sort(tasks, {}, &Task::order);
   const TaskFiles files(folder, /*makes_folders=*/true);
   std::vector<TaskState> states;
   for (const Task& task : tasks) states.push_back(files.state(task));

@@ -1,6 +1,5 @@
 #include "experiments/sweep/plan.hpp"
 
-#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -25,7 +24,9 @@ std::string scene_word(const StudyScene& scene, const std::string& study_path,
                        const std::string& folder) {
   if (!scene.text.empty()) {
     require_folder(folder + "/scenes");
-    const std::string path = fmt::format("{}/scenes/{}.toml", folder, scene.label);
+    // By its content, so that no earlier plan's is replaced.
+    const std::string path =
+        fmt::format("{}/scenes/{}-{}.toml", folder, scene.label, hash_of(scene.text).substr(0, 8));
     WholeFile file(path);
     file.write(signed_text(scene.text));
     file.complete();
@@ -88,7 +89,8 @@ std::vector<Task> plan(const StudyFile& study, const std::string& study_path,
                 .arguments = arguments,
                 .key = found.at("key"),
                 .varied = scene.varied,
-                .entry = scene.entry};
+                .entry = scene.entry,
+                .order = tasks.size()};
       task.key.erase("machine");
       tasks.push_back(std::move(task));
     }
@@ -101,7 +103,6 @@ std::vector<Task> plan(const StudyFile& study, const std::string& study_path,
     progress().finish(scene.label);
   }
   progress().wipe();
-  std::ranges::stable_sort(tasks, {}, [](const Task& task) { return task.stage != references; });
   return tasks;
 }
 

@@ -96,6 +96,7 @@ ShardEnd run_tasks(const TaskFiles& files, const std::vector<Task>& mine,
     progress().now_at(fmt::format("{}, {}", task.folder, task.share));
     const TaskState state = files.state(task);
     if (state.is_done()) {
+      files.tidy(task);
       ++end.done;
     } else if (state.kind == TaskState::running) {
       ++end.elsewhere;

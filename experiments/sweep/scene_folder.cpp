@@ -42,6 +42,7 @@ std::string make_tables(const TaskFiles& files, const ScenePart& part, bool by_w
   copy_references(files.folder() + "/" + first.folder, part.out);
   nlohmann::json key = first.key;
   key["machine"] = by_work ? machine() : part.machine;
+  if (by_work) key["machine"]["times"] = "work";  // for who draws them
   {
     const WorkCosts costs =
         by_work ? costs_for(first, files.folder() + "/" + first.folder) : WorkCosts();

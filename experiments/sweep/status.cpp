@@ -8,8 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "experiments/command/program.hpp"
+#include "experiments/command/progress_words.hpp"
 #include "experiments/sweep/machines.hpp"
-#include "qddot/measure/motion/duration.hpp"
 
 namespace qddot::sweep {
 
@@ -18,25 +18,40 @@ namespace {
 
 constexpr std::size_t most_shown = 10;
 
-// The mean of what tasks took, by their share, and of all.
+// How long tasks take, from those that are done: the mean of all, times how many times as long as
+// that the tasks of the same scene take, and those of the same method.
 class Durations {
  public:
-  void add(const std::string& share, double seconds) {
-    for (const std::string& of : {share, std::string()}) {
-      sums_[of] += seconds;
-      ++counts_[of];
-    }
+  void add(const Task& task, double seconds) {
+    all_.add(seconds);
+    scenes_[task.folder].add(seconds);
+    shares_[task.share].add(seconds);
   }
-  bool is_empty() const { return counts_.empty(); }
-  double mean(const std::string& share) const {
-    const std::string of = counts_.contains(share) ? share : "";
-    return sums_.at(of) / counts_.at(of);
+  bool is_empty() const { return all_.count == 0; }
+  double sum() const { return all_.sum; }
+  double expected(const Task& task) const {
+    return all_.mean() * ratio(scenes_, task.folder) * ratio(shares_, task.share);
   }
-  double sum() const { return is_empty() ? 0 : sums_.at(""); }
 
  private:
-  std::map<std::string, double> sums_;
-  std::map<std::string, int> counts_;
+  struct Mean {
+    double sum = 0;
+    int count = 0;
+
+    void add(double x) {
+      sum += x;
+      ++count;
+    }
+    double mean() const { return sum / count; }
+  };
+
+  double ratio(const std::map<std::string, Mean>& means, const std::string& name) const {
+    const auto own = means.find(name);
+    return own == means.end() || all_.sum == 0 ? 1 : own->second.mean() / all_.mean();
+  }
+
+  Mean all_;
+  std::map<std::string, Mean> scenes_, shares_;
 };
 
 void print_stage(const std::string& stage, const std::map<TaskState::Kind, int>& counts) {
@@ -53,6 +68,28 @@ void print_stage(const std::string& stage, const std::map<TaskState::Kind, int>&
     parts.push_back(fmt::format("{} {}", own->second, word));
   }
   if (all > 0) fmt::print("{:<11} {} tasks: {}\n", stage, all, fmt::join(parts, ", "));
+}
+
+// The longest of so many shards of a stage [s].
+double longest_shard(const std::vector<Task>& tasks, const std::vector<TaskState>& states,
+                     const std::string& stage, std::size_t shards) {
+  std::vector<double> sums(shards);
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (tasks[i].stage == stage) sums[number++ % shards] += states[i].seconds;
+  }
+  return std::ranges::max(sums);
+}
+
+// How long the stages take on so many cores, by what their tasks took: a stage ends with its
+// longest shard, or task.
+void print_division(const std::vector<Task>& tasks, const std::vector<TaskState>& states) {
+  for (const std::size_t cores : {1, 2, 10, 100}) {
+    const double first = longest_shard(tasks, states, references, cores),
+                 then = longest_shard(tasks, states, points, cores);
+    fmt::print("on {:>3} core{} references {}, points {}\n", cores,
+               cores == 1 ? ": " : "s:", clock_words(first), clock_words(then));
+  }
 }
 
 }  // namespace
@@ -75,7 +112,7 @@ int print_status(const std::string& folder) {
     if (state.kind == TaskState::without_reference) without_reference.insert(task.folder);
     ++counts[task.stage][state.kind];
     if (state.is_done()) {
-      durations.add(task.share, state.seconds);
+      durations.add(task, state.seconds);
       continue;
     }
     left.push_back(&task);
@@ -89,7 +126,8 @@ int print_status(const std::string& folder) {
     fmt::print("measured on unlike machines: {}\n", in_words(machines));
   for (const std::string& worker : workers) fmt::print("at work: {}\n", worker);
   if (left.empty()) {
-    fmt::print("all is done, in {} of one core\n", measure::duration_in_words(durations.sum()));
+    fmt::print("all is done, in {} of one core\n", clock_words(durations.sum()));
+    print_division(tasks, states);
     return done;
   }
   if (durations.is_empty()) {
@@ -97,11 +135,10 @@ int print_status(const std::string& folder) {
     return done;
   }
   double seconds = 0;
-  for (const Task* task : left) seconds += durations.mean(task->share);
-  fmt::print("the rest takes some {} of one core", measure::duration_in_words(seconds));
+  for (const Task* task : left) seconds += durations.expected(*task);
+  fmt::print("the rest takes some {} of one core", clock_words(seconds));
   if (workers.size() > 1) {
-    fmt::print(", {} of the {} at work",
-               measure::duration_in_words(seconds / static_cast<double>(workers.size())),
+    fmt::print(", {} of the {} at work", clock_words(seconds / static_cast<double>(workers.size())),
                workers.size());
   }
   fmt::print("\n");

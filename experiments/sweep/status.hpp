@@ -5,8 +5,7 @@
 namespace qddot::sweep {
 
 // Prints what of a sweep is done, running, begun and ended, failed and missing, by stage, what
-// failed and why, and how long the rest takes: as long as the tasks of the same method, or of all,
-// that are done. Returns the program's status.
+// failed and why, and how long the rest takes, by what is done. Returns the program's status.
 int print_status(const std::string& folder);
 
 }  // namespace qddot::sweep

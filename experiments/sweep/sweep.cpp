@@ -109,12 +109,15 @@ int plan_study(const Arguments& a) {
   protect_input(a.where);
   const StudyFile study = read_study(a.where);
   const std::string folder = std::filesystem::absolute(a.out).lexically_normal().string();
-  const bool is_new = !std::filesystem::exists(folder);
+  const std::string scenes = folder + "/scenes";
+  const bool is_new = !std::filesystem::exists(folder),
+             had_scenes = std::filesystem::exists(scenes);
   std::vector<Task> tasks;
   try {
     tasks = plan(study, a.where, folder);
     require_folder(folder);
   } catch (...) {  // nothing half planned is left behind
+    if (!had_scenes) std::filesystem::remove_all(scenes);
     if (is_new) std::filesystem::remove_all(folder);
     throw;
   }

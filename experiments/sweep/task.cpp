@@ -1,5 +1,6 @@
 #include "experiments/sweep/task.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 
@@ -24,7 +25,8 @@ std::string text_of(const nlohmann::json& json) {
 nlohmann::json to_json(const Task& task) {
   return {{"id", task.id},           {"stage", task.stage}, {"folder", task.folder},
           {"program", task.program}, {"share", task.share}, {"arguments", task.arguments},
-          {"varied", task.varied},   {"entry", task.entry}, {"key", task.key}};
+          {"varied", task.varied},   {"entry", task.entry}, {"order", task.order},
+          {"key", task.key}};
 }
 
 Task task_of(const nlohmann::json& json) {
@@ -36,7 +38,8 @@ Task task_of(const nlohmann::json& json) {
           .arguments = json.at("arguments"),
           .key = json.at("key"),
           .varied = json.at("varied"),
-          .entry = json.at("entry")};
+          .entry = json.at("entry"),
+          .order = json.at("order")};
 }
 
 bool is_sound(const Task& task) {
@@ -49,13 +52,16 @@ bool is_sound(const Task& task) {
 
 }  // namespace
 
+std::string hash_of(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x00000100000001b3ULL;
+  return fmt::format("{:016x}", hash);
+}
+
 std::string id_of(nlohmann::json key, const std::string& share) {
   key.erase("machine");
   key["share"] = share;
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // 64-bit FNV-1a
-  for (const char c : text_of(key))
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x00000100000001b3ULL;
-  return fmt::format("{:016x}", hash);
+  return hash_of(text_of(key));
 }
 
 std::vector<Task> read_tasks(const std::string& folder) {
@@ -63,7 +69,7 @@ std::vector<Task> read_tasks(const std::string& folder) {
   std::ifstream file(path);
   std::vector<Task> tasks;
   std::string line;
-  while (std::getline(file, line)) {
+  for (int number = 1; std::getline(file, line); ++number) {
     const auto json = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
     bool is_good = false;
     try {
@@ -74,7 +80,7 @@ std::vector<Task> read_tasks(const std::string& folder) {
     if (!is_good) {
       throw InvalidInput(fmt::format(
           "{}:{}: it is no task as sweep plan writes it; allowed is to plan the study again", path,
-          tasks.size() + !json.is_object()));
+          number));
     }
   }
   if (tasks.empty()) {
@@ -91,7 +97,9 @@ std::vector<Task> read_tasks(const std::string& folder) {
   return tasks;
 }
 
-void write_tasks(const std::string& folder, const std::vector<Task>& tasks) {
+void write_tasks(const std::string& folder, std::vector<Task> tasks) {
+  std::ranges::sort(tasks, {},
+                    [](const Task& task) { return std::pair(task.stage != references, task.id); });
   // Its own, as its first line says of which sources it is.
   WholeFile file(path_of(folder), R"({"arguments":)");
   for (const Task& task : tasks) file.write(text_of(to_json(task)) + "\n");

@@ -126,11 +126,16 @@ bool TaskFiles::finish(const Task& task, const std::string& journal) const {
       std::rename(journal.c_str(), whole_path(task).c_str()) != 0)
     throw CannotWrite(fmt::format("{}: cannot be written: {}", whole_path(task),
                                   std::generic_category().message(errno)));
+  ::unlink(journal.c_str());
+  tidy(task);
+  return true;
+}
+
+void TaskFiles::tidy(const Task& task) const {
   for (const std::string& path : begun_paths(task)) {
-    if (path == journal || !is_held(path)) ::unlink(path.c_str());
+    if (!is_held(path)) ::unlink(path.c_str());
   }
   ::unlink(failed_path(task).c_str());
-  return true;
 }
 
 void TaskFiles::fail(const Task& task, const std::string& cause) const {

@@ -51,6 +51,8 @@ class TaskFiles {
   // The task is whole in the file that begin() gave: gives it its name, forgets that it failed and
   // what others kept of it. False, and nothing done, where the file is not whole.
   bool finish(const Task& task, const std::string& journal) const;
+  // Removes what ended processes have kept of a task that is done.
+  void tidy(const Task& task) const;
   // Why it failed.
   void fail(const Task& task, const std::string& cause) const;
 

@@ -116,14 +116,13 @@ def panel_height(view, emphasis):
     return band_height(view) + axes_height(view.runs, emphasis) + AXIS_TEXT
 
 
-def draw(views, reference, interruption, fallback_scene, everything):
+def draw(views, reference, sentences, fallback_scene, everything):
     """The whole picture of one view and more below it as a sheet; of every method, or with those
-    that stand out."""
+    that stand out. `sentences`: what a reader must know before the errors."""
     main, *more = views
     emphasis = Everything(views) if everything else Prominent(views)
     strip = failures if everything else causes
     failed = failures.failing(measurements.sweeps(main.runs))
-    sentences = caveats(reference, interruption)
     header = HEADER + HORIZON * len(sentences)
     panels = sum(panel_height(view, emphasis) for view in views)
     strip_top = header + panels + HEADING * len(more)
@@ -168,10 +167,13 @@ def main(arguments):
     use_style()
     try:
         reference = measurements.read_reference(os.path.join(directory, "reference.json"))
-        interruption = measurements.interrupted_by(os.path.join(directory, "points.csv"))
+        table = os.path.join(directory, "points.csv")
+        known = caveats(
+            reference, measurements.interrupted_by(table), measurements.are_times_of_work(table)
+        )
         for name, views in pictures(directory, reference):
             folder = os.path.basename(os.path.abspath(directory))
-            sheet = draw(views, reference, interruption, folder, everything)
+            sheet = draw(views, reference, known, folder, everything)
             for extension in ("png", "svg"):
                 sheet.save(os.path.join(directory, f"{name}.{extension}"))
     except measurements.BadInput as error:

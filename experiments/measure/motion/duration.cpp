@@ -6,7 +6,8 @@ namespace qddot::measure {
 
 std::string duration_in_words(double seconds) {
   constexpr double minute = 60, hour = 60 * minute, day = 24 * hour, year = 365.25 * day;
-  if (seconds < 2 * minute) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 99.5) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 2 * minute) return fmt::format("{:.0f} s", seconds);
   if (seconds < 2 * hour) return fmt::format("{:.2g} minutes", seconds / minute);
   if (seconds < 2 * day) return fmt::format("{:.2g} hours", seconds / hour);
   if (seconds < 2 * year) return fmt::format("{:.3g} days", seconds / day);

@@ -1,0 +1,316 @@
+#!/usr/bin/python3
+"""Runs a study as jobs of a Slurm cluster, one of whose nodes dies in the middle, and compares the
+points with those of one process.
+
+  tests/cluster/with_cluster /usr/bin/python3 -B tests/cluster/check_cluster.py --bin build/bin
+
+`sweep submit` makes an array of jobs for the references, one for the points and a job that merges.
+While a job of the points runs on node2, that node and all that runs there is killed. Slurm has to
+requeue the job; the node comes back; the queue has to become empty. All columns but measured times
+have to be equal, to the digit. Status 1: something was found.
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import glob
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+# No run of these methods comes near the limit of time, so that no point depends on the machine's
+# speed. All of them are of order 2 or more: others need billions of steps for the last digits.
+METHODS = (
+    "implicit_midpoint,trapezoidal,generalized_alpha,hht,bdf2,trbdf2,discrete_gradient,rodas4,"
+    "verlet,position_verlet,rk4,blanes_moan4,blanes_moan6,kahan_li8,takahashi_imada4,symmetric4,"
+    "symmetric6,symmetric8,symmetric10,dprkn6,dprkn8,dprkn12,linear_midpoint,linear_midpoint4,"
+    "arkode_dirk3,arkode_dirk4,arkode_dirk5,arkode_dirk3_klu,arkode_dirk4_klu,arkode_dirk5_klu,"
+    "arkode_erk3,arkode_erk4,arkode_erk5,arkode_erk6,arkode_erk8,ida,ida_klu,cvode_bdf,"
+    "cvode_bdf_klu,cvode_adams"
+)
+UNTIL = "0.02"
+SCENES = {
+    "pendulum": None,
+    "chain": '[generator]\nkind = "chain"\nnodes = 8\n',
+}
+STUDY = f"""scenes = ["pendulum", {{ generator = "chain", nodes = 8 }}]
+until = {UNTIL}
+methods = ["{METHODS.replace(",", '", "')}"]
+[options]
+point-limit = 60
+repeats = 1
+"""
+OPTIONS = ["--methods", METHODS, "--point-limit", "60", "--repeats", "1"]
+SHARDS = 4
+NODE = "node2"
+MEASURED = {"time_s", "time_min_s", "setup_s", "timed_runs"}
+
+
+class Fault(Exception):
+    """What was found, in a sentence."""
+
+
+def seconds_since(start):
+    """The seconds since a time of time.monotonic, as they are printed."""
+    return f"{time.monotonic() - start:.1f} s"
+
+
+def said_by(argv, **more):
+    """What a command prints; a Fault where it fails."""
+    done = subprocess.run(argv, capture_output=True, text=True, **more)
+    if done.returncode != 0:
+        said = done.stdout[-2000:] + done.stderr[-2000:]
+        raise Fault(f"{' '.join(argv)}: status {done.returncode}\n{said}")
+    return done.stdout
+
+
+def wait_for(seconds, what, condition):
+    """The first value of the condition that is true; a Fault where there is none in time."""
+    end = time.monotonic() + seconds
+    while not (value := condition()):
+        if time.monotonic() > end:
+            raise Fault(f"{what} did not come about in {seconds} s")
+        time.sleep(0.3)
+    return value
+
+
+def queue():
+    """The jobs that have not ended, one a task: (job and task, name, state, node)."""
+    lines = said_by(["squeue", "--noheader", "--array", "--format=%i|%j|%T|%N"]).splitlines()
+    return [tuple(line.split("|")) for line in lines]
+
+
+def fields_of(job):
+    """What Slurm knows of a job or a task of an array, by name."""
+    return dict(re.findall(r"(\w+)=(\S*)", said_by(["scontrol", "show", "job", job])))
+
+
+def task_on(node):
+    """The job of points that runs on the node, or None; a Fault where no job is left."""
+    jobs = queue()
+    if not any("points" in name for _, name, _, _ in jobs):
+        raise Fault(f"no job of points came to {node}")
+    for job, name, state, where in jobs:
+        if "points" in name and state == "RUNNING" and where == node:
+            return job
+    return None
+
+
+def processes_on(node):
+    """The ids of the processes that Slurm started for jobs on the node."""
+    found = []
+    for path in glob.glob("/proc/[0-9]*/environ"):
+        try:
+            with open(path, "rb") as file:
+                if f"SLURMD_NODENAME={node}".encode() in file.read().split(b"\0"):
+                    found.append(int(path.split("/")[2]))
+        except OSError:
+            pass  # it has ended
+    return found
+
+
+def kill_a_node(script):
+    """Kills the node in the middle of a job of points; returns the job, how often it had started
+    anew and how many of its processes were killed."""
+    while True:
+        job = wait_for(120, f"a job of points on {NODE}", lambda: task_on(NODE))
+        # A moment, so that some of the job's points are measured and others are not.
+        time.sleep(1)
+        fields = fields_of(job)
+        killed = processes_on(NODE)
+        if fields["JobState"] == "RUNNING" and fields["NodeList"] == NODE and killed:
+            break  # else it was a short one, and the next may be longer
+    said_by([script, "--kill-node", NODE])
+    wait_for(5, f"the end of all processes on {NODE}", lambda: not processes_on(NODE))
+    return job, int(fields["Restarts"]), len(killed)
+
+
+def requeued(job, restarts):
+    """What Slurm knows of the job where it has been requeued, else None."""
+    fields = fields_of(job)
+    return fields if int(fields["Restarts"]) > restarts else None
+
+
+def node_state(node):
+    """The state of a node, as idle, allocated or down*."""
+    return said_by(["sinfo", "--noheader", "--nodes", node, "--format=%T"]).strip()
+
+
+def revive(script):
+    """Starts the node again and waits until it takes jobs; says whether an administrator had to."""
+    said_by([script, "--start-node", NODE])
+    usable = ("idle", "allocated", "mixed", "completing")
+    try:
+        wait_for(20, f"the return of {NODE}", lambda: node_state(NODE) in usable)
+        return "by itself"
+    except Fault:
+        said_by(["scontrol", "update", f"nodename={NODE}", "state=resume"])
+        wait_for(20, f"the return of {NODE}", lambda: node_state(NODE) in usable)
+        return "when it was told to resume"
+
+
+def jobs_that_failed(ids):
+    """A line for each job and task of these ids that did not complete."""
+    failed = []
+    for job in ids:
+        for part in said_by(["scontrol", "--oneliner", "show", "job", job]).splitlines():
+            fields = dict(re.findall(r"(\w+)=(\S*)", part))
+            if fields["JobState"] != "COMPLETED":
+                task = fields.get("ArrayTaskId", "")
+                failed.append(f"job {job} {task} ({fields['JobName']}): {fields['JobState']}")
+    return failed
+
+
+def points_in(path):
+    """A table's points by scene, method, knob and value, without measured times; its columns."""
+    with open(path, encoding="utf-8", newline="") as file:
+        table = csv.DictReader(file)
+        points = {}
+        for row in table:
+            key = (row["scene"], row["method"], row["knob"], row["value"])
+            if key in points:
+                raise Fault(f"{path}: {' '.join(key)} is there twice")
+            points[key] = {name: row[name] for name in row if name not in MEASURED}
+        return points, table.fieldnames
+
+
+def in_one_process(programs, place):
+    """Runs the study's scenes without a cluster; the points, the columns and the seconds taken."""
+    start = time.monotonic()
+    points, columns = {}, None
+    for name, text in SCENES.items():
+        scene, out = name, os.path.join(place, "one", name)
+        if text:
+            scene = os.path.join(place, f"{name}.toml")
+            with open(scene, "w", encoding="utf-8") as file:
+                file.write(text)
+        said_by(
+            [os.path.join(programs, "work_precision"), "--scene", scene, "--until", UNTIL]
+            + OPTIONS
+            + ["--progress", "none", "--out", out]
+        )
+        more, columns = points_in(os.path.join(out, "points.csv"))
+        points.update(more)
+    return points, columns, seconds_since(start)
+
+
+def differences(one, many):
+    """A line for each difference between two sets of points."""
+    found = [f"{' '.join(key)}: only in one process" for key in one if key not in many]
+    found += [f"{' '.join(key)}: only in the cluster" for key in many if key not in one]
+    for key in one.keys() & many.keys():
+        for name, value in one[key].items():
+            other = many[key].get(name)
+            if other != value:
+                found.append(
+                    f"{' '.join(key)}: {name} is {other} in the cluster, {value} in one process"
+                )
+    return sorted(found)
+
+
+def check(programs, script, place):
+    """Runs all, printing the seconds of each part; a Fault where something is wrong."""
+    sweep, study = os.path.join(programs, "sweep"), os.path.join(place, "study.toml")
+    folder = os.path.join(place, "S")
+    with open(study, "w", encoding="utf-8") as file:
+        file.write(STUDY)
+    start = time.monotonic()
+    said_by([sweep, "plan", study, "--out", folder], cwd=place)
+    submitted = said_by(
+        [sweep, "submit", folder, "--slurm", "--shards", str(SHARDS), "--go"], cwd=place
+    )
+    jobs = queue()
+    ids = sorted({re.match(r"\d+", job).group() for job, _, _, _ in jobs}, key=int)
+    unsaid = [job for job in ids if not re.search(rf"\b{job}\b", submitted)]
+    if len(ids) != 3 or unsaid:
+        raise Fault(f"three jobs are submitted and printed, not {jobs}:\n{submitted}")
+    print(f"planned and submitted as jobs {', '.join(ids)}: {seconds_since(start)}", flush=True)
+
+    start = time.monotonic()
+    job, restarts, processes = kill_a_node(script)
+    print(f"until {NODE} was killed in the middle of points: {seconds_since(start)}", flush=True)
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        # The core of the node that is dead is free.
+        alone = pool.submit(in_one_process, programs, place)
+        start = time.monotonic()
+        fields = wait_for(120, f"a requeue of {job}", lambda: requeued(job, restarts))
+        print(
+            f"{job} ran on {NODE}, which was killed and all that ran there (processes of the job: "
+            f"{processes}); Slurm requeued it after {seconds_since(start)} (restarts: "
+            f"{fields['Restarts']})",
+            flush=True,
+        )
+        start = time.monotonic()
+        how = revive(script)
+        print(f"{NODE} came back {how}: {seconds_since(start)}", flush=True)
+        start = time.monotonic()
+        wait_for(300, "the end of all jobs", lambda: not queue())
+        print(f"until all jobs had ended: {seconds_since(start)}", flush=True)
+        one, columns, seconds = alone.result()
+    print(f"the same study in one process: {seconds}", flush=True)
+
+    found = jobs_that_failed(ids)
+    merged = os.path.join(folder, "points.csv")
+    if not os.path.exists(merged):
+        raise Fault("\n".join(["there is no points.csv", *found]))
+    many, columns_of_many = points_in(merged)
+    if columns_of_many != columns:
+        found.append(f"the columns are {columns_of_many} in the cluster, {columns} in one process")
+    found += differences(one, many)
+    parts = glob.glob(os.path.join(folder, "**", "*.part"), recursive=True)
+    found += [f"{os.path.relpath(part, folder)} is left" for part in parts]
+    if not one:
+        found.append("there is no point")
+    if found:
+        raise Fault("\n".join([f"{len(found)} differences", *found[:20]]))
+    print(f"{len(one)} points of {len(SCENES)} scenes, all equal", flush=True)
+
+
+def tell_more(programs, place):
+    """Prints what Slurm and the study say of themselves."""
+    folder = os.path.join(place, "S")
+    paths = sorted(glob.glob(os.path.join(os.path.dirname(os.environ["SLURM_CONF"]), "*.log")))
+    for path in paths + sorted(glob.glob(os.path.join(folder, "log", "*"))):
+        with open(path, encoding="utf-8", errors="replace") as file:
+            print(f"--- {os.path.basename(path)}\n{''.join(file.readlines()[-30:])}")
+    for argv in (
+        ["squeue", "--array"],
+        ["sinfo", "--Node", "--long"],
+        [os.path.join(programs, "sweep"), "status", folder],
+    ):
+        try:
+            done = subprocess.run(argv, capture_output=True, text=True, timeout=30)
+            print(f"--- {' '.join(argv)}\n{done.stdout}{done.stderr}")
+        except (OSError, subprocess.TimeoutExpired) as error:
+            print(f"--- {' '.join(argv)}\n{error}")
+
+
+def main():
+    """Status 0: all is equal; 1: something was found; 2: it cannot be tried."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--bin", required=True, help="the folder of the programs")
+    programs = os.path.abspath(parser.parse_args().bin)
+    script = os.environ.get("CLUSTER_SCRIPT")
+    if not script or "SLURM_CONF" not in os.environ:
+        sys.exit("check_cluster: this runs inside of with_cluster only")
+    # Times are measured, and jobs share two cores; what jobs get is the environment of sbatch.
+    os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", LC_ALL="C.UTF-8")
+    start = time.monotonic()
+    with tempfile.TemporaryDirectory(prefix="check_cluster.") as place:
+        try:
+            check(programs, script, place)
+        except Fault as fault:
+            print(f"check_cluster: {fault}")
+            tell_more(programs, place)
+            return 1
+    print(f"all of this: {seconds_since(start)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
