@@ -65,9 +65,10 @@ Study::Study(const CommandLine& line, const std::string& folder,
              const Shares& shares)
     : program_(line.program()),
       path_(folder + "/" + program_ + ".journal"),
+      options_(options_of(line)),
       key_({{"program", program_},
             {"about", about},
-            {"options", options_of(line)},
+            {"options", options_},
             {"build", build()},
             {"machine", machine()}}),
       share_(share_of(line)),
@@ -195,9 +196,13 @@ void Study::measure(const std::function<void()>& body) {
 
 void Study::complete(CsvFile& table, nlohmann::json origin, int status) {
   origin["study"] = key_;
+  origin["study"]["options"] = options_;
   origin["exit_status"] = why_ ? why_->status : status;
   origin["interrupted"] = why_ ? nlohmann::json(why_->by) : nullptr;
-  if (is_kept_) origin.update(key_.at("machine"));
+  if (is_kept_) {
+    origin.update(key_.at("machine"));
+    std::erase(origin.at("command_line").get_ref<nlohmann::json::array_t&>(), "--kept");
+  }
   table.complete(origin);
   complete_.push_back(&table);
 }

@@ -81,7 +81,7 @@ class Study {
   int conclude_whole(int status);
 
   std::string program_, path_;
-  nlohmann::json key_;
+  nlohmann::json options_, key_;
   std::string share_;  // none where all are measured
   bool is_kept_ = false;
   std::map<std::string, nlohmann::json> kept_;

@@ -4,7 +4,7 @@ import shlex
 
 from study_folder import look
 
-LISTS = ("--methods", "--no-reduce")
+LISTS = ("--methods", "--no-reduce", "--accuracies")
 FLAGS = ("--stability-detection",)
 # What a run takes of the options of its study, beside those that its method listens to.
 OF_EVERY_RUN = ("--no-reduce", "--threads")

@@ -75,6 +75,14 @@ std::map<std::string, std::string> on_all(const std::vector<ScenePart>& parts, c
   return failures;
 }
 
+// Where the first field of a row ends.
+std::size_t end_of_first_field(const std::string& row) {
+  std::size_t at = 0;
+  for (bool is_quoted = false; at < row.size() && (is_quoted || row[at] != ','); ++at)
+    is_quoted ^= row[at] == '"';
+  return at;
+}
+
 // points.csv of all scenes: the rows of theirs, named by their folders.
 void write_points(const std::string& path, const std::vector<ScenePart>& parts,
                   const nlohmann::json& origin) {
@@ -85,10 +93,9 @@ void write_points(const std::string& path, const std::vector<ScenePart>& parts,
     std::getline(file, line);  // the header
     Csv name;
     name.field(part.tasks.front().folder);
-    while (std::getline(file, line)) {
-      const std::size_t end = line.starts_with('"') ? line.find("\",") + 1 : line.find(',');
-      csv.rows(fmt::format("{}{}\n", name.text(), std::string_view(line).substr(end)));
-    }
+    while (std::getline(file, line))
+      csv.rows(fmt::format("{}{}\n", name.text(),
+                           std::string_view(line).substr(end_of_first_field(line))));
     csv.flush_if_large();
   }
   csv.commit(origin);
@@ -153,6 +160,10 @@ bool merge_machine(const TaskFiles& files, const std::string& folder, std::vecto
 int merge(const std::string& folder, const Merging& how) {
   std::vector<Task> tasks = read_tasks(folder);
   std::ranges::sort(tasks, {}, &Task::order);
+  if (how.by_work && tasks.front().program != "work_precision") {
+    throw InvalidInput(fmt::format("--by work is not allowed with {}; allowed is work_precision",
+                                   tasks.front().program));
+  }
   const TaskFiles files(folder, /*makes_folders=*/true);
   std::vector<TaskState> states;
   for (const Task& task : tasks) states.push_back(files.state(task));
@@ -174,7 +185,7 @@ int merge(const std::string& folder, const Merging& how) {
   for (std::size_t k = 0; k < machines.size(); ++k) {
     std::string out = folder;
     if (how.per_machine) {
-      out = fmt::format("{}/machine-{}", folder, k + 1);
+      out = fmt::format("{}/machines/{}", folder, k + 1);
       fmt::print("{}: {}\n", out, in_words({machines[k]}));
     }
     is_good =

@@ -1,5 +1,6 @@
 #include "experiments/sweep/plan.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -38,16 +39,19 @@ std::string scene_word(const StudyScene& scene, const std::string& study_path,
   return std::filesystem::absolute(path).lexically_normal().string();
 }
 
+// What the program takes to measure the scene by these methods; by all where there are none.
 std::vector<std::string> arguments_of(const StudyFile& study, const StudyScene& scene,
-                                      const std::string& scene_word) {
+                                      const std::string& scene_word,
+                                      const std::vector<std::string>& methods) {
   std::vector<std::string> words;
-  if (!scene_word.empty()) words.insert(words.end(), {"--scene", scene_word});
-  if (scene.until > 0) words.insert(words.end(), {"--until", fmt::format("{}", scene.until)});
+  const auto add = [&](const char* option, const std::string& value) {
+    words.insert(words.end(), {option, value});
+  };
+  if (!scene_word.empty()) add("--scene", scene_word);
+  if (scene.until > 0) add("--until", fmt::format("{}", scene.until));
   if (!study.accuracies.empty())
-    words.insert(words.end(),
-                 {"--accuracies", fmt::format("{}", fmt::join(study.accuracies, ","))});
-  if (!study.methods.empty())
-    words.insert(words.end(), {"--methods", fmt::format("{}", fmt::join(study.methods, ","))});
+    add("--accuracies", fmt::format("{}", fmt::join(study.accuracies, ",")));
+  if (!methods.empty()) add("--methods", fmt::format("{}", fmt::join(methods, ",")));
   for (const auto& [name, value] : study.options) {
     words.push_back("--" + name);
     if (!value.empty()) words.push_back(value);
@@ -55,19 +59,39 @@ std::vector<std::string> arguments_of(const StudyFile& study, const StudyScene& 
   return words;
 }
 
-// What the program can measure apart: its study's key and its shares.
-nlohmann::json listed(const StudyFile& study, const StudyScene& scene,
-                      const std::vector<std::string>& arguments, const std::string& study_path) {
+// What the program says that it can measure apart: its study's key and its shares; or why it
+// refuses.
+struct Listed {
+  std::vector<std::string> arguments;
+  nlohmann::json found{};
+  std::string refusal{};
+};
+
+Listed listed(const StudyFile& study, std::vector<std::string> arguments) {
   Command command{.program = program_path(study.program), .arguments = arguments};
-  const auto add = [&](std::initializer_list<std::string> words) {
-    command.arguments.insert(command.arguments.end(), words);
-  };
-  add({"--out", ".", "--list-shares", "--progress", "none"});
+  for (const char* word : {"--out", ".", "--list-shares", "--progress", "none"})
+    command.arguments.emplace_back(word);
   const ChildEnd end = run_child(command);
   measure::stop_if_interrupted();
-  const auto json = nlohmann::json::parse(end.out, nullptr, /*allow_exceptions=*/false);
-  if (end.status == done && json.is_object()) return json;
-  throw InvalidInput(fmt::format("{}: {}: {}", study_path, scene.label, end.cause()));
+  Listed all{.arguments = std::move(arguments)};
+  all.found = nlohmann::json::parse(end.out, nullptr, /*allow_exceptions=*/false);
+  if (end.status != done || !all.found.is_object()) all.refusal = end.cause();
+  return all;
+}
+
+// The shares of a scene. Of the study's methods those are left out that cannot run it.
+Listed shares_of(const StudyFile& study, const StudyScene& scene, const std::string& scene_word) {
+  Listed all = listed(study, arguments_of(study, scene, scene_word, study.methods));
+  if (all.refusal.empty() || study.methods.empty()) return all;
+  const Listed any = listed(study, arguments_of(study, scene, scene_word, {}));
+  if (!any.refusal.empty()) return all;
+  const auto shares = any.found.at("shares").get<std::vector<std::string>>();
+  std::vector<std::string> fitting = study.methods;
+  std::erase_if(fitting, [&](const std::string& method) {
+    return std::ranges::find(shares, method) == shares.end();
+  });
+  if (fitting.empty() || fitting.size() == study.methods.size()) return all;
+  return listed(study, arguments_of(study, scene, scene_word, fitting));
 }
 
 }  // namespace
@@ -78,27 +102,28 @@ std::vector<Task> plan(const StudyFile& study, const std::string& study_path,
   progress().begin(study.scenes.size());
   for (const StudyScene& scene : study.scenes) {
     progress().now_at(scene.label);
-    const auto arguments = arguments_of(study, scene, scene_word(scene, study_path, folder));
-    const nlohmann::json found = listed(study, scene, arguments, study_path);
-    for (const auto& share : found.at("shares")) {
-      Task task{.id = id_of(found.at("key"), share),
-                .stage = share == reference_share ? references : points,
-                .folder = scene.label,
-                .program = study.program,
-                .share = share,
-                .arguments = arguments,
-                .key = found.at("key"),
-                .varied = scene.varied,
-                .entry = scene.entry,
-                .order = tasks.size()};
-      task.key.erase("machine");
-      tasks.push_back(std::move(task));
+    const Listed all = shares_of(study, scene, scene_word(scene, study_path, folder));
+    if (!all.refusal.empty())
+      throw InvalidInput(fmt::format("{}: {}: {}", study_path, scene.label, all.refusal));
+    nlohmann::json key = all.found.at("key");
+    key.erase("machine");
+    for (const auto& share : all.found.at("shares")) {
+      tasks.push_back({.id = id_of(key, share),
+                       .stage = share == reference_share ? references : points,
+                       .folder = scene.label,
+                       .program = study.program,
+                       .share = share,
+                       .arguments = all.arguments,
+                       .key = key,
+                       .varied = scene.varied,
+                       .entry = scene.entry,
+                       .order = tasks.size()});
     }
     if (tasks.size() > most_tasks) {
       throw InvalidInput(
-          fmt::format("the study has more than {} tasks; allowed are fewer scenes or "
+          fmt::format("{}: its tasks are more than {}; allowed are fewer scenes or "
                       "methods",
-                      most_tasks));
+                      study_path, most_tasks));
     }
     progress().finish(scene.label);
   }

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -50,44 +50,66 @@ struct Neighbours {
   double to() const { return high->varied.at(along); }
 };
 
-// In what alone two scenes of one entry differ, if it is one thing.
-std::optional<std::string> only_difference(const SceneResult& a, const SceneResult& b) {
-  std::optional<std::string> along;
-  if (a.entry != b.entry) return {};
-  for (const auto& [name, value] : a.varied) {
-    if (!b.varied.contains(name)) return {};
-    if (b.varied.at(name) == value) continue;
-    if (along) return {};
-    along = name;
-  }
-  return along;
-}
-
+// Scenes of one entry that are alike but for one thing, in its order.
 std::vector<Neighbours> neighbours(const std::vector<SceneResult>& results) {
-  std::vector<Neighbours> all;
-  for (const SceneResult& low : results) {
-    std::map<std::string, const SceneResult*> next;  // by what it differs in
-    for (const SceneResult& other : results) {
-      const auto along = only_difference(low, other);
-      if (!along || other.varied.at(*along) < low.varied.at(*along)) continue;
-      const SceneResult*& nearest = next[*along];
-      if (!nearest || other.varied.at(*along) < nearest->varied.at(*along)) nearest = &other;
+  using Others = std::map<std::string, double>;
+  std::map<std::tuple<std::size_t, std::string, Others>, std::vector<const SceneResult*>> rows;
+  for (const SceneResult& one : results) {
+    for (const auto& [along, value] : one.varied) {
+      Others others = one.varied;
+      others.erase(along);
+      rows[{one.entry, along, others}].push_back(&one);
     }
-    for (const auto& [along, high] : next) all.push_back({along, &low, high});
+  }
+  std::vector<Neighbours> all;
+  for (auto& [of, row] : rows) {
+    const std::string& along = std::get<std::string>(of);
+    std::ranges::sort(row, {}, [&](const SceneResult* one) { return one->varied.at(along); });
+    for (std::size_t i = 1; i < row.size(); ++i) all.push_back({along, row[i - 1], row[i]});
   }
   return all;
 }
 
-// Where two methods take equally long, of which the one is faster at the lower end and the other
-// at the upper; no number where one of them did not get there at both.
-double crossing(const Neighbours& pair, const Ranking& low, const Ranking& high) {
-  const Method *first = low.front()->method, *second = high.front()->method;
-  const double at_low = std::log(time_of(low, first) / time_of(low, second));
-  const double at_high = std::log(time_of(high, first) / time_of(high, second));
-  const double part = at_low / (at_low - at_high);
-  if (!std::isfinite(part)) return none;
-  if (!(pair.from() > 0)) return pair.from() + (pair.to() - pair.from()) * part;
-  return pair.from() * std::pow(pair.to() / pair.from(), part);
+// Between two neighbours the fastest method changes.
+struct Crossover {
+  Neighbours pair;
+  double accuracy = 0;
+  const Method *low = nullptr, *high = nullptr;
+  double at_low = none, at_high = none;  // ln of the time of the first over that of the second
+
+  // Where both take equally long; no number where one of them did not get there at both ends.
+  double crossing() const {
+    const double part = at_low / (at_low - at_high);
+    if (!std::isfinite(part)) return none;
+    if (!(pair.from() > 0)) return pair.from() + (pair.to() - pair.from()) * part;
+    return pair.from() * std::pow(pair.to() / pair.from(), part);
+  }
+  // How many times as long the other takes at either end, at least; no number where that is known
+  // at neither.
+  double margin() const { return std::exp(std::fmin(-at_low, at_high)); }
+};
+
+// All of them, those that are the clearest first.
+std::vector<Crossover> crossovers(const std::vector<SceneResult>& results,
+                                  const std::vector<double>& accuracies) {
+  std::vector<Crossover> all;
+  for (const Neighbours& pair : neighbours(results)) {
+    for (const double accuracy : accuracies) {
+      const Ranking low = ranking(*pair.low, accuracy), high = ranking(*pair.high, accuracy);
+      if (low.empty() || high.empty() || low.front()->method == high.front()->method) continue;
+      const Method *first = low.front()->method, *second = high.front()->method;
+      all.push_back({.pair = pair,
+                     .accuracy = accuracy,
+                     .low = first,
+                     .high = second,
+                     .at_low = std::log(time_of(low, first) / time_of(low, second)),
+                     .at_high = std::log(time_of(high, first) / time_of(high, second))});
+    }
+  }
+  std::ranges::stable_sort(all, std::ranges::greater(), [](const Crossover& one) {
+    return std::isnan(one.margin()) ? 0 : one.margin();
+  });
+  return all;
 }
 
 }  // namespace
@@ -143,15 +165,10 @@ void write_fastest(const std::string& path, const std::vector<SceneResult>& resu
 void write_crossovers(const std::string& path, const std::vector<SceneResult>& results,
                       const std::vector<double>& accuracies, const nlohmann::json& origin) {
   CsvFile csv(path, {"along", "accuracy", "low", "high", "crossing", "scene_low", "scene_high",
-                     "method_low", "method_high"});
-  for (const Neighbours& pair : neighbours(results)) {
-    for (const double accuracy : accuracies) {
-      const Ranking low = ranking(*pair.low, accuracy), high = ranking(*pair.high, accuracy);
-      if (low.empty() || high.empty() || low.front()->method == high.front()->method) continue;
-      csv.row(pair.along, accuracy, pair.from(), pair.to(), crossing(pair, low, high),
-              pair.low->label, pair.high->label, low.front()->method->name,
-              high.front()->method->name);
-    }
+                     "method_low", "method_high", "margin"});
+  for (const Crossover& one : crossovers(results, accuracies)) {
+    csv.row(one.pair.along, one.accuracy, one.pair.from(), one.pair.to(), one.crossing(),
+            one.pair.low->label, one.pair.high->label, one.low->name, one.high->name, one.margin());
   }
   csv.commit(origin);
 }

@@ -35,7 +35,8 @@ void write_fastest(const std::string& path, const std::vector<SceneResult>& resu
 // `path`, crossovers.csv: between which neighbouring values of a parameter of a generator, or
 // horizons, all else alike, the fastest method changes, and where the two take equally long: where
 // the line through the logarithm of the ratio of their times, over the logarithm of the parameter,
-// is zero.
+// is zero. `margin`: how many times as long the other takes at either end, at least; the largest
+// come first, as those of nearly 1 are within what times vary by.
 void write_crossovers(const std::string& path, const std::vector<SceneResult>& results,
                       const std::vector<double>& accuracies, const nlohmann::json& origin);
 

@@ -7,6 +7,7 @@
 
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
+#include "experiments/command/provenance.hpp"
 #include "experiments/command/shares.hpp"
 #include "experiments/command/whole_file.hpp"
 #include "qddot/measure/motion/interruption.hpp"
@@ -26,10 +27,10 @@ void say(const Task& task, const std::string& what) {
 }
 
 // Measures one, or says and keeps why it failed.
-bool measure_task(const TaskFiles& files, const Task& task) {
+bool measure_task(const TaskFiles& files, const Task& task, bool replaces) {
   const std::string journal = files.begin(task);
   const ChildEnd end = run_child(command_of(task, files.folder(), journal));
-  if (files.finish(task, journal)) return true;
+  if (files.finish(task, journal, replaces)) return true;
   measure::stop_if_interrupted();
   say(task, end.cause());
   files.fail(task, end.cause());
@@ -87,7 +88,8 @@ std::vector<Task> chosen(const std::vector<Task>& tasks, const std::string& stag
 }
 
 ShardEnd run_tasks(const TaskFiles& files, const std::vector<Task>& mine,
-                   const std::vector<Task>& all) {
+                   const std::vector<Task>& all, bool again) {
+  const nlohmann::json here = machine();
   References needed(files, all);
   ShardEnd end;
   progress().begin(mine.size());
@@ -95,7 +97,8 @@ ShardEnd run_tasks(const TaskFiles& files, const std::vector<Task>& mine,
     measure::stop_if_interrupted();
     progress().now_at(fmt::format("{}, {}", task.folder, task.share));
     const TaskState state = files.state(task);
-    if (state.is_done()) {
+    const bool is_of_others = again && state.kind == TaskState::whole && state.machine != here;
+    if (state.is_done() && !is_of_others) {
       files.tidy(task);
       ++end.done;
     } else if (state.kind == TaskState::running) {
@@ -106,7 +109,7 @@ ShardEnd run_tasks(const TaskFiles& files, const std::vector<Task>& mine,
     } else if (reference.kind == TaskState::without_reference) {
       ++end.skipped;
     } else {
-      ++(measure_task(files, task) ? end.done : end.failed);
+      ++(measure_task(files, task, is_of_others) ? end.done : end.failed);
     }
     progress().finish(fmt::format("{}, {}", task.folder, task.share));
   }

@@ -32,9 +32,10 @@ std::vector<Task> chosen(const std::vector<Task>& tasks, const std::string& stag
                          const Shard& shard);
 
 // Measures the tasks of `mine` that are not done, one after the other, each in a process of its
-// own. `all` tells which references there are. Throws Interrupted where the work is to end: the
-// task at hand keeps its points.
+// own; with `again`, also those that were measured on another kind of machine than this one, whose
+// results are replaced. `all` tells which references there are. Throws Interrupted where the work
+// is to end: the task at hand keeps its points.
 ShardEnd run_tasks(const TaskFiles& files, const std::vector<Task>& mine,
-                   const std::vector<Task>& all);
+                   const std::vector<Task>& all, bool again = false);
 
 }  // namespace qddot::sweep

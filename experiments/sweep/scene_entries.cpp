@@ -102,8 +102,15 @@ std::vector<Parameter> parameters_in(const TomlTable& entry, const toml::table& 
   return parameters;
 }
 
-// The digits that a label shows.
-std::string shown(double value) { return fmt::format("{:.6g}", value); }
+// The digits that a label shows, 1e6 and not 1e+06.
+std::string shown(double value) {
+  std::string text = fmt::format("{:.6g}", value);
+  const std::size_t at = text.find('e');
+  if (at == text.npos) return text;
+  const bool is_negative = text[at + 1] == '-';
+  const std::size_t digits = text.find_first_not_of("+-0", at + 1);
+  return text.substr(0, at + 1) + (is_negative ? "-" : "") + text.substr(digits);
+}
 
 std::string text_of(const std::string& name, const Generator& generator,
                     const std::map<std::string, double>& values) {

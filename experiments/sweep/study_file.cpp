@@ -129,7 +129,7 @@ std::string label_of(const StudyScene& scene) {
 
 // Gives every scene a label of its own, and none that sweep's own folders have.
 void label_all(std::vector<StudyScene>& scenes) {
-  std::set<std::string> taken = {"tasks", "scenes", "log"};
+  std::set<std::string> taken = {"tasks", "scenes", "log", "machines"};
   for (StudyScene& scene : scenes) {
     const std::string first = label_of(scene);
     scene.label = first;

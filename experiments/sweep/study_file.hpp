@@ -42,9 +42,10 @@ struct StudyFile {
   std::vector<std::pair<std::string, std::string>> options{};  // without dashes, and the value
 };
 
+inline constexpr double most_scenes = 100000;
+
 // Reads it. Throws InvalidInput, in a sentence that names file, line, field, value and what is
 // allowed, for an unknown key or program, an empty list, or more than `most_scenes` scenes.
-inline constexpr double most_scenes = 100000;
 StudyFile read_study(const std::string& path);
 
 }  // namespace qddot::sweep

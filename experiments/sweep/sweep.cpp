@@ -46,7 +46,8 @@ constexpr int most_shards = 100000;
 struct Arguments {
   std::string action, where;  // STUDY.toml of plan, the sweep's folder of all others
   std::string out, stage, shard, task, by;
-  bool per_machine = false, has_no_pictures = false, slurm = false, parallel = false, go = false;
+  bool again = false, per_machine = false, has_no_pictures = false, slurm = false, parallel = false,
+       go = false;
   int shards = 100;
 };
 
@@ -57,7 +58,7 @@ struct Action {
 };
 const std::vector<Action>& actions() {
   static const std::vector<Action> all = {{"plan", {"--out"}},
-                                          {"run", {"--stage", "--shard", "--task"}},
+                                          {"run", {"--stage", "--shard", "--task", "--again"}},
                                           {"merge", {"--per-machine", "--by", "--no-pictures"}},
                                           {"submit", {"--slurm", "--parallel", "--shards", "--go"}},
                                           {"status", {}}};
@@ -72,6 +73,8 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--shard", a.shard, "run: I/N, one of N shards of the stage (default: 1/1)")
       .take_last();
   line.add_option("--task", a.task, "run: the one task of this id").take_last();
+  line.add_flag("--again", a.again,
+                "run: measure again what another kind of machine than this one measured");
   line.add_flag("--per-machine", a.per_machine, "merge: a folder for each kind of machine");
   line.add_option("--by", a.by, "merge: work, counts times costs in the place of times")
       .take_last();
@@ -152,7 +155,7 @@ int run_shard(const CommandLine& line, const Arguments& a) {
   }
   wait_for_answer(patience);
   const TaskFiles files(a.where, /*makes_folders=*/true);
-  const ShardEnd end = run_tasks(files, mine, tasks);
+  const ShardEnd end = run_tasks(files, mine, tasks, a.again);
   fmt::print("{} of {} tasks are done", end.done, mine.size());
   for (const auto& [count, what] :
        {std::pair(end.skipped, "are skipped, as there is no reference"),

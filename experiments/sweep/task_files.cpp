@@ -115,17 +115,19 @@ std::string TaskFiles::begin(const Task& task) const {
   return path;
 }
 
-bool TaskFiles::finish(const Task& task, const std::string& journal) const {
-  const Journal::Contents contents = Journal::read(journal);
-  if (!contents.pieces.contains(whole_mark(task.share)) ||
-      id_of(contents.key, task.share) != task.id)
+bool TaskFiles::finish(const Task& task, const std::string& journal, bool replaces) const {
+  const Journal::Contents own = Journal::read(journal);
+  if (!own.pieces.contains(whole_mark(task.share)) || id_of(own.key, task.share) != task.id)
     return false;
-  // One that is there and not whole was damaged.
-  if (!this->contents(task)) ::unlink(whole_path(task).c_str());
-  if (::link(journal.c_str(), whole_path(task).c_str()) != 0 && errno != EEXIST &&
-      std::rename(journal.c_str(), whole_path(task).c_str()) != 0)
-    throw CannotWrite(fmt::format("{}: cannot be written: {}", whole_path(task),
-                                  std::generic_category().message(errno)));
+  const std::string place = whole_path(task);
+  const bool is_damaged = fs::exists(place) && !contents(task);
+  const bool is_linked =
+      !replaces && !is_damaged && (::link(journal.c_str(), place.c_str()) == 0 || errno == EEXIST);
+  // Some file systems have no links.
+  if (!is_linked && std::rename(journal.c_str(), place.c_str()) != 0) {
+    throw CannotWrite(
+        fmt::format("{}: cannot be written: {}", place, std::generic_category().message(errno)));
+  }
   ::unlink(journal.c_str());
   tidy(task);
   return true;

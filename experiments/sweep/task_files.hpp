@@ -48,9 +48,10 @@ class TaskFiles {
   // The file for this process to measure the task into, with the pieces that ended processes have
   // kept. Throws InvalidInput or CannotWrite as Journal does.
   std::string begin(const Task& task) const;
-  // The task is whole in the file that begin() gave: gives it its name, forgets that it failed and
-  // what others kept of it. False, and nothing done, where the file is not whole.
-  bool finish(const Task& task, const std::string& journal) const;
+  // The task is whole in the file that begin() gave: gives it its name, unless another process was
+  // first and this one `replaces` nothing, and forgets that it failed and what others kept of it.
+  // False, and nothing done, where the file is not whole.
+  bool finish(const Task& task, const std::string& journal, bool replaces = false) const;
   // Removes what ended processes have kept of a task that is done.
   void tidy(const Task& task) const;
   // Why it failed.

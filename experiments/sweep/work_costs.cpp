@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/scene_choice.hpp"
@@ -29,7 +30,9 @@ std::string value_of(const std::vector<std::string>& words, const std::string& o
 
 // The scene of the task as its program reduces it.
 WorkCosts costs_of(const Task& task) {
-  const SceneChoice choice{.name = value_of(task.arguments, "--scene"), .no_reduce = {}};
+  SceneChoice choice{.name = value_of(task.arguments, "--scene"), .no_reduce = {}};
+  std::istringstream kept_as_drawn(value_of(task.arguments, "--no-reduce"));
+  for (std::string one; std::getline(kept_as_drawn, one, ',');) choice.no_reduce.push_back(one);
   const Scene drawn = load(choice);
   return measured_costs(ReducedScene(started(drawn, choice), reductions_of(choice)));
 }

@@ -39,12 +39,27 @@ BOOST_AUTO_TEST_CASE(seconds_of_unlike_machines_are_never_put_on_one_front) {
   const Exit apart = sweep.merge({"--per-machine", "--no-pictures"});
   BOOST_TEST(apart.status == 0, apart.err);
   const std::set<std::string> first =
-                                  column(read_csv(sweep.out + "/machine-1/points.csv"), "method"),
+                                  column(read_csv(sweep.out + "/machines/1/points.csv"), "method"),
                               second =
-                                  column(read_csv(sweep.out + "/machine-2/points.csv"), "method");
+                                  column(read_csv(sweep.out + "/machines/2/points.csv"), "method");
   BOOST_TEST((first == std::set<std::string>{"blanes_moan4", "ida", "implicit_euler", "verlet"}));
   BOOST_TEST((second == std::set<std::string>{"verlet"}));
-  BOOST_TEST(contains(read_all(sweep.out + "/machine-2/chain/points.json"), {"another processor"}));
+  BOOST_TEST(
+      contains(read_all(sweep.out + "/machines/2/chain/points.json"), {"another processor"}));
+}
+
+BOOST_AUTO_TEST_CASE(what_other_machines_measured_is_measured_again_where_that_is_asked_for) {
+  const OnTwoMachines sweep;
+  const auto before = sweep.measured();
+  BOOST_TEST(sweep.go("points").status == 0);
+  BOOST_TEST((sweep.measured() == before));
+  BOOST_TEST(sweep.go("points", {"--again"}).status == 0);
+  const auto after = sweep.measured();
+  std::size_t changed = 0;
+  for (const auto& [name, bytes] : before) changed += after.at(name) != bytes;
+  BOOST_TEST(changed == 1u);
+  BOOST_TEST(sweep.merge().status == 0);
+  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
 }
 
 BOOST_AUTO_TEST_CASE(by_work_times_are_counts_times_costs_on_this_machine) {
@@ -226,6 +241,19 @@ BOOST_AUTO_TEST_CASE(lines_for_slurm_and_parallel_hold_what_was_asked_for) {
   BOOST_TEST(contains(parallel.out, {"seq 2 | parallel ", "seq 8 | parallel ", "--sshlogin a,b ",
                                      "--shard {}/8", "merge"}),
              parallel.out);
+}
+
+BOOST_AUTO_TEST_CASE(parallel_runs_its_lines_where_it_is_installed) {
+  if (std::system("command -v parallel >/dev/null") != 0) {
+    BOOST_TEST_MESSAGE("GNU parallel is not installed");
+    return;
+  }
+  const Sweep sweep;
+  const Exit end = run("sweep", {"submit", sweep.out, "--parallel", "--go", "--shards", "3"});
+  BOOST_TEST(end.status == 0, end.err);
+  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
+  BOOST_TEST(std::filesystem::exists(sweep.out + "/fastest.png"));
+  BOOST_TEST(std::filesystem::exists(sweep.out + "/chain/report.html"));
 }
 
 BOOST_AUTO_TEST_CASE(bad_words_are_refused_in_one_sentence) {

@@ -44,7 +44,7 @@ BOOST_AUTO_TEST_CASE(lists_multiply_and_name_what_they_vary) {
   BOOST_TEST((labels("\"cloth\", \"my.toml\"") == Labels{"cloth", "my"}));
   BOOST_TEST((labels("{ generator = \"chain\", nodes = [10, 20], stiffness = [1e4, 1e6] }") ==
               Labels{"chain_nodes=10_stiffness=10000", "chain_nodes=20_stiffness=10000",
-                     "chain_nodes=10_stiffness=1e+06", "chain_nodes=20_stiffness=1e+06"}));
+                     "chain_nodes=10_stiffness=1e6", "chain_nodes=20_stiffness=1e6"}));
   BOOST_TEST((labels("{ generator = \"chain\", nodes = 5 }") == Labels{"chain"}));
   BOOST_TEST((labels("\"cloth\", { file = \"a/my.toml\", until = 3 }", "until = [1, 2]\n") ==
               Labels{"cloth_until=1", "cloth_until=2", "my"}));

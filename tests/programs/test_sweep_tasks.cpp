@@ -44,6 +44,24 @@ BOOST_AUTO_TEST_CASE(a_task_is_named_by_all_that_decides_what_it_measures_and_by
   BOOST_TEST(first.task("pendulum", "verlet").at("id") != id);
 }
 
+BOOST_AUTO_TEST_CASE(methods_that_cannot_run_a_scene_are_left_out_of_it_alone) {
+  const Sweep sweep(
+      "scenes = [\"oscillator\", \"pendulum\"]\nuntil = 0.1\n"
+      "methods = [\"exact\", \"verlet\"]\n");
+  BOOST_TEST(sweep.planned.status == 0, sweep.planned.err);
+  std::set<std::string> shares;
+  for (const auto& task : sweep.tasks()) {
+    if (task.at("stage") == "points")
+      shares.insert(fmt::format("{} {}", task.at("folder").get<std::string>(),
+                                task.at("share").get<std::string>()));
+  }
+  BOOST_TEST((shares ==
+              std::set<std::string>{"oscillator exact", "oscillator verlet", "pendulum verlet"}));
+  const Sweep none("scenes = [\"pendulum\"]\nmethods = [\"exact\"]\n");
+  BOOST_TEST(complains(none.planned, 2, "sweep", {"pendulum", "exact needs a K"}),
+             none.planned.err);
+}
+
 BOOST_AUTO_TEST_CASE(shards_measure_the_points_of_one_process) {
   const Sweep sweep;
   BOOST_TEST(sweep.go("references").status == 0);
@@ -60,6 +78,20 @@ BOOST_AUTO_TEST_CASE(shards_measure_the_points_of_one_process) {
     const Table front = read_csv(fmt::format("{}/{}/front.csv", sweep.out, scene));
     BOOST_TEST(front.rows.size() == 2u);  // the accuracies that were asked for
   }
+}
+
+BOOST_AUTO_TEST_CASE(tables_say_how_one_process_would_make_them) {
+  const Sweep sweep;
+  BOOST_TEST(sweep.go_and_merge().status == 0);
+  const auto sidecar = nlohmann::json::parse(read_all(sweep.out + "/pendulum/points.json"));
+  const std::vector<std::string> words = sidecar.at("command_line");
+  BOOST_TEST((std::ranges::find(words, "--kept") == words.end()));
+  // So it is a complete study, which --resume finds to be one.
+  std::vector<std::string> again(words.begin() + 1, words.end());
+  again.emplace_back("--resume");
+  const Exit end = run("work_precision", again);
+  BOOST_TEST(end.status == 0, end.err);
+  BOOST_TEST(contains(end.err, {"nothing is missing"}), end.err);
 }
 
 BOOST_AUTO_TEST_CASE(what_is_done_is_never_measured_again) {
@@ -203,7 +235,7 @@ repeats = 1
   }
   const Table crossovers = read_csv(sweep.out + "/crossovers.csv");
   BOOST_TEST(crossovers.header ==
-             "along,accuracy,low,high,crossing,scene_low,scene_high,method_low,method_high");
+             "along,accuracy,low,high,crossing,scene_low,scene_high,method_low,method_high,margin");
 }
 
 BOOST_AUTO_TEST_CASE(other_studies_are_divided_in_the_same_way) {
