@@ -375,6 +375,15 @@ BOOST_AUTO_TEST_CASE(an_end_too_late_is_refused_with_what_it_would_take) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_vibration_too_fast_for_numbers_has_no_reference) {
+  // w = sqrt(k / m) of the least positive mass overflows where it is bounded by k / m.
+  Scene light = generate(*find_generator("pendulum"), {}, "pendulum");
+  light.nodes.back().mass = 5e-324;
+  BOOST_CHECK_EXCEPTION(
+      make_reference(ReducedScene(light), 1e-3, 5), NoReference,
+      [](const auto& error) { return contains(error.what(), {"too fast for numbers"}); });
+}
+
 BOOST_AUTO_TEST_CASE(negative_control_another_motion_is_not_within_the_bound) {
   const Row row;
   Row softer = row;
