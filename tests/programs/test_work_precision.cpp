@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 
 #include <boost/test/unit_test.hpp>
@@ -313,6 +314,32 @@ BOOST_AUTO_TEST_CASE(negative_control_a_slower_point_is_not_on_the_front) {
   field = "1e9";
   BOOST_TEST(fastest_row(m, 1e-2) != row);
   field = time;
+}
+
+BOOST_AUTO_TEST_CASE(no_method_goes_beyond_the_finest_accuracy_that_is_asked_for) {
+  const Folder folder;
+  BOOST_TEST(
+      run("work_precision", {"--scene", "pendulum", "--until", "0.5", "--methods",
+                             "rk4,trapezoidal,ida", "--accuracies", "1e-4,1e-2", "--point-limit",
+                             "0.1", "--repeats", "1", "--out", folder.path()})
+          .status == 0);
+  const Table points = read_csv(folder / "points.csv"), front = read_csv(folder / "front.csv");
+  std::map<std::string, int> fine, fine_before_last;
+  for (std::size_t row = 0; row < points.rows.size(); ++row) {
+    if (points.text(row, "outcome") != "reached_end") continue;
+    const std::string method = points.text(row, "method");
+    fine_before_last[method] = fine[method];
+    fine[method] += points.value(row, "error_position_at_most") <= 1e-4;
+  }
+  for (const char* method : {"trapezoidal", "ida"}) {
+    BOOST_TEST(fine.at(method) == 1, method);
+    BOOST_TEST(fine_before_last.at(method) == 0, method);
+  }
+  // Near its limit of stability steps are taken closer, up to the first that will do.
+  BOOST_TEST(fine.at("rk4") >= 1);
+  BOOST_TEST_REQUIRE(front.rows.size() == 2u);
+  BOOST_TEST(front.value(0, "accuracy") == 1e-2);
+  BOOST_TEST(front.value(1, "accuracy") == 1e-4);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
