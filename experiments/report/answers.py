@@ -105,9 +105,11 @@ def answer(study, runs, accuracy):
 
 
 def answers(study):
-    """The answers at 1e-2, ... 1e-8, by the error that the study is judged by."""
+    """The answers at the accuracies that the study was asked for, or else at 1e-2, ... 1e-8, by the
+    error that it is judged by."""
     runs = study.judged_runs()
-    return [answer(study, runs, accuracy) for accuracy in ACCURACIES]
+    accuracies = study.accuracies or ACCURACIES
+    return [answer(study, runs, accuracy) for accuracy in accuracies]
 
 
 def answers_note(found):

@@ -85,6 +85,17 @@ class Study:
         }
 
     @property
+    def accuracies(self):
+        """The accuracies that the study was asked for, from coarse to fine; none where it was asked
+        for all."""
+        words = look(self.sidecar, "study", "options", "--accuracies")
+        try:
+            asked = sorted({float(word) for word in words or ()}, reverse=True)
+        except (TypeError, ValueError):
+            return []
+        return [accuracy for accuracy in asked if 0 < accuracy < 1]
+
+    @property
     def judged_by(self):
         """Which error answers are judged by: "energy" where the end is beyond the horizon of a
         chaotic motion, else "position"."""

@@ -94,6 +94,19 @@ class Sentences(unittest.TestCase):
         self.assertEqual(answers.knob_in_words("rtol", 1e-6), "rtol = 1e-6")
         self.assertEqual(answers.knob_in_words("an_angle", 0.5), "an angle = 0.5")
 
+    def test_a_study_that_was_asked_for_accuracies_answers_these(self):
+        for words, expected in {
+            ("1e-4", "1e-2"): [1e-2, 1e-4],
+            ("0.5",): [0.5],
+            ("2", "-1", "nan"): list(answers.ACCURACIES),
+            ("a",): list(answers.ACCURACIES),
+            (): list(answers.ACCURACIES),
+        }.items():
+            study = a_study()
+            study.sidecar["study"] = {"options": {"--accuracies": list(words)}}
+            found = [answer["accuracy"] for answer in answers.answers(study)]
+            self.assertEqual(found, expected)
+
     def test_small_margins_are_warned_of(self):
         for margin, words in ((0.056, "5.6 % below"), (-0.34, "34 % above"), (0.15, None)):
             found = self.answer(a_run(), margins={(2, "verlet", 1e-3): margin})
