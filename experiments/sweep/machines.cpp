@@ -23,11 +23,12 @@ std::string in_words(const std::vector<MachineShare>& machines) {
   std::vector<std::string> all;
   for (const MachineShare& one : machines) {
     std::vector<std::string> words = {one.machine.value("cpu", "an unknown processor")};
-    for (const auto& [name, value] : one.machine.items()) {
+    for (const auto& entry : one.machine.items()) {
       const bool differs = std::ranges::any_of(machines, [&](const MachineShare& other) {
-        return other.machine.value(name, nlohmann::json()) != value;
+        return other.machine.value(entry.key(), nlohmann::json()) != entry.value();
       });
-      if (differs && name != "cpu") words.push_back(fmt::format("{} {}", name, value.dump()));
+      if (differs && entry.key() != "cpu")
+        words.push_back(fmt::format("{} {}", entry.key(), entry.value().dump()));
     }
     all.push_back(fmt::format("{} ({} tasks)", fmt::join(words, ", "), one.tasks.size()));
   }

@@ -26,7 +26,7 @@ std::string scene_word(const StudyScene& scene, const std::string& study_path,
   if (!scene.text.empty()) {
     require_folder(folder + "/scenes");
     // By its content, so that no earlier plan's is replaced.
-    const std::string path =
+    std::string path =
         fmt::format("{}/scenes/{}-{}.toml", folder, scene.label, hash_of(scene.text).substr(0, 8));
     WholeFile file(path);
     file.write(signed_text(scene.text));

@@ -92,8 +92,7 @@ std::vector<Parameter> parameters_in(const TomlTable& entry, const toml::table& 
       p.is_whole = known->whole;
       const double last = static_cast<double>(p.values.size()) - 1;
       for (double& x : p.values) x = p.at(x / last);
-      const auto same = std::ranges::unique(p.values);
-      p.values.erase(same.begin(), same.end());
+      p.values.erase(std::unique(p.values.begin(), p.values.end()), p.values.end());
     } else {
       entry.refuse(name, "numbers, lists of them and ranges { from, to, count, spacing }");
     }

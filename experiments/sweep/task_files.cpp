@@ -98,7 +98,7 @@ TaskState TaskFiles::state(const Task& task) const {
 }
 
 std::string TaskFiles::begin(const Task& task) const {
-  const std::string path =
+  std::string path =
       fmt::format("{}/tasks/begun/{}.{}.{}.journal", folder_, task.id, host(), ::getpid());
   nlohmann::json key = task.key;
   key["machine"] = machine();
