@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -46,6 +48,17 @@ std::uint32_t get(const std::uint8_t* bytes) {
 // Text that is no UTF-8 is mended.
 std::string json_in_words(const nlohmann::json& json) {
   return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+// False where another process writes it; one that only looks whether somebody does holds it for an
+// instant. Some file systems have no locks.
+bool lock(int file) {
+  constexpr int tries = 10;
+  for (int i = 0; i < tries; ++i) {
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return false;
 }
 
 }  // namespace
@@ -100,8 +113,7 @@ Journal::Journal(const std::string& path, const nlohmann::json& key, bool goes_o
     if (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
       throw InvalidInput(fmt::format("{}: is no file; allowed is another folder", path));
     }
-    // Some file systems have no locks.
-    if (::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    if (!lock(file_)) {
       throw InvalidInput(fmt::format(
           "{}: another process is writing it; allowed is another folder, or to wait", path));
     }

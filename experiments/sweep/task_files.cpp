@@ -36,6 +36,18 @@ std::string where(const std::string& path, const Task& task) {
   return fs::path(path).stem().string().substr(task.id.size() + 1);
 }
 
+// Whether the scene's folder has the reference that the task made: somebody may have taken it away,
+// or made another there.
+bool has_reference(const Task& task, const std::string& folder) {
+  std::ifstream file(folder + "/" + task.folder + "/reference.json");
+  const auto json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || !json.contains("key")) return false;
+  const auto &there = json["key"], &about = task.key.at("about");
+  return there.value("scene_hash", "") == about.at("scene") &&
+         there.value("until", 0.0) == about.at("until") &&
+         there.value("source_hash", "") == task.key.at("build").at("code");
+}
+
 }  // namespace
 
 TaskFiles::TaskFiles(std::string folder, bool makes_folders) : folder_(std::move(folder)) {
@@ -65,8 +77,11 @@ std::vector<std::string> TaskFiles::begun_paths(const Task& task) const {
 
 std::optional<Journal::Contents> TaskFiles::contents(const Task& task) const {
   Journal::Contents contents = Journal::read(whole_path(task));
-  if (!contents.pieces.contains(whole_mark(task.share))) return {};
+  const auto mark = contents.pieces.find(whole_mark(task.share));
+  if (mark == contents.pieces.end()) return {};
   if (id_of(contents.key, task.share) != task.id) return {};  // of other code, or somebody else's
+  const bool made_reference = task.share == reference_share && mark->second.at("failure").is_null();
+  if (made_reference && !has_reference(task, folder_)) return {};
   return contents;
 }
 

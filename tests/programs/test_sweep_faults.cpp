@@ -186,6 +186,19 @@ BOOST_AUTO_TEST_CASE(what_failed_is_listed_with_its_cause_and_a_command_that_mea
   BOOST_TEST(sweep.merge().status == 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_reference_that_is_gone_is_made_again) {
+  const Sweep sweep;
+  sweep.go("references");
+  std::filesystem::remove(sweep.out + "/chain/reference.json");
+  std::filesystem::copy_file(sweep.out + "/pendulum/reference.json",
+                             sweep.out + "/chain/reference.json");
+  BOOST_TEST(contains(sweep.go("points").out, {"4 of 8 tasks are done, 4 wait for a reference"}));
+  BOOST_TEST(sweep.go("references").status == 0);
+  BOOST_TEST(sweep.go("points").status == 0);
+  BOOST_TEST(sweep.merge().status == 0);
+  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
+}
+
 BOOST_AUTO_TEST_CASE(a_damaged_file_is_measured_anew) {
   const Sweep sweep;
   sweep.go("references");
