@@ -24,12 +24,6 @@ std::string ScratchFolder::write(const std::string& name, const std::string& tex
   return path(name);
 }
 
-std::string shell_word(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 std::pair<std::string, int> output_of(const std::string& command) {
   std::FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return {"", -1};

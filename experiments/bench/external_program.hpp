@@ -23,9 +23,6 @@ class ScratchFolder {
   std::string path_;
 };
 
-// One word of a shell's command.
-std::string shell_word(const std::string& word);
-
 // What a shell's command prints, and its exit status; -1 where it has none.
 std::pair<std::string, int> output_of(const std::string& command);
 

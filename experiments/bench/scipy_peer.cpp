@@ -5,6 +5,7 @@
 
 #include "experiments/bench/external_program.hpp"
 #include "experiments/bench/peers.hpp"
+#include "experiments/command/shell_word.hpp"
 #include "qddot/scene/scene_writer.hpp"
 
 namespace qddot::bench {
@@ -89,13 +90,15 @@ class SciPy final : public Peer {
 
   Run run(const Problem& problem, ForceKind force, double rtol, double limit) override {
     const ScratchFolder folder;
-    std::string command = fmt::format(
-        "timeout {:.0f} {} {} {} {} {:.17g} {:.17g}", 2 * limit + start_limit, python,
-        shell_word(SCIPY_SCRIPT), shell_word(folder.write("problem.json", as_json(problem).dump())),
-        method_, rtol, limit);
+    std::string command =
+        fmt::format("timeout {:.0f} {} {} {} {} {:.17g} {:.17g}", 2 * limit + start_limit, python,
+                    command::shell_word(SCIPY_SCRIPT),
+                    command::shell_word(folder.write("problem.json", as_json(problem).dump())),
+                    method_, rtol, limit);
     if (force == ForceKind::ours) {
-      command += fmt::format(" {} {}", shell_word(force_library_),
-                             shell_word(folder.write("scene.toml", to_toml(problem.start))));
+      command +=
+          fmt::format(" {} {}", command::shell_word(force_library_),
+                      command::shell_word(folder.write("scene.toml", to_toml(problem.start))));
     }
     const auto [text, status] = output_of(command + " 2>/dev/null");
     if (status == timed_out) return {.outcome = Outcome::over_budget};

@@ -25,9 +25,7 @@ using namespace measure;
 namespace {
 
 int complain(const CommandLine& line, const std::string& sentence, int status) {
-  progress().wipe();
-  // Unlike fmt::print it does not throw where a full disk takes no more of it.
-  std::fputs(fmt::format("{}: {}\n", line.program(), in_one_line(sentence)).c_str(), stderr);
+  say(fmt::format("{}: {}", line.program(), in_one_line(sentence)));
   return status;
 }
 
@@ -75,6 +73,11 @@ std::string in_one_line(const std::string& text) {
     }
   }
   return line;
+}
+
+void say(const std::string& line) {
+  progress().wipe();
+  std::fputs((line + "\n").c_str(), stderr);
 }
 
 int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& body) {

@@ -14,6 +14,10 @@ enum ExitStatus { done = 0, failed = 1, bad_input = 2, end_not_reached = 3 };
 // The text in one line without control characters, whatever names it holds.
 std::string in_one_line(const std::string& text);
 
+// Writes a line to stderr, where that takes it: unlike fmt::print it does not throw where a full
+// disk takes no more. Takes the line of the progress away first.
+void say(const std::string& line);
+
 // Parses the command line into what `line` binds, and --force, --time-limit, --progress and
 // --version, and runs `body`, which SIGINT, SIGTERM and the time limit interrupt (see
 // interruptible.hpp). --help prints and returns 0. Prints one sentence, "program: ...", and returns

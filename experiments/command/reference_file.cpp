@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -14,6 +13,7 @@
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/shares.hpp"
+#include "experiments/command/text_hash.hpp"
 #include "experiments/command/whole_file.hpp"
 #include "qddot/measure/motion/duration.hpp"
 #include "qddot/measure/motion/interruption.hpp"
@@ -105,15 +105,11 @@ std::string written(const nlohmann::json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// The checksum of all that is stored but itself, as 16 hexadecimal digits: 64-bit FNV-1a of the
-// compact form, in which numbers are exact and keys in order.
+// The checksum of all that is stored but itself: the hash of the compact form, in which numbers are
+// exact and keys in order.
 std::string checksum(nlohmann::json json) {
   json.erase("checksum");
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : written(json, -1)) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x00000100000001b3ULL;
-  }
-  return fmt::format("{:016x}", hash);
+  return text_hash(written(json, -1));
 }
 
 // Whether the end has the energy that the start has, which the exact motion keeps, to what is

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "experiments/command/program.hpp"
+#include "experiments/command/shell_word.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 
 namespace qddot::sweep {
@@ -83,21 +84,12 @@ void wait_for_end(int pipe, pid_t child) {
 
 }  // namespace
 
-std::string shell_word(const std::string& word) {
-  constexpr std::string_view plain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
-  if (!word.empty() && word.find_first_not_of(plain) == word.npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 std::string shell_line(const Command& command) {
   std::string line;
   for (const auto& [name, value] : command.environment)
-    line += fmt::format("{}={} ", name, shell_word(value));
-  line += shell_word(command.program);
-  for (const std::string& word : command.arguments) line += " " + shell_word(word);
+    line += fmt::format("{}={} ", name, command::shell_word(value));
+  line += command::shell_word(command.program);
+  for (const std::string& word : command.arguments) line += " " + command::shell_word(word);
   return line;
 }
 

@@ -16,7 +16,6 @@ struct Command {
 
 // The command as a shell takes it.
 std::string shell_line(const Command& command);
-std::string shell_word(const std::string& word);
 
 // How a program ended: its status, or the number of the signal that ended it, and what it wrote.
 struct ChildEnd {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <omp.h>
 
@@ -15,6 +14,7 @@
 #include "experiments/command/progress.hpp"
 #include "experiments/command/provenance.hpp"
 #include "experiments/command/shares.hpp"
+#include "experiments/command/written_table.hpp"
 #include "experiments/sweep/machines.hpp"
 #include "experiments/sweep/missing.hpp"
 #include "experiments/sweep/results.hpp"
@@ -75,27 +75,18 @@ std::map<std::string, std::string> on_all(const std::vector<ScenePart>& parts, c
   return failures;
 }
 
-// Where the first field of a row ends.
-std::size_t end_of_first_field(const std::string& row) {
-  std::size_t at = 0;
-  for (bool is_quoted = false; at < row.size() && (is_quoted || row[at] != ','); ++at)
-    is_quoted ^= row[at] == '"';
-  return at;
-}
-
 // points.csv of all scenes: the rows of theirs, named by their folders.
 void write_points(const std::string& path, const std::vector<ScenePart>& parts,
                   const nlohmann::json& origin) {
-  CsvFile csv(path, point_columns().header());
+  const std::vector<std::string> columns = point_columns().header();
+  CsvFile csv(path, columns);
   for (const ScenePart& part : parts) {
-    std::ifstream file(part.out + "/points.csv");
-    std::string line;
-    std::getline(file, line);  // the header
-    Csv name;
-    name.field(part.tasks.front().folder);
-    while (std::getline(file, line))
-      csv.rows(fmt::format("{}{}\n", name.text(),
-                           std::string_view(line).substr(end_of_first_field(line))));
+    const WrittenTable table(part.out + "/points.csv", columns);
+    for (std::size_t row = 0; row < table.size(); ++row) {
+      for (const std::string& column : columns)
+        csv.field(column == "scene" ? part.tasks.front().folder : table.text(row, column));
+      csv.end_row();
+    }
     csv.flush_if_large();
   }
   csv.commit(origin);

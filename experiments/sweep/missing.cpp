@@ -19,7 +19,7 @@ struct Missing {
   std::string state, cause, command;
 };
 
-// By the folder of the scene, the reference that its points wait for, if it is not whole.
+// The references that points wait for, by the folder of their scene.
 std::map<std::string, const TaskState*> absent_references(const std::vector<Task>& tasks,
                                                           const std::vector<TaskState>& states) {
   std::map<std::string, const TaskState*> absent;

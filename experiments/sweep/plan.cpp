@@ -10,6 +10,7 @@
 #include "experiments/command/program.hpp"
 #include "experiments/command/progress.hpp"
 #include "experiments/command/shares.hpp"
+#include "experiments/command/text_hash.hpp"
 #include "experiments/command/whole_file.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/scene/generators.hpp"
@@ -25,9 +26,9 @@ std::string scene_word(const StudyScene& scene, const std::string& study_path,
                        const std::string& folder) {
   if (!scene.text.empty()) {
     require_folder(folder + "/scenes");
-    // By its content, so that no earlier plan's is replaced.
-    std::string path =
-        fmt::format("{}/scenes/{}-{}.toml", folder, scene.label, hash_of(scene.text).substr(0, 8));
+    // Its name holds its content, so that no earlier plan's is replaced.
+    std::string path = fmt::format("{}/scenes/{}-{}.toml", folder, scene.label,
+                                   text_hash(scene.text).substr(0, 8));
     WholeFile file(path);
     file.write(signed_text(scene.text));
     file.complete();

@@ -70,7 +70,7 @@ std::vector<Neighbours> neighbours(const std::vector<SceneResult>& results) {
   return all;
 }
 
-// Between two neighbours the fastest method changes.
+// The fastest method changes between two neighbours.
 struct Crossover {
   Neighbours pair;
   double accuracy = 0;

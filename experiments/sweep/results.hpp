@@ -40,7 +40,7 @@ void write_fastest(const std::string& path, const std::vector<SceneResult>& resu
 void write_crossovers(const std::string& path, const std::vector<SceneResult>& results,
                       const std::vector<double>& accuracies, const nlohmann::json& origin);
 
-// For people: how often each method is the fastest at each accuracy, and by how much.
+// Prints how often each method is the fastest at each accuracy, and by how much.
 void print_winners(const std::vector<SceneResult>& results, const std::vector<double>& accuracies);
 
 }  // namespace qddot::sweep

@@ -18,12 +18,8 @@ namespace qddot::sweep {
 using namespace command;
 namespace {
 
-void say(const Task& task, const std::string& what) {
-  progress().wipe();
-  // Unlike fmt::print it does not throw where a full disk takes no more of it.
-  const std::string line =
-      fmt::format("sweep: {}, {} ({}): {}\n", task.folder, task.share, task.id, what);
-  std::fputs(line.c_str(), stderr);
+void say_of(const Task& task, const std::string& what) {
+  say(fmt::format("sweep: {}, {} ({}): {}", task.folder, task.share, task.id, what));
 }
 
 // Measures one, or says and keeps why it failed.
@@ -32,7 +28,7 @@ bool measure_task(const TaskFiles& files, const Task& task, bool replaces) {
   const ChildEnd end = run_child(command_of(task, files.folder(), journal));
   if (files.finish(task, journal, replaces)) return true;
   measure::stop_if_interrupted();
-  say(task, end.cause());
+  say_of(task, end.cause());
   files.fail(task, end.cause());
   return false;
 }
@@ -105,7 +101,7 @@ ShardEnd run_tasks(const TaskFiles& files, const std::vector<Task>& mine,
       ++end.elsewhere;
     } else if (const TaskState& reference = needed.of(task); !reference.is_done()) {
       if (end.waiting++ == 0)
-        say(task, "its reference is not made; sweep run --stage references makes it");
+        say_of(task, "its reference is not made; sweep run --stage references makes it");
     } else if (reference.kind == TaskState::without_reference) {
       ++end.skipped;
     } else {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <random>
 
 #include <fmt/format.h>
@@ -24,24 +23,18 @@ struct Parameter {
   bool is_log = false, is_whole = false;
 
   bool is_drawn() const { return values.empty(); }
-  // At a part of the way from the one to the other.
+  // The value at a part of the way from the one to the other.
   double at(double part) const {
     const double x = is_log ? from * std::pow(to / from, part) : from + (to - from) * part;
     return is_whole ? std::round(x) : x;
   }
 };
 
-std::optional<double> number_in(const toml::node& node) {
-  if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
-  const auto* number = node.as_floating_point();
-  return number && std::isfinite(number->get()) ? std::optional(number->get()) : std::nullopt;
-}
-
 // A list of numbers, each once; nothing for anything else.
 std::vector<double> list_in(const toml::array& array) {
   std::vector<double> values;
   for (const toml::node& node : array) {
-    const auto value = number_in(node);
+    const auto value = finite_number(node);
     if (!value || std::ranges::find(values, *value) != values.end()) return {};
     values.push_back(*value);
   }
@@ -82,7 +75,7 @@ std::vector<Parameter> parameters_in(const TomlTable& entry, const toml::table& 
                                    fmt::join(names, ", ")));
     }
     Parameter p{.name = name, .values = {}};
-    if (const auto value = number_in(node)) {
+    if (const auto value = finite_number(node)) {
       p.values = {*value};
     } else if (const toml::array* list = node.as_array()) {
       p.values = list_in(*list);
@@ -204,7 +197,7 @@ std::vector<double> positive_numbers(const TomlTable& table, const toml::table& 
   const toml::node* node = values.get(key);
   if (!node) return {};
   std::vector<double> numbers;
-  if (const auto number = number_in(*node)) numbers = {*number};
+  if (const auto number = finite_number(*node)) numbers = {*number};
   if (const toml::array* array = node->as_array()) numbers = list_in(*array);
   if (numbers.empty() || std::ranges::any_of(numbers, [](double x) { return !(x > 0); }))
     table.refuse(key, "finite numbers above 0, and lists of one or more of them, each once");

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "experiments/command/program.hpp"
+#include "experiments/command/shell_word.hpp"
 #include "experiments/sweep/task.hpp"
 
 namespace qddot::sweep {
@@ -33,7 +34,7 @@ std::string absolute(const std::string& folder) {
 
 std::string joined(const std::vector<std::string>& options) {
   std::string text;
-  for (const std::string& word : options) text += " " + shell_word(word);
+  for (const std::string& word : options) text += " " + command::shell_word(word);
   return text;
 }
 
@@ -56,7 +57,7 @@ std::string sbatch(const std::string& folder, const std::string& name, const std
       "{0}=$(sbatch --parsable --job-name=qddot-{0} --ntasks=1 --cpus-per-task=1 "
       "--threads-per-core=1 --requeue --open-mode=append --output={1}{2}{3} --wrap={4}) && echo "
       "\"{0}: job ${0}\"\n",
-      name, shell_word(log), own, joined(how.options), shell_word(script));
+      name, command::shell_word(log), own, joined(how.options), command::shell_word(script));
 }
 
 std::string array_script(const std::string& folder, const std::string& stage, std::size_t count) {
@@ -85,10 +86,10 @@ std::string slurm_lines(const std::string& folder, const Submission& how) {
 std::string parallel_lines(const std::string& folder, const Submission& how) {
   const Division division = division_of(folder, how.shards);
   const auto line = [&](const std::string& stage, std::size_t count) {
-    return fmt::format(
-        "seq {0} | parallel --use-cores-instead-of-threads --line-buffer{1} {2}", count,
-        joined(how.options),
-        shell_word(fmt::format("{} --shard {{}}/{}", shell_line(run_of(folder, stage)), count)));
+    return fmt::format("seq {0} | parallel --use-cores-instead-of-threads --line-buffer{1} {2}",
+                       count, joined(how.options),
+                       command::shell_word(fmt::format("{} --shard {{}}/{}",
+                                                       shell_line(run_of(folder, stage)), count)));
   };
   std::string lines;
   if (division.references > 0) lines += line(references, division.references) + " &&\n";

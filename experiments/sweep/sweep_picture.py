@@ -26,7 +26,7 @@ LEAST_WIDTH, LEAST_SUNDIALS = 9.2, 0.9
 CELLS_WIDTH, LEAST_COLUMN, MOST_COLUMN = 6.4, 1.05, 1.7
 # How deep in a row names of methods and times are, and how large a name in two lines may be.
 DEPTHS, TWO_LINES_SIZE = (0.165, 0.395), 8
-# Under more rows the accuracies are said again.
+# The accuracies are said again below more rows than this.
 MOST_WITH_ONE_HEAD = 20
 LEAST_NAMES, MOST_NAMES = 1.5, 2.9
 FACT_SIZE, FOOT_SIZE, SUBTITLE_SIZE, CHANGE_SIZE = 8, 8.5, 10.5, 9

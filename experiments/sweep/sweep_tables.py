@@ -27,7 +27,7 @@ class Scene:
 
 @dataclass(frozen=True)
 class Crossover:
-    """Between two values of what is varied the fastest method changes, at about `crossing`; None
+    """The fastest method changes between two values of what is varied, at about `crossing`; None
     where that is not known."""
 
     along: str

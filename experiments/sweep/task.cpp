@@ -1,45 +1,30 @@
 #include "experiments/sweep/task.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <fstream>
 
 #include <fmt/format.h>
 
 #include "experiments/command/journal.hpp"
 #include "experiments/command/provenance.hpp"
+#include "experiments/command/text_hash.hpp"
 #include "experiments/command/whole_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
 
 using namespace command;
+
+// Looked for in the namespace of the type.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Task, id, stage, folder, program, share, arguments, key, varied,
+                                   entry, order)
+
 namespace {
 
 std::string path_of(const std::string& folder) { return folder + "/tasks.jsonl"; }
 
 std::string text_of(const nlohmann::json& json) {
   return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
-nlohmann::json to_json(const Task& task) {
-  return {{"id", task.id},           {"stage", task.stage}, {"folder", task.folder},
-          {"program", task.program}, {"share", task.share}, {"arguments", task.arguments},
-          {"varied", task.varied},   {"entry", task.entry}, {"order", task.order},
-          {"key", task.key}};
-}
-
-Task task_of(const nlohmann::json& json) {
-  return {.id = json.at("id"),
-          .stage = json.at("stage"),
-          .folder = json.at("folder"),
-          .program = json.at("program"),
-          .share = json.at("share"),
-          .arguments = json.at("arguments"),
-          .key = json.at("key"),
-          .varied = json.at("varied"),
-          .entry = json.at("entry"),
-          .order = json.at("order")};
 }
 
 bool is_sound(const Task& task) {
@@ -52,16 +37,10 @@ bool is_sound(const Task& task) {
 
 }  // namespace
 
-std::string hash_of(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x00000100000001b3ULL;
-  return fmt::format("{:016x}", hash);
-}
-
 std::string id_of(nlohmann::json key, const std::string& share) {
   key.erase("machine");
   key["share"] = share;
-  return hash_of(text_of(key));
+  return text_hash(text_of(key));
 }
 
 std::vector<Task> read_tasks(const std::string& folder) {
@@ -73,7 +52,7 @@ std::vector<Task> read_tasks(const std::string& folder) {
     const auto json = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
     bool is_good = false;
     try {
-      tasks.push_back(task_of(json));
+      tasks.push_back(json.get<Task>());
       is_good = is_sound(tasks.back());
     } catch (const nlohmann::json::exception&) {  // written by somebody else
     }
@@ -102,7 +81,7 @@ void write_tasks(const std::string& folder, std::vector<Task> tasks) {
                     [](const Task& task) { return std::pair(task.stage != references, task.id); });
   // Its own, as its first line says of which sources it is.
   WholeFile file(path_of(folder), R"({"arguments":)");
-  for (const Task& task : tasks) file.write(text_of(to_json(task)) + "\n");
+  for (const Task& task : tasks) file.write(text_of(task) + "\n");
   file.complete();
   file.commit();
 }

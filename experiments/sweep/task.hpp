@@ -26,9 +26,6 @@ struct Task {
 
 inline const std::string references = "references", points = "points";
 
-// The 64-bit FNV-1a hash of a text, as 16 hexadecimal digits.
-std::string hash_of(const std::string& text);
-
 // The content hash of a share of a study: of all that decides what it measures (scene, horizon,
 // method, options, code, compiler and flags), as 16 hexadecimal digits; not of the machine, which
 // decides how long that takes.

@@ -13,12 +13,6 @@
 namespace qddot {
 namespace {
 
-std::optional<double> finite_number(const toml::node& node) {
-  if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
-  const auto* number = node.as_floating_point();
-  return number && std::isfinite(number->get()) ? std::optional(number->get()) : std::nullopt;
-}
-
 std::string written(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (const auto* number = node.as_floating_point()) return fmt::format("{:#}", number->get());
@@ -33,6 +27,12 @@ std::string written(const toml::node& node) {
 }
 
 }  // namespace
+
+std::optional<double> finite_number(const toml::node& node) {
+  if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
+  const auto* number = node.as_floating_point();
+  return number && std::isfinite(number->get()) ? std::optional(number->get()) : std::nullopt;
+}
 
 std::vector<std::string> TomlTable::keys() const {
   std::vector<std::string> all;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,9 @@ struct Range {
 inline constexpr Range any_number{[](double) { return true; }, "finite numbers"};
 inline constexpr Range not_negative{[](double x) { return x >= 0; }, "finite numbers from 0"};
 inline constexpr Range positive{[](double x) { return x > 0; }, "finite numbers above 0"};
+
+// The number that a node holds, if it holds a finite one; an integer serves as a number.
+std::optional<double> finite_number(const toml::node& node);
 
 // A table of a TOML file and its place there. Whatever it does not hold as asked for is refused:
 // InvalidInput with file, line, entry, key, value and what is allowed. Integers serve as numbers.

@@ -139,8 +139,7 @@ BOOST_AUTO_TEST_CASE(killed_at_any_moment_it_loses_nothing_that_was_measured) {
     }
   }
   BOOST_TEST(kills > 5);
-  BOOST_TEST(sweep.merge().status == 0);
-  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
+  check_as_one_process(sweep);
 }
 
 BOOST_AUTO_TEST_CASE(what_it_runs_ends_with_it) {
@@ -179,7 +178,7 @@ BOOST_AUTO_TEST_CASE(points_of_a_task_that_was_killed_are_kept) {
   // As text, since what is no number is unlike itself.
   BOOST_TEST(Journal::read(sweep.whole(task)).pieces.at(first.first).dump() == first.second.dump());
   BOOST_TEST(listing(sweep.out + "/tasks/begun") == "");
-  // Of another machine its seconds would not do.
+  // Seconds of another machine do not count.
   std::filesystem::remove(sweep.whole(task));
   contents.key["machine"]["cpu"] = "another";
   nlohmann::json slow = first.second;
@@ -197,8 +196,7 @@ BOOST_AUTO_TEST_CASE(two_that_run_the_same_shard_do_no_harm) {
   const Exit first = one.end(), second = two.end();
   // Each has done its tasks, or has seen that the other is at them.
   for (const Exit& end : {first, second}) BOOST_TEST((end.status == 0 || end.status == 3), end.err);
-  BOOST_TEST(sweep.merge().status == 0);
-  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
+  check_as_one_process(sweep);
   BOOST_TEST(listing(sweep.out + "/tasks/begun") == "");
 }
 
@@ -213,8 +211,7 @@ BOOST_AUTO_TEST_CASE(a_time_limit_ends_it_in_order_and_the_next_call_goes_on) {
     BOOST_TEST(complains(end, 3, "sweep", {"interrupted by --time-limit"}), end.err);
   }
   BOOST_TEST(calls > 1);
-  BOOST_TEST(sweep.merge().status == 0);
-  BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
+  check_as_one_process(sweep);
 }
 
 BOOST_AUTO_TEST_CASE(the_table_over_scenes_names_the_fastest_its_margin_and_the_crossovers) {
@@ -288,7 +285,7 @@ BOOST_AUTO_TEST_CASE(other_studies_are_divided_in_the_same_way) {
 }
 
 BOOST_AUTO_TEST_CASE(ratios_of_crossover_and_cases_of_advice_are_tasks) {
-  // In one process the slower of the two would be given up early at the second ratio.
+  // One process would give up the slower of the two early at the second ratio.
   const Sweep crossover(
       "program = \"crossover\"\nmethods = [\"explicit_euler\", \"verlet\"]\n[options]\n"
       "family = \"chain\"\nnodes = 5\nratios = [1, 10]\nuntil = 0.02\nrepeats = 1\n"
