@@ -185,7 +185,7 @@ class WhichMethod(HandMade):
         sidecar = self.folder / "points.json"
         sidecar.write_text(json.dumps(about))
         picture = self.folder / "which.svg"
-        done = draw("gallery/which_method.py", picture, self.folder)
+        done = draw("work_precision/which_method.py", picture, self.folder)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         texts = [text.strip() for text in ElementTree.parse(picture).getroot().itertext()]
         for words in ("made", "2 nodes, 1 spring", "2 s, 200 steps", EXPLICIT, "other explicit"):
@@ -196,7 +196,7 @@ class WhichMethod(HandMade):
         # What is missing is said, and no picture is written.
         picture.unlink()
         sidecar.write_text("{}")
-        done = draw("gallery/which_method.py", picture, self.folder)
+        done = draw("work_precision/which_method.py", picture, self.folder)
         self.assertEqual(done.returncode, 2)
         self.assertEqual(done.stderr, f"{sidecar} cannot be read: 'scene'.\n")
         self.assertFalse(picture.exists())

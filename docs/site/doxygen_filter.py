@@ -1,0 +1,69 @@
+"""Prints a header for Doxygen, with its plain comments as those that Doxygen reads.
+
+    doxygen_filter.py FILE
+
+A block of // lines directly above a declaration becomes its description, a comment behind a member
+that member's. Lines that a block indents, as formulas, are shown as they are, and words between
+backquotes as code.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+WHOLE = re.compile(r"^(\s*)//(.*)$")  # a line that is a comment
+BEHIND = re.compile(r"^(\s*[^/\s].*?[;,\w]\s*)//(.*)$")  # one behind a member
+
+
+def escaped(text):
+    """Words as they are, whatever Doxygen would take for a command."""
+    text = re.sub(r"([\\@#%<>&\"])", r"\\\1", text)
+    return re.sub(r"`([^`]+)`", r"<tt>\1</tt>", text)
+
+
+def description(texts):
+    """The lines of a block for Doxygen."""
+    made, is_formula = ["/**"], False
+    for text in texts:
+        if text.startswith("  ") != is_formula:
+            is_formula = not is_formula
+            made.append(r"\verbatim" if is_formula else r"\endverbatim")
+        made.append(text if is_formula else escaped(text))
+    return [*made, r"\endverbatim */" if is_formula else "*/"]
+
+
+def filtered(lines):
+    """The lines with their comments turned."""
+    made, i = [], 0
+    while i < len(lines):
+        behind, whole = BEHIND.match(lines[i]), WHOLE.match(lines[i])
+        if whole:
+            texts = []
+            while i < len(lines) and (line := WHOLE.match(lines[i])):
+                texts.append(line[2])
+                i += 1
+            if i < len(lines) and lines[i].strip():
+                made += description(texts)
+            continue
+        if behind:
+            column = len(behind[1])
+            made.append(f"{behind[1]}///<{escaped(behind[2])}")
+            # Its further lines stand below its beginning.
+            while i + 1 < len(lines) and (more := WHOLE.match(lines[i + 1])):
+                if len(more[1]) != column:
+                    break
+                made.append(f"{more[1]}///<{escaped(more[2])}")
+                i += 1
+        else:
+            made.append(lines[i])
+        i += 1
+    return made
+
+
+def main():
+    source = Path(sys.argv[1]).read_text(encoding="utf-8")
+    print("\n".join(filtered(source.splitlines())))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,226 @@
+"""What the pages' templates can call: the measured tables of docs/data, numbers in words, and files
+of the project.
+
+A page says {{ fastest("cloth", 1e-3).time }} and not 0.98 ms: what is measured anew is said anew.
+"""
+
+import csv
+import functools
+import json
+import math
+import sys
+from dataclasses import dataclass
+
+from code_state import ROOT
+
+sys.path.append(str(ROOT / "experiments/plot"))
+import measurements  # noqa: E402 (the pictures' own reader of work_precision's tables)
+
+DATA = ROOT / "docs/data"
+
+
+class BadPage(Exception):
+    """A template asks for what there is not; the message is one sentence."""
+
+
+def seconds(value):
+    """A time in two digits and a fitting unit: 0.98 ms, 12 µs, 3.4 s, 2 min 10 s."""
+    value = float(value)
+    if value >= 99.5:
+        whole = round(value)
+        return f"{whole // 60} min {whole % 60} s" if whole % 60 else f"{whole // 60} min"
+    for unit, size in (("s", 1), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)):
+        if value >= 0.0995 * size or unit == "ns":
+            return f"{figures(value / size)} {unit}"
+    raise AssertionError(value)
+
+
+def figures(value, digits=2):
+    """A number in that many digits, no exponent between 1e-3 and 1e7, thousands apart: 0.98, 12,300."""
+    value = float(value)
+    if not math.isfinite(value):
+        return "∞" if value > 0 else "–"
+    if value == 0:
+        return "0"
+    if not 1e-3 <= abs(value) < 1e7:
+        return small(value, digits)
+    rounded = float(f"{value:.{digits}g}")
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(rounded))))
+    return f"{rounded:,.{decimals}f}".replace("-", "−")
+
+
+def small(value, digits=2):
+    """A number with its power of ten: 9.1e-7, 1e-4."""
+    mantissa, exponent = f"{float(value):.{digits - 1}e}".split("e")
+    mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
+    return f"{mantissa}e{int(exponent)}"
+
+
+def accuracy(value):
+    """An accuracy as the pages write it: 1e-3."""
+    return f"{float(value):.0e}".replace("e-0", "e-").replace("e+0", "e")
+
+
+def percent(value, digits=2):
+    """A part of one as a percentage: 12 %."""
+    return f"{figures(100 * float(value), digits)} %"
+
+
+def times(ratio):
+    """A ratio in two digits: 3.4."""
+    return figures(ratio)
+
+
+@functools.cache
+def record(study):
+    """How a study was made: commands, date, processor, compiler, seconds."""
+    try:
+        return json.loads((DATA / study / "study.json").read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise BadPage(f"study {study} is not measured: ./run studies {study}") from None
+
+
+def command(study):
+    """What a user types to measure the study again, a line a command."""
+    lines = []
+    for line in record(study)["commands"]:
+        python = line.split()[0].endswith(".py")
+        lines.append(("/usr/bin/python3 " if python else "build/bin/") + line)
+    return "\n".join(lines)
+
+
+def processor(study):
+    """The processor on which a study was measured."""
+    return record(study)["processor"]
+
+
+def made(*studies):
+    """The line under a table: the command that makes it anew, the processor, and when that was."""
+    first = record(studies[0])
+    dates = sorted({record(study)["date"] for study in studies})
+    when = dates[0] if len(dates) == 1 else f"{dates[0]} to {dates[-1]}"
+    return f"(`./run studies {' '.join(studies)}`; one core of an {first['processor']}, {when})"
+
+
+@functools.cache
+def rows_of(study, table):
+    record(study)
+    try:
+        with open(DATA / study / table, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+    except FileNotFoundError:
+        raise BadPage(f"study {study} has no table {table}") from None
+
+
+def matches(cell, wanted):
+    if isinstance(wanted, (int, float)) and not isinstance(wanted, bool):
+        try:
+            return math.isclose(float(cell), wanted, rel_tol=1e-6)
+        except ValueError:
+            return False
+    return cell in wanted if isinstance(wanted, (list, tuple)) else cell == wanted
+
+
+def rows(study, table, **where):
+    """The rows of a table (dicts of texts) whose columns have these values; a list means any of
+    these, numbers agree to 1e-6."""
+    found = rows_of(study, table)
+    for column in where:
+        if found and column not in found[0]:
+            raise BadPage(f"{study}/{table} has no column {column}")
+    return [row for row in found if all(matches(row[c], value) for c, value in where.items())]
+
+
+def row(study, table, **where):
+    """The one row with these values."""
+    found = rows(study, table, **where)
+    if len(found) != 1:
+        raise BadPage(f"{study}/{table} has {len(found)} rows with {where}, not one")
+    return found[0]
+
+
+@dataclass(frozen=True)
+class Fastest:
+    """The fastest run to an accuracy, or none (then all is a dash)."""
+
+    run: measurements.Run | None
+
+    @property
+    def method(self):
+        return self.run.method if self.run else "–"
+
+    @property
+    def time(self):
+        return seconds(self.run.time) if self.run else "–"
+
+    @property
+    def seconds(self):
+        return self.run.time if self.run else math.nan
+
+    @property
+    def error(self):
+        return small(self.run.error) if self.run else "–"
+
+    @property
+    def value(self):
+        """The step size in s, or the relative tolerance."""
+        return small(self.run.value) if self.run else "–"
+
+    def __bool__(self):
+        return self.run is not None
+
+
+@functools.cache
+def runs(study):
+    """All runs of a chart."""
+    record(study)
+    return tuple(measurements.read_runs(str(DATA / study / "points.csv")))
+
+
+def fastest(study, accuracy, of=None, but=()):
+    """The fastest run whose error is at most the accuracy. of: a family ("sundials",
+    "hand-written"), a method's name, or a list of names; but: names to leave out."""
+    names = [of] if isinstance(of, str) else of
+    found = [
+        run
+        for run in runs(study)
+        if (names is None or run.family in names or run.method in names)
+        and run.method not in but
+        and not run.failure
+        and run.bound <= accuracy
+    ]
+    return Fastest(min(found, key=lambda run: run.time) if found else None)
+
+
+def ratio(slow, fast):
+    """How many times as long the first of two fastest runs takes; a dash where one is missing."""
+    return times(slow.seconds / fast.seconds) if slow and fast else "–"
+
+
+def text(study, file):
+    """What a program printed."""
+    record(study)
+    return (DATA / study / file).read_text(encoding="utf-8").rstrip("\n")
+
+
+def sample(path, begin=None, end=None):
+    """A file of the project, or its lines from the one that holds `begin` to the one before that
+    which holds `end`."""
+    lines = (ROOT / path).read_text(encoding="utf-8").splitlines()
+    first = next((i for i, line in enumerate(lines) if begin in line), None) if begin else 0
+    if first is None:
+        raise BadPage(f"{path} has no line with '{begin}'")
+    last = len(lines)
+    if end:
+        last = next((i for i in range(first + 1, len(lines)) if end in lines[i]), None)
+        if last is None:
+            raise BadPage(f"{path} has no line with '{end}' after '{begin}'")
+    return "\n".join(lines[first:last]).strip("\n")
+
+
+FUNCTIONS = {
+    "accuracy": accuracy, "command": command, "fastest": fastest, "figures": figures, "made": made,
+    "percent": percent, "processor": processor, "ratio": ratio, "record": record, "row": row,
+    "rows": rows, "runs": runs, "sample": sample, "seconds": seconds, "small": small, "text": text,
+    "times": times,
+}  # fmt: skip

@@ -1,0 +1,137 @@
+"""Writes README.md and the pages of docs/ from their templates in docs/pages/, with the measured
+numbers put in.
+
+    render.py               writes them
+    render.py --check       says which are not as their templates and docs/data have them; status 1
+    render.py --draft NAME  prints one; what is not measured yet is shown as such
+
+A template is Markdown with {{ ... }} and {% ... %} of Jinja; page_data.py has what these can call.
+"""
+
+import sys
+
+import jinja2
+
+import method_pages
+import page_data
+from code_state import ROOT
+
+PAGES = ROOT / "docs/pages"
+NOTICE = "<!-- Made by ./run docs from {source}. Change that file, not this one. -->\n\n"
+
+
+def environment():
+    """Jinja with what pages may call, also as filters; an unknown name is an error."""
+    made = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(PAGES),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    made.globals.update(page_data.FUNCTIONS, methods=method_pages.all_methods)
+    made.filters.update(page_data.FUNCTIONS)
+    return made
+
+
+def target_of(template):
+    """Where the page of a template goes: README.md to the root, all else to docs/."""
+    return ROOT / template if template == "README.md" else ROOT / "docs" / template
+
+
+def rendered():
+    """All pages by their files: those of the templates, and one a method."""
+    jinja = environment()
+    pages = {}
+    for name in sorted(file.name for file in PAGES.glob("*.md")):
+        if name == "method.md":
+            continue
+        notice = NOTICE.format(source=f"docs/pages/{name}")
+        pages[target_of(name)] = notice + jinja.get_template(name).render()
+    template = jinja.get_template("method.md")
+    for method in method_pages.all_methods():
+        page = template.render(method=method)
+        pages[ROOT / f"docs/methods/{method.name}.md"] = (
+            NOTICE.format(source="docs/pages/method.md") + page
+        )
+    return pages
+
+
+class NotMeasured:
+    """Stands in a draft for what is not measured, whatever is asked of it."""
+
+    def __getattr__(self, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self
+
+    def __getitem__(self, key):
+        return self
+
+    def __call__(self, *_, **__):
+        return self
+
+    def __iter__(self):
+        return iter(())
+
+    def __float__(self):
+        return float("nan")
+
+    def __str__(self):
+        return "(not measured)"
+
+
+def drafted(call):
+    """A function of pages, with what is not measured in place of an error."""
+
+    def tried(*words, **named):
+        try:
+            return call(*words, **named)
+        except page_data.BadPage as error:
+            print(f"draft: {error}", file=sys.stderr)
+            return NotMeasured()
+
+    return tried
+
+
+def draft(name):
+    """One page of a template; of method.md that of the method NAME."""
+    calls = {key: drafted(call) for key, call in page_data.FUNCTIONS.items()}
+    jinja = environment()
+    jinja.globals.update(calls)
+    jinja.filters.update(calls)
+    for method in method_pages.all_methods():
+        if method.name == name:
+            return jinja.get_template("method.md").render(method=method)
+    return jinja.get_template(name).render()
+
+
+def main():
+    if "--draft" in sys.argv[1:]:
+        print(draft(sys.argv[-1]))
+        return 0
+    try:
+        pages = rendered()
+    except (page_data.BadPage, jinja2.TemplateError) as error:
+        where = f"{error.name}, line {error.lineno}: " if hasattr(error, "lineno") else ""
+        sys.exit(f"render: {where}{error}")
+    there = set((ROOT / "docs/methods").glob("*.md"))
+    if "--check" in sys.argv[1:]:
+        old = [
+            file for file, page in pages.items() if not file.exists() or file.read_text() != page
+        ]
+        old += sorted(there - pages.keys())
+        for file in old:
+            print(f"{file.relative_to(ROOT)} is not what its template says: ./run docs")
+        return 1 if old else 0
+    (ROOT / "docs/methods").mkdir(exist_ok=True)
+    for file in there - pages.keys():
+        file.unlink()
+    for file, page in pages.items():
+        if not file.exists() or file.read_text() != page:
+            file.write_text(page, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
