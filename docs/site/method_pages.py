@@ -1,9 +1,32 @@
-"""What a method's page says: from the registry (docs/data/methods), its source file, and the studies."""
+"""What a method's page says: from the registry (docs/data/methods), its source file, and the studies.
+
+A study without rows of a method gives an empty list or None. The page then says that it is not measured
+yet.
+"""
 
 import functools
+import itertools
 from dataclasses import dataclass
 
+import method_charts as charts
+import method_formula
 import page_data
+from method_formula import escaped
+
+STANDARD = ("cloth", "chain", "framed_cloth")
+DRIFTS = ("drift_fpu", "drift_orbit", "drift_cloth")
+NEEDS = ("needs_stiffness", "needs_constant_stiffness", "needs_split", "needs_laplacian")
+VERDICTS = ("lives", "is damped", "is killed", "blows up")
+
+
+def rows_of(study, table, method):
+    """The rows of a method; none where the study is not measured."""
+    return page_data.rows(study, table, method=method) if charts.is_measured(study) else []
+
+
+def cell(text):
+    """A text for a cell of a table."""
+    return escaped(text).replace("|", "\\|")
 
 
 @dataclass(frozen=True)
@@ -12,6 +35,165 @@ class Method:
 
     name: str
     entry: dict
+
+    def has(self, trait):
+        """Whether a column of the registry says yes."""
+        return self.entry[trait] == "yes"
+
+    @property
+    def order(self):
+        """The order of its error; 0 where steps have none."""
+        return int(self.entry["order"])
+
+    @property
+    def is_fixed(self):
+        """Whether its steps have a fixed size."""
+        return self.entry["knob"] == "step_size"
+
+    @property
+    def lacks_scenes(self):
+        """Whether the scenes that do not have it lack what it needs, and it is not just new."""
+        has_needs = self.has("needs_split") or self.has("needs_constant_stiffness")
+        is_new = not self.places and any(self.is_missing(chart) for chart in charts.CHARTS)
+        return has_needs and not is_new
+
+    @property
+    def kind(self):
+        """What kind of method it is, in words; the index has a table for each family and kind."""
+        if self.entry["stock_of"]:
+            return "stock"
+        if self.has("needs_constant_stiffness"):
+            return "exact"
+        first = "implicit" if self.has("implicit") else "explicit"
+        if self.has("needs_split"):
+            return f"{first}, stiff springs apart"
+        return f"{first}, {'fixed' if self.is_fixed else 'adaptive'} steps"
+
+    @property
+    def summary(self):
+        """The registry's line as a sentence."""
+        line = self.entry["summary"].rstrip(".").replace("w_max", "ω_max")
+        if line.split(",")[0] not in {method.name for method in all_methods()}:
+            line = line[0].upper() + line[1:]
+        return escaped(line) + "."
+
+    @property
+    def source(self):
+        """The paper."""
+        if not self.entry["source"]:
+            raise page_data.BadPage(f"method {self.name} has no source in the registry")
+        return cell(self.entry["source"])
+
+    @property
+    def file(self):
+        """The file that defines it."""
+        return method_formula.file_of(self.name)
+
+    @property
+    def formula(self):
+        """Its formula and what its file says of it, as Markdown."""
+        return method_formula.formula_of(self.name)
+
+    @property
+    def siblings(self):
+        """The other methods of its file."""
+        known = {method.name for method in all_methods()}
+        return [name for name in method_formula.defined_with(self.name) if name in known]
+
+    @property
+    def twin(self):
+        """The stock way of this method, where there is one."""
+        return next((m.name for m in all_methods() if m.entry["stock_of"] == self.name), "")
+
+    @property
+    def limit(self):
+        """Its row of limits.csv; None where it has none."""
+        return next(iter(rows_of("stability_cloth", "limits.csv", self.name)), None)
+
+    @property
+    def modes(self):
+        """What becomes of the cloth's modes, slow ones first: (first row, last row, how many,
+        verdict) of neighbours with one verdict."""
+        found = rows_of("stability_cloth", "modal.csv", self.name)
+        found.sort(key=lambda row: float(row["h_omega"]))
+
+        def verdict(row):
+            words = row["verdict"]  # or WHO in mode N: WHY: ADVICE
+            if words in VERDICTS:
+                return words
+            return "not measured: " + (words.partition(": ")[2].split(": ")[0] or words)
+
+        groups = [(key, list(group)) for key, group in itertools.groupby(found, verdict)]
+        return [(own[0], own[-1], len(own), cell(words)) for words, own in groups]
+
+    @property
+    def amplitudes(self):
+        """What becomes of runs of the pendulum at the least, its own and the largest amplitude:
+        (amplitude, rows, the shortest steps first)."""
+        found = rows_of("stability_pendulum", "map.csv", self.name)
+        found.sort(key=lambda row: float(row["h_omega"]))
+        every = sorted({float(row["amplitude"]) for row in found})
+        return [
+            (a, [row for row in found if float(row["amplitude"]) == a])
+            for a in every
+            if a in (every[0], 1, every[-1])
+        ]
+
+    @property
+    def drifts(self):
+        """Its rows in the studies of long runs: (scene, row)."""
+        return [
+            (study.removeprefix("drift_"), row)
+            for study in DRIFTS
+            for row in rows_of(study, "summary.csv", self.name)
+        ]
+
+    @property
+    def orders(self):
+        """Its rows of order.csv, the longest steps first."""
+        return rows_of("convergence", "order.csv", self.name)
+
+    def is_missing(self, chart):
+        """Whether a chart has no runs of it, though it has some of another method with its needs."""
+
+        def needs(method):
+            return [method.has(need) for need in NEEDS]
+
+        runs = charts.runs_of(chart)
+        others = [m for m in all_methods() if needs(m) == needs(self) and m.name in runs]
+        return not runs or (self.name not in runs and bool(others))
+
+    def runs(self, chart):
+        """All its runs on a chart."""
+        return charts.runs_of(chart).get(self.name, [])
+
+    def time(self, chart, accuracy):
+        """(Its time, how many times the fastest's) to an accuracy; None where it is not reached."""
+        return charts.time_to(self.name, chart, accuracy)
+
+    def failures(self, chart):
+        """Why its runs failed, each reason with how many."""
+        return charts.failures(self.name, chart)
+
+    @property
+    def places(self):
+        """Its place on each chart that has it."""
+        return [charts.place(self.name, chart) for chart in charts.CHARTS if self.runs(chart)]
+
+    @property
+    def wins(self):
+        """The rows of the study of many scenes where it is the fastest, or the next one and near."""
+        return charts.wins(self.name)
+
+    @property
+    def example(self):
+        """A run to repeat; None where there is none."""
+        return charts.example(self.name)
+
+    @property
+    def work(self):
+        """The forces and the linear solves that the example takes for each of its steps."""
+        return charts.work(self.example) if self.example else None
 
 
 @functools.cache

@@ -8,6 +8,7 @@ import csv
 import functools
 import json
 import math
+import re
 import sys
 from dataclasses import dataclass
 
@@ -218,8 +219,34 @@ def sample(path, begin=None, end=None):
     return "\n".join(lines[first:last]).strip("\n")
 
 
+def crossing(study, accuracy, fast="implicit", slow="explicit"):
+    """The stiffness ratio from which on the fastest method of one kind takes less time than that of
+    the other, on a line between the measured ratios in logarithms; nan where it never does."""
+    at = {}
+    for cell in rows(study, "kinds.csv", accuracy=accuracy):
+        seconds_of = float(cell["time_s"] or "inf") if cell["method"] else math.inf
+        at.setdefault(float(cell["stiffness_ratio"]), {})[cell["kind"]] = seconds_of
+    ahead = [(r, math.log(t[slow]) - math.log(t[fast])) for r, t in sorted(at.items())]
+    behind = [i for i, (_, lead) in enumerate(ahead) if not lead > 0]
+    last = max(behind, default=-1)
+    if last + 1 >= len(ahead):
+        return math.nan
+    if last < 0:
+        return ahead[0][0]
+    (low, lead_low), (high, lead_high) = ahead[last : last + 2]
+    if not math.isfinite(lead_low) or not math.isfinite(lead_high):
+        return high
+    share = lead_low / (lead_low - lead_high)
+    return low * (high / low) ** share
+
+
+def version():
+    """The project's version, as CMake has it."""
+    return re.search(r"VERSION ([\d.]+)", sample("CMakeLists.txt", "project(qddot"))[1]
+
+
 FUNCTIONS = {
-    "accuracy": accuracy, "command": command, "fastest": fastest, "figures": figures, "made": made,
+    "accuracy": accuracy, "crossing": crossing, "version": version, "command": command, "fastest": fastest, "figures": figures, "made": made,
     "percent": percent, "processor": processor, "ratio": ratio, "record": record, "row": row,
     "rows": rows, "runs": runs, "sample": sample, "seconds": seconds, "small": small, "text": text,
     "times": times,

@@ -1,5 +1,5 @@
-"""The damping of an oscillator and of a scene's natural modes by methods of fixed steps, and the
-steps of those that choose them."""
+"""Panels with the damping of an oscillator and of a scene's natural modes by fixed-step methods,
+and with the steps of adaptive methods."""
 
 import math
 from dataclasses import dataclass
@@ -27,9 +27,9 @@ SAME = 1e-6
 # Damping ratios are drawn as they are below this, as logarithms above.
 STRAIGHT = 1e-3
 UNDAMPED = 1e-4
-# The damping ratios up to which a mode lives, losing half of its amplitude in ten periods, and from
-# which it is killed, losing nine tenths in one.
-LIVING, KILLING = math.log(2) / (20 * math.pi), math.log(10) / (2 * math.pi)
+# A mode "lives" up to the first damping ratio: it loses half of its energy in ten periods. It is
+# "killed" from the second on: it loses nine tenths of its amplitude in one period.
+LIVING, KILLING = math.log(2) / (40 * math.pi), math.log(10) / (2 * math.pi)
 ZONES = (
     ("killed", KILLING, 1.6, "#BBD8EC"),
     ("damped", LIVING, KILLING, "#DDEAF4"),
@@ -65,7 +65,7 @@ class Curve:
         )
 
     def between(self, low, high):
-        """Its points from one h w to another, those that have a damping."""
+        """Its points from one h w to another that have a damping."""
         return [(x, y) for x, y in self.points if low <= x <= high and not math.isnan(y)]
 
 
@@ -118,8 +118,8 @@ def style_axes(axes):
 
 
 def anchors_of(axes, pixels):
-    """Where on its curve a label may stand: where that is apart from others, or, where it nowhere
-    is, as far up or down as it goes."""
+    """The places on its curve where a label may stand: where the curve is apart from others or, if
+    it nowhere is, at its highest or lowest point."""
     dense = pixels[:1]
     for (x, y), (u, v) in zip(pixels, pixels[1:]):
         parts = range(1, 2 + int(math.hypot(u - x, v - y) / APART))
@@ -179,8 +179,8 @@ class DampingSheet:
         title = f"{shown(scene)}: what methods do to vibrations, by linear theory and measured"
         self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
         words = (
-            "killed: loses nine tenths of its amplitude in a period; lives: keeps half of it for "
-            "ten periods and more; blows up: grows"
+            "killed: loses nine tenths of its amplitude in a period; lives: keeps half of its energy "
+            "for ten periods and more; blows up: grows"
         )
         self.sheet.text(0.15, 0.53, words, size=9.5, color=FAINT, va="center")
         self.sheet.rule(0.72)
@@ -351,7 +351,7 @@ def draw_dot(axes, row, height, color):
 
 
 def distance(row):
-    """Between the damping predicted and measured of a mode."""
+    """The difference of a mode's predicted and measured damping."""
     return abs(row["damping_ratio_measured"] - row["damping_ratio_predicted"])
 
 

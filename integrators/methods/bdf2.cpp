@@ -1,8 +1,11 @@
-// The two-step backward differentiation formula, for steps h after a step w^-1 h:
-//   y_{n+1} = ((1 + w)^2 y_n - w^2 y_{n-1}) / (1 + 2 w) + c h y'_{n+1},  c = (1 + w)/(1 + 2 w),
-// y = (q, v), y' = (v, M^-1 f(q)); with equal steps y_{n+1} = 4/3 y_n - 1/3 y_{n-1} + 2/3 h y'.
-// Eliminating v_{n+1} leaves one stage with s = c^2 h^2. Order 2, A-stable and L-stable. The first
-// step is one of implicit Euler, whose own error is of second order.
+// The two-step backward differentiation formula, BDF2. With y = (q, v), y' = (v, M^-1 f(q)) and
+// equal steps it is
+//   y_{n+1} = 4/3 y_n - 1/3 y_{n-1} + 2/3 h y'_{n+1}
+// A step h that follows a step of another length h_1 uses their ratio r = h/h_1 (w in the code):
+//   y_{n+1} = ((1 + r)^2 y_n - r^2 y_{n-1})/(1 + 2 r) + c h y'_{n+1},   c = (1 + r)/(1 + 2 r)
+// Eliminating v_{n+1} leaves one nonlinear equation a step, with Newton's matrix M - c^2 h^2 K. The
+// method has order 2 and is A-stable and L-stable. The first step is implicit Euler's. The error of
+// that one step is of order h^2, so the order of the method stays 2.
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
 

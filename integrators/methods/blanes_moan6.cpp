@@ -1,12 +1,16 @@
-// Blanes and Moan's symplectic Runge-Kutta-Nystrom splitting of order 6, SRKN_11^b: twelve kicks
-// about eleven drifts, which are more than order 6 needs and make its error small. Eleven forces a
-// step, and one to begin. The paper prints 15 digits; here they are the nearest numbers (less than
-// 7e-16 away) that meet the conditions of order 6 to 40 digits.
+// Blanes and Moan's symplectic Runge-Kutta-Nystrom splitting of order 6, SRKN_11^b. A step takes
+// twelve kicks and eleven drifts by turns:
+//   for i = 1 ... 12:   v <- v + b_i h M^-1 f(q),   q <- q + a_i h v,   a_12 = 0
+// Order 6 needs fewer of them; the others make the error small. Both lists of coefficients are the
+// same read backwards, so the method is time-reversible. The last force of a step is the first of
+// the next: eleven forces a step, and one to begin.
 #include "qddot/integrators/base/kick_drift.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
 
+// The paper prints 15 digits. These are the nearest numbers, less than 7e-16 away, that meet the
+// conditions of order 6 to 40 digits.
 const Splitting& blanes_moan6_splitting() {
   static const Splitting splitting{
       .order = 6,

@@ -1,11 +1,14 @@
-// The energy-momentum method: implicit midpoint with the mean of the force over the step that makes
-// exactly the work V(q_n) - V(q_{n+1}) (see DiscreteGradient), f(q_n, q_{n+1}):
-//   q_{n+1} = q_n + h/2 (v_n + v_{n+1}),  M (v_{n+1} - v_n) = h f(q_n, q_{n+1})
-// so that (v_n + v_{n+1})/2 . M (v_{n+1} - v_n) = (q_{n+1} - q_n)/h . h f: kinetic energy gains
-// what potential energy loses, whatever h is. One stage, M (u - h v_n) = h^2/2 f(q_n, q_n + u),
-// whose matrix is taken as M - h^2/4 K(q_n + u/2): df/du is half of K there but for terms of first
-// order in u. Order 2, reversible; keeps energy, linear and angular momentum to what the solve
-// leaves.
+// The energy-momentum method. It is the implicit midpoint rule with a mean force F over the step,
+// the capability DiscreteGradient, in place of the force at the midpoint:
+//   q_{n+1} = q_n + h/2 (v_n + v_{n+1})
+//   M (v_{n+1} - v_n) = h F(q_n, q_{n+1})
+// Along q_{n+1} - q_n the mean force does exactly the work V(q_n) - V(q_{n+1}). So kinetic energy
+// gains what potential energy loses, whatever h is. With u = q_{n+1} - q_n a step is one nonlinear
+// equation:
+//   M (u - h v_n) = h^2/2 F(q_n, q_n + u)
+// Its Newton matrix is taken as M - h^2/4 K(q_n + u/2). There the derivative of F is K/2, up to
+// terms of first order in u. The method has order 2 and is time-reversible. It keeps energy, linear
+// and angular momentum up to what the nonlinear solve leaves.
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
 

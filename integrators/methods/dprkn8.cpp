@@ -1,5 +1,14 @@
-// Dormand, El-Mikkawy and Prince's adaptive explicit Runge-Kutta-Nystrom pair of order 8(6): eight
-// forces a step.
+// Dormand, El-Mikkawy and Prince's adaptive explicit Runge-Kutta-Nystrom pair of order 8(6). With a
+// table of coefficients a, b, b' and c a step is
+//   q_i     = q_n + c_i h v_n + h^2 sum_{j<i} a_ij k_j,   k_i = M^-1 f(q_i),   i = 1 ... 9
+//   q_{n+1} = q_n + h v_n + h^2 sum_i b_i k_i
+//   v_{n+1} = v_n + h sum_i b'_i k_i
+// The last stage is the first of the next step: eight forces a step. The same sums with other
+// weights, of order 6, estimate the error, and the next step size follows from it.
+//
+// Where the system has a K, steps are held to h <= 4.20/w_max. Up to there no vibration grows by
+// more than a hundredth a step. The error test alone would miss vibrations that grow but are still
+// small.
 #include "qddot/integrators/base/nystrom.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -1,7 +1,8 @@
 // Explicit (forward) Euler:
 //   q_{n+1} = q_n + h v_n
 //   v_{n+1} = v_n + h M^-1 f(q_n)
-// Order 1. On q'' = -w^2 q the amplitude grows by sqrt(1 + h^2 w^2) each step, at every h.
+// The method has order 1 and takes one force a step. On a vibration q'' = -w^2 q each step
+// multiplies the amplitude by sqrt(1 + h^2 w^2), so it grows at every h.
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/model/vector_updates.hpp"

@@ -1,16 +1,15 @@
-// The generalised-alpha method (Chung and Hulbert, Journal of Applied Mechanics 60 (1993) 371-375):
+// Chung and Hulbert's generalised-alpha method, generalized_alpha, and its special case HHT-alpha,
+// hht, of Hilber, Hughes and Taylor:
 //   q_{n+1} = q_n + h v_n + h^2 ((1/2 - beta) a_n + beta a_{n+1})
 //   v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1})
 //   M ((1 - alpha_m) a_{n+1} + alpha_m a_n) = f((1 - alpha_f) q_{n+1} + alpha_f q_n)
-//   gamma = 1/2 - alpha_m + alpha_f,  beta = 1/4 (1 - alpha_m + alpha_f)^2
-// with f at the mean position, so that each step is one stage in u, that position less q_n. The
-// alphas follow from the damping wanted at infinite frequency: there each step multiplies a motion
-// by the spectral radius rho. Order 2, A-stable. Their equation holds between the steps, so that
-// a_n is the acceleration at t_n + (alpha_m - alpha_f) h, to second order. Where a step h' follows
-// one of h it is taken at (alpha_m - alpha_f) h' instead, on the line through the last two:
-//   a_n + (alpha_m - alpha_f) (h'/h - 1) (a_n - a_{n-1}),
-// without which each change of h would leave an error of first order in it. Steps only ever shorten
-// (the last one, and those to what is observed between two), so that the line is not followed far.
+//   gamma = 1/2 - alpha_m + alpha_f,   beta = 1/4 (1 - alpha_m + alpha_f)^2
+// The alphas follow from rho (--spectral-radius). By this factor a step multiplies a vibration of
+// infinite frequency:
+//   generalized_alpha   alpha_m = (2 rho - 1)/(rho + 1),   alpha_f = rho/(rho + 1)
+//   hht                 alpha_m = 0,                       alpha_f = (1 - rho)/(1 + rho)
+// A rho below 1/2 is taken as 1/2 by hht. Both methods have order 2 and are A-stable. Each step
+// solves one nonlinear equation, for the mean position at which f is taken.
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
 
@@ -52,6 +51,13 @@ class GeneralizedAlpha : public ImplicitStep {
     last_h_ = other.last_h_;
   }
 
+  // The equation of motion holds between the steps, so that a_n is the acceleration at
+  // t_n + (alpha_m - alpha_f) h, to second order. A step h' after a step h needs the acceleration
+  // at t_n + (alpha_m - alpha_f) h'. It is taken on the line through the last two:
+  //   a_n + (alpha_m - alpha_f) (h'/h - 1) (a_n - a_{n-1})
+  // Without that, each change of h would leave an error of first order in it. Steps only ever
+  // shorten (the last one, and those to what is observed between two), so that the line is not
+  // followed far.
   Outcome step(const State& now, double h, State& next) override {
     if (last_h_ > 0 && h != last_h_) {
       a_ += (alpha_.m - alpha_.f) * (h / last_h_ - 1) * (a_ - last_a_);

@@ -1,8 +1,10 @@
-// Implicit (backward) Euler as optimisation, as the lecture ends:
-//   q_{n+1} = q_n + u,  v_{n+1} = u/h,
-//   u = argmin 1/2 (u - h v_n)' M (u - h v_n) + h^2 V(q_n + u)
-// (v_{n+1} minimises 1/2 (v - v_n)' M (v - v_n) + V(q_n + h v)). Order 1. On q'' = -w^2 q the
-// amplitude decays by 1/sqrt(1 + h^2 w^2) each step, at every h.
+// Implicit (backward) Euler as a minimisation over the displacement u, as the lecture ends:
+//   u       = argmin 1/2 (u - h v_n)^T M (u - h v_n) + h^2 V(q_n + u)
+//   q_{n+1} = q_n + u,   v_{n+1} = u/h
+// At the minimum the gradient is zero, M (u - h v_n) = h^2 f(q_{n+1}), and so
+//   q_{n+1} = q_n + h v_{n+1},   v_{n+1} = v_n + h M^-1 f(q_{n+1})
+// The method has order 1. On a vibration q'' = -w^2 q each step divides the amplitude by
+// sqrt(1 + h^2 w^2), so it decays at every h.
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
 

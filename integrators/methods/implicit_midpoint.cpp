@@ -1,8 +1,9 @@
-// Implicit midpoint: with u = q_{n+1/2} - q_n and q_{n+1/2} = (q_n + q_{n+1})/2,
+// The implicit midpoint rule. With the displacement u from q_n to the midpoint (q_n + q_{n+1})/2:
 //   M (u - h/2 v_n) = h^2/4 f(q_n + u)
-//   q_{n+1} = q_n + 2 u,  v_{n+1} = 4 u/h - v_n
-// Order 2, symplectic, time-reversible; keeps quadratic invariants (momenta; the energy where f is
-// linear, at every h). A-stable, but on a stiff nonlinear spring its energy may grow.
+//   q_{n+1} = q_n + 2 u,   v_{n+1} = 4 u/h - v_n
+// The method has order 2 and is symplectic and time-reversible. It keeps linear and angular
+// momentum, and where f is linear also the energy, at every h. It is A-stable, but the energy of a
+// stiff nonlinear spring may grow.
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
 

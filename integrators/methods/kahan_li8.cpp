@@ -1,7 +1,11 @@
-// Order-8 composition of 17 velocity Verlet steps of sizes gamma_s h, gamma symmetric, with
-// sum gamma = 1 (Kahan and Li, Mathematics of Computation 66 (1997) 1089-1099, method s17odr8a).
-// Neighbouring half kicks are one kick, and the last force of a step is the first of the next:
-// 17 evaluations a step, and one to begin. Symplectic and time-reversible.
+// Kahan and Li's composition of order 8, their s17odr8a: 17 steps of velocity Verlet of the sizes
+// gamma_s h.
+//   for s = 1 ... 17:   v <- v + gamma_s h/2 M^-1 f(q)
+//                       q <- q + gamma_s h v
+//                       v <- v + gamma_s h/2 M^-1 f(q)
+// The gamma_s have the sum 1 and are the same read backwards, so the method is time-reversible. It
+// is symplectic as well. Neighbouring half kicks are one kick, and the last force of a step is the
+// first of the next: 17 forces a step, and one to begin.
 #include "qddot/integrators/base/kick_drift.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -1,33 +1,28 @@
-// The midpoint rule, linear in what is stiff. Implicit midpoint steps by v' = v + h M^-1 f(q_mid),
-// q_mid = q + h/4 (v + v'): from the position x = q + h/2 v to which the velocity of the start
-// leads it is x + h/4 (v' - v), and with f linear on that way,
-//   x          = q + h/2 v
-//   A (v' - v) = h f(x),   A = M - h^2/4 K_m(x)
-//   q'         = x + h/2 v'
-// K_m is the material stiffness, of the stiff springs alone where the scene names some, else of
-// all; and K itself of a system that does not know its material part (see SplitStiffness). One
-// force, one factorisation and one solve a step and no iteration; A is positive definite whatever
-// is compressed. Seen from either end of a step x is the same point, so that the method is
-// time-reversible and of order 2, whatever A is. A^-1 f is no gradient, so it is not symplectic;
-// but springs push along themselves in K_m as in f, which keeps angular momentum (where l0 > 0).
+// The midpoint rule made linear in the stiff springs, linear_midpoint:
+//   x       = q_n + h/2 v_n
+//   v_{n+1} = v_n + h A^-1 f(x),   A = M - h^2/4 K_m(x)
+//   q_{n+1} = x + h/2 v_{n+1}
+// K_m is the material part of the stiffness: how springs resist a change of their lengths, without
+// what their tension adds across them. It is that of the stiff springs where the scene names some
+// (stiff_above), else that of all springs. A system that does not know its material part gives K.
 //
-// Where K is constant this is implicit midpoint itself for the stiff springs: on
-// q'' = -(w_f^2 + w_s^2) q, w_f stiff and w_s soft, half the trace of a step is
-//   1 - h^2 (w_f^2 + w_s^2) / (2 + h^2 w_f^2 / 2),
-// so that it is stable for h w_s < 2 at every w_f, without resonances. For h w_f >> 1 vibrations
-// along stiff springs keep their size and lose their phase. Motion across them does not notice k:
-// at x they are too long by O(h^2), and what k makes of that in f it makes in A too, which leaves a
-// displacement of O(h^2) and rods in the limit. Tension is no part of A, where h^2 k O(h^2) of it
-// would weigh as mass across the springs, and with the other sign make A indefinite.
+// A step takes one force, one factorisation and one solve, and no iteration. A is positive
+// definite, whatever is compressed. Seen from either end of a step x is the same point, so the
+// method is time-reversible and has order 2. A^-1 f is no gradient, so it is not symplectic. It
+// keeps angular momentum, since springs push along themselves in K_m as in f (where their rest
+// length is positive).
 //
-// Stern and Grinspun, Multiscale Modeling and Simulation 7:4 (2009) 1779-1794, solve the implicit
-// midpoint of the stiff part to the end; this is a first iteration towards that, and as exact where
-// three factorisations a step bring that to its end. Steps of (p, p, 1 - 4p, p, p) h, p = 1/(4 -
-// 4^(1/3)), make order 4 (Suzuki, Physics Letters A 146 (1990) 319-323). Each of them turns stiff
-// vibrations in the norm of their energy, whatever its size, so that the one back in time does no
-// harm; kick - drift - kick with the same A keeps another norm at each size and blows up. Soft
-// springs disturb this: where the five together turn a vibration by a multiple of pi, it grows, in
-// narrow bands and slowly.
+// Where K is constant, this is the implicit midpoint rule for the stiff springs. Let a vibration
+// q'' = -(w_f^2 + w_s^2) q have w_f from stiff springs and w_s from soft ones. Then half the trace
+// of a step is
+//   1 - h^2 (w_f^2 + w_s^2)/(2 + h^2 w_f^2/2)
+// So a step is stable for h w_s < 2 at every w_f, without resonances. For h w_f >> 1 vibrations
+// along stiff springs keep their size and lose their phase.
+//
+// linear_midpoint4 composes five such steps, one of them back in time, to order 4 (Suzuki):
+//   p h,   p h,   (1 - 4 p) h,   p h,   p h,   p = 1/(4 - 4^(1/3))
+// Soft springs disturb it in narrow bands of h, where the five steps together turn a stiff
+// vibration by a multiple of pi. Such a vibration grows slowly.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -40,6 +35,22 @@
 namespace qddot::registered {
 namespace {
 
+// Implicit midpoint steps by v' = v + h M^-1 f(q_mid), q_mid = q + h/4 (v + v'). From x, to which
+// the velocity of the start leads, q_mid is x + h/4 (v' - v). With f linear on that way this is
+// A (v' - v) = h f(x).
+//
+// Motion across stiff springs does not notice their stiffness k: at x they are too long by O(h^2),
+// and what k makes of that in f it makes in A too. This leaves a displacement of O(h^2), and rods
+// in the limit. Tension is no part of A. There h^2 k O(h^2) of it would weigh as mass across the
+// springs, and with the other sign make A indefinite.
+//
+// Stern and Grinspun, Multiscale Modeling and Simulation 7:4 (2009) 1779-1794, solve the implicit
+// midpoint of the stiff part to the end. This is a first iteration towards that, and as exact where
+// three factorisations a step bring that to its end.
+//
+// Each of the five steps of order 4 turns stiff vibrations in the norm of their energy, whatever
+// the step's size, so that the one back in time does no harm. Kick, drift, kick with the same A
+// keeps another norm at each size and blows up.
 constexpr std::array<double, 1> plain = {1};
 constexpr std::array<double, 5> suzuki = [] {
   constexpr double p = 0.41449077179437573714;

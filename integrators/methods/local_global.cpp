@@ -1,17 +1,21 @@
-// Implicit Euler by the local/global iteration of Liu, Bargteil, O'Brien and Kavan: with every
-// spring given a direction of its own,
-//   local    d_s = l0_s (x_i - x_j) / |x_i - x_j|
+// Implicit Euler by the local/global iteration of Liu, Bargteil, O'Brien and Kavan. Each spring s
+// of rest length l_s between nodes i and j has a vector d_s of its own. An iteration finds all
+// vectors and then all positions x:
+//   local    d_s = l_s (x_i - x_j)/|x_i - x_j|
 //   global   (M + h^2 L) x = M (q_n + h v_n) + h^2 (J d + loads)
-// For fixed d the energy is quadratic, with the constant matrix L of the same springs at rest
-// length zero; and since f(x) = -L x + J d(x) + loads, the two together are one step of Newton's
-// method with L in the place of -K:
-//   (M + h^2 L) p = M (v - v_n) - h f(q_n + h v),   v = v - p
-// so that the local step is in f. Each iteration lowers the energy, since L >= -K wherever springs
-// are, and costs one force and N x N solves for all axes at once. Order 1 after one iteration
-// already: the iteration contracts by O(h^2).
+// L is the stiffness of the same springs with rest length zero, and J d are the forces of the
+// vectors. L is constant, so M + h^2 L is factorised once for a step size. One N x N matrix serves
+// all axes of N nodes.
 //
-// Springs with a quartic part are stiffer than L where they are long; there the step is shortened
-// until it lowers the energy.
+// The force at x = q_n + h v is f(x) = -L x + J d(x) + loads, so it contains the local step. Then
+// an iteration is one step of Newton's method with L in the place of -K:
+//   (M + h^2 L) p = M (v - v_n) - h f(q_n + h v),   v <- v - p
+// It takes one force and one solve. It lowers the energy of the implicit Euler step, since L >= -K
+// wherever springs are. The first iteration already gives order 1: each one multiplies the error by
+// a factor of order h^2.
+//
+// Springs with a quartic part are stiffer than L where they are long. There p is shortened until it
+// lowers the energy.
 #include "qddot/integrators/base/local_global.hpp"
 
 #include "qddot/integrators/registry.hpp"

@@ -1,8 +1,10 @@
-// local_global accelerated by Anderson's method: of the last iterates v_i and their steps p_i the
-// affine combination whose combined step is shortest,
-//   theta = argmin | p_k - sum_i theta_i (p_{i+1} - p_i) |
-//   v_{k+1} = (v_k - p_k) - sum_i theta_i ((v_{i+1} - p_{i+1}) - (v_i - p_i)),
-// over up to 5 differences, if it lowers the energy; else the plain step.
+// local_global accelerated by Anderson's method. The last iterates v_i of the velocity have the
+// local/global steps p_i. Their combination with the shortest step gives the next iterate:
+//   (M + h^2 L) p_i = M (v_i - v_n) - h f(q_n + h v_i)
+//   theta   = argmin |p_k - sum_i theta_i (p_{i+1} - p_i)|
+//   v_{k+1} = (v_k - p_k) - sum_i theta_i ((v_{i+1} - p_{i+1}) - (v_i - p_i))
+// The sums have the last 5 differences at most. If the energy of the implicit Euler step does not
+// fall, the plain step v_{k+1} = v_k - p_k is taken instead.
 #include <array>
 
 #include <Eigen/Dense>

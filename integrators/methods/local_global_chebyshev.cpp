@@ -1,13 +1,20 @@
-// local_global accelerated by Chebyshev's semi-iterative method. Near the solution an iteration
-// multiplies errors by T = I - (M + h^2 L)^-1 (M - h^2 K), whose eigenvalues lie in [0, rho] where
-// springs are not compressed: T >= 0 since L bounds -K, and rho = h^2 w^2 / (1 + h^2 w^2) with the
-// largest w of L x = w^2 M x. The polynomial of degree k that is smallest there,
-//   v_{k+1} = omega_{k+1} (v_k - gamma p_k - v_{k-1}) + v_{k-1},   gamma = 2 / (2 - rho),
-//   omega_1 = 1, omega_2 = 2 / (2 - sigma^2), omega_{k+1} = 4 / (4 - sigma^2 omega_k),
-//   sigma = rho / (2 - rho),
-// is Wang's, shifted to that interval from his [-rho, rho]. The first iteration is a plain one,
-// after which the momentum of free bodies is right and stays so. Where r'p grows from one iteration
-// to the next, the recurrence begins anew with a plain step.
+// local_global accelerated by Chebyshev's semi-iterative method. With the local/global step p_k at
+// the iterate v_k of the velocity, the next iterate is
+//   (M + h^2 L) p_k = M (v_k - v_n) - h f(q_n + h v_k)
+//   v_{k+1} = omega_{k+1} (v_k - gamma p_k - v_{k-1}) + v_{k-1},   gamma = 2/(2 - rho)
+//   omega_1 = 1,   omega_2 = 2/(2 - sigma^2),   omega_{k+1} = 4/(4 - sigma^2 omega_k)
+//   sigma = rho/(2 - rho),   rho = h^2 w^2/(1 + h^2 w^2)
+// Here w is the largest frequency of L x = w^2 M x, with the matrix L of local_global. If few
+// iterations are made, sigma is smaller: the largest one for which they gain a digit.
+//
+// Near the solution a plain iteration multiplies errors by T = I - (M + h^2 L)^-1 (M - h^2 K). Its
+// eigenvalues lie in [0, rho] where no spring is compressed: L bounds -K, so that T >= 0. The
+// recurrence makes the polynomial of T that is smallest on that interval. Wang's polynomial is the
+// one for [-rho, rho].
+//
+// The first iteration is a plain one. After it the momentum of free bodies is right and stays so.
+// Where p^T (M + h^2 L) p grows from one iteration to the next, the recurrence starts again with a
+// plain step.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,8 +1,13 @@
-// Implicit Euler by L-BFGS that begins with the metric of local_global: the inverse Hessian is
-// (M + h^2 L)^-1, corrected by what the last 5 differences s = v_{i+1} - v_i, y = r_{i+1} - r_i say
-// of the true one, in the two loops of Nocedal; then a line search on the energy. The first
-// iteration is that of local_global and the first difference comes after it: then free bodies have
-// their right momentum, and no difference has any.
+// Implicit Euler by L-BFGS, with the matrix of local_global as its first metric. With the gradient
+// r of the step's energy at the velocity v:
+//   r_i = M (v_i - v_n) - h f(q_n + h v_i)
+//   H_0 = (M + h^2 L)^-1
+//   v_{i+1} = v_i - alpha H_i r_i
+// H_i is H_0 corrected by the last 5 differences of v and r, in the two loops of Nocedal. A line
+// search on the energy of the step chooses alpha.
+//
+// The first iteration is that of local_global, and differences are taken from then on. So the
+// momentum of free bodies is right after the first iteration, and no difference has any.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,21 +1,19 @@
-// Adams' methods with the stiff springs taken apart. With a = M^-1 f_soft, a step follows
-//   q'' = M^-1 f_stiff(q) + p(t),
-// p the polynomial through a at the last k points of time. Where no stiff spring ends, that is p
-// integrated twice, exactly; the nodes of stiff springs take many short steps (see StiffFlow). Then
-// the soft force is evaluated, once a step, and changes the velocity by what the polynomial through
-// this point as well would have given it:
-//   v += h w (a_{n+1} - p(t_{n+1})),
-//   w = int_0^1 prod_j (x - x_j)/(1 - x_j) dx,  x_j = (t_j - t_n)/h of the k points.
-// Order k + 1. Without stiff springs k = 1 is velocity Verlet. (Demirel, Niegemann, Busch and
-// Hochbruck, J. Computational Physics 285 (2015) 133-148, have such steps without that change.)
+// Adams' methods that take the stiff springs apart. Let p(t) be the polynomial through the soft
+// accelerations a = M^-1 f_soft at the last k points of time. A step follows
+//   q'' = M^-1 f_stiff(q) + p(t)
+// Nodes on no stiff spring move by p integrated twice, exactly. Nodes of stiff springs take many
+// short steps (see StiffFlow). Then the soft force is evaluated, once a step. It changes the
+// velocity by what the polynomial through this point as well would have given:
+//   v_{n+1} <- v_{n+1} + h c (a_{n+1} - p(t_{n+1}))
+//   c = int_0^1 prod_j (x - x_j)/(1 - x_j) dx,   x_j = (t_j - t_n)/h of the k points
+// The order is k + 1: k is 1, 3 and 4 for multirate_adams2, 4 and 5. Without stiff springs k = 1 is
+// velocity Verlet. (The code calls c by the name w.) Demirel, Niegemann, Busch and Hochbruck have
+// such steps without the change of the velocity.
 //
-// What a step changes at once is small, of order h^(k+1), where the impulses of a splitting are of
-// order h and set stiff springs swinging. But soft forces answer vibrations of stiff springs late:
-// those that turn by about an odd multiple of pi in a step grow, slowly. So this is for motions
-// that are to be known accurately, not for long runs.
-//
-// The first step is divided in k - 1, whose forces are found together: each iteration follows the
-// polynomial through the last ones, beginning with a constant, and gains two orders.
+// That change is small, of order h^(k+1). The kicks of a splitting are of order h and set stiff
+// springs swinging. But soft forces answer vibrations of stiff springs one step late. A vibration
+// that turns by about an odd multiple of pi in a step therefore grows slowly. So these methods are
+// for motions that are to be known accurately, not for long runs.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -90,6 +88,8 @@ class MultirateAdams final : public FixedStep {
     return Outcome::reached_end;
   }
 
+  // The first step is divided in k - 1, whose forces are found together. Each iteration follows the
+  // polynomial through the last forces, beginning with a constant, and gains two orders.
   Outcome first_step(const State& now, double h, State& next) {
     const double part = h / (k - 1);
     for (int j = 1; j < k; ++j) {

@@ -1,8 +1,9 @@
-// Position Verlet (Stormer-Verlet, drift - kick - drift):
+// Position Verlet (Stormer-Verlet as drift, kick, drift):
 //   q_{n+1/2} = q_n + h/2 v_n
 //   v_{n+1}   = v_n + h M^-1 f(q_{n+1/2})
 //   q_{n+1}   = q_{n+1/2} + h/2 v_{n+1}
-// Order 2, symplectic, time-reversible; one force a step. Bounded on q'' = -w^2 q for h w < 2.
+// The method has order 2, is symplectic and time-reversible, and takes one force a step. A
+// vibration q'' = -w^2 q stays bounded for h w < 2 and grows above.
 #include "qddot/integrators/base/kick_drift.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -3,9 +3,11 @@
 //   q_2 = q_n + h/2 v_1,       v_2 = v_n + h/2 a_1
 //   q_3 = q_n + h/2 v_2,       v_3 = v_n + h/2 a_2
 //   q_4 = q_n + h v_3,         v_4 = v_n + h a_3
-//   q_{n+1} = q_n + h/6 (v_1 + 2 v_2 + 2 v_3 + v_4),   v_{n+1} likewise with a_i.
-// Order 4; four forces a step. On q'' = -w^2 q amplitudes shrink by 1 - (h w)^6/144 a step and grow
-// beyond h w = 2 sqrt 2.
+//   q_{n+1} = q_n + h/6 (v_1 + 2 v_2 + 2 v_3 + v_4)
+//   v_{n+1} = v_n + h/6 (a_1 + 2 a_2 + 2 a_3 + a_4)
+// The method has order 4 and takes four forces a step. On a vibration q'' = -w^2 q each step
+// multiplies the amplitude by about 1 - (h w)^6/144 for small h w. Above h w = 2 sqrt 2 the
+// amplitude grows.
 #include <cmath>
 
 #include "qddot/integrators/base/fixed_step.hpp"

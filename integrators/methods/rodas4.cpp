@@ -1,5 +1,11 @@
-// RODAS: a stiffly accurate Rosenbrock method of order 4 with an embedded one of order 3, six
-// stages, L-stable.
+// RODAS: a stiffly accurate Rosenbrock method of order 4 with an embedded one of order 3. With
+// y = (q, v), F(y) = (v, M^-1 f(q)) and the exact Jacobian J = dF/dy at y_n, its six stages are
+//   (I/(gamma h) - J) U_i = F(y_n + sum_{j<i} a_ij U_j) + 1/h sum_{j<i} c_ij U_j
+//   y_{n+1} = y_n + sum_{j<6} a_6j U_j + U_6
+// U_6 estimates the error, and the next step size follows from it. Let g = gamma h, and let (r, s)
+// be g times the right-hand side. Then a stage is one n x n solve:
+//   (M - g^2 K) U_q = M (r + g s),   U_v = (U_q - r)/g
+// A step takes six forces, one factorisation and six solves. The method is L-stable.
 #include "qddot/integrators/base/rosenbrock.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -1,11 +1,14 @@
 // Semi-implicit (linearly implicit) Euler, as in the lecture and in Baraff and Witkin, SIGGRAPH
-// 1998: implicit Euler with f linearised at q_n, one Newton step of it from v = 0:
+// 1998:
 //   (M - h^2 K(q_n)) v_{n+1} = M v_n + h f(q_n)
 //   q_{n+1} = q_n + h v_{n+1}
-// Order 1, one factorisation a step (one a run where K is constant). Not to be confused with
-// symplectic_euler, which the literature calls semi-implicit as well. An indefinite matrix is
-// solved with as it stands, as the formula says, but conjugate gradients alone end the run, as a
-// singular one does.
+// This is implicit Euler with f linearised at q_n, one Newton step of it from v = 0. On a vibration
+// q'' = -w^2 q it is implicit Euler. It has order 1 and takes one force, one factorisation and one
+// solve a step, but one factorisation a run where K is constant.
+//
+// The literature calls symplectic_euler semi-implicit as well; that is another method. Compressed
+// springs may make the matrix indefinite. It is solved with as it stands. A singular matrix ends
+// the run, and conjugate gradients end it at an indefinite one.
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"

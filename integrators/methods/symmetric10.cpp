@@ -1,6 +1,11 @@
-// The symmetric multistep formula of ten steps, order 10, one force a step, whose spurious roots
-// are at the cosines 13/20, 2/5, -1/5 and -1/2: formulas of other cosines have a limit as large,
-// but roots that come nearer to each other.
+// The symmetric multistep formula of ten steps and order 10. With a = M^-1 f(q) and the
+// coefficients rho and beta of this file, which are the same read backwards, it is
+//   sum_{j=0}^10 rho_j q_{n+j} = h^2 sum_{j=1}^9 beta_j a_{n+j}
+// It takes one force a step. The first nine steps are computed together, by more forces. The
+// polynomial of the left side is (z - 1)^2 r(z). The roots of r are spurious: they belong to the
+// formula, not to the motion. They lie on the unit circle, at angles of the cosines 13/20, 2/5,
+// -1/5 and -1/2. So no vibration grows or dies up to a limit of h w. Other cosines give limits as
+// large, but roots that come nearer to each other.
 #include "qddot/integrators/base/symmetric_multistep.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -1,9 +1,13 @@
-// The symmetric multistep formula of four steps, order 4, one force a step, whose spurious roots
-// are at the cosine 1/4:
-//   r(z) = z^2 - z/2 + 1.
-// The limit of h w grows with the cosine, and the phase error with it: the limit is 1.73 at the
-// cosine 0 (Lambert and Watson's formula) and 1.83 here. Beyond, the roots come near the motion's
-// own.
+// The symmetric multistep formula of four steps and order 4. With a = M^-1 f(q) it is
+//   q_{n+4} - 5/2 q_{n+3} + 3 q_{n+2} - 5/2 q_{n+1} + q_n
+//     = h^2/8 (9 a_{n+3} - 6 a_{n+2} + 9 a_{n+1})
+// It takes one force a step. The first three steps are computed together, by more forces. The
+// polynomial of the left side is (z - 1)^2 r(z) with
+//   r(z) = z^2 - z/2 + 1
+// The roots of r are spurious: they belong to the formula, not to the motion. They lie on the unit
+// circle, at an angle of cosine 1/4. So no vibration grows or dies up to a limit of h w. The limit
+// grows with the cosine, and so does the phase error. It is 1.73 at the cosine 0 (the formula of
+// Lambert and Watson) and 1.83 here. Larger cosines bring the roots near those of the motion.
 #include "qddot/integrators/base/symmetric_multistep.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -1,6 +1,12 @@
-// The symmetric multistep formula of eight steps, order 8, one force a step, whose spurious roots
-// are at the cosines 1/2, 0 and -1/2:
-//   r(z) = (z^2 - z + 1)(z^2 + 1)(z^2 + z + 1).
+// The symmetric multistep formula of eight steps and order 8. With a = M^-1 f(q) and the
+// coefficients rho and beta of this file, which are the same read backwards, it is
+//   sum_{j=0}^8 rho_j q_{n+j} = h^2 sum_{j=1}^7 beta_j a_{n+j}
+// It takes one force a step. The first seven steps are computed together, by more forces. The
+// polynomial of the left side is (z - 1)^2 r(z) with
+//   r(z) = (z^2 - z + 1)(z^2 + 1)(z^2 + z + 1)
+// The roots of r are spurious: they belong to the formula, not to the motion. They lie on the unit
+// circle, at angles of the cosines 1/2, 0 and -1/2. So no vibration grows or dies up to a limit of
+// h w.
 #include "qddot/integrators/base/symmetric_multistep.hpp"
 #include "qddot/integrators/registry.hpp"
 

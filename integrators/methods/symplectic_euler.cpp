@@ -1,8 +1,9 @@
-// Symplectic Euler (often called semi-implicit Euler, a name that here belongs to the linearly
-// implicit method of the lecture):
+// Symplectic Euler:
 //   v_{n+1} = v_n + h M^-1 f(q_n)
 //   q_{n+1} = q_n + h v_{n+1}
-// Order 1, one force a step. Bounded on q'' = -w^2 q for h w < 2, unbounded above.
+// The method has order 1, is symplectic and takes one force a step. A vibration q'' = -w^2 q stays
+// bounded for h w < 2 and grows above. The literature often calls this method semi-implicit Euler.
+// Here semi_implicit_euler is the linearly implicit method of the lecture.
 #include "qddot/integrators/base/compensated_sum.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"

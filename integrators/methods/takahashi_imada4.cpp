@@ -1,19 +1,13 @@
-// Takahashi and Imada's splitting of order 4, processed (Rowlands). A step drifts, kicks with the
-// force a little farther along itself, and drifts:
-//   x = q + h/2 v,   v' = v + h M^-1 f(x + h^2/12 M^-1 f(x)),   q' = x + h/2 v'.
-// By itself it is of order 2; its error is that of other coordinates, so that between
-//   q -> q + s M^-1 f(q),   v -> v - s M^-1 K(q) v,   s = h^2/24,
-// before the first step and the inverse of that where a state is shown it is of order 4. Two forces
-// a step. On q'' = -w^2 q with z = h^2 w^2 a step turns by the angle of cosine 1 - z/2 + z^2/24: no
-// vibration grows for h w < sqrt(12).
-//
-// The inverse asks for no forces of its own. The steps before and after a state (q, v) have their
-// forces at q - h/2 v and q + h/2 v: F- and F+, and the shifted G- and G+. So
-//   f = (F- + F+)/2,   K v = (F+ - F-)/h,   2 s K M^-1 f = (G- - F- + G+ - F+)/2,
-// exactly where f is linear and but for terms of h^2 elsewhere. The inverse's series begins with
-//   q - s M^-1 f + s^2 M^-1 K M^-1 f = q - s/4 M^-1 (3 (F- + F+) - (G- + G+)),
-//   v + s M^-1 K v = v + s/h M^-1 (F+ - F-).
-// Its next term for v makes energies no better.
+// Takahashi and Imada's splitting of order 4, processed. A step drifts, kicks and drifts. Its kick
+// takes the force at a point that lies a little farther along the force:
+//   x       = q_n + h/2 v_n
+//   v_{n+1} = v_n + h M^-1 f(x + h^2/12 M^-1 f(x))
+//   q_{n+1} = x + h/2 v_{n+1}
+// Alone such a step has order 2. Its error of second order is a change of coordinates
+// (Rowlands). This change is made before the first step and undone where a state is shown:
+//   q <- q + s M^-1 f(q),   v <- v - s M^-1 K(q) v,   s = h^2/24
+// So the method has order 4, with two forces a step. On a vibration q'' = -w^2 q, with z = h^2 w^2,
+// a step turns by the angle of cosine 1 - z/2 + z^2/24. No vibration grows for h w < sqrt 12.
 #include <cmath>
 
 #include "qddot/integrators/base/fixed_step.hpp"
@@ -23,6 +17,15 @@
 namespace qddot::registered {
 namespace {
 
+// Undoing the change of coordinates asks for no forces of its own. The steps before and after a
+// state (q, v) have their forces at q - h/2 v and q + h/2 v: F- and F+, and the shifted G- and G+.
+// So
+//   f = (F- + F+)/2,   K v = (F+ - F-)/h,   2 s K M^-1 f = (G- - F- + G+ - F+)/2,
+// exactly where f is linear and but for terms of h^2 elsewhere. The series of the inverse begins
+// with
+//   q - s M^-1 f + s^2 M^-1 K M^-1 f = q - s/4 M^-1 (3 (F- + F+) - (G- + G+)),
+//   v + s M^-1 K v = v + s/h M^-1 (F+ - F-).
+// Its next term for v makes energies no better.
 class TakahashiImada4 final : public FixedStep {
  public:
   using FixedStep::FixedStep;

@@ -1,8 +1,12 @@
-// The trapezoidal rule, which is Newmark's method with beta = 1/4, gamma = 1/2:
-//   q_{n+1} = q_n + h v_n + h^2/4 (a_n + a_{n+1}),  M a = f(q)
+// The trapezoidal rule, which is Newmark's method with beta = 1/4 and gamma = 1/2. With
+// a = M^-1 f(q):
+//   q_{n+1} = q_n + h v_n + h^2/4 (a_n + a_{n+1})
 //   v_{n+1} = v_n + h/2 (a_n + a_{n+1})
-// so that M (u - u*) = h^2/4 f(q_n + u), u* = h v_n + h^2/4 a_n. Order 2, A-stable, reversible;
-// conjugate to implicit midpoint and so as good over long times, but not itself symplectic.
+// A step solves one nonlinear equation for u = q_{n+1} - q_n:
+//   M (u - u*) = h^2/4 f(q_n + u),   u* = h v_n + h^2/4 a_n
+// The method has order 2, is A-stable and time-reversible. It is not
+// symplectic, but conjugate to the implicit midpoint rule: a change of coordinates turns one into
+// the other. So both are equally good over long times.
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -1,8 +1,9 @@
-// TR-BDF2: the trapezoidal rule over g h, then BDF2 through both (y = (q, v), y' = (v, M^-1 f)):
+// TR-BDF2: the trapezoidal rule over the part g h of a step, then BDF2 through both points. With
+// y = (q, v) and y' = (v, M^-1 f(q)):
 //   y_g     = y_n + g h/2 (y'_n + y'_g)
-//   y_{n+1} = y_n + b (y_g - y_n) + g h/2 y'_{n+1},  b = 1/(g (2 - g)),
-// where g = 2 - sqrt 2 gives both stages the matrix M - (g h/2)^2 K. Order 2, A-stable and
-// L-stable. The last stage's acceleration is the next step's first.
+//   y_{n+1} = y_n + b (y_g - y_n) + g h/2 y'_{n+1},   g = 2 - sqrt 2,   b = 1/(g (2 - g))
+// With this g both stages have the matrix M - (g h/2)^2 K. The method has order 2 and is A-stable
+// and L-stable. The acceleration of the last stage is the first of the next step.
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -1,12 +1,10 @@
-// Velocity Verlet (Stormer-Verlet, kick - drift - kick):
+// Velocity Verlet (Stormer-Verlet as kick, drift, kick):
 //   v_{n+1/2} = v_n + h/2 M^-1 f(q_n)
 //   q_{n+1}   = q_n + h v_{n+1/2}
 //   v_{n+1}   = v_{n+1/2} + h/2 M^-1 f(q_{n+1})
-// Order 2, symplectic, time-reversible. The last force of a step is the first of the next: one
-// evaluation a step, and one to begin. Bounded on q'' = -w^2 q for h w < 2, unbounded above.
-//
-// The second kick of a step and the first of the next are done in one pass over the vectors, with
-// the drift: a step ends with v_{n+1/2} until somebody looks.
+// The method has order 2 and is symplectic and time-reversible. The last force of a step is the
+// first of the next: one force a step, and one to begin. A vibration q'' = -w^2 q stays bounded for
+// h w < 2 and grows above.
 #include "qddot/integrators/base/compensated_sum.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"
@@ -14,6 +12,8 @@
 namespace qddot::registered {
 namespace {
 
+// The second kick of a step and the first of the next are done in one pass over the vectors, with
+// the drift: a step ends with v_{n+1/2} until somebody looks.
 class Verlet final : public FixedStep {
  public:
   using FixedStep::FixedStep;

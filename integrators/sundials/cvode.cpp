@@ -1,7 +1,11 @@
-// SUNDIALS CVODE on y' = (v, M^-1 f(q)): variable-order, variable-step linear multistep methods.
-// BDF of order 1 to 5 by Newton's method with the structured n x n matrix or the stock way with
-// KLU, and Adams-Moulton of order 1 to 12 by fixed-point iteration. What is not set here is CVODE's
-// default.
+// SUNDIALS CVODE: linear multistep methods of variable order k and variable step. With y = (q, v)
+// and y' = (v, M^-1 f(q)):
+//   BDF             sum_{i=0}^k alpha_i y_{n-i} + h beta_0 y'_n = 0
+//   Adams-Moulton   y_n = y_{n-1} + h sum_{i=0}^{k-1} beta_i y'_{n-i}
+// The coefficients follow from the sizes of the last steps. BDF has order 1 to 5 and is solved by
+// Newton's method. The method cvode_bdf solves with the structured n x n matrix, cvode_bdf_klu the
+// stock way with KLU. Adams-Moulton, cvode_adams, has order 1 to 12 and is solved by fixed-point
+// iteration. What is not set here is CVODE's default.
 #include <cvode/cvode.h>
 #include <fmt/format.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>

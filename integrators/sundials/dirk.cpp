@@ -1,6 +1,13 @@
-// ARKODE's adaptive diagonally implicit Runge-Kutta methods of order 2 to 5 by Newton's method,
-// each with the structured n x n matrix and the stock way with KLU. Orders and error estimates are
-// those of the named table.
+// ARKODE's adaptive diagonally implicit Runge-Kutta methods of order 2 to 5. With y = (q, v),
+// F(y) = (v, M^-1 f(q)) and the coefficients a_ij and b_i of the named table:
+//   Y_i     = y_n + h sum_{j<=i} a_ij F(Y_j),   i = 1 ... s
+//   y_{n+1} = y_n + h sum_{i<=s} b_i F(Y_i)
+// Other weights of the same table estimate the error, and the next step size follows from it. Each
+// implicit stage is solved by Newton's method with the matrix I - h a_ii dF/dy.
+//
+// The methods eliminate v and solve with the symmetric n x n matrix M - (h a_ii)^2 K. Their twins
+// of the ending _klu give the 2n x 2n matrix to KLU, as SUNDIALS' users do. Both take the same
+// steps.
 #include <string>
 
 #include <fmt/format.h>

@@ -1,6 +1,11 @@
-// ARKODE's adaptive explicit Runge-Kutta methods of order 2 to 8. Their error test does not see an
-// instability of modes that hardly move yet, so steps are held to what the stiffest mode allows,
-// h <= y/w_max, with the table's own stability limit y on vibrations; where the system has a K.
+// ARKODE's adaptive explicit Runge-Kutta methods of order 2 to 8. With y = (q, v),
+// F(y) = (v, M^-1 f(q)) and the coefficients a_ij and b_i of the named table:
+//   Y_i     = y_n + h sum_{j<i} a_ij F(Y_j),   i = 1 ... s
+//   y_{n+1} = y_n + h sum_{i<=s} b_i F(Y_i)
+// Other weights of the same table estimate the error, and the next step size follows from it.
+//
+// Where the system has a K, steps are held to h <= c/w_max, with the table's own stability limit c
+// on vibrations. The error test alone would miss vibrations that grow but are still small.
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"

@@ -1,5 +1,9 @@
-// Implicit Runge-Kutta methods of constant step by ARKODE, from tables written down here, so that
-// SUNDIALS' run of a formula can be laid over a hand-written one:
+// Implicit Runge-Kutta methods of constant step by ARKODE, from tables written down here. So
+// SUNDIALS' run of a formula can be laid over a hand-written one. With y = (q, v) and
+// F(y) = (v, M^-1 f(q)):
+//   Y_i     = y_n + h sum_{j<=i} a_ij F(Y_j),   i = 1 ... s
+//   y_{n+1} = y_n + h sum_{i<=s} b_i F(Y_i)
+// The tables have c_i on the left, a_ij on the right and b_i below:
 //   implicit Euler   1 | 1          implicit midpoint   1/2 | 1/2
 //                      | 1                                  | 1
 //   SDIRK, g = 1 - 1/sqrt 2         TR-BDF2, g = 2 - sqrt 2, w = sqrt 2 / 4

@@ -1,16 +1,20 @@
-// SUNDIALS IDA: variable-order (1 to 5), variable-step BDF in fixed-leading-coefficient form on
-//   F(y, y') = (q' - v, M v' - f(q)),
-// by Newton's method on dF/dy + c dF/dy' = [[c I, -I], [-K, c M]], with the structured n x n matrix
-// or the stock way with KLU. (Hindmarsh et al., ACM TOMS 31:3 (2005) 363-396.) Everything that is
-// not set here is left at IDA's default.
+// SUNDIALS IDA: BDF of variable order k (1 to 5) and variable step, in fixed-leading-coefficient
+// form, on the residual
+//   F(y, y') = (q' - v, M v' - f(q)) = 0,   y = (q, v)
+//   h y'_n = sum_{i=0}^k alpha_i y_{n-i}
+// Newton's matrix is dF/dy + c dF/dy' = [[c I, -I], [-K, c M]] with c = alpha_0/h. The method ida
+// eliminates v and solves with a symmetric n x n matrix, ida_klu the stock way with KLU. What is
+// not set here is IDA's default.
 //
-// M may be singular. For a massless node, 0 = f constrains its position (index 1), which the
-// error test sees like all others: where it moves fast, longer steps would throw Newton's iteration
-// onto another balance, a saddle of its energy. Its velocity v = q' is of index 2 (Brenan,
-// Campbell, Petzold, Numerical Solution of IVPs in DAEs, section 5.2), but nothing depends on it:
-// to IDA it is 0 = -v, and what is seen has q' or, at the ends of a run, the one in which f stays
-// zero, 0 = (K v)_massless. The start is made consistent to rounding: massless nodes go downhill to
-// where their springs balance, the others held.
+// M may be singular. The position of a massless node is then constrained by 0 = f (index 1). The
+// error test sees it like all other positions. Where it moves fast, longer steps would throw
+// Newton's iteration onto another balance, a saddle of its energy.
+//
+// The velocity v = q' of a massless node is of index 2 (Brenan, Campbell, Petzold, Numerical
+// Solution of IVPs in DAEs, section 5.2). Nothing depends on it, so IDA gets 0 = -v for it. What is
+// seen of it is q'. At the ends of a run it is the velocity in which f stays zero,
+// 0 = (K v)_massless. The start is made consistent to rounding: massless nodes go downhill to where
+// their springs balance, while the others are held.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,11 +1,16 @@
-// ARKODE's additive Runge-Kutta methods for scenes that name their stiff springs: with
-// y' = g(y) + e(y),
-//   g = (v, M^-1 f_stiff(q)) implicit,   e = (0, M^-1 f_soft(q)) explicit,
-// so that Newton's matrix M - gamma^2 K_stiff couples the nodes of stiff springs alone. All of
-// q' = v is implicit: it costs nothing where no stiff spring pulls, and a stiff vibration is only
-// damped if both of its halves are. (Kennedy and Carpenter, Applied Numerical Mathematics 44 (2003)
-// 139-181.) As those of explicit methods, steps are held to what the soft springs allow: the error
-// test sees a vibration grow only where it is as large as the tolerance, and then again and again.
+// ARKODE's adaptive additive Runge-Kutta methods for scenes that name their stiff springs. With
+// y = (q, v), y' = g(y) + e(y) and the two tables a and a* of the named pair:
+//   g = (v, M^-1 f_stiff(q)) implicit,   e = (0, M^-1 f_soft(q)) explicit
+//   Y_i     = y_n + h sum_{j<=i} a_ij g(Y_j) + h sum_{j<i} a*_ij e(Y_j),   i = 1 ... s
+//   y_{n+1} = y_n + h sum_{i<=s} b_i (g(Y_i) + e(Y_i))
+// Other weights of the same pair estimate the error, and the next step size follows from it.
+//
+// Newton's matrix M - (h a_ii)^2 K_stiff couples the nodes of stiff springs alone. All of q' = v is
+// implicit. That costs nothing where no stiff spring pulls, and a stiff vibration is only damped if
+// both of its halves are implicit.
+//
+// As those of explicit methods, steps are held to what the soft springs allow. The error test sees
+// a growing vibration only when it is as large as the tolerance, and then again and again.
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"

@@ -1,9 +1,14 @@
-// ARKODE's multirate infinitesimal steps for scenes that name their stiff springs: with
-//   y' = (v, M^-1 f_stiff(q)) + (0, M^-1 f_soft(q)),
-// the soft forces are evaluated a few times in a step h, and between these times the stiff ones
-// alone move the nodes, pushed by polynomials of the soft ones, in m steps of h/m of an explicit
-// method of the same order: m = w_max(stiff)/w_max(soft), so that both steps are as fine beside
-// what they resolve. (Sandu, SIAM J. Numerical Analysis 57:5 (2019) 2300-2327.)
+// ARKODE's multirate infinitesimal steps for scenes that name their stiff springs. With y = (q, v)
+// and y' = g(y) + e(y):
+//   g = (v, M^-1 f_stiff(q)) fast,   e = (0, M^-1 f_soft(q)) slow
+//   Y_1 = y_n;   Y_{i+1} is where y' = g(y) + sum_{j<=i} p_ij(t) e(Y_j) leads from Y_i,
+//                from t_n + c_i h to t_n + c_{i+1} h;   y_{n+1} = Y_{s+1}
+// The soft forces are evaluated at the s stages of a step h only. Between the stages stiff forces
+// move the nodes, and polynomials p_ij of the named table add the soft ones.
+//
+// This inner motion takes m steps of h/m, by an explicit method of the same order. The number m is
+// w_max(stiff)/w_max(soft), so that both step sizes are as fine beside the periods that they
+// resolve.
 #include <algorithm>
 #include <cmath>
 
