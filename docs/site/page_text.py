@@ -35,7 +35,7 @@ def sentences(text):
     found = []
     for paragraph in re.split(r"\n\s*\n", prose(text)):
         words = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", " ".join(paragraph.split()))
-        words = re.sub(r"\((?:CODE)[^)]*\)", "", words)  # the command behind a number
+        words = re.sub(r"\(CODE(?:[^()]|\([^()]*\))*\)", "", words)  # the command behind a number
         found += [
             s for s in re.split(r"(?<=[.:;!?])\s+(?=[A-Z0-9*\[(])", words) if len(s.split()) > 2
         ]
