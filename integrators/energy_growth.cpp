@@ -8,15 +8,15 @@
 namespace qddot {
 namespace {
 
-// Steps between two looks at the kinetic energy, which take a tenth of a step's time; and looks
-// between two at the whole energy, which takes several forces'.
+// The number of steps between two looks at the kinetic energy, which takes a tenth of a step's
+// time; and of such looks between two at the whole energy, which takes several forces' time.
 constexpr int steps_a_look = 32, looks_an_energy = 32;
 constexpr double largest = 1e300;
 // [s^2]: vibrations of 1e9 to 1 rad/s.
 constexpr double shortest_way = 1e-18, longest_way = 1;
 
-// The way that a motion from rest at q sets out on, q + s M^-1 f, goes down at first: the lowest V
-// on it, at s of which each is twice the one before. With two vectors of n for scratch.
+// The lowest V on the way on which a motion from rest at q sets out, q + s M^-1 f; V falls there at
+// first. Each s tried is twice the last. `ahead` and `way` are scratch.
 double lowest_ahead(const System& system, const Vec& q, Vec& ahead, Vec& way) {
   system.force(q, way);
   for (Index i = 0; i < way.size(); ++i) {
@@ -62,7 +62,7 @@ void EnergyGrowth::see(const Vec& q, const Vec& v) {
   lowest_ = std::min(lowest_, potential);
 }
 
-// What the last bits of the positions at the start make of V.
+// The change of V by the last bits of the positions at the start.
 double EnergyGrowth::rounding() {
   const double potential = system_.potential(q_);
   double most = machine_epsilon * std::abs(potential);
@@ -88,7 +88,7 @@ double EnergyGrowth::factor(const State& state) {
   const double unsure = rounding();
   if (gained <= unsure + 4 * machine_epsilon * std::abs(most_)) return 1;
   const double growth = 1 + gained / std::max(own, unsure);
-  // An energy beyond all numbers at the start says nothing.
+  // An energy that overflows at the start says nothing.
   return std::isnan(growth) ? 1 : std::min(growth, largest);
 }
 

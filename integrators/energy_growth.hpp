@@ -4,22 +4,22 @@
 
 namespace qddot {
 
-// How much more energy a run comes to than a motion that keeps its energy can have: with D the
-// largest E(0) - V(q) seen, which is what the motion has to turn into speed,
-//   1 + (E_max - E(0)) / D,
-// 1 for an exact motion, also for one that begins at rest and falls. E is computed at the start, at
-// the end, at every 1024th step and where the kinetic energy was largest (to a factor of two, of
-// every 32nd step); so this is a lower bound, at a cost that a run does not notice. Of a system
-// without V nothing is known, and the growth is 1.
+// One plus the energy that a run gains, relative to the energy that its motion can turn into speed:
+//   1 + (E_max - E(0)) / D,   D = the largest E(0) - V(q) seen.
+// It is 1 for an exact motion, also for one that begins at rest and falls. E is computed at the
+// start, at the end and at every 1024th step. It is also computed where the kinetic energy was
+// largest (to a factor of two, of every 32nd step). So the result is a lower bound, at a cost that
+// a run does not notice. It is 1 for a system without V.
 class EnergyGrowth {
  public:
-  // Borrows the system.
+  // Borrows the system, which must outlive it.
   explicit EnergyGrowth(const System& system) : system_(system) {}
 
+  // Begins a new run at `state`.
   void start(const State& state);
   // Whether note() will look at the next state.
   bool looks_next() const { return until_look_ == 1; }
-  // To be called with each accepted state.
+  // Call with each accepted state.
   void note(const State& state) {
     if (--until_look_ == 0) look(state);
   }
@@ -35,8 +35,8 @@ class EnergyGrowth {
   int until_look_ = 1, looks_ = 0;
   double start_ = 0;                     // E(0)
   double most_ = 0, lowest_ = 0;         // E and V so far
-  double kinetic_ = 0;                   // of where that was largest,
-  Vec q_of_kinetic_, v_of_kinetic_, q_;  // which is not seen yet; and the start
+  double kinetic_ = 0;                   // the largest, whose E is not seen yet,
+  Vec q_of_kinetic_, v_of_kinetic_, q_;  // q and v there; q at the start
 };
 
 }  // namespace qddot

@@ -14,18 +14,19 @@
 namespace qddot {
 namespace {
 
-// Beyond |v| = 1e30 m/s nothing of a motion is left, and numbers are still far from overflow.
+// Nothing of a motion is left beyond |v| = 1e30 m/s, and numbers are still far from overflow.
 constexpr double largest_speed_squared = 1e60;
 // h^2 below this has lost digits.
 constexpr double shortest_squared = 1e-290;
-// How far below zero an eigenvalue of the balance of massless nodes must be to count, beside the
-// relative tolerance of adaptive methods, which leave their places as uncertain.
+// An eigenvalue of the balance of massless nodes counts as negative this far below zero. The limit
+// is at least rtol, as adaptive methods leave the nodes' places as uncertain.
 constexpr double balance_tolerance = 1e-6;
-// What an implicit step's solve leaves of what it predicted wrongly, unless the options allow more.
+// The part of its prediction's error that an implicit step's solve leaves, unless the options allow
+// more.
 constexpr double solve_tolerance = 1e-4;
 
-// Throws std::invalid_argument unless a run can be asked for so. Numbers that are not finite are
-// the run's own failure.
+// Throws std::invalid_argument unless a run with these arguments is allowed. Numbers that are not
+// finite make the run fail instead.
 void check_arguments(const System& system, const State& state, double t_end,
                      const Observer& observer) {
   const auto check_size = [&](const char* which, const Vec& x) {

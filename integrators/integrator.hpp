@@ -35,22 +35,23 @@ enum class Outcome {
   stiffness_varies,      // a method for constant K, and a system whose K is not
   went_slack,            // compressed springs at a massless node (Validity, MasslessBalance)
   no_stiff_set,          // a method that takes stiff forces apart, and none are named (SplitForces)
-  no_laplacian,          // a method that takes L in the place of -K, and a system that has none
+  no_laplacian,          // a method that takes L in place of -K, and a system that has none
   no_stiffness,          // a method that needs K, and a system that computes none
   no_discrete_gradient,  // a method that needs one of V, and a system that computes none
 };
 
-std::string_view name(Outcome outcome);    // as above
-std::string_view advice(Outcome outcome);  // one sentence: what it means and what to turn
+std::string_view name(Outcome outcome);    // the enumerator's
+std::string_view advice(Outcome outcome);  // one sentence: what it means and what to change
 
-// The work done. Steps are accepted ones; solves are right-hand sides.
+// The work of a run. `steps` counts accepted steps, `solves` counts right-hand sides.
 struct Counts {
   std::int64_t steps = 0, rejected = 0, force_evaluations = 0, stiffness_evaluations = 0,
                factorizations = 0, solves = 0, newton_iterations = 0;
-  std::int64_t indefinite_factorizations = 0;  // of the factorisations, in SUNDIALS' methods
-  // The orders of all steps added up, and how often it was lowered; of methods of variable order.
+  std::int64_t indefinite_factorizations = 0;  // of indefinite matrices, in SUNDIALS' methods
+  // The sum of the orders of all steps, and how often it was lowered; for methods of variable
+  // order.
   std::int64_t order_sum = 0, order_reductions = 0;
-  std::int64_t stability_limited_steps = 0;  // of adaptive explicit methods: held to 1/w_max
+  std::int64_t stability_limited_steps = 0;  // held to 1/w_max by adaptive explicit methods
 
   bool operator==(const Counts&) const = default;
   Counts& operator+=(const Counts& more);
@@ -63,7 +64,7 @@ struct Seconds {
   Seconds& operator+=(const Seconds& more);
 };
 
-// Adds the time from its construction to its end to one of them.
+// Adds the time [s] from its construction to its destruction to one member of Seconds.
 class Stopwatch {
  public:
   Stopwatch(Seconds* seconds, double Seconds::*which) : seconds_(seconds), which_(which) {
@@ -82,30 +83,30 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_;
 };
 
-// The mean order of the steps of a method of variable order; no number for the others.
+// The mean order of the steps; NaN for a method of fixed order.
 inline double order_mean(const Counts& counts) {
   return counts.order_sum > 0
              ? static_cast<double>(counts.order_sum) / static_cast<double>(counts.steps)
              : std::numeric_limits<double>::quiet_NaN();
 }
 
+// How a run ended, and what it did.
 struct Summary {
   Outcome outcome = Outcome::solver_failed;
   double t_reached = 0;  // [s]
   Counts counts;
   Seconds seconds;
   std::string message = "advance was not called";  // one sentence; empty where the end was reached
-  // The largest energy against that of the start (see EnergyGrowth); of several parts the largest.
+  // The energy growth of the run (see EnergyGrowth); of several parts the largest.
   double energy_growth = 1;
-  // Which step failed, 1, 2, ..., of the part that failed; 0 where the end was reached.
+  // The number of the failed step, 1, 2, ..., in the part that failed; 0 if the end was reached.
   std::int64_t failed_step = 0;
 };
 
-// Looks at a run from outside: `see` is called at each of `times` [s] (ascending, after the start,
-// at most t_end) and at no other. Methods of fixed steps, and those that interpolate
-// (Method::interpolates), take the same steps with and without an observer; what it sees between
-// the steps of the former is where a shorter step from the last one would lead. Adaptive methods of
-// SUNDIALS land on those times.
+// Observes a run: `see` is called at each of `times` [s] (ascending, after the start, at most
+// t_end) and at no other time. Fixed-step methods, and methods with Trait::interpolates, take the
+// same steps with and without an observer. A fixed-step method shows between its steps the end of a
+// shorter step from the last one. Adaptive methods of SUNDIALS end steps on these times.
 struct Observer {
   std::vector<double> times;
   std::function<void(const State&)> see;
@@ -119,65 +120,66 @@ class Integrator {
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
-  // Runs from `state` to t_end >= state.t [s]; each call is a fresh run. On failure `state` is the
-  // last accepted one, or the one last observed where no step was taken after it.
-  // `stop` ends the run after the step at hand (over_budget). Throws std::invalid_argument where
-  // sizes, times or the observer cannot be, and what the system's own functions or the observer
-  // throw, memory that runs out excepted.
+  // Integrates from `state` to t_end >= state.t [s] and leaves the result in `state`; each call is
+  // a fresh run. If the run fails, `state` is the last accepted one, or the last observed one if no
+  // step followed. `stop` ends the run after the present step (over_budget). Throws
+  // std::invalid_argument if sizes, times or the observer are not allowed. Exceptions of the
+  // system's functions and of the observer pass through, except std::bad_alloc, which is an
+  // outcome.
   Summary advance(State& state, double t_end, const Observer& observer = {},
                   std::stop_token stop = {});
 
-  // The time [s] that the run has come to, for another thread to look at while it goes on.
+  // The time [s] that the run has reached; may be called from another thread.
   virtual double reached() const { return reached_.load(std::memory_order_relaxed); }
 
  protected:
-  // Called once a run, before start(): for what steps a method, whatever its formula.
+  // Called once a run, before start(): for base classes that step any formula.
   virtual void begin(const State&) {}
   // Called once a run, before the first step.
   virtual void start(const State&) {}
-  // Brings `state` from its time to t_stop exactly. Called for each of the observer's times and for
-  // t_end. A method may have gone beyond t_stop, but never beyond t_end, or not as far, and show
-  // where it would be.
+  // Brings `state` from its time to t_stop exactly; called for each of the observer's times and for
+  // t_end. A method's own steps may be beyond t_stop (never beyond t_end) or short of it. It then
+  // shows the state that it would have at t_stop.
   virtual Outcome run_to(State& state, double t_stop) = 0;
 
   const System& system() const { return system_; }
   const Method& method() const { return method_; }
   const Options& options() const { return options_; }
   Counts& counts() { return counts_; }
-  // Where to add the time that something takes, if anywhere.
+  // Where to add times; nullptr unless the run is timed.
   Seconds* seconds() { return options_.timed ? &seconds_ : nullptr; }
-  // Where the run is to end [s]; known from start() on.
+  // The end of the run [s]; known from start() on.
   double t_end() const { return t_end_; }
   bool must_stop() const { return stop_.stop_requested(); }
-  // Whether the state after a step from the one before can be accepted: reached_end, or else why
-  // not (not_finite, diverged, went_slack).
+  // Whether the step from `from` to `to` can be accepted: reached_end, or else why not
+  // (not_finite, diverged, went_slack).
   Outcome check_step(const State& from, const State& to);
-  // The same where |v|^2 of `to` is known.
+  // The same if |v|^2 of `to` is known.
   Outcome check_step(const State& from, const State& to, double squared_speed);
-  // Whether that looks at more than the size of the velocities.
+  // Whether check_step() looks at more than the size of the velocities.
   bool checks_velocities() const { return validity_; }
   // Whether note() will look at the velocities of the next state.
   bool looks_next() const { return growth_.looks_next(); }
-  // To be called with each state that is accepted.
+  // Call with each state that is accepted.
   void note(const State& state) {
     growth_.note(state);
     reached_.store(state.t, std::memory_order_relaxed);
   }
-  // Becomes a part of another's run: ends no later and is stopped with it.
+  // Joins another's run: ends no later and is stopped with it.
   void join(const Integrator& run);
-  // Takes over what another has done since it was last asked, and what it has to say of it.
+  // Takes over the counts, seconds and message of another since the last call.
   void take_over(Integrator& other);
-  // All that comes before the first step of a run.
+  // Does all that comes before the first step of a run.
   void set_out(const State& state);
-  // Why it ended so, in a sentence.
+  // The reason for the outcome, in a sentence.
   std::string words_on(Outcome outcome) const;
-  // Whether a solve found what it was to find: reached_end, or else why not (indefinite_matrix, or
-  // solver_failed, which is explained).
+  // The outcome of a solve as that of a run: reached_end, indefinite_matrix, or solver_failed with
+  // a message.
   Outcome check_solve(SolveOutcome solution);
-  // Says more than the outcome's advice does.
+  // Sets a message that says more than the outcome's advice.
   void set_message(std::string message) { message_ = std::move(message); }
 
-  // The force and stiffness of the system, or of one that is a part of its forces; counted.
+  // The force and stiffness of the system, or of a system with a part of its forces; counted.
   void force(const ConstVec& q, MutableVec f) { force(system_, q, f); }
   void force(const System& part, const ConstVec& q, MutableVec f) {
     ++counts_.force_evaluations;
@@ -196,9 +198,8 @@ class Integrator {
     const Stopwatch watch(seconds(), &Seconds::force);
     discrete_gradient_->discrete_gradient(a, b, f);
   }
-  // Likewise SplitStiffness::weighted_stiffness. Where a system does not offer it, this is the
-  // weight times all of K: with the weight going to 0, M - s K goes to M, which is positive
-  // definite.
+  // Likewise SplitStiffness::weighted_stiffness. If the system has none, this is the weight times
+  // all of K. As the weight goes to 0, M - s K goes to M, which is positive definite.
   void weighted_stiffness(const ConstVec& q, double compression_weight, SymmetricMatrix& k) {
     ++counts_.stiffness_evaluations;
     const Stopwatch watch(seconds(), &Seconds::stiffness);
@@ -211,10 +212,10 @@ class Integrator {
   }
 
  private:
-  friend class Parts;  // which runs several as one
+  friend class Parts;  // runs several as one
 
   Outcome run(State& state, double t_end, const Observer& observer);
-  // The growth in the run up to `state`.
+  // The energy growth in the run up to `state`.
   virtual double energy_growth(const State& state) { return growth_.factor(state); }
 
   const Method& method_;

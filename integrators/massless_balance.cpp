@@ -8,15 +8,15 @@
 namespace qddot {
 namespace {
 
-// Nodes that move so many times as far as a balance leads them have jumped. In the last step before
-// it is lost they move like the root of the time left, twice as far as its first slope says; and
-// like the cube root where springs without stiffness but quartic become taut, three times as far.
+// Nodes that move this many times as far as a balance leads them have jumped. Just before a balance
+// is lost, they move like the root of the time left: twice as far as the first slope says. If
+// springs that are only quartic become taut, they move like the cube root: three times as far.
 constexpr double most_times_as_far = 4;
-// A solve leaves soft directions farther from where they belong than the tolerance says: 6 times
-// were seen among random scenes.
+// A solve leaves soft directions farther off than the tolerance says: 6 times as far among random
+// scenes.
 constexpr double most_times_unsolved = 30;
-// What rounding moves a node by, as a part of its coordinates: 1e-16 of them, over the softest
-// direction that is still told from an unstable one.
+// The part of its coordinates by which rounding moves a node: 1e-16, over the softest direction
+// that is still told from an unstable one.
 constexpr double rounding = 1e-10;
 
 }  // namespace
@@ -54,14 +54,14 @@ MasslessBalance::MasslessBalance(const System& system, Vec start, double toleran
   }
 }
 
-// Whether -K among the massless unknowns is positive semidefinite; its factors.
+// Factorises -K among the massless unknowns; false unless it is positive semidefinite.
 bool MasslessBalance::factorize(Place& place) {
   SymmetricMatrix& own = place.own;
   for (std::size_t e = 0; e < source_.size(); ++e) {
     own.valuePtr()[e] = -place.k.valuePtr()[source_[e]];
   }
-  // A direction across a straight row of springs is soft; what it is compared with is the stiffest
-  // one of its node and of those beside it.
+  // A direction across a straight row of springs is soft. It is compared with the stiffest
+  // direction of its node and of those beside it.
   const Index count = own.cols();
   const auto diagonal = [&](Index i) { return std::abs(own.valuePtr()[diagonals_[i]]); };
   for (Index i = 0; i < count; ++i) scale_[i] = diagonal(i);
@@ -78,11 +78,11 @@ bool MasslessBalance::factorize(Place& place) {
   return place.factors.info() == Eigen::Success && place.factors.vectorD().minCoeff() > 0;
 }
 
-// f_m = 0 in q' = (q_m', q_o') is -K_mm (q_m' - q_m) = f_m(q) + K_mo (q_o' - q_o), with m for
-// massless and o for the others: nodes come into balance, and follow the others as the K of either
-// end leads. Where they turn, a slope is zero for an instant; that of the step before is not. What
-// a step predicts is wrong by how far nodes went in the step before at most, and a part of it is
-// left.
+// Let m stand for massless and o for other nodes. f_m = 0 at q' = (q_m', q_o') gives -K_mm
+// (q_m' - q_m) = f_m(q) + K_mo (q_o' - q_o). So nodes come into balance, and follow the others as
+// the K of either end leads. Where they turn, a slope is zero for an instant; that of the step
+// before is not. A step's prediction errs by at most the way of the nodes in the step before, and a
+// solve leaves a part of this error.
 bool MasslessBalance::have_followed(double h) {
   double moved = 0;
   for (Index i = 0; i < std::ssize(massless_); ++i) {

@@ -9,20 +9,20 @@
 
 namespace qddot {
 
-// Whether massless nodes stay where their forces balance. They do in a minimum of V over their
-// positions: -K among their unknowns is positive semidefinite there. Where it is not, as between
-// compressed springs, the balance is one that a node without mass leaves in no time, and no
-// equation of motion says where to. A step beyond such a place may find another balance and never
-// meet the unstable one: then nodes have jumped, which the balances at both its ends tell.
+// Checks whether massless nodes stay where their forces balance. They do at a minimum of V over
+// their positions: -K among their unknowns is positive semidefinite there. Otherwise, as between
+// compressed springs, the balance is unstable. A node without mass leaves it in no time, and no
+// equation of motion says where to. A step may pass such a place, end in another balance and never
+// meet the unstable one. Then nodes have jumped, which the balances at both ends tell.
 class MasslessBalance {
  public:
-  // The system must have massless nodes and a K. At `start` they may be out of balance. An
-  // eigenvalue is negative where it is below -tolerance times the stiffness of the nodes around.
-  // `solve_tolerance`: the part of what was predicted wrongly that a solve of a step leaves.
+  // The system must have massless nodes and a K; the nodes may be out of balance at `start` (n). An
+  // eigenvalue is negative if it is below -tolerance times the stiffness of the nodes around.
+  // `solve_tolerance`: the part of a prediction's error that the solve of a step leaves.
   MasslessBalance(const System& system, Vec start, double tolerance, double solve_tolerance);
 
-  // Whether they do after a step from state `from` to state `to`, and went there with the other
-  // nodes. `force(q, f)` and `stiffness(q, k)` are the system's.
+  // Whether massless nodes are in a stable balance after the step from `from` to `to`, and followed
+  // the other nodes there. `force(q, f)` and `stiffness(q, k)` are the system's.
   template <class Force, class Stiffness>
   bool holds(const State& from, const State& to, const Force& force, const Stiffness& stiffness) {
     const auto look = [&](Place& place, const Vec& q) {
@@ -55,11 +55,11 @@ class MasslessBalance {
   double tolerance_, solve_tolerance_;
   Vec start_;
   std::unique_ptr<Place> from_ = std::make_unique<Place>(), to_ = std::make_unique<Place>();
-  std::vector<Index> massless_;   // of each unknown its place among the massless ones, or -1
-  std::vector<Index> source_;     // of each entry of `own`, its place in K
+  std::vector<Index> massless_;   // each unknown's place among the massless ones, or -1
+  std::vector<Index> source_;     // the place in K of each entry of `own`
   std::vector<Index> diagonals_;  // places of its diagonal
-  double speed_before_ = 0;       // to which the first balance of the step before led [m/s]
-  double moved_before_ = 0;       // how far massless nodes went in it [m]
+  double speed_before_ = 0;       // [m/s], to which the last step's first balance led
+  double moved_before_ = 0;       // [m], how far massless nodes went in that step
   Vec scale_, pull_;
 };
 

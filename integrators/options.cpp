@@ -10,7 +10,7 @@
 namespace qddot {
 namespace {
 
-// Throws where `is_allowed` is false; also for values that are no numbers, which satisfy nothing.
+// Throws if `is_allowed` is false. NaN satisfies no condition and throws as well.
 template <class T>
 void require(bool is_allowed, const Method& method, const char* option, T value, const char* what) {
   if (is_allowed) return;

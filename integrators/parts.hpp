@@ -8,17 +8,16 @@
 
 namespace qddot {
 
-// Runs a system whose parts no force couples (see Blocks): each by an integrator of its own,
-// with steps of its own where the method is adaptive, as one run with one outcome. Counts and
-// seconds are the sums over the parts. Where a part fails, the others are brought to the time that
-// it reached; of several that fail the earliest decides. A run that is stopped from outside ends
-// where all were last together, at its start or an observer's time: there is no time to bring them
-// farther.
+// Runs a system of uncoupled parts (see Blocks) as one run with one outcome. Each part has its own
+// integrator and, if the method is adaptive, its own steps. Counts and seconds are sums over the
+// parts. If a part fails, the others are brought to the time that it reached; the earliest of
+// several failures decides. A run that is stopped from outside ends at the last time that all parts
+// share: its start or an observer's time. There is no time to bring them farther.
 class Parts final : public Integrator {
  public:
   Parts(const Method& method, const System& system, const Options& options);
 
-  // The mean over the parts, which run one after another.
+  // The mean time [s] of the parts, which run one after another.
   double reached() const override;
 
  private:
@@ -26,7 +25,7 @@ class Parts final : public Integrator {
     Index first;  // of its unknowns
     std::unique_ptr<Integrator> integrator;
     State state, begin;           // now, and where the present run_to began
-    double growth;                // of the energy in runs that were taken back
+    double growth;                // of the energy, in runs that were undone
     std::exception_ptr thrown{};  // by its system or by the observer, in the present run_to
   };
 

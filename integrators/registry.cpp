@@ -86,8 +86,8 @@ const std::vector<Method>& methods() {
 
 namespace {
 
-// Stands for a method where there is nothing to step. Without unknowns advance() lets time pass; on
-// a system that the method does not fit it refuses before it would run.
+// Replaces a method if there is nothing to step. If there are no unknowns, advance() lets time
+// pass. If the method does not fit the system, advance() refuses before it would run.
 class Rest final : public Integrator {
  public:
   using Integrator::Integrator;

@@ -15,6 +15,7 @@ class SetOf {
   }
 
   constexpr bool has(E member) const { return (bits_ & bit(member)) != 0; }
+  // The set with that member added if `is_in`.
   constexpr SetOf with(E member, bool is_in = true) const {
     SetOf more = *this;
     if (is_in) more.bits_ |= bit(member);

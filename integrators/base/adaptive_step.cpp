@@ -16,13 +16,13 @@ constexpr double safety = 0.9, smallest_factor = 0.2, largest_factor = 5;
 // The exponents of the last error and of the one before it, times the order of the errors; errors
 // smaller than this are as good as none.
 constexpr double proportional = 0.7, integral = 0.4, smallest_error = 1e-4;
-// After an attempt without an estimate of its error.
+// The factor after an attempt without an error estimate.
 constexpr double factor_of_failure = 0.25;
-// An end that is so near is stepped on.
+// A step is stretched by up to this factor to meet the end.
 constexpr double stretch = 1.01;
-// What to begin with where the start or its rate of change says nothing, as a fraction of the run.
+// The first step, as a fraction of the run, if the start and its rate of change say nothing.
 constexpr double blind_step = 1e-6;
-// A step ends before a jump by this part of it, and leads over one by so many roundings.
+// A step ends before a jump by this part of it; a step over a jump takes so many roundings.
 constexpr double short_of_jump = 1e-6, slowest_over_jump = 1e-6;
 constexpr double roundings_over_jump = 8 * machine_epsilon;
 
@@ -69,8 +69,8 @@ void AdaptiveStep::start(const State& state) {
   creep_ = Creep(state.t);
 }
 
-// With y = (q, v): h_0 changes y by a hundredth of itself; h_1 is where a Taylor series with the
-// larger of |y'| and |y''| leaves a hundredth of what is tolerated.
+// h_0 changes y = (q, v) by a hundredth of itself. h_1 is where a Taylor series with the larger of
+// |y'| and |y''| leaves a hundredth of the tolerance.
 double AdaptiveStep::first_step() {
   const auto& [now, a] = last();
   const double d0 = norm(now, now.q, now.v), d1 = norm(now, now.v, a);
@@ -102,8 +102,8 @@ Outcome AdaptiveStep::run_to(State& state, double t_stop) {
   return show(t_stop, state);
 }
 
-// Whether what is there tells of the state at t. In the middle of the instants that are kept the
-// polynomial through them is closest; at the end of the run no more come.
+// Whether the kept instants tell the state at t. Their polynomial is most accurate in their middle;
+// at the end of the run no more instants come.
 bool AdaptiveStep::can_show(double t) {
   if (last().state.t == t_end()) return true;
   if (accuracy_.instants == 0) return last().state.t >= t;
@@ -136,7 +136,7 @@ double AdaptiveStep::step_size(double t, double longest) const {
   const double h = std::min(h_, longest), left = t_end() - t;
   if (h_before_jump_ > 0) return std::min(h, left);  // h_ ends where the jump is
   if (left <= stretch * h) return left;
-  // Two even steps to the end are better than one and what it leaves.
+  // Two equal steps to the end are better than one and a short rest.
   return left < 2 * h ? left / 2 : h;
 }
 
@@ -199,7 +199,7 @@ AdaptiveStep::Jump AdaptiveStep::jump(const Instant& now, const Instant& next, d
   if (!change) return Jump::none;
   if (h_before_jump_ == 0) over_jump_ = 0;
   h_before_jump_ = std::max(h_before_jump_, h_);
-  // The rounding of the time, and that of positions as the time in which they change by it.
+  // The rounding of the time, and the time in which positions change by their rounding.
   const double rounded = now.state.q.lpNorm<Eigen::Infinity>() / change->speed;
   const double least = roundings_over_jump * std::max(std::abs(now.state.t), h_before_jump_) +
                        std::min(roundings_over_jump * rounded, slowest_over_jump * h_before_jump_);

@@ -4,11 +4,12 @@
 
 namespace qddot {
 
-// A running sum x of increments that keeps what rounding takes from it: with the rest r,
-//   d = r + increment,   x' = x + d,   r' = d + (x - x'),
-// x + r errs by what is lost of the increments, not by what is lost of the sum (Kahan, Comm. ACM 8
-// (1965) 40; Hairer, Lubich and Wanner, Geometric Numerical Integration, VIII.5). Off, it is the
-// plain sum, at its cost. Relies on the order of operations, which no compiler option here changes.
+// A running sum x of increments that keeps the rounding error of each addition in a rest r:
+//   d = r + increment,   x' = x + d,   r' = d + (x - x').
+// The error of x + r comes from the rounding of increments, not of the sum (Kahan, Comm. ACM 8
+// (1965) 40; Hairer, Lubich and Wanner, Geometric Numerical Integration, VIII.5). If it is off, it
+// is the plain sum, at its cost. It relies on the order of operations, which no compiler option
+// here changes.
 class CompensatedSum {
  public:
   CompensatedSum(bool is_on, Index n) : rest_(is_on ? n : 0) { restart(); }

@@ -4,13 +4,13 @@
 
 namespace qddot {
 
-// Whether an adaptive run creeps up to a point that it will not pass: a thousand steps in a row are
-// on the mean below 1e-12 of what is left of it.
+// Detects an adaptive run that creeps towards a time and does not pass it: the mean of a thousand
+// successive steps is below 1e-12 of the time left.
 class Creep {
  public:
   explicit Creep(double t = 0) : t_mark_(t) {}
 
-  // To be asked after each step, which ended at t [s].
+  // Ask after each step, which ended at t [s].
   bool is_found(double t, double t_end) {
     if (++steps_ % steps_in_a_row != 0) return false;
     const bool result = t - t_mark_ < steps_in_a_row * smallest_mean_step * (t_end - t_mark_);
@@ -23,7 +23,7 @@ class Creep {
   static constexpr double smallest_mean_step = 1e-12;
 
   std::int64_t steps_ = 0;
-  double t_mark_;  // where some of these began
+  double t_mark_;  // where the present thousand steps began
 };
 
 }  // namespace qddot

@@ -7,7 +7,7 @@
 
 namespace qddot {
 
-// With s = t - j, in 0 ... 1, L_l is the product of (s + j - m)/(l - m) over all m other than l. No
+// L_l is the product of (s + j - m)/(l - m) over all m other than l, with s = t - j in 0 ... 1. No
 // power of s is large there, and no digits are lost.
 StepIntegrals step_integrals(Index steps) {
   using Long = long double;

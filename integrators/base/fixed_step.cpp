@@ -52,7 +52,7 @@ Outcome FixedStep::run_to(State& state, double t_stop) {
   return outcome;
 }
 
-// All that end at t_stop or before.
+// Takes all steps that end at t_stop or before.
 Outcome FixedStep::take_steps(double t_stop) {
   const StepTimes& times = *times_;
   if (!times.can_be_taken()) return Outcome::step_too_small;
@@ -85,7 +85,7 @@ Outcome FixedStep::take_steps(double t_stop) {
   return Outcome::reached_end;
 }
 
-// From the last step to a time before the next one, into next_.
+// Steps from the last step to a time before the next one, into next_.
 Outcome FixedStep::step_aside(double t) {
   complete_now(true);
   if (!aside_) {

@@ -14,13 +14,13 @@ Jet operator*(Jet a, Jet b) { return {a.value * b.value, a.slope * b.value + a.v
 
 }  // namespace
 
-// With Lagrange's l_i, which is 1 at t_i and 0 at the other t_j, and s = t - t_i,
-//   p = sum_i l_i^3 [(1 - 3 l' s + (6 l'^2 - 3/2 l'') s^2) q_i + (1 - 3 l' s) s v_i + s^2/2 a_i],
-// l' and l'' being those of l_i at t_i: each bracket undoes what l_i^3 does to the first two
-// derivatives there.
+// Let l_i be Lagrange's polynomials, 1 at t_i and 0 at the other t_j, and s = t - t_i. Then
+//   p = sum_i l_i^3 [(1 - 3 l' s + (6 l'^2 - 3/2 l'') s^2) q_i + (1 - 3 l' s) s v_i + s^2/2 a_i]
+// with l' and l'' of l_i at t_i. Each bracket undoes what l_i^3 does to the first two derivatives
+// there.
 void interpolate(std::span<const Instant* const> instants, double t, State& at) {
   assert(instants.size() >= 2 && instants.size() <= most_instants);
-  // Positions are large where a motion is small; what is interpolated is their difference from one.
+  // Positions may be large where a motion is small: their differences from one are interpolated.
   const Vec& origin = instants.front()->state.q;
   at.t = t;
   at.q = origin;

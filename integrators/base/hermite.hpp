@@ -12,11 +12,12 @@ struct Instant {
   Vec a;
 };
 
+// The most instants that a polynomial goes through.
 constexpr std::size_t most_instants = 4;
 
-// Sets `at` to time t [s] on the polynomial of degree 3m - 1 that has q, v and a of m instants (two
-// to most_instants, at times that differ): q = p(t), v = p'(t). The error of q is
-// q^(3m) prod |t - t_i|^3 / (3m)! (Davis, Interpolation and Approximation, theorem 3.5.1).
+// Sets `at` to q = p(t), v = p'(t) at time t [s]. The polynomial p of degree 3m - 1 has the q, v
+// and a of m instants (two to most_instants, at times that differ). The error of q is q^(3m)
+// prod |t - t_i|^3 / (3m)! (Davis, Interpolation and Approximation, theorem 3.5.1).
 void interpolate(std::span<const Instant* const> instants, double t, State& at);
 
 }  // namespace qddot

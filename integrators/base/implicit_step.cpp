@@ -59,7 +59,7 @@ void ImplicitStep::acceleration(const Vec& q, Vec& a) {
   a.array() /= system().mass().array();
 }
 
-// What the iteration of a stage knows of its factors and corrections.
+// What the iteration of a stage knows about its factors and corrections.
 struct ImplicitStep::Iteration {
   bool wants_factors;             // before the next correction
   bool has_new_factors = false;   // made in this stage,
@@ -87,7 +87,7 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
     if (is_exact(q) || is_solved || is_rounding(q, size, now.least)) {
       u_ += p_;
       last_missed_ = missed;
-      // What was not seen this time is trusted less the next; with new factors nothing was seen
+      // A rate that was not seen this time is trusted less next time; new factors have shown none
       // yet.
       last_rate_ = now.has_new_factors ? 1 : (iteration == 0 ? 2 * rate : rate);
       return Outcome::reached_end;
@@ -105,8 +105,8 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
   return Outcome::newton_failed;
 }
 
-// The next correction p, with new factors where they are wanted and with less of the compression
-// where conjugate gradients meet an indefinite matrix.
+// Computes the next correction p: with new factors if they are wanted, and with less of the
+// compression if conjugate gradients meet an indefinite matrix.
 Outcome ImplicitStep::correct(const Vec& q, double s, Iteration& now) {
   if (now.wants_factors) {
     if (const Outcome outcome = factorize(q, s); outcome != Outcome::reached_end) return outcome;
@@ -121,9 +121,9 @@ Outcome ImplicitStep::correct(const Vec& q, double s, Iteration& now) {
   return outcome;
 }
 
-// How many times as large as a correction of that size the next one will be: as many as this one
-// is of the one before. The first tells nothing, but that the last stage was like this one; beyond
-// a kink none was.
+// The expected ratio of the next correction to this one of that size: that of this one to the last.
+// The first correction tells only whether the last stage was like this one, which no stage is
+// beyond a kink.
 double ImplicitStep::rate_of(const Iteration& now, const Vec& q, double size, bool is_first) {
   if (now.last > 0) return size / now.last;
   const bool may_be_like_last = is_first && !now.has_new_factors && size <= 2 * last_missed_;
@@ -142,7 +142,7 @@ bool ImplicitStep::is_rounding(const Vec& q, double size, double least) const {
   return size <= 4 * machine_epsilon * place || (2 * size > least && size <= rounding * place);
 }
 
-// Whether f is linear where the residual was taken and where the correction leads to.
+// Whether f is linear at the place of the residual and where the correction leads to.
 bool ImplicitStep::is_linear_along(const Vec& q) {
   if (!pieces_) return system().stiffness_is_constant();
   if (knows_start() && !pieces_->is_linear_at(q)) return false;
@@ -218,10 +218,9 @@ Outcome ImplicitStep::correction() {
   return is_finite ? Outcome::reached_end : Outcome::not_finite;
 }
 
-// Moves u along p by the first of 1, 1/2, 1/4, ... of it that halves the residual, or else
-// decreases g by Armijo's rule; the first test costs nothing, since the next iteration needs that
-// residual. Without a g to decrease, by all of it. Returns that part, or 0, with u as it was, if
-// there is none.
+// Moves u along p by the first of 1, 1/2, 1/4, ... of it that halves the residual or decreases g by
+// Armijo's rule. The first test costs nothing, since the next iteration needs that residual. If
+// there is no g, it moves by all of p. Returns that part, or 0, with u as it was, if there is none.
 double ImplicitStep::search(const Vec& q, double s) {
   const double norm = std::sqrt(squared_norm(r_)), slope = r_.dot(p_);
   double g = std::numeric_limits<double>::quiet_NaN();

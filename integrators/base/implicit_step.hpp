@@ -7,31 +7,31 @@
 
 namespace qddot {
 
-// A fixed step with implicit stages. Each stage of M q'' = f(q) asks, whatever the formula, for the
-// displacement u from q_n that solves
+// A fixed step with implicit stages. Whatever the formula, a stage of M q'' = f(q) solves
 //   M (u - u*) = s f(q_n + u)
-// with a u* from what is known and an s [s^2]; it makes the incremental potential
+// for the displacement u from q_n, with known u* and s [s^2]. Its solution makes the incremental
+// potential
 //   g(u) = 1/2 (u - u*)' M (u - u*) + s V(q_n + u)
-// stationary, and a minimum is looked for (Martin, Thomaszewski, Grinspun, Gross, SIGGRAPH 2011,
+// stationary, and a minimum is sought (Martin, Thomaszewski, Grinspun, Gross, SIGGRAPH 2011,
 // section 4). The acceleration of the stage is (u - u*)/s: it costs no force.
 //
-// Newton's method with the last factors of M - s K as long as they converge, and K anew where they
-// do not. Where M - s K is not positive definite, only some of the compression is kept (see
-// compression.hpp). So directions descend, and a step along one that does not decrease g is halved
-// until it does. A system without V has no g, and its steps are whole.
+// Newton's method uses the last factors of M - s K as long as they converge, and else a new K. If
+// M - s K is not positive definite, only some of the compression is kept (see compression.hpp). So
+// directions descend, and a step that does not decrease g is halved until it does. A system without
+// V has no g, and its steps are whole.
 class ImplicitStep : public FixedStep {
  public:
   // Solving far below the step's own error gains nothing. But a method that keeps an invariant
-  // keeps it no better than its stages are solved.
+  // keeps it only as well as its stages are solved.
   static constexpr double usual_tolerance = 1e-4, tolerance_for_invariants = 1e-9;
 
-  // `solve_tolerance`: where the options do not say.
+  // `solve_tolerance`: used if the options give none.
   ImplicitStep(const Method& method, const System& system, const Options& options,
                double solve_tolerance = usual_tolerance);
 
  protected:
-  // Solves the stage at q = q_n for u_, which holds its prediction, with u* in free_; up to the
-  // tolerance times what the prediction was wrong by, which is of the size of the step's own error.
+  // Solves the stage at q = q_n for u_, which holds its prediction, with u* in free_. It leaves the
+  // tolerance times the prediction's error, which is of the size of the step's own error. Returns
   // reached_end, newton_failed, indefinite_matrix, not_finite or over_budget.
   Outcome solve_stage(const Vec& q, double s);
 
@@ -42,13 +42,13 @@ class ImplicitStep : public FixedStep {
   Vec free_, u_;  // u* and u
 
  private:
-  // What a stage's f and K are; a method with another mean of the forces over the step says so.
+  // A stage's f and K; overridden by methods with another mean of the forces over the step.
   virtual void stage_force(const Vec& q, const Vec& u, Vec& f);
   virtual void stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                                SymmetricMatrix& k);
   // Whether a stage's f is the gradient of a potential, so that there is a g to decrease.
   virtual bool is_minimisation() const { return true; }
-  // Whether a stage's f knows forces at q itself, which then have to be linear as well.
+  // Whether a stage's f uses forces at q itself, which then have to be linear as well.
   virtual bool knows_start() const { return false; }
 
   struct Iteration;
@@ -57,11 +57,11 @@ class ImplicitStep : public FixedStep {
   bool is_exact(const Vec& q);
   bool is_rounding(const Vec& q, double size, double least) const;
   bool is_linear_along(const Vec& q);
-  // Whether f has a kink (kinks.hpp) between q, where the residual was taken, and where the
+  // Whether f has a kink (kinks.hpp) between q, the place of the residual and the place that the
   // correction leads to.
   bool crosses_kink(const Vec& q);
   void residual(const Vec& q, double s);
-  // With twice the compression that the last factors have, where that works, or with as much.
+  // Factorises with up to twice the compression of the last factors, or less until it works.
   Outcome factorize(const Vec& q, double s);
   Outcome factorize_softened(const Vec& q, double s);
   // May also return indefinite_matrix: conjugate gradients detect it only while solving.
@@ -70,14 +70,14 @@ class ImplicitStep : public FixedStep {
   double objective(const Vec& q, double s);
 
   const double tolerance_;
-  const Kinks* kinks_;             // none where f has no kinks
-  const PiecewiseLinear* pieces_;  // none where a constant K says all
+  const Kinks* kinks_;             // nullptr if f has no kinks
+  const PiecewiseLinear* pieces_;  // nullptr if a constant K says all
   Vec x_, f_, r_, p_, before_, start_, length_, other_length_;
   SymmetricMatrix k_;
   EffectiveMass matrix_;
   double factorized_s_ = 0;  // of the factors at hand; 0: none
   Compression compression_;  // with which they were made
-  // What the last stage's prediction was wrong by, and the rate at which its corrections shrank.
+  // The error of the last stage's prediction, and the rate at which its corrections shrank.
   double last_missed_ = 0, last_rate_ = 1;
 };
 

@@ -8,19 +8,19 @@
 
 namespace qddot {
 
-// A step as kicks v += y h M^-1 f(q) and drifts q += x h v by turns, each of which is the exact
-// motion of a part of H = T(v) + V(q): symplectic, and time-reversible where both lists are the
-// same read backwards. The longer list is that of what comes first and last.
+// A step of alternating kicks v += y h M^-1 f(q) and drifts q += x h v. Each is the exact motion of
+// a part of H = T(v) + V(q), so the step is symplectic. It is time-reversible if both lists are the
+// same read backwards. The longer list comes first and last.
 struct Splitting {
   int order;
   std::vector<double> kicks, drifts;  // y and x, each of sum 1
 };
 
-// A list of `size` numbers that is the same read backwards, from the numbers up to its middle.
+// The list of `size` numbers that is the same read backwards, given its first half and middle.
 std::vector<double> mirrored(std::vector<double> half, std::size_t size);
 
-// The steps of a splitting. Where a kick is first, the last force of a step is the first of the
-// next: one evaluation a drift, and one to begin. Else one evaluation a kick.
+// The steps of a splitting. If a kick is first, the last force of a step is the first of the next:
+// one evaluation a drift, and one to begin. Otherwise one evaluation a kick.
 class KickDrift final : public FixedStep {
  public:
   KickDrift(const Method& method, const System& system, const Options& options,
@@ -38,14 +38,14 @@ class KickDrift final : public FixedStep {
   Vec f_;  // where the last kick was, or where the next one is
 };
 
-// For Method::make.
+// Makes the integrator of a splitting; for Method::make.
 template <const Splitting& (*splitting)()>
 std::unique_ptr<Integrator> create_splitting(const Method& method, const System& system,
                                              const Options& options) {
   return std::make_unique<KickDrift>(method, system, options, splitting());
 }
 
-// Those that there are, each in the file of its method.
+// All splittings, each in the file of its method.
 namespace registered {
 const Splitting& position_verlet_splitting();
 const Splitting& kahan_li8_splitting();

@@ -6,7 +6,7 @@
 namespace qddot {
 namespace {
 
-// A length may change its sign twice within a step; it is looked at so often.
+// A length may change its sign twice within a step; so it is looked at this often.
 constexpr int looks = 8;
 constexpr int bisections = 60;
 

@@ -5,13 +5,14 @@
 
 namespace qddot {
 
-// Implicit Euler as a minimisation over the velocity, by a given number of steps whose metric never
-// changes:
+// Implicit Euler as a minimisation over the velocity, in a given number of iterations with a
+// constant metric:
 //   g(v) = 1/2 (v - v_n)' M (v - v_n) + V(q_n + h v)
 //   r    = dg/dv = M (v - v_n) - h f(q_n + h v)
 //   p    = (M + h^2 L)^-1 r
-// from the inertial prediction v = v_n on; v = v - p is one iteration of local_global, and what
-// others make of the same r and p is theirs to say. The matrix is factorised once a step size.
+// The iterations start from the inertial prediction v = v_n. One iteration of local_global is
+// v = v - p; other methods use the same r and p in their own ways. The matrix is factorised once a
+// step size.
 class LocalGlobal : public FixedStep {
  public:
   LocalGlobal(const Method& method, const System& system, const Options& options);
@@ -24,15 +25,16 @@ class LocalGlobal : public FixedStep {
 
   int iterations() const { return iterations_; }
   double step_size() const { return h_; }
-  // Whether L bounds -K, so that g falls by r'p / 2 at least from v to v - p.
+  // Whether L bounds -K, so that g falls by at least r'p / 2 from v to v - p.
   bool descends() const { return descends_; }
+  // Compute r at v and p from r, as above.
   void gradient(const Vec& v, Vec& r);
   void direction(const Vec& r, Vec& p);
   double objective(const Vec& v);  // g [J]
-  // Moves v by the first of -p, -p/2, -p/4, ... that lowers g by Armijo's rule, or not at all where
+  // Moves v by the first of -p, -p/2, -p/4, ... that lowers g by Armijo's rule, or not at all if
   // rounding hides it. `g` is that of v, before and after.
   void search(Vec& v, const Vec& p, double slope, double& g);
-  // v - p where that is sure to lower g, else by search().
+  // Moves v by -p if that is sure to lower g, else by search().
   void plain_step(Vec& v, const Vec& r, const Vec& p);
 
  private:

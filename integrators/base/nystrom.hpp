@@ -8,11 +8,11 @@
 
 namespace qddot {
 
-// Steps of a pair, whose higher order is propagated. Each attempt takes s - 1 forces, an accepted
-// one another at its end unless that is its last stage. The error test does not see an instability
-// of modes that hardly move yet, so steps are held to h <= stable_hw/w_max, with Gershgorin's bound
-// of the largest frequency, taken anew every few steps. Where a system has no K, nothing bounds the
-// frequency, and the error test has to do.
+// Steps of an embedded pair; the higher order is propagated. Each attempt takes s - 1 forces; an
+// accepted one takes another at its end unless that is its last stage. The error test does not see
+// an instability of modes that hardly move yet. So steps are held to h <= stable_hw/w_max, with
+// Gershgorin's bound of w_max, renewed every few steps. Nothing bounds the frequency of a system
+// without K; there the error test has to do.
 class Nystrom final : public AdaptiveStep {
  public:
   Nystrom(const Method& method, const System& system, const Options& options,

@@ -6,11 +6,11 @@
 
 namespace qddot {
 
-// The coefficients of an embedded explicit Runge-Kutta-Nystrom pair for q'' = g(q) of s stages:
+// The coefficients of an embedded explicit Runge-Kutta-Nystrom pair of s stages for q'' = g(q),
 //   q_i = q_n + c_i h v_n + h^2 sum_{j<i} a_ij k_j,   k_i = g(q_i),
 //   q_{n+1} = q_n + h v_n + h^2 sum_i b_i k_i,   v_{n+1} = v_n + h sum_i b'_i k_i
-// (Hairer, Norsett and Wanner, Solving ODEs I, section II.14), and the same with the lower b and b'
-// for the estimate of the errors.
+// (Hairer, Norsett and Wanner, Solving ODEs I, section II.14). The lower b and b' estimate the
+// errors.
 struct NystromPair {
   int order = 0, lower_order = 0;
   // The largest h w up to which no vibration q'' = -w^2 q grows by more than a hundredth a step.
@@ -23,13 +23,14 @@ struct NystromPair {
   bool is_first_same_as_last() const;
 };
 
-// The accelerations k_1 ... k_s of one step of a pair on n unknowns, s - 1 of them computed.
+// The accelerations k_1 ... k_s of one step of a pair for n unknowns; s - 1 of them are computed.
 class NystromStages {
  public:
   NystromStages(const NystromPair& pair, Index n)
       : pair_(pair), k_(n, std::ssize(pair.b)), stage_(n) {}
 
-  // From q and v, where the acceleration is a; acceleration(q, k) computes another.
+  // Computes the stages of a step h [s] from q and v, where the acceleration is a;
+  // acceleration(q, k) computes another.
   template <class Acceleration>
   void compute(const Vec& q, const Vec& v, const Vec& a, double h,
                const Acceleration& acceleration) {

@@ -7,17 +7,16 @@
 
 namespace qddot {
 
-// Gershgorin's bound of the largest frequency w_max [1/s] of a system along its motion: taken anew
-// every 50 steps only, for it changes with the positions, but much less than these do. Where a
-// system computes no K, nothing is known: the bound is 0, as where nothing pulls, and limits no
-// step.
+// Gershgorin's bound of the largest frequency w_max [rad/s] of a system along its motion. It is
+// renewed every 50 steps only, because it changes much less than the positions. A system without K
+// has the bound 0, which limits no step.
 class RenewedBound {
  public:
   explicit RenewedBound(const System& system)
       : system_(system), has_k_(system.has_stiffness()), k_(system.stiffness_pattern()) {}
 
   void start() { renewed_at_ = never; }
-  // The bound for that step of a run, 0, 1, ...; stiffness(k) brings the K of where it begins.
+  // The bound for step number `step`, 0, 1, ..., of a run; stiffness(k) computes K where it begins.
   template <class Stiffness>
   double at(std::int64_t step, const Stiffness& stiffness) {
     if (!has_k_) return 0;

@@ -8,11 +8,11 @@
 namespace qddot {
 namespace {
 
-// Between two ends of steps: errs by h^6 where the step does by h^5.
+// Interpolation between two ends of steps errs by h^6, a step by h^5.
 constexpr std::size_t instants = 2;
 // The part of a step's allowed error that an iterative solve for a stage may make. Nothing corrects
-// it, the later stages take up to some 30 times of it, and it adds up over the steps, where the
-// formula's own errors are far below the estimate.
+// it, later stages multiply it by up to some 30, and it adds up over the steps. The formula's own
+// errors are far below the estimate.
 constexpr double stage_share = 1e-4;
 // The part of the right-hand side that is within rounding.
 constexpr double tightest = 1e-15;
@@ -31,11 +31,11 @@ Rosenbrock::Rosenbrock(const Method& method, const System& system, const Options
       k_(system.stiffness_pattern()),
       matrix_(system, options.solver) {}
 
-// With A = M - g^2 K, A U_q = b = M u and e the error of U_q, that of U_v = (U_q - r)/g is e/g, and
-// |e|_M <= |e|_A <= tau |b|_{A^-1} <= tau |u|_M where A >= M. So tau = share g |w|_M / |u|_M leaves
-// a part of the weights w of velocities, by which the step's errors are judged; accelerations of
-// stiff springs, which cancel in the sum of the stages, make u large and tau small. Where the
-// absolute tolerance outweighs the velocities, the same part of rtol alone.
+// Let A = M - g^2 K, A U_q = b = M u, and e the error of U_q; U_v = (U_q - r)/g errs by e/g. Then
+// |e|_M <= |e|_A <= tau |b|_{A^-1} <= tau |u|_M if A >= M. So tau = share g |w|_M / |u|_M leaves
+// the part `share` of the weights w of velocities, by which the step's errors are judged.
+// Accelerations of stiff springs cancel in the sum of the stages, but make u large and tau small.
+// If the absolute tolerance outweighs the velocities, tau is the same part of rtol alone.
 double Rosenbrock::tolerance(const State& now, double g, const Vec& u) const {
   const double atol = options().atol > 0 ? options().atol : options().rtol * options().speed;
   const auto& mass = system().mass().array();

@@ -8,9 +8,9 @@
 namespace qddot {
 
 // A Rosenbrock method for y' = F(y) in the form of Hairer and Wanner, Solving ODEs II, eq. IV.7.25:
-//   (1/(gamma h) - J) U_i = F(y_n + sum_j a_ij U_j) + 1/h sum_j c_ij U_j,  j < i
-// whose step is y_{n+1} = y_n + sum_j a_sj U_j + U_s, with the last stage's own a (it is stiffly
-// accurate), and whose error estimate is U_s.
+//   (1/(gamma h) - J) U_i = F(y_n + sum_j a_ij U_j) + 1/h sum_j c_ij U_j,  j < i.
+// Its step is y_{n+1} = y_n + sum_j a_sj U_j + U_s with the a of the last stage (it is stiffly
+// accurate). Its error estimate is U_s.
 struct RosenbrockTable {
   double gamma;
   std::vector<std::vector<double>> a, c;  // rows i = 0, 1, ..., with i entries
@@ -21,10 +21,10 @@ namespace registered {
 const RosenbrockTable& rodas4_table();
 }  // namespace registered
 
-// Steps of such a method for y = (q, v), F = (v, M^-1 f(q)), J = [[0, I], [M^-1 K, 0]], K(q_n)
-// exact: with g = gamma h each stage is one n x n solve,
-//   (I - g J)(U_q, U_v) = (r, s)  <=>  (M - g^2 K) U_q = M (r + g s),  U_v = (U_q - r)/g,
-// and a step one factorisation, whether or not the matrix is positive definite.
+// Steps of such a method for y = (q, v), F = (v, M^-1 f(q)), with the exact
+// J = [[0, I], [M^-1 K, 0]], K = K(q_n). Each stage is one n x n solve, g = gamma h:
+//   (I - g J)(U_q, U_v) = (r, s)  <=>  (M - g^2 K) U_q = M (r + g s),  U_v = (U_q - r)/g.
+// A step takes one factorisation, whether or not the matrix is positive definite.
 class Rosenbrock final : public AdaptiveStep {
  public:
   Rosenbrock(const Method& method, const System& system, const Options& options,
@@ -35,7 +35,7 @@ class Rosenbrock final : public AdaptiveStep {
   Outcome attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) override;
   void accepted(Instant& next) override;
   bool factorize(const Vec& q, double g);
-  // What part of M u an iterative solve for a stage may leave.
+  // The part of M u that an iterative solve for a stage may leave.
   double tolerance(const State& now, double g, const Vec& u) const;
 
   const RosenbrockTable& table_;

@@ -8,19 +8,19 @@
 namespace qddot {
 namespace {
 
-// A step that is a smaller part of h is none of its own: the one before is that much longer.
+// A rest that is a smaller part of h is no step of its own: the last step is that much longer.
 constexpr double sliver = 1e-6;
 
 }  // namespace
 
 StepTimes::StepTimes(double t_start, double t_end, double h)
     : t_start_(t_start), t_end_(t_end), h_(h) {
-  // What rounding makes of a time that is a multiple of h, or of a time between samples.
+  // The rounding error of a multiple of h, or of a time between samples.
   rounding_ = 4 * machine_epsilon * std::max(std::abs(t_start), std::abs(t_end));
   count_ = std::max(1.0, std::ceil((t_end - t_start) / h - sliver - rounding_ / h));
   can_be_taken_ = h > 0 && count_ < most_steps && t_end - h != t_end;
-  // Where only rounding parts the last step from h it is h, so that factorisations for h serve it
-  // too.
+  // If the last step differs from h by rounding only, it is h, so that factorisations for h serve
+  // it too.
   const double last = t_end - (t_start + (count_ - 1) * h);
   last_h_ = std::abs(last - h) <= rounding_ ? h : last;
   rounding_ = std::min(rounding_, h / 4);

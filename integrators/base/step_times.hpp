@@ -2,18 +2,18 @@
 
 namespace qddot {
 
-// The time after more steps of one length than that is no number of its own in double precision.
+// The most steps: after more of one length, times are no longer distinct in double precision.
 constexpr double most_steps = 1e15;
 
-// The times of steps of constant length h from t_start to t_end [s]: t_start + i h and never a
-// running sum, the last one t_end exactly, after a step of what is left: shorter where h does not
-// fit, and longer or shorter by up to 1e-6 h where it almost does.
+// The times of steps of constant length h from t_start to t_end [s]: t_start + i h, never a running
+// sum. The last step ends on t_end exactly. It is shorter if h does not fit, and longer or shorter
+// by up to 1e-6 h if it almost does.
 class StepTimes {
  public:
   StepTimes(double t_start, double t_end, double h);
 
-  // False where there would be no end: h is not positive, or rounding swallows it, or there are
-  // more steps than a double can count.
+  // False if the steps would not end: h is not positive, rounding swallows it, or there are more
+  // steps than a double can count.
   bool can_be_taken() const { return can_be_taken_; }
   double count() const { return count_; }
   // The time after step i, and the length of step i = 1 ... count().

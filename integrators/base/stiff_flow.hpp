@@ -9,20 +9,20 @@ namespace qddot {
 
 // Steps of
 //   M x'' = f(x) + p(t),   p = c_0 + c_1 t/h + c_2 (t/h)^2 + ...
-// from t = 0 to h: the motion that stiff forces f alone make, pushed by a polynomial.
+// from t = 0 to h: the motion by stiff forces f alone, pushed by a polynomial p.
 //   order 2  position Verlet; stable up to steps of 2/w_max
-//   order 4  two drifts between kicks of 1/6, 2/3 and 1/6 of a step. The middle one is by the force
-//            at x + t^2/24 a(x), t the step and a the acceleration; three forces a step, stable up
-//            to 3.46/w_max (Chin, Physics Letters A 226 (1997) 344-348, algorithm A)
+//   order 4  two drifts between kicks of 1/6, 2/3 and 1/6 of a step. The middle kick is by the
+//            force at x + t^2/24 a(x), t the step and a the acceleration. Three forces a step,
+//            stable up to 3.46/w_max (Chin, Physics Letters A 226 (1997) 344-348, algorithm A).
 template <int order>
 class StiffFlow {
   static_assert(order == 2 || order == 4);
 
  public:
-  // What a step times w_max may be, with room for what motion makes of w_max.
+  // The largest step times w_max, with room for changes of w_max along the motion.
   static constexpr double largest_step_times_frequency = order == 2 ? 1.8 : 3.0;
 
-  // The soft accelerations are polynomials of so many coefficients, at most 7.
+  // `coefficients`: how many p has, at most 7.
   StiffFlow(const Vec& mass, int coefficients)
       : mass_(mass),
         coefficients_(coefficients),
@@ -34,13 +34,13 @@ class StiffFlow {
   // c_j [N], to be filled before advance().
   Eigen::MatrixXd::ColXpr coefficient(int j) { return forces_.col(j); }
 
-  // x, v: n, from those at t = 0 to those at h [s]; `force(x, f)` computes f [N].
+  // Takes x and v (n) from t = 0 to h [s] in `steps` equal steps; `force(x, f)` computes f [N].
   template <class Force>
   void advance(double h, double steps, const Force& force, Vec& x, Vec& v) {
     const double tau = h / steps;
     multiply(v, mass_, momentum_);
     const auto evaluate = [&](const Vec& at) { force(at, forces_.col(coefficients_)); };
-    // With f as evaluated and p at i steps after the start.
+    // A kick by the last f, and by p at i steps after the start.
     const auto kick = [&](double size, double i) {
       add_combination(momentum_, size, forces_, weights(i / steps), momentum_);
     };

@@ -13,7 +13,7 @@ namespace {
 using Complex = std::complex<double>;
 using Long = long double;
 
-// The whole of a palindrome of odd length whose first half, up to the middle, is given.
+// The palindrome of odd length whose first half, up to the middle, is given.
 std::vector<double> palindrome(const std::vector<std::int64_t>& half, std::int64_t denominator) {
   std::vector<double> all;
   const auto divisor = static_cast<double>(denominator);
@@ -45,9 +45,9 @@ std::vector<double> SymmetricFormula::cofactor() const {
   return r;
 }
 
-// In backward differences, g(t_N - s h) = sum_i binomial(i - 1 - s, i) nabla^i g_{N - first} with s
-// counted from `first`; what q(t_N - h) = q_N - h v_N + h^2 int_0^1 (1 - s) g(t_N - s h) ds asks
-// for is the integral of each of these polynomials.
+// Backward differences give g(t_N - s h) = sum_i binomial(i - 1 - s, i) nabla^i g_{N - first} with
+// s counted from `first`. The weights are the integrals of these polynomials in
+// q(t_N - h) = q_N - h v_N + h^2 int_0^1 (1 - s) g(t_N - s h) ds.
 std::vector<double> velocity_weights(int first, int count) {
   std::vector<double> weights(static_cast<std::size_t>(count));
   std::vector<Long> polynomial = {1};  // binomial(i - 1 - (s - first), i) in powers of s

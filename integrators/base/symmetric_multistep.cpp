@@ -7,8 +7,8 @@
 namespace qddot {
 namespace {
 
-// The weights of g_N, where first = 0, and of u_{N-1}, u_{N-2}, ... in h v_N, for
-// h^2 g_{N-j} = r_0 u_{N-j} + r_1 u_{N-j-1} + ...
+// The weights in h v_N of g_N, if first = 0, and of u_{N-1}, u_{N-2}, ..., with h^2 g_{N-j} = r_0
+// u_{N-j} + r_1 u_{N-j-1} + ...
 std::vector<double> weights_of_history(int first, int count, const std::vector<double>& r) {
   const std::vector<double> w = velocity_weights(first, count);
   std::vector<double> weights(2 * r.size() - 1);

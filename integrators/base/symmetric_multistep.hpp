@@ -10,14 +10,14 @@
 namespace qddot {
 
 // Steps by a symmetric multistep formula, in sums (Henrici, Discrete Variable Methods in Ordinary
-// Differential Equations, 1962, chapter 6): with d_n = q_n - q_{n-1} and r_0 = 1,
+// Differential Equations, 1962, chapter 6). Let d_n = q_n - q_{n-1} and r_0 = 1. Then
 //   u_n = h^2 g_n - (r_1 u_{n-1} + ... + r_{k-2} u_{n-k+2}),
 //   d_{n+1} = d_n + beta_{k-1} u_n + beta_{k-2} u_{n-1} + ... + beta_1 u_{n-k+2},
 //   q_{n+1} = q_n + d_{n+1},
-// which rounds d and not q's differences. One force a step. The first k - 1 steps are computed
-// together, by k/2 sweeps of deferred correction: k/2 (k - 1) forces. A last step of another
-// length, and one to a time between steps, is that of a Nystrom pair. Velocities are computed where
-// they are asked for.
+// which rounds d, not differences of q. One force a step. The first k - 1 steps are computed
+// together, by k/2 sweeps of deferred correction: k/2 (k - 1) forces. A Nystrom pair takes a last
+// step of another length and steps to times between steps. Velocities are computed only when they
+// are asked for.
 class SymmetricMultistep final : public FixedStep {
  public:
   SymmetricMultistep(const Method& method, const System& system, const Options& options,
@@ -50,7 +50,7 @@ class SymmetricMultistep final : public FixedStep {
   double h_ = 0;  // of all steps but a last one [s]
   DeferredCorrection first_;
   Index begun_ = 0;            // steps since the start, k - 1 at most
-  std::vector<Vec> u_;         // a ring, with a place for the next
+  std::vector<Vec> u_;         // a ring buffer, with a place for the next
   std::ptrdiff_t newest_ = 0;  // that place
   Vec d_, d_next_, f_, a_;
   bool force_is_known_ = false;  // f_ is that of the history's last q
@@ -59,19 +59,19 @@ class SymmetricMultistep final : public FixedStep {
   std::vector<double> weights_;
 };
 
-// For Method::make.
+// Makes the integrator of a formula; for Method::make.
 template <const SymmetricFormula& (*formula)()>
 std::unique_ptr<Integrator> create_symmetric(const Method& method, const System& system,
                                              const Options& options) {
   return std::make_unique<SymmetricMultistep>(method, system, options, formula());
 }
-// For Method::recurrence_roots.
+// The roots of a formula; for Method::recurrence_roots.
 template <const SymmetricFormula& (*formula)()>
 std::vector<std::complex<double>> symmetric_roots(double h_omega) {
   return roots_of(formula(), h_omega);
 }
 
-// Those that there are, each in the file of its method.
+// All formulas, each in the file of its method.
 namespace registered {
 const SymmetricFormula& symmetric4_formula();
 const SymmetricFormula& symmetric6_formula();

@@ -14,8 +14,8 @@ struct AdditiveTable {
   ARKODE_ERKTableID explicit_id;
   ARKODE_DIRKTableID implicit_id;
   const char* name;
-  // The largest h w_f at which no vibration q'' = -(w_f^2 + w_s^2) q, w_f explicit, whatever w_s
-  // is, grows by more than a thousandth a step; rounded down to hundredths.
+  // The largest h w_f at which no vibration q'' = -(w_f^2 + w_s^2) q grows by more than a
+  // thousandth a step, w_f explicit, any w_s. It is rounded down to hundredths.
   double limit;
 };
 inline constexpr AdditiveTable additive_tables[] = {

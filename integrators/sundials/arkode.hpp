@@ -12,19 +12,19 @@ namespace qddot::sundials {
 
 using ButcherTable = std::unique_ptr<ARKodeButcherTableMem, FreeBy<ARKodeButcherTable_Free>>;
 
-// The formula of an additive Runge-Kutta method: a table of either kind or both, which ARKODE
-// copies.
+// The formula of an additive Runge-Kutta method: a table of either kind or both; ARKODE copies
+// them.
 struct Tables {
   ARKodeButcherTable explicit_table = nullptr, implicit_table = nullptr;
 };
 
 // ARKODE's Runge-Kutta methods on y' = (v, M^-1 f(q)). (Hindmarsh et al., ACM TOMS 31:3 (2005)
-// 363-396; Reynolds et al., ARXIV 2205.14077.) What is set here is the same for every linear solver
-// and said in arkode.cpp with its reason; everything else is ARKODE's default.
+// 363-396; Reynolds et al., ARXIV 2205.14077.) The settings made here are the same for every linear
+// solver; arkode.cpp gives their reasons. Everything else is ARKODE's default.
 class Arkode : public Stepper {
  public:
-  // With an implicit table, `implicit_rate` is what it is for, and Newton's matrix is that of
-  // `implicit_part`; with an explicit one, `explicit_rate`.
+  // An implicit table is for `implicit_rate`, with Newton's matrix of `implicit_part`; an explicit
+  // one is for `explicit_rate`.
   Arkode(const Method& method, const System& system, const Options& options, const Tables& tables,
          ARKRhsFn explicit_rate, ARKRhsFn implicit_rate, MakeMatrix make_matrix,
          const System& implicit_part);
@@ -32,7 +32,7 @@ class Arkode : public Stepper {
  protected:
   void* memory() const { return memory_.get(); }
   // Holds all steps to h <= y/w_max, with Gershgorin's bound of the largest frequency of a part of
-  // the system, taken anew every few steps. For use in the constructor.
+  // the system, renewed every few steps. Call in the constructor.
   void limit_steps(const System& part, double y);
   void start(const State& state) override;
   void collect_counts() override;

@@ -6,13 +6,13 @@
 
 namespace qddot::sundials {
 
-// |R(iy)|, R(z) = 1 + z b'(I - z A)^-1 1: by how much a step of h w = y of an explicit table
-// multiplies the amplitude on q'' = -w^2 q (Hairer and Wanner, Solving ODEs II, section IV.2).
+// |R(iy)|, R(z) = 1 + z b'(I - z A)^-1 1: a step of an explicit table multiplies the amplitude of
+// q'' = -w^2 q by this, y = h w (Hairer and Wanner, Solving ODEs II, section IV.2).
 double amplification(const ARKodeButcherTableMem& table, double y);
 
 // The largest y up to which an explicit table lets no vibration grow by more than a thousandth a
-// step. Tables that let all of them grow, however slowly, as those of order 2 and some of order 5
-// do, have such a limit too; errors below it are the error test's business.
+// step. Some tables let all vibrations grow slowly, as those of order 2 and some of order 5; they
+// have such a limit too. Smaller growth is left to the error test.
 double imaginary_stability(const ARKodeButcherTableMem& table);
 
 }  // namespace qddot::sundials

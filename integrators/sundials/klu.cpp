@@ -55,7 +55,7 @@ class Klu final : public NewtonMatrix {
   }
 
   // SUNDIALS keeps the pivots of its first factors. Those belong to the step sizes of their run and
-  // may be none for the small steps that start the next one; the symbolic analysis does for all.
+  // may not do for the small steps that start the next one; the symbolic analysis does for all.
   int choose_pivots() {
     sun_klu_free_numeric(&content().numeric, &content().common);
     content().numeric =

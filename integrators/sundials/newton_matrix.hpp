@@ -9,10 +9,10 @@
 
 namespace qddot::sundials {
 
-// The matrix of SUNDIALS' Newton iterations on y = (q, v), and the solver with it. SUNDIALS decides
-// when it is made anew and from which K; to SUNDIALS itself it is a SUNMatrix without entries and a
+// The matrix of SUNDIALS' Newton iterations on y = (q, v), and its solver. SUNDIALS decides when it
+// is made anew and from which K. SUNDIALS itself sees a SUNMatrix without entries and a
 // SUNLinearSolver that knows them. K is borrowed and must not change between set_... and the last
-// solve with the factors made of it, which may look at what is left of the right-hand side.
+// solve with its factors, which may compute a residual.
 class NewtonMatrix {
  public:
   explicit NewtonMatrix(SUNContext context);
@@ -22,18 +22,18 @@ class NewtonMatrix {
 
   // I - gamma J of y' = (v, M^-1 f(q)), J = [[0, I], [M^-1 K, 0]].
   virtual void set_explicit_form(double gamma, const SymmetricMatrix& k) = 0;
-  // c dF/dy' + dF/dy = [[c I, -I], [-K, c M]] of F = (q' - v, M v' - f(q)); the first half of F is
-  // -v where there is no mass, so that c is zero there.
+  // c dF/dy' + dF/dy = [[c I, -I], [-K, c M]] of F = (q' - v, M v' - f(q)). A massless unknown has
+  // -v in the first half of F, so its c is zero there.
   virtual void set_implicit_form(double c, const SymmetricMatrix& k) = 0;
 
   SUNMatrix matrix() const { return matrix_.get(); }
   SUNLinearSolver solver() const { return solver_.get(); }
 
-  // Where the time that it takes is to be added, if anywhere.
+  // Where to add the time that it takes; nullptr for nowhere.
   void time_into(Seconds* seconds) { seconds_ = seconds; }
-  // How many of the matrices were indefinite so far: compressed springs outweighed the mass.
+  // The number of indefinite matrices so far: compressed springs outweighed the mass.
   std::int64_t indefinite() const { return indefinite_; }
-  // What a run made, its counts and KLU's pivots among it, is not for the next.
+  // Forgets what the last run made, such as counts and KLU's pivots.
   virtual void begin_run() { indefinite_ = 0; }
   // Throws what was thrown behind SUNDIALS' back since the last call.
   void rethrow() {

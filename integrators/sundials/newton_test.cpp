@@ -5,11 +5,11 @@
 namespace qddot::sundials {
 namespace {
 
-// Both as fractions of the tolerance for the error of a step: what may be left, and a first
-// correction that is nothing beside it.
+// Fractions of the tolerance for the error of a step: what may be left, and a first correction that
+// is negligible.
 constexpr double largest_rest = 3e-3;
 constexpr double negligible = 1e-3;
-// Two or three corrections do with factors that are not too old; so many mean that they are.
+// Two or three corrections are enough unless the factors are too old; so many mean that they are.
 constexpr int most_corrections = 10;
 
 }  // namespace

@@ -4,18 +4,17 @@
 
 namespace qddot::sundials {
 
-// ARKODE's Newton iteration with a test that trusts no rate of convergence but the one that it
-// sees: with theta = |d_m| / |d_m-1| of the last two corrections, what is left after d_m is about
-// theta/(1 - theta) |d_m| (Hairer and Wanner, Solving ODEs II, section IV.8). SUNDIALS' own test
-// remembers the rate of earlier solves, lowered by 0.3 each time; on vibrations, where the factors
-// are up to 20 % off in gamma, it then stops after one iteration, with errors of 1e4 and more
-// times the tolerance.
+// ARKODE's Newton iteration with a test that trusts only the rate of convergence that it sees. The
+// last two corrections give theta = |d_m| / |d_m-1|; then about theta/(1 - theta) |d_m| is left
+// (Hairer and Wanner, Solving ODEs II, section IV.8). SUNDIALS' own test remembers the rate of
+// earlier solves, lowered by 0.3 each time. If the factors are up to 20 % off in gamma, it stops
+// after one iteration on vibrations, with errors of 1e4 and more times the tolerance.
 class NewtonTest {
  public:
   NewtonTest(N_Vector y, SUNContext context);
 
   SUNNonlinearSolver solver() const { return solver_.get(); }
-  // To be called once the solver is ARKODE's, which gives it a test of its own.
+  // Call when the solver is ARKODE's, which gives it a test of its own.
   void attach();
 
  private:

@@ -4,7 +4,7 @@
 
 namespace qddot::sundials {
 
-// What a method of variable order did with it.
+// The orders that a method of variable order used.
 class Orders {
  public:
   // Takes the order of each accepted step.

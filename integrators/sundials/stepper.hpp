@@ -14,11 +14,11 @@
 
 namespace qddot::sundials {
 
-// Makes the matrix of Newton's iteration; none (nullptr) where there is no such iteration.
+// Makes the matrix of Newton's iteration; nullptr if there is no such iteration.
 using MakeMatrix = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext, Solver);
 
-// The parts of a system's forces, or the system itself where it has none, which is to be made but
-// never run.
+// The stiff or soft part of a system's forces. An undivided system stands for both, so that a
+// method can be made for it; it is never run.
 inline const System& stiff_of(const System& system) {
   const Split* split = split_of(system);
   return split ? *split->stiff : system;
@@ -28,14 +28,14 @@ inline const System& soft_of(const System& system) {
   return split ? *split->soft : system;
 }
 
-// What ARKODE, CVODE and IDA share: the first-order form y = (q, v) in a vector of length 2n, steps
-// one by one (of the library's choice, up to a stop time; or of constant length where the method's
-// knob is a step size, which are the same whatever is observed, as those of FixedStep), and the
-// boundary to C, across which no exception passes.
+// The common base of ARKODE, CVODE and IDA: the first-order form y = (q, v) in a vector of length
+// 2n, single steps, and the boundary to C. No exception passes this boundary. The library chooses
+// the steps, up to a stop time. If the method's knob is a step size, steps are of constant length
+// and the same whatever is observed, as those of FixedStep.
 class Stepper : public Integrator {
  public:
-  // Newton's matrix is that of `implicit_part`, which has the unknowns of the system: itself, or
-  // the part of its forces that is treated implicitly.
+  // Newton's matrix is that of `implicit_part`: the system itself, or the implicitly treated part
+  // of its forces, with the system's unknowns.
   Stepper(const Method& method, const System& system, const Options& options,
           MakeMatrix make_matrix, const System& implicit_part);
   Stepper(const Method& method, const System& system, const Options& options,
@@ -46,7 +46,7 @@ class Stepper : public Integrator {
   // One internal step that does not pass the stop time; sets t [s] to the time reached.
   virtual int take_step(double t_stop, double& t) = 0;
   virtual void set_stop_time(double t_stop) = 0;
-  // The length of all steps from now on [s]; called where the knob is a step size.
+  // The length of all steps from now on [s]; called if the knob is a step size.
   virtual void set_step_size(double) {}
   // Called after each accepted step.
   virtual void note_step() {}
@@ -69,12 +69,12 @@ class Stepper : public Integrator {
   struct OwnCounts {
     long steps, failed_tests, failed_solves, setups, iterations;
   };
-  // Into counts(): each iteration of Newton's method is one solve, each set-up one factorisation.
+  // Sets counts(): each iteration of Newton's method is one solve, each set-up one factorisation.
   void set_counts(const OwnCounts& own);
 
-  // Runs the body of a C callback: 0 done, 1 recoverable (a result is not finite, so that SUNDIALS
-  // tries a smaller step), -1 with the exception parked until SUNDIALS has returned; until then
-  // nothing is run again, though a fixed-point iteration tries to.
+  // Runs the body of a C callback. Returns 0 for done, 1 for recoverable (a result is not finite,
+  // and SUNDIALS tries a smaller step), or -1 with the exception parked until SUNDIALS has
+  // returned. Until then nothing is run again, though a fixed-point iteration tries to.
   template <class Body>
   int guarded(Body body) noexcept {
     if (parked_) return -1;
@@ -95,11 +95,11 @@ class Stepper : public Integrator {
   // K(q) of the implicit part, kept until the next; counted.
   const SymmetricMatrix& stiffness_at(const Eigen::Map<Vec>& q);
 
-  // Callbacks of ARKODE and CVODE, whose user data is the Stepper: y' of the whole system, and
-  // Newton's matrix I - gamma J of the implicit part, with K anew unless `jok`.
+  // Callbacks of ARKODE and CVODE, whose user data is the Stepper. They compute y' of the whole
+  // system, and Newton's matrix I - gamma J of the implicit part, with a new K unless `jok`.
   static int right_hand_side(double t, N_Vector y, N_Vector rate, void* self);
   int set_matrix(N_Vector y, bool jok, int* jcur, double gamma) noexcept;
-  // SUNDIALS' error handler: keeps the words for the summary in place of printing them.
+  // SUNDIALS' error handler: keeps the words for the summary instead of printing them.
   static void keep_message(int code, const char* module, const char* function, char* message,
                            void* self);
 
@@ -112,12 +112,12 @@ class Stepper : public Integrator {
   Outcome run_to(State& state, double t_stop) final;
   Outcome take_chosen_steps(State& state, double t_stop);
   Outcome take_fixed_steps(State& state, double t_stop);
-  // By another object, from the last step to a time before the next one.
+  // Steps from the last step to a time before the next one, by another object.
   Outcome step_aside(State& state, double t);
   Outcome take_one(State& state, double t_stop);
-  // What the flag says, but for forces that are not finite: a library may call these a failure to
-  // converge or of its small steps, and the first one a failure of later ones; and that the end is
-  // too close, with time left, is what weights beyond all numbers make of the first step.
+  // The cause that the flag names, with two corrections. If forces are not finite, a library may
+  // blame convergence or its small steps, and a later force instead of the first. If it says that
+  // the end is too close with time left, the weights of the first step overflow.
   Cause named_cause(int flag, double t);
 
   const System& implicit_part_;

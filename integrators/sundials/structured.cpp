@@ -1,12 +1,12 @@
 // Newton's equations of a second-order system, 2n x 2n, from one symmetric n x n matrix.
 //   (I - gamma J)(a, b) = (r, s):                a - gamma b = r,   b - gamma M^-1 K a = s
-// With b = (a - r)/gamma from the first row, M gamma times the second is
+// The first row gives b = (a - r)/gamma; M gamma times the second is then
 //   (M - gamma^2 K) a = M (r + gamma s).
-// The implicit form, c = 1/gamma:                 c a - b = r,   c M b - K a = s
+// The implicit form, c = 1/gamma, is             c a - b = r,   c M b - K a = s
 //   (M - gamma^2 K) a = gamma (M r + gamma s),   b = c a - r;
-// but of a node without mass the first row is -b = r.
-// No product with K is needed, so the factors may belong to another gamma or an older K than the
-// step at hand, which is when Newton's iteration takes a few more rounds.
+// but the first row of an unknown without mass is -b = r. No product with K is needed, so the
+// factors may belong to another gamma or an older K than the step at hand. Newton's iteration then
+// takes a few more rounds.
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/integrators/sundials/newton_matrix.hpp"
 

@@ -6,9 +6,8 @@ namespace qddot::sundials {
 
 // A zero vector of length 2n for y = (q, v): SUNDIALS' own serial one.
 Vector make_stock_vector(Index n, SUNContext context);
-// The same with the operations that a step spends its time in compiled for this processor: sums of
-// several vectors are made in one pass, and the weighted norm adds in several lanes. So are its
-// clones.
+// The same with the main operations of a step compiled for this processor. Sums of several vectors
+// are made in one pass, and the weighted norm adds in several lanes. Its clones are alike.
 Vector make_vector(Index n, SUNContext context);
 // Another zero vector of the same kind.
 Vector clone(N_Vector y);

@@ -10,15 +10,15 @@ namespace qddot {
 
 namespace {
 
-// Work is counted in operations of a factorisation. In the time of these the machine takes an entry
-// of L there and back, in a solve, and an entry of the triangle twice, in an iteration: both wait
-// for memory. Measured on lattices and cloths of 4000 to 30,000 unknowns, at 60 Gflop/s.
+// Work is counted in operations of a factorisation. A solve reads an entry of L twice, and an
+// iteration reads an entry of the triangle twice. These numbers of operations take as long; both
+// wait for memory. Measured on lattices and cloths of 4000 to 30,000 unknowns, at 60 Gflop/s.
 constexpr double per_factor_entry = 30, per_matrix_entry = 22;
-// Where a factorisation is no more than so many iterations' work there is little to be won: all is
+// A factorisation of no more work than this many iterations leaves little to gain: then all is
 // multifrontal, and exact to rounding.
 constexpr double fewest_iterations = 300;
-// Hysteresis: conjugate gradients are left as soon as they cost more, and taken again only if they
-// cost half when last seen, which may be long ago.
+// Hysteresis: conjugate gradients are left as soon as they cost more. They are taken again only if
+// they cost half as much when last used, which may be long ago.
 constexpr double share_to_return = 0.5;
 
 struct Work {
@@ -71,7 +71,7 @@ class AutomaticFactors final : public Factors {
   SolveOutcome solve(const FourColumns& b, FourColumns& x) override { return solve_with(b, x); }
 
  private:
-  // Another matrix, to be solved with as would have been best for the one before.
+  // Begins another matrix, to be solved with as would have been best for the last one.
   void begin(double a, double s, const SymmetricMatrix& k, bool only_positive) {
     if (solves_ > 0 && fits_) {
       if (iterated_solves_ > 0) last_rate_ = iterated_ / iterated_solves_;

@@ -6,20 +6,21 @@
 
 namespace qddot {
 
-// Factors by the multifrontal method or conjugate gradients, whichever takes less work. What a
-// factorisation and a solve with it take is known from the symbolic analysis; what conjugate
-// gradients take is seen: how many iterations there were, and how many solves with one matrix.
-// Where a factorisation is small all is multifrontal. Else a run begins with conjugate gradients;
-// each matrix is solved with in the way that would have been the cheaper one for the last; and
-// where the iterations with one matrix have taken as much work as to factorise it, it is factorised
-// after all, so that no matrix takes more than twice the least. Work is counted and not timed: a
-// run is the same each time.
+// Makes Factors that use the multifrontal method or conjugate gradients, whichever takes less work.
+// The symbolic analysis tells the work of a factorisation and of a solve with it. The work of
+// conjugate gradients is observed: iterations of a solve, and solves with one matrix.
 //
-// Conjugate gradients need a positive definite matrix. Where they find that it is not, a matrix of
-// factorize() is factorised and solved with as by a direct solver, and one of factorize_positive()
-// is reported. They are used whatever they cost where L would take half of the machine's memory.
+// If a factorisation is small, all is multifrontal. Otherwise a run begins with conjugate
+// gradients. Each matrix is solved with in the way that would have been cheaper for the last one.
+// When the iterations with one matrix have taken as much work as factorising it, it is factorised
+// after all. So no matrix takes more than twice the least work. Work is counted, not timed: a run
+// is the same each time.
 //
-// K, when factorised, must stay as it is until the last solve.
+// Conjugate gradients need a positive definite matrix. If they find that it is not, a matrix of
+// factorize() is factorised and solved with directly, and one of factorize_positive() is reported.
+// They are used at any cost if L would take half of the machine's memory.
+//
+// K, when factorised, must stay unchanged until the last solve.
 std::unique_ptr<Factors> make_automatic_factors(const SymmetricMatrix& pattern, Vec diagonal);
 
 }  // namespace qddot

@@ -9,18 +9,17 @@
 
 namespace qddot {
 
-// The whole of a symmetric matrix a D - s K, both triangles, row by row of B x B blocks (see
-// blocks.hpp), so that a product reads the matrix once from front to back and writes each row once.
-// Blocks of fewer unknowns are filled up by rows and columns of the identity; vectors have B
-// entries for each row of blocks, `slack` more to be read past the end, and zero where they are
-// filled up.
+// A symmetric matrix a D - s K, both triangles, stored by rows of B x B blocks (see blocks.hpp). A
+// product reads it once from front to back and writes each row once. Blocks of fewer unknowns are
+// filled up with rows and columns of the identity. Vectors have B entries for each row of blocks,
+// zero where filled up, and `slack` more to be read past the end.
 template <int B>
 class BlockRows {
  public:
   using Block = Eigen::Matrix<double, B, B>;
   using Entries = Eigen::Matrix<double, B, 1>;
-  // Entries of a row as they are computed with: 3 are the first of 4, as many as one register of
-  // the processor has, and the fourth means nothing.
+  // A row's entries in computations. 3 entries use the first of 4 lanes, as one register of the
+  // processor has; the fourth means nothing.
   using Lanes = Eigen::Array<double, B == 3 ? 4 : B, 1>;
   static constexpr Index slack = 1;
 
@@ -57,13 +56,13 @@ class BlockRows {
 
   Index rows() const { return std::ssize(first_) - 1; }
   Index size() const { return B * rows(); }
-  // How many numbers its blocks are.
+  // The number of values stored in blocks.
   Index entries() const { return B * B * std::ssize(column_); }
   Eigen::Map<const Block> diagonal(Index i) const {
     return Eigen::Map<const Block>(block(diagonal_[i]));
   }
 
-  // a D - s K; K of the pattern, D: n.
+  // Sets the matrix to a D - s K; k: with the pattern, d: n.
   void assemble(double a, const Vec& d, double s, const SymmetricMatrix& k) {
     std::copy(row_start_.begin(), row_start_.end() - 1, next_.begin());
     for (Index j = 0; j < rows(); ++j) {
@@ -108,7 +107,7 @@ class BlockRows {
     return product;
   }
 
-  // n unknowns to a vector of rows, and back.
+  // Copies n unknowns into a vector of rows, and back.
   void spread(const double* from, double* to) const {
     for (Index i = 0; i < rows(); ++i)
       std::copy(from + first_[i], from + first_[i + 1], to + B * i);

@@ -6,12 +6,12 @@
 
 namespace qddot {
 
-// As many unknowns as a node has.
+// The most unknowns of a block: those of a node.
 inline constexpr int most_block_unknowns = 3;
 
-// Where the blocks of a symmetric pattern begin, and last its size: runs of at most three unknowns
-// with the same neighbours, themselves among them, as those of a node are. Entries between two
-// blocks are all there or all absent.
+// The first unknown of each block of a symmetric n x n pattern, and last n. A block is a run of at
+// most three unknowns with the same neighbours, itself included, such as those of a node. Entries
+// between two blocks are all there or all absent.
 std::vector<int> block_starts(const SymmetricMatrix& pattern);
 
 }  // namespace qddot

@@ -117,8 +117,8 @@ class CholmodFactors : public Factors {
     return factor;
   }
 
-  // OpenBLAS maps a buffer at its first dense product and, where that fails, tries for ever. Throws
-  // std::bad_alloc where the address space that is left does not hold one.
+  // OpenBLAS maps a buffer at its first dense product and, if that fails, tries for ever. Throws
+  // std::bad_alloc if the remaining address space does not hold one.
   static void require_buffer() {
     constexpr std::size_t buffer = std::size_t{128} << 20;  // its BUFFER_SIZE on x86-64
     void* place = ::mmap(nullptr, buffer, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -131,8 +131,8 @@ class CholmodFactors : public Factors {
     static std::atomic<bool> has_buffer = false;
     if (!has_buffer) require_buffer();
     current_ = factor;
-    // CHOLMOD asks for 4 threads whatever OMP_NUM_THREADS says; parts this small only wait for
-    // each other in them.
+    // CHOLMOD asks for 4 threads whatever OMP_NUM_THREADS says; in parts this small the threads
+    // only wait for each other.
     const int levels = omp_get_max_active_levels();
     omp_set_max_active_levels(0);
     cholmod_factorize(&view_, factor, &common_);

@@ -20,7 +20,7 @@ VectorXd dense_values(const Eigen::Ref<const MatrixXd>& a) {
 }
 
 EigenPairs dense_pairs(const MatrixXd& a, const MatrixXd& b) {
-  // With B = L L': (L^-1 A L'^-1) y = w y and x = L'^-1 y.
+  // B = L L' turns this into (L^-1 A L'^-1) y = w y with x = L'^-1 y.
   const DenseCholesky root(b);
   MatrixXd c = a.selfadjointView<Eigen::Lower>();
   root.solve_lower(c);

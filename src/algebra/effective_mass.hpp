@@ -7,22 +7,21 @@
 
 namespace qddot {
 
-// Solves (a M - s K) x = b: the n x n matrix of every implicit stage of M q'' = f(q).
-// The pattern is the system's, so the ordering and symbolic analysis are made once, here; each
-// factorize() is numeric only.
+// Solves (a M - s K) x = b, the n x n system of every implicit stage of M q'' = f(q). The
+// constructor orders and analyses the system's pattern once; each factorize() is numeric only.
 class EffectiveMass {
  public:
-  // Signs of the factorised matrix. `indefinite` (compressed springs outweigh the mass) can still
-  // be solved with; `singular` cannot.
+  // Signs of the factorised matrix. An `indefinite` one (compressed springs outweigh the mass) can
+  // still be solved with; a `singular` one cannot.
   using Definiteness = qddot::Definiteness;
 
-  // Without a solver named, a direct one, which all that is said below is true of; what is
-  // different with conjugate gradients is said in conjugate_gradients.hpp.
+  // What follows holds for direct solvers, such as the default. conjugate_gradients.hpp says what
+  // differs there.
   explicit EffectiveMass(const System& system, Solver solver = Solver::multifrontal);
   // The same with another diagonal (n entries) in place of the system's masses.
   EffectiveMass(const System& system, Vec diagonal, Solver solver = Solver::multifrontal);
 
-  // Factorises a M - s K, K with the system's pattern; in an implicit stage a >= 0, s [s^2] >= 0.
+  // Factorises a M - s K; k has the system's pattern. An implicit stage has a >= 0, s [s^2] >= 0.
   // An indefinite matrix is factorised as LDL' without pivoting. Throws std::runtime_error when out
   // of memory.
   Definiteness factorize(double a, double s, const SymmetricMatrix& k) {
@@ -30,23 +29,23 @@ class EffectiveMass {
   }
 
   // The same, but gives up (false, nothing to solve with) unless the matrix is positive definite:
-  // cheaper where an indefinite one is of no use.
+  // cheaper if an indefinite one is of no use.
   bool factorize_positive(double a, double s, const SymmetricMatrix& k) {
     return factors_->factorize_positive(a, s, k);
   }
 
-  // How many eigenvalues of the last factorised matrix are negative (Sylvester's law of inertia);
-  // it must not have been singular.
+  // The number of negative eigenvalues of the last factorised matrix (Sylvester's law of inertia),
+  // which must not have been singular.
   Index negative_pivots() const { return factors_->negative_pivots(); }
 
   // x = (a M - s K)^-1 b with the last factors, which must not be singular; b, x: n. A direct
-  // solver always finds it; where it is not found x is of no use.
+  // solver always finds x. If it is not found, x is of no use.
   SolveOutcome solve(const Vec& b, Vec& x) { return factors_->solve(b, x); }
 
-  // What part of b an iterative solve may leave; others do not care.
+  // Sets which part of b an iterative solve may leave as residual; direct solvers ignore it.
   void set_tolerance(double tolerance) { factors_->set_tolerance(tolerance); }
 
-  // Memory [bytes] that the factors take, workspace and the analysis' indices left out.
+  // Memory [bytes] of the factors, without workspace and the indices of the analysis.
   Index bytes() const { return factors_->bytes(); }
 
  private:

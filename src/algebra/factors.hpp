@@ -5,16 +5,16 @@
 
 namespace qddot {
 
-// Signs of a factorised symmetric matrix. `indefinite` can still be solved with by direct solvers;
-// `singular` cannot.
+// Signs of a factorised symmetric matrix. Direct solvers can still solve with an `indefinite` one;
+// no solver can with a `singular` one.
 enum class Definiteness { positive, indefinite, singular };
 
-// Four right-hand sides or solutions of length n, row by row, so that a row is one load.
+// Four right-hand sides or solutions, n x 4, row by row, so that one load reads a row.
 using FourColumns = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
-// A way to factorise a D - s K, D diagonal and K of a pattern that is analysed once, and to solve
-// with it. Functions as those of EffectiveMass. K, when factorised, must stay as it is until the
-// last solve.
+// A way to factorise a D - s K and to solve with it; functions as those of EffectiveMass. It is
+// made of K's pattern (n x n), which is analysed once, and of the diagonal D (n). K, when
+// factorised, must stay unchanged until the last solve.
 class Factors {
  public:
   virtual ~Factors() = default;
@@ -24,10 +24,10 @@ class Factors {
   virtual SolveOutcome solve(const Vec& b, Vec& x) = 0;
   // The same for four right-hand sides at once; b, x: n x 4, sized by the caller.
   virtual SolveOutcome solve(const FourColumns& b, FourColumns& x) = 0;
-  // Memory [bytes] of the factors alone, known from the analysis on: what a solve reads once
-  // forwards and once backwards.
+  // Memory [bytes] of the factors alone, known after the analysis. A solve reads it once forwards
+  // and once backwards.
   virtual Index bytes() const = 0;
-  // What an iterative solve may leave; direct ones leave rounding errors whatever is asked for.
+  // Sets what an iterative solve may leave; direct ones leave rounding errors in any case.
   virtual void set_tolerance(double) {}
 };
 

@@ -10,8 +10,7 @@ namespace qddot {
 
 namespace {
 
-// The unknowns that entries of L join, directly or through others: a list for each such set, each
-// ascending.
+// The sets of unknowns that entries of L join, directly or through others; each ascending.
 std::vector<std::vector<Index>> joined_unknowns(const SymmetricMatrix& l) {
   std::vector<Index> root(static_cast<std::size_t>(l.cols()));
   std::iota(root.begin(), root.end(), Index{0});

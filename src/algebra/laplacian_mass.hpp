@@ -8,25 +8,25 @@
 
 namespace qddot {
 
-// Solves (M + s L) x = b with the L of Laplacian, which a system must offer. M + s L falls
-// apart into matrices that nothing couples, one for each axis at least, and most of them are the
-// same: the N x N matrix of a network in D dimensions is made and factorised once, and solves for D
-// right-hand sides at a time.
+// Solves (M + s L) x = b with the L of Laplacian, which the system must offer. M + s L splits into
+// uncoupled matrices, at least one for each axis, most of which are equal. So the N x N matrix of a
+// network in D dimensions is factorised once, and solves for D right-hand sides at a time.
 class LaplacianMass {
  public:
+  // Finds the different matrices and analyses their patterns.
   explicit LaplacianMass(const System& system);
 
-  // Factorises for s [s^2] >= 0; false where the matrix is not positive definite, which takes
-  // massless unknowns or numbers that are none.
+  // Factorises M + s L, s [s^2] >= 0. Returns false if it is not positive definite, which takes
+  // massless unknowns or numbers that are not finite.
   bool factorize(double s);
   // x = (M + s L)^-1 b with the last factors; b, x: n, x sized by the caller.
   void solve(const Vec& b, Vec& x);
 
-  // How many different matrices there are, and the unknowns of each.
+  // The number of unknowns of each different matrix.
   std::vector<Index> sizes() const;
 
  private:
-  // A matrix that stands in M + s L as often as `unknowns` has lists of rows.
+  // A matrix that occurs in M + s L once for each list of rows in `unknowns`.
   struct Block {
     Vec mass{};
     SymmetricMatrix l{};

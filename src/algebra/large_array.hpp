@@ -10,8 +10,8 @@
 
 namespace qddot {
 
-// `size` doubles, zero at first and never resized, at the start of a cache line. Large ones ask for
-// pages of 2 MB: columns far apart then share the processor's few address translations, which
+// `size` doubles, zero at first, never resized, at the start of a cache line. Large arrays ask for
+// pages of 2 MB, so that columns far apart need few of the processor's address translations. This
 // halves the time of a factorisation of tens of MB.
 class LargeArray {
  public:

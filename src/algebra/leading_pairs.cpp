@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double tolerance = 1e-10;
 constexpr Index most_restarts = 2000;
-// How many pairs a later round asks for: it mostly only shows that nothing was missed.
+// How many pairs a later round asks for; most only show that nothing was missed.
 constexpr Index later_count = 4;
 
 // A with the space of some orthonormal vectors projected out, as Spectra wants an operator.

@@ -20,9 +20,9 @@ using namespace multifrontal;
 
 constexpr int height = strip_height;
 
-// Where fronts are worked on one after the other, by one thread or a team.
+// Memory to work on fronts one after the other, by one thread or a team.
 struct Workspace {
-  // For a tile's rows of L D or, where a team shares them, all.
+  // `scaled` holds L D in a tile's rows or, for a team, in all rows.
   Workspace(const Fronts::Sizes& sizes, int tile_strips, bool for_team)
       : updates(sizes.updates),
         columns(sizes.pivot_columns + height),  // kernels write a column's last vector whole
@@ -37,7 +37,7 @@ struct Workspace {
 };
 
 // L and the pivots are the same to the last bit for any number of threads: each entry is the same
-// sum in the same order, whoever computes it.
+// sum in the same order.
 class Multifrontal : public Factors {
  public:
   Multifrontal(const SymmetricMatrix& pattern, Vec diagonal, SymbolicFactorization symbolic)
@@ -112,7 +112,7 @@ class Multifrontal : public Factors {
     }
   }
 
-  // One thread's part: some of the branches by itself, then every front above them with the others.
+  // One thread's share: some of the branches by itself, then all fronts above them with the others.
   void work(const Task& task, Team team, Workspace& own) {
     Team alone;
     team.share(static_cast<int>(fronts_.branches().size()), [&](int b) {
@@ -151,8 +151,8 @@ class Multifrontal : public Factors {
              .height = f.height()}};
   }
 
-  // Whether to go on. All threads of a team must answer alike: they ask failed_ only where the team
-  // has met since it may have been set, and will meet again before it may be.
+  // Whether to go on. All threads of a team must answer alike. So they read failed_ only after the
+  // team has met since its last change, and meet again before the next.
   bool factorize(const Task& task, const Open& open, Team& team) {
     assemble_pivots(task, open, team);
     for (int from = 0; from < open.f.pivots; from += panel) {

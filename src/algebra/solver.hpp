@@ -9,11 +9,12 @@
 
 namespace qddot {
 
-// Who solves with the matrices a M - s K of implicit stages: the own multifrontal factorisation,
-// CHOLMOD's to compare with, conjugate gradients without a factorisation, or whichever of the first
-// and the last takes less work (see automatic_factors.hpp).
+// The solver for the matrices a M - s K of implicit stages: the project's own multifrontal
+// factorisation, CHOLMOD's for comparison, or conjugate gradients without a factorisation.
+// `automatic` takes the first or the last, whichever needs less work (automatic_factors.hpp).
 enum class Solver { automatic, multifrontal, cholmod, conjugate_gradients };
 
+// The names of all solvers, in the order of Solver.
 inline constexpr std::array<std::pair<Solver, std::string_view>, 4> solver_names = {
     {{Solver::automatic, "automatic"},
      {Solver::multifrontal, "multifrontal"},
@@ -41,14 +42,14 @@ constexpr std::string_view name(Solver solver) {
   return solver_names[static_cast<std::size_t>(solver)].second;
 }
 
-// Thrown where a numerical library gives up for a reason that no argument is to blame for; says so
-// in a sentence. An integrator makes an outcome of it.
+// Thrown when a numerical library gives up and no argument is to blame; what() says so in a
+// sentence. An integrator turns it into an outcome.
 class SolverFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// What became of a solve.
+// The outcome of a solve.
 enum class SolveOutcome {
   found,
   indefinite,     // the matrix is not positive definite, and this solver needs it to be

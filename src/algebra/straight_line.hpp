@@ -4,14 +4,14 @@
 
 namespace qddot {
 
-// The straight line y = level + slope (x - middle) that leaves the least sum of squares, and the
-// sums of squares that x spreads about its mean `middle` and that the line leaves of y.
+// The least-squares line y = level + slope (x - middle). `middle` is the mean of x, `spread` the
+// sum of (x - middle)^2, and `left` the sum of squares that the line leaves of y.
 struct StraightLine {
   double slope = 0, level = 0, middle = 0;
   double spread = 0, left = 0;
 };
 
-// x, y: as many of each. The slope is zero where all x are one.
+// Fits the line to as many x as y. The slope is zero if all x are equal.
 StraightLine straight_line(std::span<const double> x, std::span<const double> y);
 
 }  // namespace qddot

@@ -16,7 +16,7 @@ namespace qddot {
 
 namespace {
 
-// The lower triangle of a graph, column by column, and how many unknowns each vertex is.
+// The lower triangle of a graph, column by column, and the number of unknowns of each vertex.
 struct Graph {
   std::vector<int> start, rows, unknowns;
 };
@@ -42,10 +42,10 @@ Graph block_graph(const SymmetricMatrix& pattern) {
   return graph;
 }
 
-// Nested dissection is tried, too, where the order of minimum degree takes so many operations a
-// vertex, and the order that leaves fewer entries in L is taken. Measured, it is found in the time
-// of 2.4e5 operations a vertex, and saves a tenth of a factorisation: from nothing in the plane
-// below 3000 nodes to two thirds in space at 8000. So a hundred factorisations pay for it.
+// Nested dissection is tried too if the order of minimum degree takes this many operations a
+// vertex. The order with fewer entries in L is taken. Measured: it is found in the time of 2.4e5
+// operations a vertex and saves a tenth of a factorisation. The gain ranges from nothing in the
+// plane below 3000 nodes to two thirds in space at 8000. So a hundred factorisations pay for it.
 constexpr double worth_dissection = 2e4;
 
 // CHOLMOD's workspace and its symbolic factor of a graph.
@@ -129,14 +129,14 @@ SymbolicFactorization analyse(const SymmetricMatrix& pattern) {
   if (pattern.rows() == 0) return {};  // CHOLMOD does not take it
   Graph graph = block_graph(pattern);
   const int vertices = static_cast<int>(graph.unknowns.size());
-  // METIS, which cuts the graph, draws from the process' one rand(), after setting its seed: two at
-  // once would find an order that depends on chance.
+  // METIS cuts the graph and draws from the process' one rand(), after setting its seed. Two
+  // threads at once would find an order that depends on chance.
   static std::mutex one_at_a_time;
   const std::unique_lock lock(one_at_a_time);
   const Analysis analysis(graph);
 
   SymbolicFactorization result;
-  // Where each vertex begins among the unknowns, as they were and in the new order.
+  // The first unknown of each vertex, as they were and in the new order.
   std::vector<int> before(vertices + 1), after(vertices + 1), supernode(pattern.rows());
   for (int v = 0; v < vertices; ++v) {
     before[v + 1] = before[v] + graph.unknowns[v];

@@ -13,20 +13,20 @@ struct Supernode {
   std::vector<int> rows;  // the rows below the pivots, ascending
 };
 
-// In which order to factorise a symmetric matrix, and where L has entries then.
+// The order in which a symmetric matrix is factorised, and where L then has entries.
 struct SymbolicFactorization {
   std::vector<int> place;             // place[i]: where unknown i comes in the order
   std::vector<Supernode> supernodes;  // in postorder: a subtree's lie together, its root last
 
-  // What L holds with its diagonal, and what it takes to compute: a pivot with r rows below takes r
-  // divisions and r (r + 1) / 2 products and as many differences.
+  // The number of entries of L with its diagonal, and of operations to compute it. A pivot with r
+  // rows below takes r divisions, r (r + 1) / 2 products and as many differences.
   double entries() const;
   double operations() const;
 };
 
-// Analyses an n x n pattern by CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM TOMS 35:3, 2008), on
-// the graph of its blocks: neighbouring unknowns of the same neighbours, as those of a node are,
-// are one vertex. Throws std::runtime_error when out of memory.
+// Analyses an n x n pattern by CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM TOMS 35:3, 2008) on
+// the graph of its blocks (blocks.hpp): a block is one vertex. Throws std::runtime_error when out
+// of memory.
 SymbolicFactorization analyse(const SymmetricMatrix& pattern);
 
 }  // namespace qddot

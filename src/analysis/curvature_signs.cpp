@@ -16,20 +16,20 @@
 namespace qddot {
 namespace {
 
-// Rounding moves the entries of a spring's block by some 9 eps k and the sums by some eps/4 a
-// spring (a row of K has one or two such blocks); the rest is for the pivots.
+// Rounding moves the entries of a spring's block by some 9 eps k; a row of K has one or two such
+// blocks. It moves the sums by some eps/4 a spring. The rest is for the pivots.
 constexpr double roundings = 32;
-// Positions are moved by so many of their roundings, so that those of K do not show.
+// Positions are moved by this many of their roundings, so that those of K do not show.
 constexpr double magnified = 1 << 20;
 constexpr int probes = 2;
-// What the pivots' own errors may be of E, and what E is raised to where they are more.
+// The share of E that the pivots' own errors may have, and what E is raised to if they have more.
 constexpr double share_of_pivots = 0.25, raised_to = 8;
 constexpr int most_raises = 20;
-// Up to here a dense decomposition is cheap, and it has no pivots.
+// A dense decomposition is cheap up to this size, and it has no pivots.
 constexpr Index largest_dense = 1000;
 
-// What of each row of K the springs there can make: the k of a spring does not show in the rows
-// that are across it, but the rounding of its length does.
+// The stiffness that the springs at each row of K can make there. A spring's k does not show in the
+// rows across it, but the rounding of its length does.
 Vec stiffness_of_rows(const System& system, const SymmetricMatrix& k) {
   const Vec rows = row_sums(k);
   const auto* laplacian = capability<Laplacian>(system);
@@ -64,8 +64,8 @@ Vec rounding_of_rows(const System& system, const Vec& q, const SymmetricMatrix& 
   return e;
 }
 
-// What -K + a E, factorised, is an eigenvalue of exactly lies no farther from it than this times E:
-// the residual of a solution, as a part of it, in the metric of E.
+// How far the factors of -K + a E are from exact, in units of E: the residual of a solution,
+// relative to the solution, in the metric of E.
 double error_of_factors(EffectiveMass& factors, double a, const SymmetricMatrix& k, const Vec& e) {
   const Vec root = e.cwiseSqrt();
   std::minstd_rand random(2);
@@ -124,7 +124,7 @@ CurvatureSigns curvature_signs(const System& system, const Vec& q) {
   if (!e.allFinite()) throw std::range_error("the stiffness matrix overflows");
   const double largest = e.maxCoeff();
   if (largest == 0) return {.negative = 0, .flat = static_cast<int>(system.size())};
-  // Where no spring pulls at all, any other number does.
+  // Any other number will do where no spring pulls.
   const auto is_pulled = (e.array() > 0).eval();
   Vec metric = is_pulled.select(e, largest);
   const Below counts = by_pivots(system, k, metric);

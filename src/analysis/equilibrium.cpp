@@ -75,8 +75,8 @@ class Descent {
     return std::sqrt(p.dot(metric_.cwiseProduct(p)) / metric_.sum());
   }
 
-  // p_ with the first of `shift`, 4 shift, 16 shift, ... that makes the matrix positive definite.
-  // False where none does.
+  // Computes p_ with the first of `shift`, 4 shift, 16 shift, ... that makes the matrix positive
+  // definite. False if none does.
   bool direction(double shift) {
     shift_ = shift;
     for (int tries = 0; !matrix_.factorize_positive(shift_, 1, k_); ++tries) {
@@ -117,7 +117,7 @@ class Descent {
   }
 
   // Moves along p_ by the first of 1, 1/2, 1/4, ... that leads to an acceptable place, and returns
-  // it; 0 where none does.
+  // it; 0 if none does.
   double search() {
     const double slope = f_.dot(p_);
     const double noise = machine_epsilon * (std::abs(v_) + row_sum_ * reach_ * reach_);  // of V
@@ -136,7 +136,7 @@ class Descent {
     return 0;
   }
 
-  // Along the direction of negative curvature to a lower place; false where none is found.
+  // Moves along the direction of negative curvature to a lower place; false if none is found.
   bool leave_saddle() {
     ++iterations_;
     const Vec& direction = curvature_.direction;

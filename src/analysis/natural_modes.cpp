@@ -19,13 +19,13 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// Up to here the dense decomposition takes no longer than Lanczos' method, and it cannot fail.
+// The dense decomposition up to this size takes no longer than Lanczos' method, and cannot fail.
 constexpr Index most_dense_modes = 400;
-// Shifts stand off the spectrum by this part of its width, or as many times more as it takes.
+// Shifts stand off the spectrum by this part of its width, or more by factors of `growth`.
 constexpr double least_offset = 1e-8;
 constexpr double growth = 4;
 constexpr int most_tries = 40;
-// Beside a value, those below this part of it are looked at once more.
+// Values below this part of another are computed once more.
 constexpr double small_part = 1e-3;
 
 // The pencil -K x = w^2 M x at one q.
@@ -56,10 +56,10 @@ struct Pencil {
       "it moves");
 }
 
-// Eigenvalues that are small beside the largest are wrong by roundings of that one. In the space of
-// their own vectors, which are right to rounding, only the rounding of what these vectors meet of
-// the matrix A is left: so again and again for what is small even there. `projected` is X'AX for
-// some of the vectors.
+// Eigenvalues that are small beside the largest have its rounding errors, but their vectors are
+// right to rounding. Only the rounding of what these vectors meet of the matrix A is left in the
+// space of them. This is repeated for what is small even there. `projected` is X'AX for some of the
+// vectors.
 template <class Projected>
 void look_again_at_small(const Projected& projected, Vec& values, MatrixXd& vectors) {
   Index first = 0, count = values.size();
@@ -82,8 +82,8 @@ void look_again_at_small(const Projected& projected, Vec& values, MatrixXd& vect
   vectors = MatrixXd(vectors(Eigen::all, order));
 }
 
-// All finite modes, the massless unknowns eliminated: with a and b for massive and massless ones,
-// -K_bb x_b = K_ba x_a and (-K_aa - K_ab (-K_bb)^-1 K_ba) x_a = w^2 M_a x_a.
+// All finite modes. The massless unknowns b are eliminated from the massive ones a: -K_bb
+// x_b = K_ba x_a and (-K_aa - K_ab (-K_bb)^-1 K_ba) x_a = w^2 M_a x_a.
 NaturalModes dense_modes(const Pencil& p) {
   const auto &a = p.massive, &b = p.massless;
   const Vec root = p.mass(a).cwiseSqrt();
@@ -127,7 +127,7 @@ NaturalModes modes_beside(const Pencil& p, EffectiveMass& matrix, double offset,
     matrix.solve(root.cwiseProduct(pairs.vectors.col(j)), x);
     shapes.col(j) = x * (offset / pairs.values[j]);
   }
-  // By Rayleigh and Ritz in the space of these shapes: w^2 of second order in their errors.
+  // Rayleigh-Ritz in the space of these shapes: the errors of w^2 are of second order in theirs.
   const auto projected = [&](const MatrixXd& some) {
     return MatrixXd(-some.transpose() * (p.k.selfadjointView<Eigen::Lower>() * some));
   };
@@ -165,7 +165,7 @@ NaturalModes lowest_modes(const System& system, const Vec& q, Index count, const
     offset *= growth;
   }
   NaturalModes modes = modes_beside(p, matrix, offset, count);
-  // From far off, modes that differ much look alike.
+  // A shift far off the spectrum makes different modes look alike.
   for (int tries = 0; tries < most_tries; ++tries) {
     const double size = modes.squares.lpNorm<Eigen::Infinity>();
     if (size >= small_part * offset) break;
@@ -184,7 +184,7 @@ NaturalModes highest_modes(const System& system, const Vec& q, Index count) {
     const NaturalModes all = dense_modes(p);
     return {all.squares.tail(count), all.shapes.rightCols(count)};
   }
-  // Above all finite w^2, s M + K is positive but for a negative pivot for each massless unknown.
+  // If s is above all finite w^2, s M + K has one negative pivot for each massless unknown only.
   EffectiveMass matrix(system);
   const auto is_above = [&](double shift) {
     if (p.massless.empty()) return matrix.factorize_positive(shift, -1, p.k);

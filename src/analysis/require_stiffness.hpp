@@ -6,7 +6,7 @@
 
 namespace qddot {
 
-// For what is computed from K: throws std::invalid_argument where the system computes none.
+// Throws std::invalid_argument if the system computes no K.
 inline void require_stiffness(const System& system) {
   if (!system.has_stiffness()) {
     throw std::invalid_argument("the system computes no stiffness matrix K, which this is made of");

@@ -7,13 +7,12 @@
 
 namespace qddot {
 
-// Systems that no force couples, one after the other as one: M and K are block diagonal, V is the
-// sum. What runs through time may take each block by itself (see Blocks), so an evaluation of the
-// whole may allocate.
+// Several systems that no force couples, joined into one: M and K are block diagonal, V is the sum.
+// Integrators may run each block by itself (see Blocks), so an evaluation of the whole may
+// allocate.
 //
-// It has K where all blocks have, and offers what all blocks offer. Three capabilities tell of an
-// exception that a system without them does not have: Kinks, Validity and PiecewiseLinear. These it
-// offers where any block does.
+// It has K if all blocks have K, and offers a capability if all blocks offer it. Kinks, Validity
+// and PiecewiseLinear state exceptions; these it offers if any block does.
 class BlockDiagonalSystem final : public System,
                                   public SplitStiffness,
                                   public DiscreteGradient,
@@ -23,6 +22,7 @@ class BlockDiagonalSystem final : public System,
                                   public Kinks,
                                   public Blocks {
  public:
+  // `blocks`: in the order of their unknowns.
   explicit BlockDiagonalSystem(std::vector<std::unique_ptr<System>> blocks);
 
   double potential(const ConstVec& q) const override;

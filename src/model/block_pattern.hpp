@@ -7,10 +7,10 @@
 
 namespace qddot {
 
-// The lower triangle of a network's K, and where each block stands in it. The column of node j's
+// The lower triangle of a network's K, and the place of each block in it. The column of node j's
 // coordinate a holds the rows a, a + 1, ... of its own block, then the rows of each neighbour i > j
-// in ascending order. So a block is found by its node's first column and its place below it:
-// nothing is searched for during assembly.
+// in ascending order. A block's place follows from its node's first column and its place below the
+// diagonal block, so assembly searches nothing.
 template <int D>
 class BlockPattern {
  public:
@@ -21,7 +21,7 @@ class BlockPattern {
     if (i != j) below_[std::min(i, j)].push_back({std::max(i, j), 0});
   }
 
-  // The pattern with values zero, to be called once, after all joins.
+  // The pattern with zero values. Call once, after all joins.
   SymmetricMatrix make() {
     const Index n = layout_.first(static_cast<int>(layout_.nodes()));
     Index nonzeros = 0;
@@ -57,8 +57,8 @@ class BlockPattern {
     return pattern;
   }
 
-  // The rows between the own block of the first of two joined nodes and the block of both; valid
-  // after make().
+  // How many rows lie between the own block of node min(i, j) and the block of i and j, which must
+  // be joined; valid after make().
   int place(int i, int j) const {
     if (i == j) return 0;
     const auto& list = below_[std::min(i, j)];

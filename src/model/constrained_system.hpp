@@ -8,12 +8,11 @@
 
 namespace qddot {
 
-// A system in which some unknowns are held where they are: their forces, and the rows and columns
-// of K that belong to them, are zero, as if whatever holds them always pushed back. Where such an
-// unknown starts at rest it stays at rest. What remains of pinned nodes that are unknowns all the
-// same, for comparison with the system that does without them.
+// A system with some unknowns held: their forces, and their rows and columns of K, are zero. A held
+// unknown that starts at rest stays at rest. It models pinned nodes that are kept as unknowns, for
+// comparison with the system that leaves them out.
 //
-// It has K where that system has, and offers what that system offers, but for Blocks.
+// It has K if `system` has K, and offers the capabilities of `system` except Blocks.
 class ConstrainedSystem final : public System,
                                 public SplitStiffness,
                                 public DiscreteGradient,

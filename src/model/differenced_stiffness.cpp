@@ -36,7 +36,7 @@ std::vector<std::vector<Index>> neighbours(const std::vector<std::pair<Index, In
 std::vector<std::vector<Index>> coloured(const std::vector<std::vector<Index>>& rows) {
   std::vector<std::vector<Index>> columns_of;
   std::vector<std::size_t> colour_of(rows.size(), std::numeric_limits<std::size_t>::max());
-  std::vector<Index> taken_by;  // each colour, near which column last
+  std::vector<Index> taken_by;  // for each colour, the last column that it was refused
   for (std::size_t j = 0; j < rows.size(); ++j) {
     for (const Index row : rows[j]) {
       for (const Index other : rows[static_cast<std::size_t>(row)]) {

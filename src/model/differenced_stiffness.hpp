@@ -7,16 +7,16 @@
 
 namespace qddot {
 
-// A system that has no K of its own, with one by central differences of its force:
+// Gives a system without K a stiffness matrix by central differences of its force:
 //   K e_j = (f(q + d e_j) - f(q - d e_j)) / 2d,   d = cbrt(2^-52) max(`length`, |q|_inf).
-// Columns that no row of the pattern shares are displaced together (Curtis, Powell, Reid, IMA
-// Journal of Applied Mathematics 13 (1974) 117-119), so that K costs twice as many forces as there
-// are colours. K is good to some 1e-10 of its largest entries, for smooth forces, and is made
+// Columns that share no row of the pattern are displaced together (Curtis, Powell, Reid, IMA
+// Journal of Applied Mathematics 13 (1974) 117-119). One K costs two forces for each such group, or
+// colour. It is good to some 1e-10 of its largest entries, if forces are smooth, and is made
 // symmetric.
 class DifferencedStiffness final : public System {
  public:
-  // `pairs`: the unknowns (i, j) that depend on each other, in any order; those on the diagonal
-  // need not be named. `length` [m]: a small length of the motion, 1 by default. Throws
+  // `pairs`: the pairs (i, j) of unknowns that depend on each other, in any order; i = j may be
+  // left out. `length` [m]: a small length of the motion, 1 by default. Throws
   // std::invalid_argument for a pair beyond the unknowns or a length that is not above 0.
   DifferencedStiffness(std::shared_ptr<const System> system,
                        const std::vector<std::pair<Index, Index>>& pairs, double length = 1);

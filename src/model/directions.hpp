@@ -8,9 +8,9 @@
 
 namespace qddot {
 
-// The directions of all springs of a network: of links, image links and anchors at nodes all of
-// whose coordinates are unknowns, then of the others likewise; 0 where a spring may have any. Empty
-// where none has one; throws std::invalid_argument where they may not be (see Network).
+// The directions of all springs of a network, 0 for a spring without one; empty if none has one.
+// First come links, image links and anchors whose nodes have only unknown coordinates, then the
+// others likewise. Throws std::invalid_argument if directions are not allowed (see Network).
 template <int D>
 std::vector<signed char> directions(const Network& network, const Layout<D>& layout) {
   std::vector<signed char> inner_links, inner_anchors, edge_links, edge_anchors;

@@ -5,7 +5,7 @@ namespace {
 
 constexpr double narrowest = 1e-6;
 
-// On [at, at + width], of which c are the coefficients.
+// The same on [at, at + width], where c are the coefficients.
 std::optional<double> first_below(const SquaredLength& c, double bound, double at, double width) {
   if (c.front() < bound) return at;
   if (std::ranges::min(c) >= bound) return {};

@@ -11,12 +11,13 @@
 
 namespace qddot {
 
-// The squared length of a spring over a step, as a polynomial of degree 6 in s = 0 ... 1 by its
-// coefficients c in Bernstein's form: where all are above a bound, so is the polynomial; c_0 and
-// c_6 are its values at the two ends.
+// The squared length of a spring [m^2] during a step: a polynomial of degree 6 in s = 0 ... 1, by
+// its Bernstein coefficients c. If all c are above a bound, so is the polynomial. c_0 and c_6 are
+// its values at the ends.
 using SquaredLength = std::array<double, 7>;
 
-// The first s of [0, 1] at which it is below `bound`, to a millionth; nothing where it never is.
+// The first s in [0, 1] at which the polynomial is below `bound`, to a millionth; nothing if there
+// is none.
 std::optional<double> first_below(const SquaredLength& c, double bound);
 
 // The springs of a network that hold in tension only (Holds::in_tension).
@@ -34,14 +35,15 @@ class InTension {
   void add(const Spring& spring) { springs_.push_back(spring); }
   bool empty() const { return springs_.empty(); }
 
+  // Whether no spring is shorter than its rest length at q.
   bool holds_at(const Layout<D>& layout, const ConstVec& q) const {
     return std::ranges::all_of(springs_, [&](const Spring& spring) {
       return difference(layout, spring, q).squaredNorm() >= bound(spring);
     });
   }
 
-  // When one of them first gets shorter than at rest on the way between two states [s]: each d is
-  // taken as the cubic that has its values and rates at both ends.
+  // The first time [s] between two states at which a spring gets shorter than its rest length;
+  // nothing if none does. Each d follows the cubic that has its values and rates at both ends.
   std::optional<double> first_slack(const Layout<D>& layout, const Vec& mass, const State& from,
                                     const State& to) const {
     if (springs_.empty()) return {};
@@ -49,7 +51,7 @@ class InTension {
     for (const Spring& spring : springs_) {
       const SquaredLength length = path(layout, mass, spring, from, to);
       std::optional<double> s = first_below(length, bound(spring));
-      // A start that was not in order to begin with: its end is what counts.
+      // If the spring was too short at the start already, only its end counts.
       if (s == 0 && length.back() >= bound(spring)) s.reset();
       if (s && (!first || *s < *first)) first = s;
     }
@@ -58,7 +60,7 @@ class InTension {
   }
 
  private:
-  // A spring drawn at its rest length may be shorter by what rounding makes of it.
+  // A spring drawn at its rest length may be shorter by rounding.
   static double bound(const Spring& spring) {
     const double l = (1 - 1e-12) * spring.law.rest_length;
     return l * l;
@@ -72,12 +74,12 @@ class InTension {
     return difference(layout, spring, v);
   }
 
-  // Where h w <= 2, with w^2 = k (1/m_i + 1/m_j) for a vibration along the spring, the cubic
-  // resolves it. In longer steps the rates of l at the two ends count without what they have in
-  // common but the lengths do not show, which is an error of first order of the velocities; and no
-  // more than a vibration can make of them, whose speed takes it as far as itself divided by w,
-  // where the cubic goes up to a quarter of it times h. The two ends tell nothing of a
-  // vibration that turns more than once in a step, h w > 8.
+  // The cubic resolves a vibration along the spring, w^2 = k (1/m_i + 1/m_j), if h w <= 2. If a
+  // step is longer, the rates of l at both ends are corrected twice. First they lose the part that
+  // both have in common but the lengths do not show, which is a first-order error of the
+  // velocities. Then they are scaled by 4/(h w): a vibration of speed u has the amplitude u/w, but
+  // the cubic goes up to u h/4. If h w > 8, the vibration turns more than once in a step, and the
+  // two ends tell nothing of it.
   static SquaredLength path(const Layout<D>& layout, const Vec& mass, const Spring& spring,
                             const State& from, const State& to) {
     const double h = to.t - from.t;
@@ -93,7 +95,7 @@ class InTension {
       a_rate -= (r - share * (r - common)) / first * a;
       d_rate -= (s - share * (s - common)) / last * d;
     }
-    // The cubic by its own coefficients in Bernstein's form, and their products.
+    // The cubic's Bernstein coefficients, and their products.
     const Point b = a + h / 3 * a_rate, c = d - h / 3 * d_rate;
     return {a.dot(a),
             a.dot(b),

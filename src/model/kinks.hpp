@@ -4,16 +4,16 @@
 
 namespace qddot {
 
-// A capability (see capabilities.hpp): the system knows where its force jumps, which is where
-// certain lengths change their sign. On a line a spring of rest length l0 > 0 that passes through
-// length zero turns its force of k l0 over. A system without this has a continuous force.
+// A capability (see capabilities.hpp): the force jumps where certain lengths change sign, and the
+// system gives these lengths. Example: a spring of rest length l0 > 0 on a line reverses its force
+// k l0 when its length passes through zero. A system without this has a continuous force.
 class Kinks {
  public:
   virtual ~Kinks() = default;
-  // How many such lengths there are.
+  // The number of such lengths.
   virtual Index kinks() const = 0;
-  // These lengths, with their signs [m], into `lengths`, sized by the caller: affine functions of
-  // q.
+  // Writes these signed lengths [m] at q (n) into `lengths`, sized by the caller. They are affine
+  // in q.
   virtual void kink_lengths(const ConstVec& q, MutableVec lengths) const = 0;
 };
 

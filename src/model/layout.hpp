@@ -9,15 +9,14 @@
 
 namespace qddot {
 
-// Where the coordinates of D-dimensional nodes stand among the unknowns, when some coordinates stay
-// zero and are none: coordinate axis(i, a) of node i, a = 0 ... count(i) - 1, is unknown
-// first(i) + a.
+// Maps the coordinates of D-dimensional nodes to unknowns. Coordinates that stay zero are no
+// unknowns. Coordinate axis(i, a) of node i, a = 0 ... count(i) - 1, is unknown first(i) + a.
 template <int D>
 class Layout {
  public:
   using Point = Eigen::Matrix<double, D, 1>;
 
-  // `zero`: for each node, a bit for each coordinate that stays zero; empty where none does.
+  // `zero`: bit d of a node is set if its coordinate d stays zero; empty if none does.
   Layout(Index nodes, const std::vector<unsigned>& zero) : axes_(static_cast<std::size_t>(nodes)) {
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       int count = 0;
@@ -33,9 +32,10 @@ class Layout {
   int first(int i) const { return first_[i]; }
   int count(int i) const { return axes_[i][D]; }
   int axis(int i, int a) const { return axes_[i][a]; }
-  // Whether all of its coordinates are unknowns.
+  // Whether all coordinates of node i are unknowns.
   bool is_full(int i) const { return count(i) == D; }
 
+  // The D coordinates of node i in q, and the addition of x to those of node i in f.
   Point at(const ConstVec& q, int i) const {
     Point x = Point::Zero();
     for (int a = 0; a < count(i); ++a) x[axis(i, a)] = q[first(i) + a];

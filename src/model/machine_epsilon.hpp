@@ -4,7 +4,8 @@
 
 namespace qddot {
 
-// From 1 to the next double; a sum or product errs by at most half of it, relatively.
+// The distance from 1 to the next double. The relative error of a sum or product is at most half of
+// it.
 inline constexpr double machine_epsilon = std::numeric_limits<double>::epsilon();
 
 }  // namespace qddot

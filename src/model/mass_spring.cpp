@@ -19,7 +19,7 @@ namespace {
 
 using namespace kernels;
 
-// Measured: from so many nodes on vectors sum forces faster than a loop over springs does.
+// Measured: vectors sum forces faster than a loop over springs from this many nodes on.
 constexpr Index fewest_for_vectors = 16;
 
 template <int D>
@@ -116,14 +116,14 @@ class MassSpring final : public System,
   const Split& split() const override { return *split_; }
 
   bool bounds_stiffness() const override { return !has_quartic_; }
-  // The network at rest lengths zero is stiff alike at every q.
+  // A network with rest lengths of zero has the same stiffness at every q.
   void laplacian(SymmetricMatrix& l) const override {
     springs_.assemble(Vec::Zero(size()), l, [](const SpringLaw& law, const Point&) -> Block {
       return -law.stiffness * Block::Identity();
     });
   }
 
-  // Elsewhere than on a line hardly a motion meets a length of zero.
+  // Only on a line do motions meet lengths of zero.
   Index kinks() const override { return kinks_; }
   void kink_lengths(const ConstVec& q, MutableVec lengths) const override {
     Index i = 0;
@@ -195,7 +195,7 @@ class MassSpring final : public System,
     }
   }
 
-  // What the columns leave out.
+  // Adds the springs that the kernel of K leaves out.
   template <class BlockOf>
   void add_left_out(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block) const {
     for (const int e : columns_->links_left_out()) springs_.add_link_block(q, k, block, e);
@@ -204,7 +204,7 @@ class MassSpring final : public System,
 
   Layout<D> layout_;
   SpringLists<D> springs_;
-  InTension<D> in_tension_;              // once more, those that hold in tension only
+  InTension<D> in_tension_;              // the springs that hold in tension only, once more
   Vec weight_;                           // M g + load [N]
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none
   double constant_energy_;

@@ -6,13 +6,14 @@
 
 namespace qddot {
 
-// The network with its stiff springs alone, or with all but these: the halves of a Split.
+// The network with only its stiff springs (`stiff`), or with all others: the halves of a Split.
 Network only(Network network, bool stiff);
 
-// The nodes that springs of the network pull at, ascending.
+// The nodes that have a spring, ascending.
 std::vector<int> pulled_nodes(const Network& network);
 
-// The network of these nodes alone, to which all of its springs must belong; it has no loads.
+// The network of these nodes alone. All springs of `network` must join them, and it must have no
+// loads.
 Network among(const std::vector<int>& nodes, const Network& network);
 
 }  // namespace qddot

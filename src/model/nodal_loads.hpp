@@ -15,7 +15,7 @@ Vec masses(const Network& network, const Layout<D>& layout) {
   return mass;
 }
 
-// M g + load, the force on each unknown that does not depend on any [N].
+// M g + load [N]: the constant force on each unknown.
 template <int D>
 Vec weights(const Network& network, const Layout<D>& layout) {
   Vec weight = masses(network, layout);

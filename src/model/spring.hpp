@@ -15,7 +15,7 @@ struct SpringLaw {
   double rest_length = 0;  // l0 [m], >= 0
   double quartic = 0;      // c [N/m^3], >= 0
 
-  // Whether its force is linear in the difference of its ends.
+  // Whether the force is linear in the difference of the spring's ends.
   bool is_linear() const { return rest_length == 0 && quartic == 0; }
 
   // V(l) [J].
@@ -43,25 +43,26 @@ struct SpringLaw {
   }
 };
 
-// Whether a spring only stands for others as long as it is not compressed, l >= l0: for springs in
-// series through massless nodes, which fold up where this one would push.
+// When a spring's law holds: always, or in tension only, l >= l0. The second is for a spring that
+// replaces several in series through massless nodes: those fold up where this one would push.
 enum class Holds { always, in_tension };
 
-// One spring between x_i and x_j in D = 1, 2 or 3 dimensions, as functions of d = x_j - x_i [m],
+// Functions of one spring between x_i and x_j in D = 1, 2 or 3 dimensions: d = x_j - x_i [m],
 // l = |d|, n = d/l. Real is double, or std::complex<double> for complex-step differentiation.
 //
-// At l = 0 the direction n does not exist. With l0 = 0 everything below has a limit, and that is
-// what is returned. With l0 > 0 the energy has the tip of a cone there: the force is taken as zero
-// (the mean over all directions) and the stiffness as the longitudinal one in every direction, so
-// that both stay finite and K stays symmetric.
+// The direction n does not exist at l = 0. If l0 = 0, all functions have a limit there and return
+// it. If l0 > 0, the energy has the tip of a cone there. The force is then zero (the mean over all
+// directions), and the stiffness is the longitudinal one in every direction. So both stay finite
+// and K stays symmetric.
 
+// The spring's length l [m].
 template <class Real, int D>
 Real spring_length(const Eigen::Matrix<Real, D, 1>& d) {
   using std::sqrt;
   return sqrt((d.transpose() * d).value());  // no conjugation: analytic in d
 }
 
-// V [J].
+// The spring's energy V [J].
 template <class Real, int D>
 Real spring_energy(const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d) {
   return law.energy(spring_length(d));
@@ -79,9 +80,9 @@ template <class Real, int D>
   return d * (std::abs(l) > 0 ? law.tension(l) / l : Real(0));
 }
 
-// The discrete gradient, as a force on x_i [N], of a spring that goes from d0 to d1: the secant
-// (V1 - V0)/(l1 - l0) of its energy in the direction of (d0 + d1)/(l0 + l1). With d1 - d0 it makes
-// V1 - V0 exactly, for (d0 + d1).(d1 - d0) = (l0 + l1)(l1 - l0). Both lengths zero: no force.
+// The discrete gradient of a spring that goes from d0 to d1, as a force on x_i [N]: the secant
+// (V1 - V0)/(l1 - l0) of its energy times (d0 + d1)/(l0 + l1). Its product with d1 - d0 is exactly
+// V1 - V0, for (d0 + d1).(d1 - d0) = (l0 + l1)(l1 - l0). Zero if both lengths are zero.
 template <int D>
 Eigen::Matrix<double, D, 1> spring_discrete_gradient(const SpringLaw& law,
                                                      const Eigen::Matrix<double, D, 1>& d0,
@@ -90,8 +91,8 @@ Eigen::Matrix<double, D, 1> spring_discrete_gradient(const SpringLaw& law,
   return (d0 + d1) * (l0 + l1 > 0 ? law.secant(l0, l1) / (l0 + l1) : 0);
 }
 
-// The D x D block B = tau' nn' + (tau/l)(I - nn') [N/m]: K_ij = K_ji = B, K_ii and K_jj lose B.
-// Indefinite where the spring is compressed (tau < 0), which is how structures buckle; then
+// The D x D block B = tau' nn' + (tau/l)(I - nn') [N/m]: K_ij = K_ji = B, K_ii and K_jj lose B. B
+// is indefinite if the spring is compressed (tau < 0), which makes structures buckle; then
 // `compression` scales tau/l.
 template <class Real, int D>
 Eigen::Matrix<Real, D, D> spring_stiffness(const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d,
@@ -107,8 +108,8 @@ Eigen::Matrix<Real, D, D> spring_stiffness(const SpringLaw& law, const Eigen::Ma
   return Block::Identity() * across + (along - across) * (n * n.transpose());
 }
 
-// The part of this block that the material's stiffness makes, without the tension: tau' nn' [N/m],
-// or all of B where l0 = 0, so that a spring is never without tension. Positive semidefinite.
+// The material part tau' nn' of this block [N/m], without the tension; all of B if l0 = 0, as such
+// a spring is always in tension. Positive semidefinite.
 template <class Real, int D>
 Eigen::Matrix<Real, D, D> spring_material_stiffness(const SpringLaw& law,
                                                     const Eigen::Matrix<Real, D, 1>& d) {

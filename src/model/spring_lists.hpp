@@ -10,9 +10,9 @@
 
 namespace qddot {
 
-// The springs of a network, in lists by how their ends are found among the unknowns, and the sums
-// over them that force and stiffness are. Most springs join nodes all of whose coordinates are
-// unknowns: they keep the first unknowns of their ends. The few others go through the layout.
+// The springs of a network in lists, and the sums over them that give force and stiffness. Most
+// springs join nodes whose coordinates are all unknowns; they store the first unknowns of their
+// ends. The few others use the layout.
 template <int D>
 class SpringLists {
  public:
@@ -46,7 +46,7 @@ class SpringLists {
     SpringLaw law;
   };
 
-  // Keeps the layout, which must outlive it.
+  // Keeps a reference to the layout, which must outlive it.
   SpringLists(const Network& network, const Layout<D>& layout) : layout_(layout) {
     BlockPattern<D> pattern(layout_);
     for (const auto& link : network.links) pattern.join(link.i, link.j);
@@ -72,7 +72,7 @@ class SpringLists {
   // The pattern of K.
   const SymmetricMatrix& pattern() const { return pattern_; }
 
-  // Calls see(spring) for each, list by list.
+  // Calls see(spring) for each spring, list by list.
   template <class See>
   [[gnu::always_inline]] void for_each(const See& see) const {
     for (const Link& link : links_) see(link);
@@ -82,14 +82,14 @@ class SpringLists {
     for (const EdgeAnchor& anchor : edge_anchors_) see(anchor);
   }
 
-  // The same for those to fixed points alone.
+  // The same for springs to fixed points only.
   template <class See>
   [[gnu::always_inline]] void for_each_anchor(const See& see) const {
     for (const Anchor& anchor : anchors_) see(anchor);
     for (const EdgeAnchor& anchor : edge_anchors_) see(anchor);
   }
 
-  // d from a spring's end i to its end j, diag(mirror) x_j - x_i or point - x_i.
+  // d from a spring's end i to its end j: diag(mirror) x_j - x_i or point - x_i.
   Point between(const ConstVec& q, const Link& link) const {
     return q.segment<D>(link.j) - q.segment<D>(link.i);
   }
@@ -106,15 +106,15 @@ class SpringLists {
     return anchor.point - layout_.at(q, anchor.i);
   }
 
-  // Adds to f, for every spring, on_i(spring) on its end i and what that is on j.
+  // Adds each spring's force on_i(spring) to its end i in f, and the opposite force to its end j.
   template <class OnI>
   [[gnu::always_inline]] void add_forces(const OnI& on_i, MutableVec f) const {
     for_each([&](const auto& spring)
                  __attribute__((always_inline)) { add_force(spring, on_i(spring), f); });
   }
 
-  // K = 0, then with S = diag(mirror), of every spring's B = block(law, d): K_ii -= B,
-  // K_jj -= S B S, K_ij += B S; where i = j all three are one block.
+  // Sets K to the sum over all springs of B = block(law, d), with S = diag(mirror): K_ii -= B,
+  // K_jj -= S B S, K_ij += B S. If i = j, all three are one block.
   template <class BlockOf>
   void assemble(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block) const {
     k.coeffs().setZero();
@@ -125,7 +125,7 @@ class SpringLists {
     add_image_blocks(q, k, block);
   }
 
-  // The off-diagonal block of the link of that number.
+  // Adds the off-diagonal block of link number e.
   template <class BlockOf>
   void add_link_block(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block,
                       std::size_t e) const {
@@ -134,7 +134,7 @@ class SpringLists {
                        block(link.law, between(q, link)));
   }
 
-  // The off-diagonal blocks of images and of links whose nodes have fewer unknowns.
+  // Adds the off-diagonal blocks of images and of links whose nodes have fewer unknowns.
   template <class BlockOf>
   void add_image_blocks(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block) const {
     for (std::size_t e = 0; e < images_.size(); ++e) {
@@ -210,7 +210,7 @@ class SpringLists {
     edge_subtract_from_diagonal(k, anchor.i, b);
   }
 
-  // For a node whose first unknown is `first` and whose D coordinates are all unknowns.
+  // `first`: the first unknown of a node whose D coordinates are all unknowns.
   static void subtract_from_diagonal(SymmetricMatrix& k, int first, const Block& b) {
     for (int d = 0; d < D; ++d) {
       double* column = k.valuePtr() + k.outerIndexPtr()[first + d];
@@ -223,7 +223,7 @@ class SpringLists {
       for (int row = 0; row < D; ++row) column[row] += b(row, d);
     }
   }
-  // For a node with fewer.
+  // The same for a node with fewer unknowns.
   void edge_subtract_from_diagonal(SymmetricMatrix& k, int node, const Block& b) const {
     const int count = layout_.count(node);
     for (int c = 0; c < count; ++c) {

@@ -4,8 +4,8 @@
 
 #include "qddot/model/system.hpp"
 
-// Updates of long vectors at the width of the processor's vectors, which Eigen's expressions have
-// only where all is compiled for that processor. Sizes must agree; `out` may be one of the others.
+// Updates of long vectors with the widest vectors of the processor, chosen at start. Eigen uses
+// these only in code compiled for one processor. Sizes must agree; `out` may be an input.
 namespace qddot {
 
 // out = x + c z
@@ -13,7 +13,7 @@ void add_scaled(const ConstVec& x, double c, const ConstVec& z, MutableVec out);
 // out = x + c f/m, entry by entry.
 void add_quotient(const ConstVec& x, double c, const ConstVec& f, const ConstVec& m,
                   MutableVec out);
-// A kick by c0, another by c and a drift: w = (v + c0 f/m) + c f/m, q' = q + h w.
+// Two kicks and a drift: w = (v + c0 f/m) + c f/m, `q_next` = q + h w.
 struct Motion {
   const Vec &q, &v, &f, &m;
 };
@@ -22,7 +22,7 @@ void kick_and_drift(const Motion& motion, double c0, double c, double h, Mutable
 // out = f/m and out = a b, entry by entry.
 void divide(const ConstVec& f, const ConstVec& m, MutableVec out);
 void multiply(const ConstVec& a, const ConstVec& b, MutableVec out);
-// out = x + c K b with the first columns of K, as many as b has, at most 32.
+// out = x + c K b, with as many first columns of K as b has entries, at most 32.
 void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
                      std::span<const double> b, MutableVec out);
 // out = x + d v + c K b, likewise.
@@ -32,7 +32,7 @@ void add_combination(const ConstVec& x, double d, const ConstVec& v, double c,
 void set_combination(double c, const Eigen::MatrixXd& k, std::span<const double> b, MutableVec out);
 // out_i = b_0 z_0i + b_1 z_1i + ...
 void set_combination(std::span<const double* const> z, const double* b, MutableVec out);
-// A step of a multistep method, from the u_1, u_2, ... of the steps before, u[1] and following:
+// A step of a multistep method; u[1], u[2], ... are the u_1, u_2, ... of earlier steps:
 //   u_0 = c f - (r_1 u_1 + r_2 u_2 + ...),   d' = d + b_0 u_0 + b_1 u_1 + ...,
 //   q' = q + d',   c f entry by entry.
 struct HistoryStep {
@@ -46,7 +46,7 @@ void step_by_history(const HistoryStep& step, const ConstVec& f, const ConstVec&
 double squared_norm(const ConstVec& x);
 // |v + c f/m|^2
 double squared_norm_of_kicked(const ConstVec& v, double c, const ConstVec& f, const ConstVec& m);
-// The sum of (x_i/(rtol |y_i| + atol))^2: errors x of y in units of what is tolerated.
+// The sum of (x_i/(rtol |y_i| + atol))^2: errors x of y in units of the tolerance, squared.
 double squared_error(const ConstVec& x, double rtol, const ConstVec& y, double atol);
 
 }  // namespace qddot

@@ -9,40 +9,40 @@
 
 namespace qddot {
 
-// What a scene is and what is left of it to be integrated, without any of it being integrated.
+// What a scene is, and what is left of it to be integrated; no motion is computed.
 struct Explanation {
   Index drawn_unknowns = 0;  // dimension x nodes
   Index unknowns = 0;
   std::vector<Finding> findings;
   bool stiffness_is_constant = false;
   std::size_t stiff_springs = 0;  // of the springs as drawn, where the scene names stiff ones
-  // At the start, of the system that is left:
-  double omega_bound = 0;  // w_max is at most that [rad/s], by Gershgorin; infinite without mass
+  // These are for the start of the system that is left:
+  double omega_bound = 0;  // upper bound of w_max [rad/s], by Gershgorin; infinite without mass
   double omega_max = 0;    // by Lanczos, to about 1e-4; NaN where it was not found
-  // At the start, in all directions in which the nodes may move:
+  // These are for the start, in all directions in which the nodes may move:
   int unstable = 0;           // directions in which V falls: K is indefinite if there are any
   int flat = 0;               // in which V is flat within rounding (see CurvatureSigns),
   double flat_rate = 0;       // and the rate [1/s] that no growth in them exceeds
-  int unstable_left_out = 0;  // of these, how many the reduced motion never takes
-  double growth = 0;          // of the fastest [1/s], 0 where it is not known
+  int unstable_left_out = 0;  // unstable ones that the reduced motion never takes
+  double growth = 0;          // of the fastest [1/s]; 0 if not known
   std::size_t fastest = 0;    // the node that the fastest moves most
   bool is_examined = true;    // false: too large for that, or K overflows
 };
 
-// In how large scenes, in unknowns as drawn, directions are examined and w_max is looked for; in
-// larger ones they stay unknown. As they are, all takes some seconds.
+// The largest scenes, in unknowns as drawn, in which directions are examined and w_max is computed;
+// in larger ones they stay unknown. The default values take some seconds.
 struct ExplanationLimits {
   Index examined = 100'000, frequency = std::numeric_limits<Index>::max();
 };
-// What takes a tenth of a second: for sidecars, which are written beside every run.
+// The limits for a tenth of a second: for sidecars, which are written beside every run.
 inline constexpr ExplanationLimits at_a_glance{6000, 6000};
 
-// `scene`: as it starts, and reduced. Never throws for what a scene holds, as each sidecar needs
-// it.
+// Explains `scene` as it starts, and `reduced`. Throws nothing for any content of a scene, because
+// each sidecar needs it.
 Explanation explain(const Scene& scene, const ReducedScene& reduced,
                     const ExplanationLimits& limits = {});
 
-// In some lines, each ended by a line feed.
+// The explanation in some lines, each ended by a line feed.
 std::string explanation_in_words(const Explanation& explanation, const Scene& scene);
 
 }  // namespace qddot

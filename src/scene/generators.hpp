@@ -9,10 +9,10 @@
 
 namespace qddot {
 
-// A number that a scene generator takes. `whole` asks for an integer.
+// A number that a scene generator takes; an integer if `whole`.
 struct GeneratorParameter {
   std::string name;
-  double standard;      // the value where none is given
+  double standard;      // the value if none is given
   double low, high;     // both allowed
   std::string meaning;  // with its unit
   bool whole = false;
@@ -38,9 +38,9 @@ const std::vector<Generator>& generators();
 const Generator* find_generator(const std::string& name);
 
 // Draws the scene; parameters that `values` does not name take their standard value. Throws
-// InvalidInput, in a sentence that starts with `source`, for an unknown parameter or a value that
-// is not finite, not whole where it must be, or outside [low, high], and for a scene that would be
-// larger than the limits.
+// InvalidInput, in a sentence that starts with `source`, for an unknown parameter and for a scene
+// beyond the limits. It does so too for a value that is not finite, not whole if it must be, or
+// outside [low, high].
 Scene generate(const Generator& generator, const GeneratorValues& values, const std::string& source,
                const SceneLimits& limits = {});
 

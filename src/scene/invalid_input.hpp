@@ -4,8 +4,8 @@
 
 namespace qddot {
 
-// Something the user wrote cannot be taken. what() is one sentence that names the file or option,
-// the entry and field, the value, and what is allowed; programs print it and exit with status 2.
+// The user's input cannot be taken. what() is one sentence with the file or option, the entry and
+// field, the value, and what is allowed. Programs print it and exit with status 2.
 class InvalidInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -24,13 +24,14 @@ struct Node {
 struct Spring {
   std::array<std::size_t, 2> nodes{};
   SpringLaw law;
-  // As drawn; a reduction may put another in the place of several, and names those that are stiff.
+  // The defaults are those of a drawn spring. A reduction may replace several springs by one, and
+  // marks the stiff ones.
   Holds holds = Holds::always;
   bool stiff = false;
 };
 
-// What the user drew: nodes, springs, gravity; nothing derived and nothing left out, but for the
-// faces between them, which are for pictures.
+// A scene as the user drew it: nodes, springs and gravity, with nothing derived or left out. Faces
+// are for pictures only.
 struct Scene {
   std::string name{};
   int dimension = 3;                                  // 1, 2 or 3
@@ -40,30 +41,31 @@ struct Scene {
   std::vector<Spring> springs{};
   // Triangles of a surface, by the indices of their three nodes. Changes no motion.
   std::vector<std::array<std::size_t, 3>> faces{};
-  // Whether its motion begins with the nodes not where they are drawn but at the stable equilibrium
-  // that is reached from there, with the velocities as drawn.
+  // Whether the motion begins at the stable equilibrium that is reached from the drawn positions,
+  // with the velocities as drawn.
   bool starts_at_equilibrium = false;
-  // Springs with more stiffness [N/m] are the stiff ones, for methods that take their forces apart
-  // from the others' (System::split); none are named where it is missing. Changes no motion.
+  // Springs with more stiffness [N/m] are stiff, for methods that treat their forces apart
+  // (SplitForces). If missing, none are named. Changes no motion.
   std::optional<double> stiff_above{};
-  // What the user should know of how the scene was read: sentences. Changes no motion.
+  // What the user should know about how the scene was read: sentences. Changes no motion.
   std::vector<std::string> warnings{};
 };
 
-// Whether a spring of that law is one of the stiff ones of a scene.
+// Whether a spring of that law is a stiff one of the scene.
 inline bool is_stiff(const SpringLaw& law, std::optional<double> stiff_above) {
   return stiff_above && law.stiffness > *stiff_above;
 }
 
 // Throws InvalidInput, in a sentence that starts with `source` and names node or spring and field,
-// unless every number is finite, dimension is 1, 2 or 3, masses, stiffnesses and rest lengths are
-// not negative, `until` and `stiff_above` are above 0, each spring joins two different existing
-// nodes, and no spring with rest_length > 0 starts with coincident ends (its direction would be
-// undefined), and each face has three different existing
-// nodes.
+// unless
+//   every number is finite, and the dimension is 1, 2 or 3;
+//   masses, stiffnesses and rest lengths are not negative; `until` and `stiff_above` are above 0;
+//   each spring joins two different existing nodes, which are apart if its rest_length > 0 (else it
+//   has no direction);
+//   each face has three different existing nodes.
 void validate(const Scene& scene, const std::string& source);
 
-// Hash of everything in the scene that decides its motion, its name left out; the same on every
+// A hash of everything in the scene that decides its motion, so not of its name; the same on every
 // machine. 64-bit FNV-1a over the numbers' bytes, as 16 hexadecimal digits.
 std::string content_hash(const Scene& scene);
 

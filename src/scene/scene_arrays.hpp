@@ -9,7 +9,7 @@
 
 namespace qddot {
 
-// A mass-spring network as arrays. Values that are alike everywhere may be given once.
+// A mass-spring network as arrays. A value that is the same everywhere may be given once.
 struct SceneArrays {
   Eigen::MatrixXd positions{};                        // nodes x dimension (1, 2 or 3) [m]
   std::vector<std::array<std::size_t, 2>> springs{};  // the two nodes of each
@@ -22,8 +22,8 @@ struct SceneArrays {
   Eigen::VectorXd quartic{};      // [N/m^3], likewise; empty: none
 };
 
-// The scene of these arrays. Throws InvalidInput, in a sentence that names array and entry, where
-// sizes do not fit or a value is not allowed (see validate).
+// Makes the scene of these arrays. Throws InvalidInput, in a sentence that names array and entry,
+// if sizes do not fit or a value is not allowed (see validate).
 Scene scene_of(const SceneArrays& arrays);
 
 }  // namespace qddot

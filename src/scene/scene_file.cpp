@@ -64,7 +64,7 @@ Scene generated(const TomlTable& table, const SceneLimits& limits) {
   return generate(*generator, values, table.place(), limits);
 }
 
-// Throws InvalidInput unless the nodes come from one of what they may come from.
+// Throws InvalidInput unless the nodes come from exactly one of their possible origins.
 void require_one_origin(const TomlTable& file) {
   std::vector<std::string> given;
   for (const auto& [key, written] : {std::pair("nodes", "[[nodes]]"), std::pair("mesh", "[mesh]"),

@@ -14,15 +14,14 @@ namespace qddot {
 // allowed; unknown keys are errors.
 Scene read_scene(const std::string& path);
 
-// The same of a text in memory, as if the file `path` held it: meshes are sought from `folder`,
-// their text is taken from `read`. A scene larger than the limits is refused before it is made.
+// The same for a text in memory, as if the file `path` held it. Meshes are sought in `folder` and
+// read by `read`. A scene larger than the limits is refused before it is made.
 Scene parse_scene(const std::string& text, const std::string& path,
                   const std::filesystem::path& folder, const SceneLimits& limits = {},
                   const TextSource& read = read_text);
 
-// The scene that a user names on a command line: a generator's name, else a file's path.
-// Throws InvalidInput as read_scene does, and for a name that is neither. All files are read by
-// `read`.
+// The scene that a user names on a command line: a generator's name, else a file's path. Throws
+// InvalidInput as read_scene does, and for a name that is neither. `read` reads all files.
 Scene load_scene(const std::string& name_or_path, const TextSource& read = read_text,
                  const SceneLimits& limits = {});
 

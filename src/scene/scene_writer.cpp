@@ -12,10 +12,10 @@
 namespace qddot {
 namespace {
 
-// Not so for -0, which must be written.
+// False for -0, which must be written.
 bool is_plain_zero(double x) { return std::bit_cast<std::uint64_t>(x) == 0; }
 
-// How many bytes the UTF-8 sequence at the start of `text` has; 0 where there is none.
+// The number of bytes of the UTF-8 sequence at the start of `text`; 0 if there is none.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   const unsigned char first = byte(0);

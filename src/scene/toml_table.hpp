@@ -12,7 +12,7 @@
 
 namespace qddot {
 
-// Which numbers a key takes, and how a message names them.
+// The numbers that a key takes, and their name in messages.
 struct Range {
   bool (*holds)(double);
   std::string_view words;
@@ -21,10 +21,10 @@ inline constexpr Range any_number{[](double) { return true; }, "finite numbers"}
 inline constexpr Range not_negative{[](double x) { return x >= 0; }, "finite numbers from 0"};
 inline constexpr Range positive{[](double x) { return x > 0; }, "finite numbers above 0"};
 
-// The number that a node holds, if it holds a finite one; an integer serves as a number.
+// The finite number that a node holds, if it holds one; an integer serves as a number.
 std::optional<double> finite_number(const toml::node& node);
 
-// A table of a TOML file and its place there. Whatever it does not hold as asked for is refused:
+// A table of a TOML file and its place there. Content that is not as asked for is refused:
 // InvalidInput with file, line, entry, key, value and what is allowed. Integers serve as numbers.
 class TomlTable {
  public:
@@ -33,14 +33,16 @@ class TomlTable {
       : table_(table), file_(file), entry_(std::move(entry)) {}
 
   bool has(std::string_view key) const { return table_.contains(key); }
+  // All keys of the table; and a check that refuses all keys but these.
   std::vector<std::string> keys() const;
   void allow_keys(std::initializer_list<std::string_view> keys) const;
 
+  // The number at `key`, in the range; or `standard` if the key is missing.
   double number(std::string_view key, const Range& range = any_number) const;
   double number_or(double standard, std::string_view key, const Range& range = any_number) const {
     return has(key) ? number(key, range) : standard;
   }
-  // `size` finite numbers, the rest of the three zero.
+  // `size` finite numbers; the rest of the three are zero.
   Eigen::Vector3d vector(std::string_view key, int size) const;
   Eigen::Vector3d vector_or_zero(std::string_view key, int size) const {
     return has(key) ? vector(key, size) : Eigen::Vector3d::Zero();
@@ -49,13 +51,14 @@ class TomlTable {
   int integer(std::string_view key, int low, int high) const;
   // Two of `count` nodes, by their indices.
   std::array<std::size_t, 2> node_pair(std::string_view key, std::size_t count) const;
+  // The boolean at `key`, false if the key is missing; the string; the table.
   bool flag_or_false(std::string_view key) const;
   std::string text(std::string_view key) const;
   TomlTable table(std::string_view key) const;
-  // The tables of an array of tables; none where the key is missing.
+  // The tables of an array of tables; none if the key is missing.
   std::vector<TomlTable> tables(std::string_view key) const;
 
-  // Refuses what stands at `key`, or that nothing does. `allowed` completes "allowed are".
+  // Refuses the value at `key`, or that there is none. `allowed` completes "allowed are".
   [[noreturn]] void refuse(std::string_view key, std::string_view allowed) const;
   // Throws InvalidInput: `what`, after the file, line and name of `key`.
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;

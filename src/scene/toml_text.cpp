@@ -11,8 +11,8 @@ namespace qddot {
 namespace {
 
 // toml++ nests a table for each part of a dotted key and destroys them recursively: a key of a
-// hundred thousand parts would exhaust the stack. So a line's dots are bounded before it is parsed,
-// those left out that cannot part keys: the first in a number, and all but the first in a row.
+// hundred thousand parts would exhaust the stack. So a line's dots are bounded before it is parsed.
+// Dots that cannot part keys do not count: the first in a number, and all but the first in a row.
 void refuse_deep_keys(const std::string& text, const std::string& path) {
   constexpr int most = 50;
   const auto digit_at = [&](std::size_t i) {

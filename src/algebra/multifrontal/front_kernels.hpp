@@ -2,18 +2,18 @@
 
 #include <cstddef>
 
-// What the kernels of fronts read and write: plain numbers and pointers alone, as in
+// The data that the kernels of fronts read and write: plain numbers and pointers only, as in
 // spring_kernels.hpp.
 namespace qddot::multifrontal {
 
-// Dense matrices are cut into strips of so many rows; see vectors/strips.hpp.
+// Dense matrices are cut into strips of this many rows; see vectors/strips.hpp.
 constexpr int strip_height = 8;
-// Strips that hold so many rows.
+// The number of strips that hold so many rows.
 [[gnu::always_inline]] constexpr int strips_of(int rows) {
   return (rows + strip_height - 1) / strip_height;
 }
-// Pivots whose columns are taken off the rest of a front at once: as many as leave a tile's rows of
-// L in the first cache.
+// The pivots whose columns are taken off the rest of a front at once: so many that a tile's rows of
+// L stay in the first cache.
 constexpr int panel = 96;
 
 // Rows of an update that stay neighbours in the front they are added to.
@@ -52,7 +52,7 @@ struct OpenFront {
   int pivots, pivot_height, height;
 };
 
-// A child's update and those of its runs that end in the columns it is added to, or after them.
+// A child's update and its runs that end in the columns it is added to, or after them.
 struct ChildUpdate {
   const double* update;
   int height;
@@ -77,8 +77,8 @@ struct FrontKernels {
   // Adds a child's update in the columns [from, end), all of pivots or none.
   void (*add_update)(const ChildUpdate&, const OpenFront&, int from, int end);
 
-  // The next three work on the panel of pivots that begins with `from`; `scaled` are its columns of
-  // L D in the rows of a tile, strips of `panel` columns. Block i is that of strip i, on the
+  // The next three work on the panel of pivots that begins with `from`. `scaled` holds its columns
+  // of L D in the rows of a tile, in strips of `panel` columns. Block i is that of strip i, on the
   // diagonal.
   void (*factorize_block)(const OpenFront&, int from, int i, const double* scaled, Block&);
   // Computes strips i, ... of L and L D in the panel's columns, up to those of strip `end`.

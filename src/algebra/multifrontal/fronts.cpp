@@ -64,8 +64,7 @@ Fronts::Fronts(const SymmetricMatrix& pattern, SymbolicFactorization symbolic) {
   }
 }
 
-// The entries of a matrix by columns and in these by rows, as they come in the order of
-// elimination.
+// The entries of a matrix by columns, and by rows in each column, in the order of elimination.
 std::vector<Fronts::Placed> Fronts::in_order_of_elimination(const SymmetricMatrix& pattern) const {
   std::vector<Placed> placed;
   placed.reserve(pattern.nonZeros());
@@ -99,9 +98,9 @@ void Fronts::add_runs(Front& child, const std::vector<int>& position) {
   child.run_end = static_cast<int>(runs_.size());
 }
 
-// Branches are the largest subtrees of no more than a share of the work, and neighbours together
-// where they are smaller. A share is what a few threads divide well among them; work that takes no
-// longer than threads to meet is not divided.
+// Branches are the largest subtrees of no more than a share of the work; smaller neighbours are
+// joined. Shares are so small that a few threads divide them well. Work that takes no longer than
+// threads to meet is not divided.
 void Fronts::divide(const std::vector<int>& parents) {
   constexpr double shares = 16, least_work = 1e7;  // operations
   const int count = static_cast<int>(all_.size());

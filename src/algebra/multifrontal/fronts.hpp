@@ -10,8 +10,8 @@
 namespace qddot::multifrontal {
 
 // The dense matrix of one supernode: `pivots` columns that become columns of L, and the `below` x
-// `below` update of what comes after. Rows and columns are numbered with the pivots first, then, at
-// the next whole strip, the rows below; what lies between is zero.
+// `below` update of the rest. Rows and columns are numbered pivots first, then, from the next whole
+// strip on, the rows below. What lies between is zero.
 struct Front {
   int first, pivots, below;
   Index factor, update;  // where its part of L and its update begin, in doubles
@@ -31,8 +31,8 @@ struct Front {
   int below_height() const { return strip_height * below_strips(); }
 };
 
-// Fronts [start, end), subtrees that need none but their own. Branches are small against the whole,
-// so that each can be one thread's work; the tree is divided alike whatever the number of threads.
+// Fronts [start, end): subtrees that need no other fronts. A branch is small against the whole, so
+// that one thread can do it. The tree is divided alike for any number of threads.
 struct Branch {
   int start, end;
 };
@@ -42,7 +42,7 @@ class Fronts {
  public:
   Fronts(const SymmetricMatrix& pattern, SymbolicFactorization symbolic);
 
-  // In the order of elimination: children before their parent.
+  // All fronts in the order of elimination: children before their parent.
   const std::vector<Front>& all() const { return all_; }
   const Front* begin() const { return all_.data(); }
   const Front* end() const { return all_.data() + all_.size(); }
@@ -53,7 +53,7 @@ class Fronts {
   const std::vector<int>& place() const { return place_; }
 
   std::span<const int> rows(const Front& f) const { return part(rows_, f.row_start, f.row_end); }
-  // By ascending target.
+  // The front's entries of K, by ascending target.
   std::span<const Entry> entries(const Front& f) const {
     return part(entries_, f.entry_start, f.entry_end);
   }
@@ -66,13 +66,13 @@ class Fronts {
     return part(children_, f.child_start, f.child_end);
   }
 
-  // What some fronts need one after the other: doubles of the updates that are alive at once and of
-  // the largest columns of pivots; rows of the highest front.
+  // The memory of fronts worked on one after the other: doubles of the updates alive at once,
+  // doubles of the largest columns of pivots, rows of the highest front.
   struct Sizes {
     Index updates = 0, pivot_columns = 0;
     int height = 0;
   };
-  // For any branch, without the updates that are kept; for the fronts above, with them.
+  // Those of any branch, without kept updates, and of the fronts above, with them.
   Sizes branch_sizes, top_sizes;
   Index factor_size = 0;  // doubles of L
 
@@ -86,7 +86,7 @@ class Fronts {
     int source, unknown, column, row;
   };
   std::vector<Placed> in_order_of_elimination(const SymmetricMatrix& pattern) const;
-  // position: of its parent's rows.
+  // `position`: of its parent's rows.
   void add_runs(Front& child, const std::vector<int>& position);
   void divide(const std::vector<int>& parents);
   void place_updates(const std::vector<int>& parents);

@@ -14,8 +14,8 @@ class Barrier {
   // 0, 1, 2, ..., each once.
   int draw() { return next_.fetch_add(1, std::memory_order_relaxed); }
 
-  // Returns when all threads have come. Where others take the processor from one of them, waiting
-  // for it in a loop would keep it away for longer: after some microseconds the rest sleep.
+  // Returns when all threads have come. If others take the processor from one of them, waiting for
+  // it in a loop would keep it away for longer: the rest sleep after some microseconds.
   void wait() {
     const int round = round_.load();
     if (come_.fetch_add(1) + 1 == threads_) {
@@ -35,8 +35,8 @@ class Barrier {
   alignas(64) std::atomic<int> round_ = 0;
 };
 
-// One of the threads that walk through the same code together and share its loops, as it sees the
-// team; or a thread by itself, for which all of this is plain loops.
+// One thread's view of a team of threads that run the same code together and share its loops. If a
+// thread is by itself, all of this is plain loops.
 class Team {
  public:
   Team() = default;

@@ -6,8 +6,8 @@
 
 namespace qddot::multifrontal {
 
-// Solves P' L E L' P x = b with the factors of fronts. L is read twice and nothing else is large,
-// so that a solve takes as long as reading does.
+// Solves P' L E L' P x = b with the factors of fronts. A solve takes as long as reading L twice;
+// nothing else is large.
 class TriangularSolves {
  public:
   // l: factor_size doubles, each front's strip after strip of its pivots' columns;

@@ -8,7 +8,7 @@ namespace {
 
 // Measured: what a slot that gathers costs, in slots of one shift.
 constexpr double cost_of_gather = 1.6;
-// Rows are sorted within so many: beyond, positions are no longer near each other in memory.
+// Rows are sorted within windows of this size; across more, positions are far apart in memory.
 constexpr int window = 256;
 
 using Rows = std::vector<std::vector<Neighbour>>;  // by places
@@ -47,7 +47,7 @@ class Slicer {
   }
 
  private:
-  // A slot of one shift is worth it where it serves at least so many rows.
+  // A slot of one shift is worth it if it serves at least this many rows.
   static constexpr int enough_rows = slice_rows / 2;
 
   void begin_slice() {
@@ -104,8 +104,8 @@ class Slicer {
     append(laws);
   }
 
-  // A row without a spring looks at one of another's ends: towards itself it would be without
-  // length, which is computed in a slower way.
+  // A row without a spring gets another row's neighbour. A spring to itself would have no length,
+  // which is computed in a slower way.
   void take_gathers(int first, const Rows& rows) {
     std::size_t most = 0;
     for (const auto& row : rows) most = std::max(most, row.size());

@@ -14,12 +14,12 @@ struct Neighbour {
   SpringLaw law;
 };
 
-// The springs of all nodes, laid out for a processor that evaluates several at once: a row is a
-// node, a slice is `slice_rows` rows, a slot one spring of each of them. Every spring stands here
-// twice, once for each end, so that a row sums its own forces and nothing is scattered. Where a row
-// has fewer springs than others, slots are filled with springs of no stiffness. This is the format
-// SELL-C-sigma (Kreutzer, Hager, Wellein, Fehske, Bishop, SIAM J. Sci. Comput. 36 (2014) C401-C423)
-// with, besides slots that gather, slots of one shift, as most are inside of a grid.
+// The springs of all nodes, laid out for a processor that evaluates several at once. A row is a
+// node, a slice is `slice_rows` rows, a slot is one spring of each of them. Every spring stands
+// here twice, once for each end, so that a row sums its own forces and nothing is scattered. Rows
+// with fewer springs get slots with springs of no stiffness. This is the format SELL-C-sigma
+// (Kreutzer, Hager, Wellein, Fehske, Bishop, SIAM J. Sci. Comput. 36 (2014) C401-C423) with two
+// kinds of slots: those that gather, and those of one shift, like most inside a grid.
 struct NeighbourSlices {
   // The node of each row, -1 where a row only fills up the last slice. Rows are the first places;
   // then come the points that are no nodes, in order.
@@ -29,8 +29,8 @@ struct NeighbourSlices {
   std::vector<int> shifts;    // of a slot: its rows' neighbours are at the rows' places plus this
   std::vector<int> gathers;   // of a slot: `slice_rows` places
   // The stiffness of the springs of a slot's rows; then, where any spring of all has one, their
-  // rest lengths; then, where any has one, their quartic stiffness. In a slice first the slots of
-  // one shift, then those that gather.
+  // rest lengths; then, where any has one, their quartic stiffness. Each slice has its slots of one
+  // shift first, then its slots that gather.
   Vec laws;
   int law_vectors = 1;
   std::vector<char> gathered;  // of a slice: whether any slot gathers from its places
@@ -40,7 +40,7 @@ struct NeighbourSlices {
 };
 
 // neighbours[i]: those of node i < N; points N, ..., N + extras - 1 are no nodes. Rows are in the
-// nodes' order, or sorted by their number of springs within windows where that leaves fewer slots.
+// nodes' order, or sorted by number of springs within windows if that leaves fewer slots.
 NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours, int extras);
 
 }  // namespace qddot::kernels

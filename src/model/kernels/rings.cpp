@@ -65,7 +65,7 @@ Rings rings_of(const NeighbourSlices& slices) {
       const int opposite = -slices.shifts[s];
       const auto [found, is_new] = ring_of.try_emplace(opposite, std::ssize(result.rings));
       if (is_new) {
-        // From the first of a slice's rows to the last that is found with it.
+        // The ring spans the rows from a slice's first row to the last row found with it.
         const int rows =
             static_cast<int>(std::bit_ceil(static_cast<unsigned>(opposite + slice_rows)));
         result.rings.push_back({result.numbers, rows - 1});

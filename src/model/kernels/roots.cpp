@@ -63,9 +63,10 @@ class Sample {
   Vec q_, x_, offset_, f_;
 };
 
-// By turns, and the least of each: what else the processor does meanwhile lengthens some passes.
+// The kinds are timed by turns, and the least time of each counts: other work of the processor
+// lengthens some passes.
 Roots fastest() {
-  // Less than that is what other programs on the machine make of a measurement.
+  // Smaller gains may be the work of other programs on the machine.
   constexpr double worth = 0.85;
   constexpr int turns = 40;  // of some 10 microseconds each
   Sample sample;
@@ -97,8 +98,8 @@ Roots chosen_roots() {
                       ": this processor has no such roots; allowed are " + allowed);
 }
 
-// A power of two on either side of which lie the stiffnesses of springs that can be estimated: the
-// length being in [2^-128, 2^128), their tension is then 0 or in [2^-800, 2^800].
+// Stiffnesses between 1/extreme and extreme can be estimated: with lengths in [2^-128, 2^128), the
+// tension is 0 or in [2^-800, 2^800].
 constexpr double extreme = 0x1p200;
 
 bool is_moderate(double stiffness) {
@@ -122,7 +123,7 @@ bool can_be_estimated(const NeighbourSlices& slices) {
       const double* law = slices.laws.data() + at + t;
       const double stiffness = law[0], rest_length = law[slice_rows],
                    quartic = slices.law_vectors > 2 ? law[2 * slice_rows] : 0;
-      // Without stiffness, a rest length leaves a tension of minus zero.
+      // A rest length without stiffness gives a tension of minus zero.
       const bool is_spring = stiffness > 0 || quartic > 0 || rest_length == 0;
       if (!is_spring || !is_moderate(stiffness) || !is_moderate(quartic) || rest_length > extreme) {
         return false;

@@ -7,16 +7,16 @@
 
 namespace qddot::kernels {
 
-// Names the roots in use: those that the environment's QDDOT_ROOTS names or, without, the
-// processor's own unless others are clearly faster here, timed for about a millisecond when this is
-// first called. Throws NoSuchKernels where this processor has none of that name.
+// The roots in use, which the environment variable QDDOT_ROOTS may name. They are else the
+// processor's own, unless others are clearly faster here, timed for a millisecond at the first
+// call. Throws NoSuchKernels if this processor has none of that name.
 Roots roots();
 
 // Lists the names of all kinds, in the order of Roots.
 std::span<const std::string_view> names_of_roots();
 
-// Whether all springs are so that no number on the way from an estimate to their tension is too
-// large or too small; of lengths the kernels see to that.
+// Whether no spring's law makes a number between an estimate and its tension too large or too
+// small. The kernels check the lengths.
 bool can_be_estimated(const NeighbourSlices& slices);
 
 }  // namespace qddot::kernels

@@ -2,12 +2,13 @@
 
 #include <cstddef>
 
-// What the kernels of springs read and write: plain numbers and pointers alone, for their sources
-// must not instantiate what others share; the linker might keep the copy for wider vectors.
+// The data that spring kernels read and write: plain numbers and pointers only. Their sources must
+// not instantiate what other sources share, because the linker might keep the copy for wider
+// vectors.
 namespace qddot::kernels {
 
-// The rows of a slice: a vector's with AVX-512, and so many everywhere, so that all processors add
-// the springs of a node in the same order.
+// The rows of a slice: the lanes of an AVX-512 vector. Every version uses this number, so that all
+// processors add the springs of a node in the same order.
 constexpr int slice_rows = 8;
 
 // Where a slice's slots begin; they end where those of the next begin.
@@ -20,15 +21,15 @@ struct Slice {
 // those of each row do, or some are no unknowns.
 enum class Order { by_slice, by_row, none };
 
-// Keeps what springs of one shift have until their other ends come, so many rows later: the last
-// `mask` + 1 rows' numbers, a power of two, and the first rows' once more behind them.
+// A ring buffer for the springs of one shift, until their other ends come some rows later. It holds
+// the numbers of the last `mask` + 1 rows, a power of two, and its first rows once more behind
+// them.
 struct Ring {
   std::ptrdiff_t begin;  // in the memory of all rings
   int mask;
 };
 
-// What a slot of one shift has to do with a ring: nothing, keep its numbers there, or find them
-// there.
+// What a slot of one shift does with a ring: nothing, keep its numbers there, or find them there.
 struct RingUse {
   enum { none, keeps, finds } kind;
   int ring;
@@ -47,7 +48,7 @@ struct SpringTable {
   const char* gathered;  // of the slices: whether any slot gathers from their rows
 };
 
-// Where everything is, by place and coordinate and, where D > 1, by point, too.
+// Positions by coordinate and place and, if D > 1, point by point too.
 struct Positions {
   double* coordinates;
   std::ptrdiff_t stride;  // from one coordinate to the next
@@ -83,8 +84,8 @@ struct SpringKernels {
   // f = offset + the forces of the rows' springs. `rings`: memory for all rings.
   void (*force)(const SpringTable&, const Positions&, double* rings, const double* offset,
                 double* f, int from, int end);
-  // Adds the energies of the rows' springs to the sums [slice_rows] of all first rows, of all
-  // second rows, ...: those that join two rows come twice.
+  // Adds the energies of the rows' springs to `sums`: sums[r] is for row r of every slice. A spring
+  // between two rows counts twice.
   void (*energy)(const SpringTable&, const Positions&, double* sums, int from, int end);
   // f = offset + the discrete gradients of the rows' springs between two positions.
   void (*mean_force)(const SpringTable&, const Positions& before, const Positions& after,

@@ -12,10 +12,10 @@
 
 namespace qddot::kernels {
 
-// The springs of a network in D = 1, 2 or 3 dimensions, by the processor's vectors: each node looks
-// at its own springs, several nodes side by side, so that a spring is seen twice, once from each
-// end, and a node's sums are its own. Its tau/l is computed once where Rings keep it. What a node
-// is pulled towards is a node, the mirror image of one, or a fixed point.
+// The springs of a network in D = 1, 2 or 3 dimensions, for the processor's vectors. Each node sums
+// its own springs, several nodes side by side, so every spring is seen twice, once from each end.
+// Its tau/l is computed once where Rings keep it. A node is pulled towards a node, the mirror image
+// of one, or a fixed point.
 template <int D>
 class SpringsByNode {
  public:
@@ -28,21 +28,21 @@ class SpringsByNode {
   // Everything as kernels read it; valid as long as this.
   SpringTable table() const;
 
-  // f = offset + the forces of the springs [N], of each node
-  //   sum over its springs of (tau/l) (x_j - x_i),
-  // which differs from a sum spring by spring by rounding, and by nothing with the number of
-  // threads, the kind of roots, and the width of vectors (but without fused products, v2). q,
+  // f = offset + the forces of the springs [N], for each node
+  //   sum over its springs of (tau/l) (x_j - x_i).
+  // It differs from a sum spring by spring by rounding only. It is the same to the last bit for any
+  // number of threads, kind of roots and width of vectors (except v2, without fused products). q,
   // offset, f: n. May be called from any thread.
   void sum_forces(const ConstVec& q, const Vec& offset, MutableVec f) const;
 
-  // Sums V of all springs [J], but of those to fixed points half; alike at every width of vectors.
+  // V of all springs [J], with springs to fixed points counted half; alike at every width of
+  // vectors.
   double half_sum_energies(const ConstVec& q) const;
   // f = offset + the springs' discrete gradients between a and b (see DiscreteGradient).
   void sum_mean_forces(const ConstVec& a, const ConstVec& b, const Vec& offset, MutableVec f) const;
 
-  // Calls action(positions at q, from, end) for slices [from, end) until all have been, by several
-  // threads (OpenMP's) where there are enough springs: what it does must depend on nothing that it
-  // does elsewhere.
+  // Calls action(positions at q, from, end) for slices [from, end) until all are done, in several
+  // OpenMP threads if there are enough springs. The calls must not depend on each other.
   template <class Action>
   void for_slices(const ConstVec& q, const Action& action) const;
 
@@ -58,7 +58,7 @@ class SpringsByNode {
   Positions memory(int which = 0) const;
   // The same with all of them at q.
   Positions placed(const ConstVec& q, int which = 0) const;
-  // What is no node; after all slices.
+  // Places the points that are no nodes; after all slices.
   void place_extras(const Positions& positions) const;
 
   const SpringKernels* kernels_;

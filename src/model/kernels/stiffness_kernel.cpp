@@ -80,7 +80,8 @@ void StiffnessKernel<D>::place_slots(const Layout<D>& layout, const SpringsByNod
                                      const SymmetricMatrix& pattern, const std::vector<int>& links,
                                      Written& written) {
   const NeighbourSlices& slices = springs.slices();
-  // The block of a row and a place that are nodes with one link between them, the place's later.
+  // The block of a row and a place, if both are nodes with one link between them and the place is
+  // the later one.
   const auto target = [&](int row, int place) {
     if (place >= slices.rows()) return -1;
     const int node = slices.node[row], later = slices.node[place];

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// What the kernels of vectors read and write: plain numbers alone, as in spring_kernels.hpp.
+// The data that vector kernels read and write: plain numbers only, as in spring_kernels.hpp.
 namespace qddot::kernels {
 
 // One version's functions on n numbers; `out` may be one of the others.
@@ -19,12 +19,12 @@ struct VectorKernels {
   // out = f/m and out = a b, number by number.
   void (*divide)(const double* f, const double* m, double* out, std::ptrdiff_t n);
   void (*multiply)(const double* a, const double* b, double* out, std::ptrdiff_t n);
-  // out = x + d v + c (b_0 z_0 + b_1 z_1 + ...) of `count` vectors; without x or v where that is
+  // out = x + d v + c (b_0 z_0 + b_1 z_1 + ...) of `count` vectors, without x or v if that is
   // nullptr.
   void (*add_combination)(const double* x, double d, const double* v, double c,
                           const double* const* z, const double* b, int count, double* out,
                           std::ptrdiff_t n);
-  // A step of a multistep method, from the u_1 ... u_count of the steps before:
+  // A step of a multistep method; u has the u_1 ... u_count of earlier steps:
   //   u_0 = c f - (r_1 u_1 + r_2 u_2 + ...),   d' = d + b_0 u_0 + b_1 u_1 + ...,
   //   q' = q + d'.
   void (*step_by_history)(const double* f, const double* c, const double* const* u, const double* r,

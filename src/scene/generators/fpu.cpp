@@ -1,20 +1,20 @@
-// The chain of Fermi, Pasta and Ulam as Hairer, Lubich and Wanner have it (Geometric Numerical
-// Integration, I.5.1 and XIII): on a line, between two walls, m stiff harmonic springs alternate
-// with m + 1 soft quartic ones. With q the displacements of the 2m masses of 1 kg, q_0 = q_2m+1 =
-// 0,
+// The chain of Fermi, Pasta and Ulam in the form of Hairer, Lubich and Wanner (Geometric Numerical
+// Integration, I.5.1 and XIII). It has m stiff harmonic springs that alternate with m + 1 soft
+// quartic ones, on a line between two walls. The displacements q of the 2m masses of 1 kg,
+// q_0 = q_2m+1 = 0, have
 //   H = 1/2 sum p_i^2 + w^2/4 sum_1^m (q_2i - q_2i-1)^2 + sum_0^m (q_2i+1 - q_2i)^4,
 // which is springs of k = w^2/2 and of c = 4 (V = k/2 s^2 + c/4 s^4). Two masses on a stiff spring
-// alone vibrate at w. In the coordinates of the pairs,
-//   x_0,i = (q_2i + q_2i-1)/sqrt 2,  x_1,i = (q_2i - q_2i-1)/sqrt 2,
-// it starts from x_0,1 = x'_0,1 = 1, x_1,1 = 1/w, x'_1,1 = 1, all else zero. Then the stiff
-// springs' energies I_i = 1/2 (x'_1,i^2 + w^2 x_1,i^2) are 1, 0, ..., 0, and
+// alone vibrate at w. The coordinates of the pairs are
+//   x_0,i = (q_2i + q_2i-1)/sqrt 2,  x_1,i = (q_2i - q_2i-1)/sqrt 2.
+// The start is x_0,1 = x'_0,1 = 1, x_1,1 = 1/w, x'_1,1 = 1, all else zero. Then the stiff springs'
+// energies I_i = 1/2 (x'_1,i^2 + w^2 x_1,i^2) are 1, 0, ..., 0, and
 //   H = 2 + 3/w^2 + 1/(2 w^4).
 // I_1 goes over to the other springs in times of the order of w, while the sum of all stays near 1.
 //
-// On a line a spring that turns over, its ends passing through each other, has its force jump. At
-// rest all springs are 10 m long, which none ever loses: no part of H is more than all of it, so
-// that a soft spring changes by H^1/4 at most and a stiff one by 2 sqrt(H)/w, which from w = 1 on
-// are less than 1.6 m and 4.7 m. Nothing depends on the 10 m as long as they are enough.
+// The force of a spring on a line jumps when its ends pass through each other. So all springs are
+// 10 m long at rest, which none ever loses. No term of H exceeds H: a soft spring changes by at
+// most H^1/4 and a stiff one by 2 sqrt(H)/w. These are less than 1.6 m and 4.7 m from w = 1 on.
+// Nothing depends on the 10 m as long as they are enough.
 #include <cmath>
 
 #include "qddot/scene/generators.hpp"

@@ -1,5 +1,5 @@
-// The cloth in a stiff frame: the structural springs along its four borders are so stiff that they
-// alone bound the step of explicit methods, some thirty times below the cloth's own.
+// The cloth in a stiff frame: the structural springs along its four borders. They alone bound the
+// step of explicit methods, some thirty times below the cloth's own bound.
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +26,7 @@ Scene draw_framed_cloth(const GeneratorValues& p) {
     if ((along_j && is_border(i)) || (along_i && is_border(j)))
       law.stiffness = p.at("frame_stiffness");
   }
-  // Stiff is the frame where it is stiffer than all of the cloth, else nothing is.
+  // The frame is stiff if it is stiffer than all of the cloth; else nothing is.
   const double cloth =
       std::max({p.at("structural_stiffness"), p.at("shear_stiffness"), p.at("bending_stiffness")});
   scene.stiff_above = std::max(cloth, cloth + 0.5 * (p.at("frame_stiffness") - cloth));

@@ -4,7 +4,7 @@
 
 namespace qddot {
 
-// The size of a scene that is one spring and its two ends, whatever the parameters.
+// The size of a scene of one spring and its two ends, for any parameters.
 inline SceneSize one_spring(const GeneratorValues&) { return {.nodes = 2, .springs = 1}; }
 
 }  // namespace qddot

@@ -1,6 +1,6 @@
 // The lecture's single spring in 3D: a mass tied to the origin, thrown sideways. The force is
-// central, so energy and angular momentum stay, and the motion stays in a plane that is none of
-// the coordinate planes. With rest_length = 0 the orbit is an ellipse; otherwise a rosette.
+// central, so energy and angular momentum stay, and the motion stays in a plane that is none of the
+// coordinate planes. The orbit is an ellipse if rest_length = 0, otherwise a rosette.
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/generators/one_spring.hpp"
 #include "qddot/scene/generators/ranges.hpp"

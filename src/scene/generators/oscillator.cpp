@@ -1,5 +1,5 @@
-// The lecture's first example, a 1D spring of zero rest length on a wall: m x'' = -k x, so that
-// x(t) = x0 cos(w t), w = sqrt(k/m), in closed form by exp(At).
+// The lecture's first example, a 1D spring of zero rest length on a wall: m x'' = -k x. Its closed
+// form by exp(At) is x(t) = x0 cos(w t), w = sqrt(k/m).
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/generators/one_spring.hpp"
 #include "qddot/scene/generators/ranges.hpp"

@@ -1,5 +1,5 @@
 // Two free masses on one spring: the centre of mass moves uniformly, the spring vibrates and
-// rotates about it. At small amplitude without rotation the frequency is sqrt(k/mu) with the
+// rotates about it. The frequency at small amplitude without rotation is sqrt(k/mu) with the
 // reduced mass mu = m1 m2 / (m1 + m2).
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/generators/one_spring.hpp"

@@ -1,12 +1,12 @@
-// A compressed column in the plane: nodes in a row between two pins, on springs that are all
-// compressed to l = `compression` l0, bent to the side by a first half-sine of amplitude `bend`.
+// A compressed column in the plane: nodes in a row between two pins. All springs are compressed to
+// l = `compression` l0, and the column is bent by a first half-sine of amplitude `bend`.
 //
-// Straight (bend = 0) it stands in unstable equilibrium. A spring in compression has the transverse
-// stiffness tau/l = k (1 - l0/l) < 0, and N free nodes between two walls the chain's matrix across,
-// so that with masses m its small motions across, of the shapes sin(j pi i/(N + 1)), grow as
+// A straight column (bend = 0) stands in unstable equilibrium. A compressed spring has the
+// transverse stiffness tau/l = k (1 - l0/l) < 0; across, N free nodes between two walls have the
+// chain's matrix. So small motions across, of masses m and shapes sin(j pi i/(N + 1)), grow as
 // e^(sqrt(lambda_j) t) with
 //   lambda_j = (4 k/m) (l0/l - 1) sin^2(j pi / (2 (N + 1))),  j = 1, ..., N.
-// M - h^2 K is singular where h^2 lambda_j = 1. Along the column they vibrate with
+// M - h^2 K is singular where h^2 lambda_j = 1. Nodes vibrate along the column with
 //   w_j^2 = (4 k/m) sin^2(j pi / (2 (N + 1))).
 #include <cmath>
 

@@ -18,6 +18,7 @@ struct Element {
   std::size_t corners;
   std::string_view edges;
 };
+// All kinds of elements that are read.
 inline constexpr std::array<Element, 8> elements{{
     {"line", "Edges", 1, 1, 2, "01"},
     {"triangle", "Triangles", 2, 2, 3, "01 12 20"},
@@ -28,6 +29,7 @@ inline constexpr std::array<Element, 8> elements{{
     {"pyramid", "Pyramids", 7, 3, 5, "01 12 23 30 04 14 24 34"},
     {"point", "", 15, 0, 1, ""},
 }};
+// The most corners that an element has.
 inline constexpr std::size_t most_corners = 8;
 
 // Appends the triangles between the first corner of a polygon and each edge opposite to it.
@@ -36,8 +38,8 @@ inline void add_polygon(std::span<const std::size_t> corners, Mesh& mesh) {
     mesh.faces.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
-// Appends the edges of an element with these vertices, and the triangle or the tetrahedron if it
-// is one, and its faces if it is a polygon.
+// Appends an element with these vertices: its edges, its faces if it is a polygon, and the triangle
+// or the tetrahedron if it is one.
 inline void add_element(const Element& element, std::span<const std::size_t> corners, Mesh& mesh) {
   const auto corner_at = [&](std::size_t k) {
     return corners[std::size_t(element.edges[k] - '0')];

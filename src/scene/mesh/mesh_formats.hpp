@@ -10,8 +10,8 @@
 
 namespace qddot::mesh {
 
-// The words of a mesh file and the line that the last one stands in. Lines end with LF, CR LF or CR
-// alone; a '#' ends its line's words.
+// The words of a mesh file, and the line of the last one. Lines end with LF, CR LF or CR alone; a
+// '#' ends its line's words.
 class Words {
  public:
   // Both must outlive this.
@@ -33,7 +33,7 @@ class Words {
                            std::string_view allowed) const {
     refuse(field, value, allowed, line_);
   }
-  // The finite number that a word writes.
+  // The finite number that `word` gives; else it is refused.
   double number(std::string_view field, std::string_view word) const;
 
  private:
@@ -55,7 +55,7 @@ std::optional<Number> number_in(std::string_view word) {
   return error == std::errc() && end == last ? std::optional(value) : std::nullopt;
 }
 
-// The formats. Edges come as the file has them: repeated, in either direction, unsorted.
+// Read one format each. Edges come as the file has them: repeated, in either direction, unsorted.
 Mesh read_obj(const std::string& text, const std::string& file);
 Mesh read_medit(const std::string& text, const std::string& file);
 Mesh read_gmsh(const std::string& text, const std::string& file);

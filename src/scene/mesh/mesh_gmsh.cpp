@@ -150,7 +150,7 @@ class GmshReader {
     check("element", header, range);
   }
 
-  // What a section of blocks says of itself before they come.
+  // The header of a section of blocks.
   struct BlockHeader {
     std::size_t blocks, entries;
     Tag least, largest;
@@ -174,7 +174,7 @@ class GmshReader {
     return {blocks, entries, least, tag(fmt::format("largest {} tag", what)), words_.line()};
   }
 
-  // That the blocks hold what their header says.
+  // Checks that the blocks hold what their header says.
   void check(std::string_view what, const BlockHeader& header, const TagRange& range) {
     const auto compare = [&](const std::string& field, std::uint64_t said, std::uint64_t is) {
       if (said != is)

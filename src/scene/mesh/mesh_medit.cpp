@@ -16,8 +16,8 @@ class MeditReader {
     if (const auto word = words_.next(); word != "MeshVersionFormatted")
       words_.refuse("first word", word, "is MeshVersionFormatted");
     whole("MeshVersionFormatted", 0, 9);
-    // The content of a section that has no edges is passed over up to the next keyword; that of any
-    // other ends where its count says, so that a number behind it is one too many.
+    // A section that has no edges is passed over up to the next keyword. Any other section ends
+    // where its count says: a number behind it is one too many.
     bool passes_over = false;
     std::string_view section = "MeshVersionFormatted";
     for (auto word = words_.next(); !word.empty() && word != "End"; word = words_.next()) {
@@ -29,7 +29,7 @@ class MeditReader {
       section = word;
       passes_over = !read_section(word);
     }
-    // Elements may come before the vertices, so what they name is known only now.
+    // Elements may come before the vertices, so their indices can be checked only now.
     if (largest_ > mesh_.vertices.size())
       words_.refuse("element", std::to_string(largest_),
                     fmt::format("are the vertices 1 to {}", mesh_.vertices.size()), largest_line_);
@@ -37,7 +37,7 @@ class MeditReader {
   }
 
  private:
-  // Whether it is one that is read.
+  // Reads the section with that keyword; false if it is none that is read.
   bool read_section(std::string_view keyword) {
     const auto element =
         std::find_if(elements.begin(), elements.end(),

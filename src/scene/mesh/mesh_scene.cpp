@@ -29,7 +29,7 @@ Mesh read_file(const TomlTable& table, const std::filesystem::path& folder,
   }
 }
 
-// The pairs of nodes that springs against bending join.
+// The pairs of nodes that bending springs join.
 std::vector<std::array<std::size_t, 2>> bending_pairs(const TomlTable& table, const Mesh& mesh) {
   const double stiffness = table.number_or(0, "bending_stiffness", not_negative);
   if (stiffness == 0) return {};
@@ -76,7 +76,7 @@ std::size_t leave_out_unused(Mesh& mesh) {
     }
   };
   renumber(mesh.edges);
-  // One that names a corner twice may have corners at which no edge ends: it has no area.
+  // A triangle that names a corner twice may have corners at which no edge ends: it has no area.
   std::erase_if(mesh.triangles, [&](const auto& corners) {
     return std::ranges::any_of(corners, [&](std::size_t corner) { return !is_used[corner]; });
   });

@@ -9,11 +9,11 @@
 
 namespace qddot {
 
-// The nodes, springs and faces of a scene file's [mesh] table, in three dimensions: every edge a
-// spring at its own length, every vertex at which one ends a node, in the order of the file, and
-// pinned where it lies in a [[mesh.pin]] box (in scaled coordinates [m]). Other vertices are left
-// out, with a warning. The mesh file is sought from `folder` and its text taken from `read`. Throws
-// InvalidInput for a mesh without edges and a box without vertices as for any other mistake.
+// Adds the nodes, springs and faces of a scene file's [mesh] table, in three dimensions. Every edge
+// is a spring at its own length. Every end of an edge is a node, in the order of the file, pinned
+// if it lies in a [[mesh.pin]] box (in scaled coordinates [m]). Other vertices are left out, with a
+// warning. The mesh file is sought in `folder` and read by `read`. Throws InvalidInput for any
+// mistake, also for a mesh without edges and a box without vertices.
 void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const TextSource& read,
               const SceneLimits& limits, Scene& scene);
 

@@ -6,8 +6,8 @@ namespace qddot::reduce {
 namespace {
 
 constexpr double eps = 0x1p-52;
-// Below the smallest normal number a product is off by up to this, whatever its size; a term of a
-// sum takes some products.
+// A product below the smallest normal number is off by up to this; a term of a sum takes some
+// products.
 constexpr double underflow = 8 * 0x1p-1074;
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace qddot::reduce {
 
-// An energy [J] and by how much it may be off.
+// An energy [J] and a bound of its error.
 struct BoundedEnergy {
   double value = 0, error = 0;
 };
@@ -20,27 +20,29 @@ struct Tolerances {
   double place = 0, speed = 0;
 };
 
-// Three mirrors may each move a node by the rounding that they allow (see drawn_part.hpp), and a
-// plane or line that is found by one more; as much again is for turning coordinates there and back.
+// The tolerances of nodes at x [m] with velocities v [m/s]. Each of three mirrors may move a node
+// by the rounding that it allows (see drawn_part.hpp), and so may a plane or line that is found.
+// The sum is doubled for turning coordinates there and back.
 Tolerances tolerances_of(const std::vector<Eigen::Vector3d>& x,
                          const std::vector<Eigen::Vector3d>& v);
 
-// V of springs between nodes at x, and weights of the masses: the sum as drawn, and how far from it
-// another way of adding up may come. Both ends, the rest length and its sum with others may be off
-// by the tolerance of positions, which changes s = l - l0 by D, four times that and rounding, and
+// V of springs between nodes at x and of the masses' weights: the sum as drawn, and how far another
+// way of adding may be from it. Both ends, the rest length and its sum with others may be off by
+// the tolerance of positions. Then s = l - l0 is off by D, four times that and rounding, and
 //   V by no more than |tau| D + 1/2 tau'(|s| + D) D^2 (Taylor; tau' grows with |s|).
-// Laws, masses and gravity may be off by `rounding` (see drawn_part.hpp), a sum of n terms by n eps
-// of their sizes, each at most as large as at the largest coordinate.
+// Laws, masses and gravity may be off by `rounding` (see drawn_part.hpp). A sum of n terms may be
+// off by n eps of their sizes, each at most as large as at the largest coordinate.
 BoundedEnergy potential_of(std::span<const Spring> springs, const std::vector<Eigen::Vector3d>& x,
                            const std::vector<double>& mass, const Eigen::Vector3d& gravity,
                            const Tolerances& tolerances);
 
-// T of the masses at velocities v, likewise: off by m |v| D + 1/2 m D^2, D the tolerance of speeds.
+// T of the masses at velocities v, likewise: off by m |v| D + 1/2 m D^2, with D the tolerance of
+// speeds.
 BoundedEnergy kinetic_of(const std::vector<Eigen::Vector3d>& v, const std::vector<double>& mass,
                          const Tolerances& tolerances);
 
-// Whether two energies differ by more than the error. No: where one is no number; that is found
-// elsewhere, and told as what it is.
+// Whether two energies differ by more than the error. False if one is NaN, which is found and
+// reported elsewhere.
 inline bool differs(const BoundedEnergy& drawn, double reduced) {
   return std::abs(reduced - drawn.value) > drawn.error;
 }

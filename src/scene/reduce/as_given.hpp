@@ -7,11 +7,11 @@
 
 namespace qddot::reduce {
 
-// A system as somebody gave it, of which nothing is left out: node i has the unknowns dimension i
-// to dimension (i + 1) - 1, none is pinned, and all energy is the system's.
+// A caller's own system, of which nothing is left out. Node i has the unknowns dimension i to
+// dimension (i + 1) - 1, none is pinned, and all energy is the system's.
 class AsGiven final : public WayBack {
  public:
-  // Throws std::invalid_argument, in a sentence, where the dimension or the sizes cannot be.
+  // Throws std::invalid_argument, in a sentence, if the dimension or the sizes are not allowed.
   AsGiven(std::shared_ptr<const System> system, State initial, int dimension);
 
   const System& system() const override { return *system_; }

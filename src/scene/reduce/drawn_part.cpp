@@ -6,8 +6,8 @@
 namespace qddot::reduce {
 namespace {
 
-// Coordinate by coordinate zero, or that of the first point where all are far from zero for the
-// size of the whole. There no two of a coordinate differ by more than a quarter, so that their
+// Each coordinate is zero or, if all points are far from zero for the size of the whole, that of
+// the first point. Then no two values of a coordinate differ by more than a quarter, so that their
 // differences are exact (Sterbenz).
 Eigen::Vector3d local_origin(const std::vector<Eigen::Vector3d>& x) {
   constexpr double far = 4;

@@ -10,14 +10,14 @@
 
 namespace qddot::reduce {
 
-// One part with all that acts on it: its nodes, the pinned nodes that its springs hold it to,
-// and gravity; numbered anew.
+// One part with all that acts on it, numbered anew: its nodes, the pinned nodes that its springs
+// hold it to, and gravity.
 struct DrawnPart {
   std::vector<std::size_t> nodes{};  // the scene's numbers: free nodes, then pinned ones
   std::size_t free = 0;              // how many are free
-  // Where x = 0 is in the scene: at zero, or, where the part is far from it for its size, at a node
-  // of the part. Positions are then exact differences, and rounding and tolerances go with the
-  // part's size instead of its distance from the scene's origin.
+  // The place of x = 0 in the scene: zero or, if the part is far from zero for its size, a node of
+  // the part. Positions are then exact differences. Rounding and tolerances scale with the part's
+  // size instead of its distance from the scene's origin.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> x{}, v{};  // of all of them; v = 0 where pinned
   std::vector<double> mass{};             // of all of them; 0 where pinned
@@ -28,10 +28,11 @@ struct DrawnPart {
   bool offers_split = false;    // whether its system is to offer SplitForces
 };
 
+// Makes the part of these members, whose numbers are those of the scene's nodes and springs.
 DrawnPart drawn_part(const PartMembers& members, const std::vector<Node>& nodes,
                      const std::vector<Spring>& springs, const Eigen::Vector3d& gravity);
 
-// What rounding may have done to numbers of this size: coordinates that come from a few operations.
+// The relative error that rounding may have left in coordinates that come from a few operations.
 inline constexpr double rounding = 64 * 0x1p-52;
 
 // The largest coordinate, in absolute value.

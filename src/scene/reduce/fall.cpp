@@ -24,7 +24,7 @@ bool has_loose_node(const DrawnPart& drawn) {
 
 void let_fall(DrawnPart& drawn) {
   if (drawn.free < drawn.nodes.size() || has_loose_node(drawn)) return;
-  // Differences to one of the velocities: where all are the same, their mean is that to the bit.
+  // Differences to one of the velocities: if all are equal, so is their mean, to the bit.
   double mass = 0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {

@@ -33,7 +33,7 @@ std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedPa
     if (original_of(i, orbits, mirrors, half.y) != i) continue;
     const unsigned zero = half.on_planes[static_cast<std::size_t>(i)];
     for (unsigned g = 0; g < orbits.elements(); ++g) {
-      // The image of what is zero is that.
+      // The image of zero is zero.
       Vector3d signs = Vector3d::Ones();
       for (int d = 0; d < mirrors; ++d) {
         if ((g & ~zero) >> d & 1) signs[d] = -1;
@@ -44,7 +44,7 @@ std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedPa
   return images;
 }
 
-// Which springs may be added: those between the same ends in the same way, of the same length.
+// Springs that agree in this may be added: the same ends in the same way, and the same length.
 auto ends(const FoldedPart::Spring& spring) {
   const auto [low, high] = std::minmax(spring.a, spring.b);
   return std::tuple(low, high, spring.mirror[0], spring.mirror[1], spring.mirror[2], spring.holds);
@@ -104,7 +104,7 @@ FoldedPart folded(const DrawnPart& drawn, const Mirrors& mirrors) {
     for (int d = 0; d < mirrors.count; ++d) {
       if (zero >> d & 1) image.mirror[d] = 1;
     }
-    // Both ends are one node for ever; without rest length (see mirrors_of) it does nothing.
+    // Both ends are one node for ever; without a rest length (see mirrors_of) it does nothing.
     if (image.a == image.b && image.mirror == Vector3d::Ones()) continue;
     result.springs.push_back(image);
   }

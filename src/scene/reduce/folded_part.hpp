@@ -10,9 +10,9 @@
 
 namespace qddot::reduce {
 
-// A node of a part as the image diag(signs) y of an original one, its own or another of its orbit
+// A node of a part as the image diag(signs) y of an original: itself, or another node of its orbit
 // under the group of all mirrors (see orbits.hpp). The original lies on the side of each mirror
-// where its coordinate is not negative; where nodes coincide, it is the first of those.
+// where its coordinate is not negative; of coincident nodes, it is the first.
 struct ImageOf {
   std::size_t original;
   Eigen::Vector3d signs;
@@ -33,6 +33,7 @@ struct FoldedPart {
   std::vector<Spring> springs;
 };
 
+// Folds a part along its mirrors.
 FoldedPart folded(const DrawnPart& drawn, const Mirrors& mirrors);
 
 }  // namespace qddot::reduce

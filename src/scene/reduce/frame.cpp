@@ -7,14 +7,14 @@
 namespace qddot::reduce {
 namespace {
 
-// Whether coordinate d is the same for all positions, and zero for whatever moves or pulls.
+// Whether coordinate d is the same for all positions, and zero for all that moves or pulls.
 bool is_shared(const DrawnPart& drawn, int d) {
   const auto rests = [&](const Eigen::Vector3d& v) { return v[d] == 0; };
   return drawn.gravity[d] == 0 && std::ranges::all_of(drawn.v, rests) &&
          std::ranges::all_of(drawn.x, [&](const auto& x) { return x[d] == drawn.x.front()[d]; });
 }
 
-// Orthonormal directions that span, within rounding, what they have been given.
+// Orthonormal directions that span the given vectors within rounding.
 class Span {
  public:
   // `noise`: the length below which a vector of this kind is rounding.
@@ -47,7 +47,7 @@ class Span {
   double best_ = 0;
 };
 
-// What spans the motion, from the point farthest above its noise to the least.
+// The span of the motion, from the point farthest above its noise to the least.
 Span span_of(const DrawnPart& drawn) {
   const double noise = rounding * largest_coordinate(drawn.x);
   const double speed_noise = rounding * largest_coordinate(drawn.v);
@@ -79,7 +79,7 @@ Frame frame_of(const DrawnPart& drawn, int dimension) {
   Frame frame{.dimension = 0};
   std::array<bool, 3> is_kept{};
   for (int d = 0; d < dimension; ++d) is_kept[d] = !is_shared(drawn, d);
-  // Where nothing moves, one coordinate remains to say so.
+  // If nothing moves, one coordinate remains to say so.
   if (std::ranges::count(is_kept, true) == 0) is_kept[0] = true;
   int dropped = 3;
   for (int d = 2; d >= 0; --d) {
@@ -93,7 +93,7 @@ Frame frame_of(const DrawnPart& drawn, int dimension) {
     }
   }
 
-  // Beyond that, lengths overflow.
+  // Lengths overflow beyond this.
   constexpr double largest = 1e150;
   for (const double size : {largest_coordinate(drawn.x), largest_coordinate(drawn.v),
                             drawn.gravity.lpNorm<Eigen::Infinity>()}) {
@@ -102,7 +102,7 @@ Frame frame_of(const DrawnPart& drawn, int dimension) {
   const Span span = span_of(drawn);
   if (span.rank() == 0 || span.rank() >= frame.dimension) return frame;
   for (int d = 0; d < 3; ++d) {
-    // Shared but for a deviation.
+    // This one is shared but for a deviation.
     if (is_kept[d] && span.remainder(Eigen::Vector3d::Unit(d)).norm() > 1 - 1e-9) return frame;
   }
   Frame rotated{span.rank(), drawn.x.front(), complete(span.basis(), span.rank())};

@@ -6,9 +6,9 @@
 
 namespace qddot::reduce {
 
-// Coordinates y of a D-dimensional subspace: x = origin + axes y, the axes being the first D
-// columns of an orthonormal matrix. A coordinate is either one of the scene's own, to the bit, or a
-// rotated one.
+// Coordinates y of a D-dimensional subspace: x = origin + axes y. The axes are the first D columns
+// of an orthonormal matrix. A coordinate is either one of the scene's own, to the bit, or a rotated
+// one.
 struct Frame {
   int dimension = 3;  // D
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
@@ -31,13 +31,14 @@ Eigen::Matrix3d complete(Eigen::Matrix3d axes, int count);
 
 // The smallest subspace in which the part's motion stays. Let all positions (of free nodes and of
 // the pinned ones they are held to), all velocities and gravity lie in a subspace W. A spring pulls
-// along the difference of its ends, so all forces lie in W while all positions do: the components
-// normal to W obey y'' = 0 with y = y' = 0, and stay zero. Sought are first the scene's coordinates
-// that all positions share to the bit and in which nothing moves or pulls; then, among the others,
-// any plane or line that holds everything within rounding. `dimension`: of the scene.
+// along the difference of its ends, so all forces lie in W while all positions do. The components
+// normal to W obey y'' = 0 with y = y' = 0, and stay zero. First, the scene's coordinates are left
+// out that all positions share to the bit and in which nothing moves or pulls. Then, among the
+// others, any plane or line is found that holds everything within rounding. `dimension`: of the
+// scene.
 //
-// A coordinate that is shared almost, but not to the bit, counts as not shared: a deviation of one
-// rounding may be there on purpose, to start a buckling.
+// A coordinate that is shared almost, but not to the bit, counts as not shared: the deviation may
+// be there on purpose, to start a buckling.
 Frame frame_of(const DrawnPart& drawn, int dimension);
 
 }  // namespace qddot::reduce

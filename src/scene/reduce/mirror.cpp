@@ -46,7 +46,7 @@ class Places {
   // The first node within `tolerance` of a place that `fits`, or -1.
   template <class Fits>
   int find(const Vector3d& place, double tolerance, const Fits& fits) const {
-    // Along a unit vector nodes are as close as they are in space, or closer.
+    // Nodes are no farther apart along a unit vector than in space.
     const double low = key(place) - 2 * tolerance;
     auto at = std::ranges::lower_bound(order_, low, {}, [&](int i) { return key(x_[i]); });
     for (; at != order_.end() && key(x_[*at]) <= low + 4 * tolerance; ++at) {
@@ -97,7 +97,7 @@ class Ends {
 
 bool nearly(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
 
-// Nodes in an order in which each comes after a neighbour where it has one before it at all.
+// Nodes in an order in which each comes after a neighbour, if it has one before it at all.
 std::vector<int> along_springs(const DrawnPart& drawn,
                                const std::vector<std::vector<int>>& neighbours) {
   std::vector<int> order;
@@ -166,7 +166,7 @@ class Search {
       center(plane);
       if (std::abs(plane.normal.dot(drawn_.gravity)) > rounding * drawn_.gravity.norm()) return {};
     }
-    // The image of the first node decides those of its neighbours; of several in one place, any may
+    // The image of the first node decides those of its neighbours; any of several in one place may
     // be it.
     for (const int first : candidates(plane, order_.front())) {
       const auto exactly = images(plane, tolerance_, speed_tolerance_, earlier, first);
@@ -178,7 +178,7 @@ class Search {
   }
 
  private:
-  // Through the middle of all nodes, which a mirror image shares.
+  // Puts the plane through the middle of all nodes, which a mirror image shares.
   void center(Plane& plane) const {
     double low = INFINITY, high = -INFINITY;
     for (const Vector3d& x : drawn_.x) {
@@ -204,8 +204,8 @@ class Search {
     return all;
   }
 
-  // With S the reflection and G the group of the earlier ones, S must commute with all g in G: if i
-  // has the image j, then g i has g j. That is possible where the same g leave i and j in place.
+  // The reflection S must commute with the group G of the earlier ones: if i has the image j, then
+  // g i has g j for all g in G. That is possible if the same g leave i and j in place.
   std::optional<Images> images(const Plane& plane, double tolerance, double speed_tolerance,
                                const std::vector<Images>& earlier, std::optional<int> first) const {
     Images all(drawn_.x.size(), -1);
@@ -234,7 +234,8 @@ class Search {
     });
   }
 
-  // The direction in which most images differ from their nodes, or false where none does.
+  // Turns the plane towards the direction in which most images differ from their nodes; false if
+  // none does.
   bool refine(Plane& plane, const Images& images) const {
     Vector3d sum = Vector3d::Zero();
     for (std::size_t i = 0; i < images.size(); ++i) {
@@ -249,7 +250,7 @@ class Search {
     return true;
   }
 
-  // Where all nodes lie on the plane, that is for the dimension to say.
+  // Whether any node moves. If all lie on the plane, the dimension takes account of that.
   bool moves_any(const Images& images) const {
     for (std::size_t i = 0; i < drawn_.free; ++i) {
       if (images[i] != static_cast<int>(i)) return true;

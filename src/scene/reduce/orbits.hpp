@@ -4,15 +4,16 @@
 
 namespace qddot::reduce {
 
-// Reflections as permutations of a part's nodes: each its own inverse, all commuting, so that the
-// group they generate acts on the nodes. An element of the group is a set of reflections, a bit for
-// each; the orbit of a node is what the elements make of it.
+// Reflections as permutations of a part's nodes. Each is its own inverse and all commute, so the
+// group that they generate acts on the nodes. An element of the group is a set of reflections, a
+// bit for each. The orbit of a node is the set of its images under all elements.
 class Orbits {
  public:
   // `images`: of each node under each reflection; must outlive this.
   explicit Orbits(const std::vector<std::vector<int>>& images) : images_(images) {}
 
   unsigned elements() const { return 1u << images_.size(); }
+  // The image of a node under an element.
   int image(unsigned element, int node) const {
     for (std::size_t d = 0; d < images_.size(); ++d) {
       if (element >> d & 1) node = images_[d][static_cast<std::size_t>(node)];
@@ -26,8 +27,8 @@ class Orbits {
     }
     return true;
   }
-  // The reflections that take part in an element which leaves the node where it is. An element is
-  // diag(+-1, ...) of the coordinates, so those with these bits are zero.
+  // The reflections in all elements that leave the node where it is. An element is diag(+-1, ...)
+  // of the coordinates, so those with these bits are zero.
   unsigned zero_coordinates(int node) const {
     unsigned zero = 0;
     for (unsigned g = 1; g < elements(); ++g) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int no_number = -1;
 
-// The numbers that the originals have in the network: of the free ones, or of the pinned ones too.
+// The originals' numbers in the network: of the free ones, or of the pinned ones too.
 std::vector<int> numbers_of(const DrawnPart& drawn, const FoldedPart& half, bool with_pins) {
   std::vector<int> numbers(drawn.nodes.size(), no_number);
   int next = 0;
@@ -35,7 +35,7 @@ void add_spring(const FoldedPart::Spring& spring, const FoldedPart& half,
 }
 
 // Massless nodes on two springs, by the part's numbers. They fold up where these are compressed,
-// across the line that is all that a network of one dimension knows.
+// across the line, of which a network of one dimension knows nothing.
 std::vector<bool> joints_of(const DrawnPart& drawn) {
   std::vector<int> springs(drawn.nodes.size(), 0);
   for (const Spring& spring : drawn.springs) {

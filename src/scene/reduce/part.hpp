@@ -14,39 +14,39 @@
 
 namespace qddot::reduce {
 
-// A part's motion in the fewest unknowns. Every node's position is an affine function of them,
-//   x_i = origin + frame.origin + axes diag(signs_i) y_original(i),   in short x = P q + c,
-// where the originals are the nodes on one side of each mirror. With the energy of all springs
-// written in q the equations of motion are those of M = P'M_full P, f = P'f_full, K = P'K_full P.
-// Springs that are images of each other have the same energy: one stands for all, stiffer by their
-// number, and nothing is multiplied by P. The origin is the part's own (see DrawnPart): what is
-// small in the part keeps its digits wherever the part lies.
+// A part's motion in the fewest unknowns q. Every node's position is an affine function of them,
+//   x_i = origin + frame.origin + axes diag(signs_i) y_original(i),   in short x = P q + c.
+// The originals are the nodes on one side of each mirror. The energy of all springs, written in q,
+// gives the equations of motion with M = P'M_full P, f = P'f_full, K = P'K_full P. Springs that are
+// images of each other have the same energy: one stands for all, stiffer by their number, and
+// nothing is multiplied by P. The origin is the part's own (see DrawnPart), so that small numbers
+// keep their digits wherever the part lies.
 class Part {
  public:
   Part(const DrawnPart& drawn, int dimension, const Reductions& reductions);
 
   const System& system() const { return *system_; }
-  // Where its unknowns start.
+  // The state of its unknowns at the start.
   const State& initial() const { return initial_; }
   // Gives away the system; the rest remains.
   std::unique_ptr<System> take_system() { return std::move(system_); }
 
-  // In coordinates from the part's origin.
+  // Its mirrors, in coordinates from the part's origin.
   const Mirrors& mirrors() const { return mirrors_; }
   const Eigen::Vector3d& origin() const { return origin_; }
-  // What the potential energy has beside that of the system [J]: -M g.origin.
+  // The potential energy beside that of the system [J]: -M g.origin.
   double energy_of_origin() const { return energy_of_origin_; }
   // The scene's numbers of its nodes.
   const std::vector<std::size_t>& nodes() const { return nodes_; }
   std::size_t originals() const { return layout_.size(); }
-  // Whether it is springs of some rest length on a line that make K constant (see straight.hpp).
+  // Whether K is constant though springs on a line have rest lengths (see straight.hpp).
   bool is_straightened() const { return is_straightened_; }
 
-  // The frame that falls with it, if nothing is pinned to it: all else is as seen from there.
+  // The frame that falls with it, if nothing is pinned to it; all else is as seen from there.
   const Fall& fall() const { return fall_; }
 
-  // Sets positions and velocities of its nodes among those of the scene from its unknowns, all
-  // moved by `displacement` [m] and `velocity` [m/s].
+  // Computes positions and velocities of its nodes from its unknowns, all moved by `displacement`
+  // [m] and `velocity` [m/s], and sets them in the scene's `nodes`.
   void expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v,
               const Eigen::Vector3d& displacement, const Eigen::Vector3d& velocity,
               std::vector<Node>& nodes) const;
@@ -57,11 +57,10 @@ class Part {
   };
   Moments moments(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v) const;
 
-  // In which way, with both numbers, it is not the drawn one at the start: nodes, masses,
-  // positions, velocities and energies are compared, up to what rounding and the tolerances of its
-  // reductions make of them. Momenta and angular momenta follow from the first four. Nothing where
-  // all agree, as they do by construction: a defect of a reduction shows here. Before
-  // take_system().
+  // How it differs from the drawn part at the start, with both numbers; nothing if all agrees.
+  // Compares nodes, masses, positions, velocities and energies, up to rounding and the tolerances
+  // of its reductions. Momenta and angular momenta follow from the first four. All agrees by
+  // construction: a defect of a reduction shows here. Call before take_system().
   std::optional<std::string> difference_from(const DrawnPart& drawn) const;
 
  private:
@@ -80,7 +79,7 @@ class Part {
   struct Motion {
     Eigen::Vector3d x, v;
   };
-  // The motion of its node number i, from the part's origin.
+  // Position and velocity of its node number i, from the part's origin.
   Motion motion(std::size_t i, const Eigen::Ref<const Vec>& q,
                 const Eigen::Ref<const Vec>& v) const;
   std::optional<std::string> places_differ(const DrawnPart& drawn, double tolerance,

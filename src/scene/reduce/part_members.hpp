@@ -6,8 +6,8 @@
 
 namespace qddot::reduce {
 
-// Numbers of the nodes that springs join, directly or through each other, and of these springs.
-// Pinned nodes join nothing, since they pass no motion on, and belong to no part.
+// The numbers of nodes that springs join, directly or through each other, and of these springs.
+// Pinned nodes pass no motion on, so they join nothing and belong to no part.
 struct PartMembers {
   std::vector<std::size_t> nodes;    // not pinned, ascending
   std::vector<std::size_t> springs;  // with an end among them, ascending
@@ -17,7 +17,7 @@ struct PartMembers {
 std::vector<PartMembers> parts_of(const std::vector<Node>& nodes,
                                   const std::vector<Spring>& springs);
 
-// The same nodes and springs as one part; none of none.
+// The same nodes and springs as one part; no part if there is none.
 std::vector<PartMembers> joined(const std::vector<PartMembers>& parts);
 
 }  // namespace qddot::reduce

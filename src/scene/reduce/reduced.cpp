@@ -25,7 +25,7 @@ std::string energy_instead_of(double reduced, double drawn) {
                      drawn);
 }
 
-// Says of each node whether the part of the scene that springs join it to never leaves a line.
+// Whether the part of each node never leaves a line.
 std::vector<bool> on_lines(const std::vector<Node>& nodes, const std::vector<Spring>& springs,
                            const Eigen::Vector3d& gravity, int dimension) {
   std::vector<bool> is_on_line(nodes.size(), dimension == 1);

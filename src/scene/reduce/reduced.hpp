@@ -15,7 +15,7 @@
 
 namespace qddot::reduce {
 
-// What a ReducedScene consists of, and the steps by which it is made, in order; functions as there.
+// The contents of a ReducedScene, and the steps by which it is made, in order; functions as there.
 class Reduced final : public WayBack {
  public:
   Reduced(const Scene& scene, const Reductions& reductions);
@@ -35,8 +35,8 @@ class Reduced final : public WayBack {
   std::vector<Index> unknowns_by_part() const override;
 
  private:
-  // A node that moves in closed form, x = x0 + v0 t + 1/2 g t^2: by itself, or in a part that rests
-  // in the frame that falls with it.
+  // A node that moves in closed form, x = x0 + v0 t + 1/2 g t^2. It is on no spring, or in a part
+  // that rests in its falling frame.
   struct Flying {
     std::size_t node;
     Eigen::Vector3d velocity, gravity;  // v0 [m/s], g [m/s^2]
@@ -53,17 +53,17 @@ class Reduced final : public WayBack {
   void merge(std::vector<Spring>& springs);
   void condense(std::vector<Spring>& springs);
   std::vector<PartMembers> divide(const std::vector<Spring>& springs, const Reductions& reductions);
-  // The part as its motion is integrated; nothing where it rests in its fall.
+  // The part as its motion is integrated; nothing if it rests in its fall.
   std::optional<DrawnPart> moving_part(const PartMembers& members,
                                        const std::vector<Spring>& springs,
                                        const Reductions& reductions);
   void leave_out_static_springs(const std::vector<Spring>& springs);
   void build(const std::vector<PartMembers>& parts, const std::vector<Spring>& springs,
              const Reductions& reductions);
-  // Reduced as far as it still starts as drawn.
+  // The part, reduced as far as it still starts as drawn.
   Part faithful_part(const DrawnPart& drawn, Reductions reductions);
-  // That each free node has one place, and that energies are the scene's. Positions and velocities
-  // of nodes on springs are compared part by part, those of joints are placed by their series.
+  // Checks that each free node has one place, and that energies are the scene's. Positions and
+  // velocities of nodes on springs are compared part by part; joints are placed by their series.
   void check(const Scene& scene) const;
   void report(Reduction reduction, std::string what) {
     findings_.push_back({reduction, std::move(what)});

@@ -14,13 +14,14 @@ enum class Reduction {
   duplicates,          // springs between the same nodes are one, springs of no stiffness none
   massless,            // springs in series through massless nodes are one
   free_flight,         // nodes on no spring move in closed form
-  parts,               // what no spring joins is integrated apart
+  parts,               // each part is integrated by itself
   dimension,           // a motion in a plane or on a line has two coordinates or one
-  mirror,              // of a motion that is its own mirror image, one half is enough
+  mirror,              // one half is enough of a motion that is its own mirror image
   constant_stiffness,  // K is the same everywhere, and is factorised once
-  falling,             // what nothing is pinned to falls in closed form as a whole
+  falling,             // a part to which nothing is pinned falls in closed form
 };
 
+// The names of the reductions, in the order of Reduction.
 inline constexpr std::array<std::string_view, 9> reduction_names = {
     "pins",      "duplicates", "massless",           "free_flight", "parts",
     "dimension", "mirror",     "constant_stiffness", "falling"};
@@ -29,17 +30,18 @@ constexpr std::string_view name(Reduction reduction) {
   return reduction_names[static_cast<std::size_t>(reduction)];
 }
 
-// A set of reductions; all of them at first.
+// A set of reductions; by default all of them.
 class Reductions {
  public:
+  // The chosen reductions alone.
   static Reductions only(std::initializer_list<Reduction> chosen) {
     Reductions few;
     few.left_out_.set();
     for (const Reduction reduction : chosen) few.left_out_.reset(index(reduction));
     return few;
   }
-  // Those that leave every direction in which the free nodes may move: for statics and small
-  // motions, which ask what happens to the left and right of the motion as well.
+  // The reductions that keep every direction in which the free nodes may move. They are for statics
+  // and small motions, which also ask about directions that the motion itself never takes.
   static Reductions all_directions() { return only({Reduction::pins, Reduction::duplicates}); }
   bool has(Reduction reduction) const { return !left_out_[index(reduction)]; }
   Reductions without(Reduction reduction) const {

@@ -62,7 +62,7 @@ class Condenser {
   }
 
   // The springs and joints met from `node` along spring `e`, up to the first node that is no joint;
-  // `none` where they lead round to `node` again.
+  // `none` if they lead back to `node`.
   std::size_t follow(std::size_t node, std::size_t e, std::vector<std::size_t>& chain,
                      std::vector<std::size_t>& joints) {
     const std::size_t start = node;
@@ -101,7 +101,7 @@ class Condenser {
       rest_length += springs_[e].law.rest_length;
     }
     const double length = (nodes_[ends[1]].position - nodes_[ends[0]].position).norm();
-    // A series drawn at its rest length may be shorter by what rounding makes of it.
+    // A series drawn at its rest length may be shorter by rounding.
     if (length < (1 - 1e-12) * rest_length) return {};
     const SpringLaw law{.stiffness = 1 / compliance, .rest_length = rest_length};
     if (is_on_line_[joints.front()] && stays_folded(ends, joints, law.stiffness)) return {};
@@ -119,7 +119,7 @@ class Condenser {
     return series;
   }
 
-  // On a line, as the header says.
+  // Whether joints on a line stay folded, as the header says.
   bool stays_folded(std::array<std::size_t, 2> ends, const std::vector<std::size_t>& joints,
                     double stiffness) const {
     const Eigen::Vector3d along = nodes_[ends[1]].position - nodes_[ends[0]].position;

@@ -6,11 +6,11 @@
 
 namespace qddot::reduce {
 
-// Springs that do the same as `springs`: those without any stiffness are left out, and those
-// between the same two nodes with the same rest length are one, whose stiffnesses are the sums,
-// since 1/2 (k1 + k2)(l - l0)^2 + 1/4 (c1 + c2)(l - l0)^4 is the energy of both. One of
-// several is stiff if any of these is: whether springs are named stiff changes nothing else. In the
-// order in which each first appears.
+// Springs that do the same as `springs`, in the order in which each first appears. Springs without
+// any stiffness are left out. Springs between the same two nodes with the same rest length become
+// one with the sums of their stiffnesses. Its energy is that of both,
+//   1/2 (k1 + k2)(l - l0)^2 + 1/4 (c1 + c2)(l - l0)^4.
+// It is stiff if any of them is; whether springs are named stiff changes nothing else.
 std::vector<Spring> merged_springs(const std::vector<Spring>& springs);
 
 }  // namespace qddot::reduce

@@ -7,7 +7,7 @@
 namespace qddot::reduce {
 namespace {
 
-// A spring on the line: d = c - x_i, + s x_j where j is a node.
+// A spring on the line: d = c - x_i + s x_j, or d = c - x_i if there is no node j.
 struct LineSpring {
   int i, j;  // j = -1: none
   double s, c;
@@ -42,7 +42,7 @@ bool may_be_straightened(const std::vector<LineSpring>& springs) {
                              [](const LineSpring& spring) { return spring.law.rest_length > 0; });
 }
 
-// The coordinate of each node: its unknown, or zero where it has none.
+// The coordinate of each node: its unknown, or zero if it has none.
 std::vector<double> coordinates(const Network& network, const Vec& q) {
   std::vector<double> x;
   Index next = 0;
@@ -78,7 +78,7 @@ double relative_kinetic(const Vec& mass, const Vec& v) {
   return 0.5 * mass.dot((v.array() - mean).square().matrix());
 }
 
-// A hair's breadth, so that rounding does not decide.
+// A small margin, so that rounding does not decide.
 constexpr double margin = 1 - 1e-6;
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace qddot::reduce {
 
 class Part;
 
-// A system, where it starts, and the way back from its unknowns to all nodes: what stands behind a
-// ReducedScene, whose functions these are.
+// A system, its start, and the way back from its unknowns to all nodes. It implements ReducedScene,
+// which documents these functions.
 class WayBack {
  public:
   virtual ~WayBack() = default;
@@ -19,8 +19,8 @@ class WayBack {
   virtual const System& system() const = 0;
   virtual const State& initial() const = 0;
   virtual int dimension() const = 0;
-  // As ReducedScene::expand or, unless it `falls`, expand_beside_falls. `nodes`: empty, or what
-  // this gave before.
+  // Does ReducedScene::expand if `falls`, else expand_beside_falls. `nodes`: empty, or what this
+  // gave before.
   virtual void expand(const State& state, bool falls, std::vector<Node>& nodes) const = 0;
   virtual double kinetic(const State& state) const = 0;
   virtual double potential(const State& state) const = 0;

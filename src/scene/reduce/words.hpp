@@ -19,10 +19,10 @@ std::string flying_sentence(const std::vector<std::size_t>& nodes);
 // at rest about theirs.
 std::string falling_sentence(std::size_t falling, std::size_t resting);
 std::string parts_sentence(std::size_t parts);
-// Says that a reduction was left out of a part since it made it another one, and how.
+// Says that a reduction was left out of a part because it changed the part, and how.
 std::string mistaken_sentence(const std::string& difference);
 
-// What was found in the parts, each with its system: their subspaces, mirrors and constant K, parts
+// Findings of the parts, each with its system: their subspaces, mirrors and constant K, with parts
 // of one kind together. `dimension`: of the scene.
 std::vector<Finding> findings_of(const std::vector<Part>& parts,
                                  const std::vector<std::unique_ptr<System>>& systems,

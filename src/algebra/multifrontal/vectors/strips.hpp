@@ -9,11 +9,11 @@ namespace {
 using namespace kernels::QDDOT_LEVEL;
 
 // Dense kernels for LDL' and its triangular solves, on matrices cut into strips of 8 rows. A strip
-// of k columns is k times 8 numbers, one after the other: products read it as it lies in memory,
-// its rows in the lanes of the processor's vectors.
+// of k columns is k times 8 consecutive numbers. Products read them in this order, rows in the
+// lanes of the processor's vectors.
 constexpr int height = strip_height;
 
-// Tiles of as many vectors as the processor's registers hold: 32 with AVX-512, else 16.
+// A tile is as large as the processor's registers hold: 32 vectors with AVX-512, else 16.
 constexpr int vectors = height / lanes;  // in a column of a strip
 constexpr int tile_strips = lanes == 8 ? 3 : 1;
 constexpr int tile_columns = lanes;
@@ -26,7 +26,7 @@ template <int strips, bool fresh>
 inline void subtract_tile(double* c, std::ptrdiff_t ld, const double* a, std::ptrdiff_t stride,
                           const double* w, int k) {
   constexpr int rows = strips * vectors;
-  // C may be in a farther cache than A and W: where there are many products, it is fetched before.
+  // C may be in a farther cache than A and W: many products are worth fetching it before.
   if (k >= 48) {
 #pragma GCC unroll 16
     for (int j = 0; j < tile_columns; ++j) {
@@ -129,8 +129,8 @@ inline void factorize(const double* a, std::ptrdiff_t a_ld, Block& block) {
   }
 }
 
-// A strip of L below a block: L D = A L'^-1, A's 8 columns `ld` apart. Of L and L D the first k
-// columns are kept.
+// A strip of L below a block: L D = A L'^-1, A's 8 columns `ld` apart. The first k columns of L and
+// L D are kept.
 inline void divide_strip(const double* a, std::ptrdiff_t ld, const Block& block, int k, double* l,
                          double* scaled) {
 #pragma GCC unroll 4

@@ -7,7 +7,7 @@
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 
-// l of one slot's springs, whose squared lengths are l2, or whose distance is d on a line.
+// l of one slot's springs, from their squared lengths or, on a line, from d.
 template <int D, Roots roots>
 [[gnu::always_inline]] inline Lanes length(const Lanes (&d)[D], Range& range) {
   if constexpr (D == 1) {
@@ -73,8 +73,7 @@ void energy(const SpringTable& springs, const Positions& positions, double* sums
   }
 }
 
-// The secant of V between the lengths a and b over their sum, as SpringLaw::secant has it; 0 where
-// both are.
+// SpringLaw::secant(a, b) over a + b; 0 if both are 0.
 template <int law_vectors>
 [[gnu::always_inline]] inline Lanes secant_by_sum(Lanes a, Lanes b, const double* law) {
   const Lanes rest_length = load(law + slice_rows), s = a - rest_length, t = b - rest_length;

@@ -10,8 +10,8 @@
 #define QDDOT_FUSES 0
 #endif
 
-// Sources in folders `vectors` are compiled once for each level, whose name is QDDOT_LEVEL. All
-// that they define has internal linkage, but for a table of functions in a namespace of that name.
+// Sources in folders `vectors` are compiled once for each level, whose name is QDDOT_LEVEL. They
+// define nothing with external linkage but a table of functions in a namespace of that name.
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 

@@ -3,29 +3,28 @@
 #include "qddot/model/kernels/spring_kernels.hpp"
 #include "qddot/model/kernels/vectors/lanes.hpp"
 
-// The processor's root and division take many times as long as its products. Where it has estimates
-// of 1/sqrt(a) and fused multiply-adds, there is another way to the same bits.
+// The processor's root and division take many times as long as its products. Processors with
+// estimates of 1/sqrt(a) and fused multiply-adds have another way to the same bits.
 //
-// Root. With y the estimate, 1/sqrt(a) (1 + d), |d| <= 2^-14 (AVX-512) or 1.5 2^-12: g = a y and
-// h = y/2 are near sqrt(a) and 1/(2 sqrt(a)), and with e = 1/2 - g h both times
+// Root. The estimate is y = 1/sqrt(a) (1 + d), |d| <= 2^-14 (AVX-512) or 1.5 2^-12. So g = a y is
+// near sqrt(a), and h = y/2 is near 1/(2 sqrt(a)). Let e = 1/2 - g h; both times
 //   (1 - 2e)^(-1/2) = 1 + e + 3/2 e^2 + 5/2 e^3 + 35/8 e^4 + ...
-// are as close as rounding lets them be: relative errors of at most 2.1 2^-53. What is left,
-// r = a - g^2, one fused operation knows exactly, and g + r h differs from sqrt(a) by less than
-// 7 2^-106 sqrt(a). Rounded it is the nearest number unless sqrt(a) is that near to the middle m of
-// two. For a in [1, 4), a - m^2 is an odd multiple of 2^-106, below 28 of which there are only few
-// a: the tests try them all.
+// have relative errors of at most 2.1 2^-53. One fused operation gives the rest r = a - g^2
+// exactly, and g + r h differs from sqrt(a) by less than 7 2^-106 sqrt(a). Rounded it is the
+// nearest number unless sqrt(a) is that near to the middle m of two. If a is in [1, 4), a - m^2 is
+// an odd multiple of 2^-106. Only few a have a multiple below 28: the tests try them all.
 //
-// Quotient. With s = 2h, s + s (1 - s l) is 1/l to within 12 2^-106; rounded it is u, the number
+// Quotient. Let s = 2h: s + s (1 - s l) is 1/l to within 12 2^-106. Rounded it is u, the number
 // next to 1/l but for few l. Let l and t/l be in [1, 2) and t/l near the middle m of two numbers,
-// t - m l = k 2^-105, k odd. Then p = t u is one of the two, t - p l is exact, and
-// p + (t - p l) u misses t/l by less than 2^-53 l |u - 1/l|, which is less than t/l - m where
-// l^2 |u - 1/l| < 2^-52 |k| (as Markstein found, IBM J. Research and Development 34 (1990)
-// 111-119). Where u is the next number that holds. Where it is not, 1/l is near the middle of two,
-// and u is off by hardly more than half of their distance, 2^-54: that holds, too, but for
-// l = 2 - 2^-52, k = 1 and t a power of two. There 1/l is above the middle, by so little that s + s
-// (1 - s l) must not be too small: so 2^-99 is added to 1 - s l.
+// t - m l = k 2^-105, k odd. Then p = t u is one of the two, t - p l is exact, and p + (t - p l) u
+// misses t/l by less than 2^-53 l |u - 1/l|. This is less than t/l - m if l^2 |u - 1/l| < 2^-52 |k|
+// (Markstein, IBM J. Research and Development 34 (1990) 111-119), which holds where u is the number
+// next to 1/l. Elsewhere 1/l is near the middle of two numbers, and u is off by hardly more than
+// half of their distance, 2^-54. It then holds too, except for l = 2 - 2^-52, k = 1 and t a power
+// of two. There 1/l is above the middle by so little that s + s (1 - s l) must not be too small: so
+// 2^-99 is added to 1 - s l.
 //
-// No number on the way may be too small or too large: see Range, and can_be_estimated of the laws.
+// No number on the way may be too small or too large: see Range, and can_be_estimated for the laws.
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 

@@ -20,9 +20,9 @@ template <int D>
   return l2;
 }
 
-// Calls add_shift(s, slot, d, law) for every slot s of one shift and then add_gather(slot, d, law)
-// for all others of a part of a slice, with d = x_j - x_i of its rows and what
-// NeighbourSlices::laws has for it; slots are numbered within the slice.
+// Visits the slots of a part of a slice: add_shift(s, slot, d, law) for every slot s of one shift,
+// then add_gather(slot, d, law) for all others. d = x_j - x_i of the part's rows; `law` is what
+// NeighbourSlices::laws has for the slot; slots are numbered within the slice.
 template <int D, int law_vectors, class AddShift, class AddGather>
 [[gnu::always_inline]] inline void for_slots(const SpringTable& springs, int slice, int part,
                                              const Positions& positions, const AddShift& add_shift,

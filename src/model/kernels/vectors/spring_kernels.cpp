@@ -11,8 +11,9 @@ namespace {
 template <int D, Roots roots>
 constexpr SpringKernels kernels() {
   if constexpr (roots == Roots::processor || has_estimates) {
-    // On a line there are no roots. All but forces divide by the processor's own: K by a length,
-    // whose estimated inverse is next to the nearest number only, mean forces by a sum of two.
+    // A line needs no roots. Only forces use estimated quotients. K divides by a length, whose
+    // estimated inverse is only next to the nearest number; mean forces divide by a sum of two
+    // lengths.
     constexpr Roots processor = Roots::processor, none_on_line = D == 1 ? processor : roots,
                     of_lengths = none_on_line == processor ? processor : Roots::estimated_root;
     return {.place = place<D>,

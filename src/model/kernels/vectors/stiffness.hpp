@@ -17,8 +17,8 @@ constexpr int entry(int a, int b) {
   return column * D - column * (column - 1) / 2 + row - column;
 }
 
-// tau' of one slot's springs, and tau/l as it counts in B: counted(tau/l, l0). On a line B is tau'
-// alone, which is K's to the last bit at every q where tau' is constant.
+// tau' of one slot's springs, and tau/l as it counts in B: counted(tau/l, l0). B is tau' alone on a
+// line, so K is the same to the last bit at every q if tau' is constant.
 struct Slopes {
   Lanes along, across, inverse_length;
 };
@@ -91,7 +91,7 @@ template <int D>
   }
 }
 
-// With tau/l as counted(tau/l, l0).
+// Writes the rows' columns of K, with tau/l as counted(tau/l, l0).
 template <int D, int law_vectors, Roots chosen, class Counted>
 void write(const SpringTable& springs, const Positions& positions, const StiffnessTable& table,
            const Counted& counted, double* values, int from, int end) {

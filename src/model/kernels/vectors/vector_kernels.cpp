@@ -48,7 +48,7 @@ void multiply(const double* a, const double* b, double* out, std::ptrdiff_t n) {
   for (; i < n; ++i) out[i] = a[i] * b[i];
 }
 
-// The next `width` vectors of add_combination: as many sums side by side hide what one waits for.
+// The next `width` vectors of add_combination: sums side by side hide each other's latency.
 template <int width>
 [[gnu::always_inline]] inline void combine(const double* x, double d, const double* v, double c,
                                            const double* const* z, const double* b, int count,
@@ -137,11 +137,11 @@ void step_by_history(const double* f, const double* c, const double* const* u, c
   }
 }
 
-// Sums of squares are those of `sums` columns, each of every so many numbers, whatever the width of
+// Sums of squares are `sums` partial sums, each of every `sums`-th number, for any width of
 // vectors: so all processors round them alike.
 constexpr int sums = 32, vectors_of_sums = sums / lanes;
 
-// number(i) and lanes_at(i) compute what is squared: one number, and a vector of them.
+// number(i) and lanes_at(i) give the numbers to square: one, and a vector of them.
 template <class LanesAt, class Number>
 [[gnu::always_inline]] inline double sum_of_squares(std::ptrdiff_t n, const LanesAt& lanes_at,
                                                     const Number& number) {
