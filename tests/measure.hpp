@@ -26,7 +26,7 @@ inline double observed_order(std::span<const double> errors) {
   return -slope(halvings, logarithms);
 }
 
-// dg/dq of g: Vec -> Vec, column by column, from the central differences of fourth order
+// The Jacobian dg/dq of g: Vec -> Vec, column by column, from central differences of fourth order
 //   g' = (8 (g(q+h) - g(q-h)) - (g(q+2h) - g(q-2h))) / 12 h.
 // A gradient is the one row of a g that gives a Vec of length 1. An entry is wrong by
 // h^4 |g^(5)| / 30 from truncation and about eps |g| / h from rounding.
@@ -45,7 +45,7 @@ Eigen::MatrixXd finite_difference_jacobian(const Function& g, const Vec& q, doub
   return jacobian;
 }
 
-// The symmetric matrix of which `lower` holds the lower triangle.
+// The symmetric matrix whose lower triangle is `lower`.
 inline Eigen::MatrixXd dense(const SymmetricMatrix& lower) {
   return Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
 }
@@ -85,8 +85,8 @@ inline SymmetricMatrix material_stiffness_at(const System& system, const Vec& q)
   return k;
 }
 
-// The largest absolute difference of two vectors or matrices of the same size; 0 where empty and
-// infinite where a difference is not a number, so that no comparison passes on it.
+// The largest absolute difference of two vectors or matrices of the same size; 0 if they are empty.
+// Infinite if a difference is NaN, so that no comparison passes.
 template <class A, class B>
 double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   if (a.size() == 0) return 0;

@@ -14,7 +14,7 @@ struct Problem {
   State initial;
 };
 
-// m x'' = -k x in 1D: a mass on a spring of zero rest length, tied to the origin.
+// A mass on a spring of zero rest length, tied to the origin: m x'' = -k x in 1D, with the motion
 // x(t) = x0 cos(w t) + v0/w sin(w t), w = sqrt(k/m).
 struct Oscillator {
   double mass = 2, stiffness = 50, x0 = 0.8, v0 = -1.5;
@@ -48,7 +48,7 @@ Problem random_network(std::mt19937& random, int dimension, int nodes, double st
 Network with_split(Network network);
 
 // A smooth nonlinear motion: four masses in a row between two pins, braced across, sagging and
-// swinging under gravity; springs are stretched and compressed in turn, one is quartic. Its
+// swinging under gravity. Springs are stretched and compressed in turn; one is quartic. Its
 // frequencies are below 25 rad/s and no spring comes near zero length.
 Problem hammock(int dimension);
 

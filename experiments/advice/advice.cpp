@@ -1,22 +1,22 @@
-// What is an answer worth that was asked for by its accuracy alone? Scenes, horizons and accuracies
-// are drawn; each motion is asked for, its error measured against a certified reference, and its
-// time compared with the fastest run of all methods, known in hindsight.
+// How good are answers that are asked for by their accuracy alone? Scenes, end times and accuracies
+// are drawn at random. The error of each answer is measured against a certified reference. Its time
+// is compared with the fastest run of all methods, known in hindsight.
 //
 //   advice --out results/advice
 //   advice --cases 40 --first 4000000 --out results/other
 //
 //   advice --step-costs --out results/step_costs
 //
-//  1. Cases are drawn by their number (see drawn_case.hpp). Those below 11000000 are what constants
-//     and rules of the search were chosen on; the study takes others.
-//  2. cases.csv: of each, the answer (method, knob, error estimate), its error, the best run in
-//     hindsight, and the seconds of all of these. Cases without a reference are left out and say
-//     so.
-//  3. worth.csv: how often claims and error bars hold, how wide the bars are, how near the choice
-//     is to the best, what everything takes.
+//  1. Cases are drawn by their number (see drawn_case.hpp). The search was tuned on numbers below
+//     11000000; the study takes others.
+//  2. cases.csv has, for each case, the answer (method, knob, error estimate), its error, the best
+//     run in hindsight, and the seconds of all of these. Cases without a reference are reported and
+//     left out.
+//  3. worth.csv says how often claims and error bars hold, how wide the bars are, how near the
+//     choice is to the best run, and how long everything takes.
 //
-// With --step-costs, nothing of this: step_costs.csv has what a step of each method takes, which is
-// what forecasts begin with.
+// The option --step-costs replaces all this: it writes step_costs.csv, the times of a step of each
+// method, which forecasts begin with.
 #include <exception>
 #include <numeric>
 
@@ -49,20 +49,19 @@ struct Arguments {
 };
 
 void declare(CommandLine& line, Arguments& a) {
-  line.add_option("--cases", a.cases, "how many").capture_default_str();
+  line.add_option("--cases", a.cases, "number of cases").capture_default_str();
   line.add_option("--first", a.first,
-                  "the number of the first; below 11000000 are cases that the "
-                  "search was tuned on")
+                  "the number of the first case; the search was tuned on cases below 11000000")
       .capture_default_str();
   line.add_option("--repeats", a.repeats, "timed runs of the best and of the chosen run")
       .capture_default_str();
   line.add_option("--jobs", a.jobs, "cases at a time, each on a core of its own")
       .capture_default_str();
   line.add_option("--reference-seconds", a.reference_seconds,
-                  "seconds that a reference may take, about")
+                  "approximate number of seconds that a reference may take")
       .capture_default_str();
   line.add_flag("--step-costs", a.step_costs,
-                "time a step of each method at four sizes instead, into step_costs.csv");
+                "instead, time a step of each method at four sizes, into step_costs.csv");
   line.add_option("--out", a.out, "the folder for cases.csv and worth.csv");
 }
 
@@ -153,7 +152,7 @@ int main(int argc, char** argv) {
   using namespace qddot::advice_study;
   return qddot::command::enter<Arguments>(
       {.name = "advice",
-       .summary = "Measures what answers are worth that were asked for by their accuracy.",
+       .summary = "Measures how good answers are that were asked for by their accuracy.",
        .has_threads = true,
        .has_resume = true,
        .has_shares = true},

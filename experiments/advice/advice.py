@@ -1,10 +1,12 @@
-"""Draws what answers are worth that were asked for by their accuracy alone.
+"""Draws how good answers are that were asked for by their accuracy alone.
 
 Call: advice.py DIR. Reads cases.csv and cases.json in DIR and writes advice.png and advice.svg
 there.
 
-Three panels over the cases: the error bar over the error that was measured, the time of the chosen
-run over that of the best in hindsight, and the time of everything over that of the best.
+Three panels show ratios for all cases:
+- the error bar over the measured error,
+- the time of the chosen run over that of the best run in hindsight,
+- the time of everything over that of the best run.
 """
 
 import json
@@ -148,7 +150,7 @@ def draw_choice(sheet, cases):
 def draw_total(sheet, cases):
     """Everything over the best."""
     axes = new_axes(
-        sheet, 2, "What does the whole answer take?", "time of the best run in s", "time / best"
+        sheet, 2, "How long does the whole answer take?", "time of the best run in s", "time / best"
     )
     if not cases:
         return
@@ -167,7 +169,7 @@ def main(folder):
     origin = json.loads((folder / "cases.json").read_text(encoding="utf-8"))
     cases = read_cases(folder / "cases.csv")
     sheet = Sheet(WIDTH, HEIGHT)
-    title = "A motion asked for by its accuracy: what the answer is worth"
+    title = "Motions asked for by their accuracy: how good are the answers?"
     sheet.text(SIDE, 0.32, title, size=15, weight="bold", va="center", color=INK)
     words = (
         f"{len(cases)} drawn cases, {origin.get('cpu', 'unknown processor')}; dashed: median, "

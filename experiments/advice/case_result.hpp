@@ -35,9 +35,9 @@ struct CaseResult {
   bool has_best() const { return left_out.empty() && !best_method.empty(); }
 };
 
-// Asks for the motion of the case and for advice, and then measures what both were worth: the error
-// against a reference of some `reference_seconds`, the time against the fastest run of all methods,
-// each the median of `repeats`.
+// Asks for the motion of the case and for advice, and then measures both. The error is that against
+// a reference of about `reference_seconds`. The time is compared with the fastest run of all
+// methods; each time is the median of `repeats`.
 CaseResult result_of(const Case& drawn, double reference_seconds, int repeats);
 
 // As a journal keeps it, and back.

@@ -16,11 +16,15 @@ struct Case {
   double accuracy = 0;  // of positions at the end, relative
 };
 
-// The case of that seed, the same on every machine. Kinds: each generator with drawn parameters,
-// chains and cloths whose springs differ by up to 1e8 in stiffness, compressed and mirrored ones,
-// surfaces of triangles, and random networks in 1, 2 and 3 dimensions. Sizes are drawn by their
-// logarithm from 1 to 10^4 nodes; runs from 100 to 10^5 steps of Verlet's method at its limit, and
-// at most some 10^8 springs by steps; accuracies from 1e-1 to 1e-10.
+// The case of that seed, the same on every machine. Its scene is of one of these kinds:
+// - a generator's scene with drawn parameters,
+// - a chain or cloth whose springs differ by up to 1e8 in stiffness,
+// - a compressed or mirrored scene,
+// - a surface of triangles,
+// - a random network in 1, 2 or 3 dimensions.
+// Sizes (1 to 10^4 nodes), run lengths and accuracies (1e-1 to 1e-10) are drawn by their logarithm.
+// A run has 100 to 10^5 steps of Verlet's method at its limit; its steps times springs are at most
+// about 10^8.
 Case drawn_case(std::uint64_t seed);
 
 }  // namespace qddot::advice_study

@@ -14,9 +14,10 @@ struct Hindsight {
   Point best;                 // not reached_end where no run came so far
 };
 
-// Sweeps every method that may be the fastest and fits the scene until its runs take longer than
-// the fastest one so far that is known to be within `accuracy` of the reference, the most promising
-// ones first, for half a minute in all. The best few are timed `repeats` times.
+// Finds the fastest run that is known to be within `accuracy` of the reference. It sweeps all
+// methods that fit the scene and may be the fastest, the most promising ones first, for half a
+// minute in all. A sweep ends when its runs take longer than the fastest run so far. The best few
+// runs are timed `repeats` times.
 Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
                     const Reference& reference, int repeats);
 

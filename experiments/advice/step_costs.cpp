@@ -18,7 +18,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Scenes of about so many unknowns, all of which are left.
+// Scenes of about so many unknowns; no unknown is reduced away.
 std::vector<ReducedScene> scenes_of(double unknowns) {
   const auto all = Reductions::only({Reduction::pins, Reduction::duplicates});
   const auto drawn = [&](const char* generator, const GeneratorValues& values) {

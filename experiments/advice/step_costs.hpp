@@ -17,9 +17,9 @@ struct MeasuredCost {
   std::array<double, sizes_of_costs.size()> steps{};
 };
 
-// Times the steps of all methods of fixed steps that forecasts are made for: explicit ones at half
-// of their limit, implicit ones at h w_max = 10; the median over a chain, a cloth and a lattice.
-// The table in step_cost.cpp of measure/advice has these numbers.
+// Times a step of each fixed-step method that has forecasts, as the median over a chain, a cloth
+// and a lattice. Explicit methods step at half of their limit, implicit ones at h w_max = 10. The
+// table in measure/advice/step_cost.cpp has these numbers.
 std::vector<MeasuredCost> measured_costs();
 
 }  // namespace qddot::advice_study

@@ -1,15 +1,15 @@
-// Which method is to be taken for a scene and an accuracy, and at which step size or tolerance?
+// Which method is the fastest for a scene and an accuracy, and with which step size or tolerance?
 //
 //   advise --scene cloth --until 0.1 --accuracy 1e-4
 //   advise --scene my.toml --accuracy 1e-2,1e-4,1e-6 --out results/my
 //
-//  1. One run of Verlet's method to the end, near its limit, and short bursts from states on its
-//     way say which frequencies the motion has itself. By these the error of any method of fixed
-//     steps follows from what it does to a vibration.
-//  2. As far as time allows (half a second, or about twice the run that is advised), the runs that
-//     are advised are made, and checked by more accurate ones; what is seen corrects the forecast.
-//  3. advice.csv has, for each accuracy, what to take, the error and the time to expect, the next
-//     method and how many times as long that takes.
+//  1. One run of Verlet's method to the end, near its limit, and short bursts from its states
+//     measure the motion's own frequencies. They give the error of any fixed-step method from its
+//     error on a vibration.
+//  2. The advised runs are made and checked by more accurate ones, as far as time allows: half a
+//     second, or about twice the advised run. Their errors correct the forecast.
+//  3. advice.csv has, for each accuracy, the advised method and knob, the expected error and time,
+//     and the next method with the ratio of their times.
 #include "qddot/measure/advice/advise.hpp"
 
 #include <algorithm>
@@ -143,8 +143,8 @@ void print_advice(const Advices& all, const Arguments& a, double until) {
                beside(advice.sundials, advice));
   }
   fmt::print(
-      "? expected, not seen; N x: times as long, which of other methods is mostly expected; times "
-      "are of one run, without set-up\n\n");
+      "? expected, not measured; N x: N times as long (other methods: mostly expected); times are "
+      "of one run, without set-up\n\n");
   std::string last;
   for (const Advice& advice : all.for_each) {
     if (!advice.take) continue;

@@ -15,8 +15,8 @@ constexpr const char* force_name(ForceKind force) {
   return force == ForceKind::plain ? "plain" : force == ForceKind::ours ? "ours" : "its own";
 }
 
-// f(q) of a scene's free nodes as a user would write it: a loop over a vector of springs with
-// Eigen's fixed vectors. q, f: dimension x free nodes.
+// The force f(q) on a scene's free nodes as a user would write it: a loop over springs with Eigen's
+// fixed vectors. q, f: dimension x free nodes.
 class PlainForce {
  public:
   explicit PlainForce(const Scene& scene);
@@ -27,7 +27,8 @@ class PlainForce {
   void force(const double* q, double* f) const;
 
  private:
-  // Between two free nodes, by their places among these, and between a free node and a point.
+  // A spring between two free nodes, given by their places among these, or between a free node and
+  // a point.
   struct Link {
     int i, j;
     SpringLaw law;

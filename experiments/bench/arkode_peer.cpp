@@ -1,5 +1,6 @@
-// SUNDIALS' ERKStep as its users have it: y = (q, v) in the stock serial vector, its default method
-// of order 4 and step control, absolute tolerances by the size of positions and velocities.
+// SUNDIALS' ERKStep with the defaults of its users: y = (q, v) in the stock serial vector, the
+// method of order 4 and the default step control. Absolute tolerances follow the sizes of positions
+// and velocities.
 #include <arkode/arkode_erkstep.h>
 
 #include "experiments/bench/peers.hpp"

@@ -1,23 +1,22 @@
-// Side by side with what one would take instead: how many times as long as ours other solvers take
-// to the same accuracy, on the same scenes, in one run, on one thread.
+// Comparison with other people's solvers (peers): how many times as long as our methods do they
+// take to the same accuracy? All run on the same scenes, in one process, on one thread.
 //
 //   bench --out results/bench
 //   bench cloth@0.5 my.toml --point-limit 5 --out results/mine
 //
-//  1. Each peer is set up as its users would, compiled with the same flags, and goes down its
-//     series of tolerances or step sizes: once with f as a user writes it, a loop over springs (in
-//     Python NumPy with a sparse matrix), and once with ours, where it can take one. It is given
-//     the scene as it is: pinned nodes are no unknowns, nothing else is left out.
+//  1. Each peer is set up as its users would, compiled with the same flags, and runs over its
+//     tolerances or step sizes. It runs with the f that a user writes, a loop over springs (in
+//     Python NumPy with a sparse matrix), and with ours, if it can take one. It gets the scene
+//     without reductions: only pinned nodes are no unknowns.
 //  2. Our explicit methods run on the smallest system of the scene (reduced: all), and on the one
 //     that the peers get (pins).
-//  3. A ratio is that of a peer's fastest run of at most the accuracy asked for, over our fastest
-//     of at most the error that this run has. Where the peer was over budget before, the ratio is
-//     at least that of what it had spent, over our fastest of that accuracy. Times are the
-//     processor's.
-//  4. A peer that takes the same steps as a method of ours, as LAMMPS does those of verlet, is held
-//     beside it at one step size: the time of a step, springs a second, and how far apart they end.
-//  5. bench.csv holds every point, ratios.csv the ratios with the runs they are of, same_steps.csv
-//     what comes of step 4; in their sidecars `left_out` says which peers are missing and why.
+//  3. A ratio is the time of the peer's fastest run that reaches the accuracy, over that of our
+//     fastest run with at most the same error. If the peer was over budget before, its time so far
+//     over our fastest run is a lower bound of the ratio. Times are the processor's.
+//  4. A peer that takes the same steps as one of our methods, as LAMMPS and verlet, is compared at
+//     one step size: time of a step, springs a second, and distance of the ends.
+//  5. bench.csv has every point, ratios.csv the ratios with their two runs, same_steps.csv the
+//     results of step 4. `left_out` in their sidecars says which peers are missing and why.
 #include <algorithm>
 #include <charconv>
 #include <exception>
@@ -85,12 +84,14 @@ struct Arguments {
 
 void declare(CommandLine& line, Arguments& a) {
   line.add_option("scenes", a.scenes,
-                  "generators' names or scene files, each with @T behind it to run to T s")
+                  "generators' names or scene files; @T after a name runs it to T s")
       .capture_default_str();
-  line.add_option("--methods", a.methods, "a,b,... of ours; the most accurate first saves time")
+  line.add_option("--methods", a.methods,
+                  "a,b,...: our methods; naming the most accurate first saves time")
       .delimiter(',')
       .capture_default_str();
-  line.add_option("--peers", a.peers, "a,b,... what their names begin with (default: all)")
+  line.add_option("--peers", a.peers,
+                  "a,b,...: the other solvers, by the beginnings of their names (default: all)")
       .delimiter(',');
   line.add_option("--repeats", a.pace.repeats, "timed runs of a point that takes under a second")
       .take_last()
@@ -117,7 +118,7 @@ Entry entry_of(const std::string& word) {
   const char *first = word.data() + at + 1, *last = word.data() + word.size();
   if (const auto [end, error] = std::from_chars(first, last, until);
       error != std::errc() || end != last) {
-    throw InvalidInput(fmt::format("{}: behind @ stands the time to run to in s, a number", word));
+    throw InvalidInput(fmt::format("{}: after @ comes the time to run to in s, a number", word));
   }
   return {choice, drawn, end_time(until, true, drawn)};
 }
@@ -295,7 +296,7 @@ int main(int argc, char** argv) {
   return qddot::command::enter<Arguments>(
       {.name = "bench",
        .summary =
-           "Measures how many times as long as ours other solvers take to the same accuracy.",
+           "Measures how many times as long as our methods other solvers take to an accuracy.",
        .has_resume = true},
       declare, bench, argc, argv);
 }

@@ -1,8 +1,9 @@
 """Draws how our explicit methods and other people's solvers compare: time over error, by scene.
 
 Call: bench.py DIR, the folder with bench.csv of the program bench; writes DIR/bench.png and
-DIR/bench.svg, a panel for each scene. Solid lines are peers with the f that their users write, or
-with their own, dashed ones the same peers with ours; the wide stroke is the fastest of our methods.
+DIR/bench.svg, a panel for each scene. Solid lines are peers with the f that their users write or
+with their own f. Dashed lines are the same peers with our f. The wide stroke is the fastest of our
+methods.
 """
 
 import csv
@@ -126,7 +127,7 @@ def main(folder):
     scenes = read(Path(folder) / "bench.csv")
     rows = (len(scenes) + 1) // 2
     sheet = Sheet(WIDTH, TOP + rows * (PANEL_HEIGHT + DOWN))
-    sheet.text(LEFT, 0.15, "What else one could take", size=15, weight="bold", va="top")
+    sheet.text(LEFT, 0.15, "Other solvers beside our methods", size=15, weight="bold", va="top")
     sheet.text(
         LEFT,
         0.46,

@@ -1,8 +1,9 @@
-// Bullet's soft body, whose links correct positions: after the free motion x* = q + h (v + h g),
-// each link in turn moves its ends by s (l0 - l)/(1/m_a + 1/m_b) along itself, over their masses,
-// and v = (x - q)/h. One round with s = k h^2 (1/m_a + 1/m_b) gives the ends the momentum h k (l0 -
-// l) that the spring would, so that the motion converges with order 1; Bullet takes (l0^2 -
-// l^2)/(l0^2 + l^2) l for l0 - l, which is true to first order in the strain, and floats.
+// Bullet's soft body. Its links correct positions: after the free motion x* = q + h (v + h g), each
+// link in turn moves its two ends by s (l0 - l)/(1/m_a + 1/m_b), over their masses, along the link.
+// Then v = (x - q)/h.
+// One round with s = k h^2 (1/m_a + 1/m_b) gives the ends the momentum h k (l0 - l) of the spring,
+// so that the motion converges with order 1. Bullet computes l0 - l as (l0^2 - l^2)/(l0^2 + l^2) l,
+// which is right to first order in the strain, in floats.
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
 #include "experiments/bench/springs.hpp"

@@ -7,8 +7,9 @@
 
 namespace qddot::bench {
 
-// What LAMMPS is to do: `steps` of `step_size` [s], for at most `limit` seconds on the clock, then
-// write where the atoms are, and go on for `loops` times `loop_steps` that are timed alone.
+// The work of LAMMPS: `steps` steps of `step_size` [s], for at most `limit` seconds on the clock.
+// It then writes the positions of the atoms and goes on for `loops` times `loop_steps` steps, which
+// are timed alone.
 struct LammpsWork {
   double step_size = 0;
   std::int64_t steps = 0;

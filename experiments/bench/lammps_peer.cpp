@@ -1,8 +1,8 @@
-// LAMMPS' velocity Verlet over harmonic bonds, in a process of its own for each point, on one core:
-// lammps_input.cpp writes what it reads. Its time is that of its own loop over the steps, of which
-// it says the seconds and what share of them the processor was its own; start, reading and writing
-// are left out. The processor's share comes in ticks of some milliseconds, so that a shorter loop
-// is followed by longer ones, and the time of its steps is that of theirs.
+// LAMMPS' velocity Verlet over harmonic bonds, in a process of its own for each point, on one core;
+// lammps_input.cpp writes its input. Its time is that of its loop over the steps, without start,
+// reading and writing. LAMMPS reports the seconds of the loop and the processor's share of them.
+// The share has a resolution of some milliseconds. So a shorter loop is followed by longer ones,
+// which give the time of its steps.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

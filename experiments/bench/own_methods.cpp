@@ -1,5 +1,5 @@
-// Integrators of our registry: our own, on the smallest system of the scene or on the one that
-// peers get, and SUNDIALS' implicit ones with its own matrix and solver, KLU on 2n x 2n.
+// Integrators of our registry. Our own run on the smallest system of the scene or on the one that
+// peers get. SUNDIALS' implicit ones run with SUNDIALS' own matrix and solver, KLU on 2n x 2n.
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
 #include "qddot/integrators/registry.hpp"

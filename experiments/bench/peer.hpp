@@ -53,8 +53,9 @@ class Peer {
 
 // 1e-2 to 1e-13, so many in a factor of ten.
 std::vector<double> tolerances(int in_a_decade);
-// From h w = 16 of the fastest vibration at the start, beyond what methods of a dozen stages are
-// stable to, downwards, so many in a factor of ten; each divides the run. [s]
+// Step sizes [s], `in_a_decade` in each factor of ten, each of which divides the run. The largest
+// one has h w = 16 for the fastest vibration at the start, above the limit of methods of a dozen
+// stages.
 std::vector<double> step_sizes(const Problem& problem, int in_a_decade, int decades);
 
 }  // namespace qddot::bench

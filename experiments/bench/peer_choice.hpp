@@ -21,8 +21,8 @@ class LeftOut {
   std::vector<std::string> sentences_;
 };
 
-// The peers that are installed, of those whose names begin with one of `beginnings`, or all where
-// there is none. `force_library`: see scipy().
+// The installed peers whose names begin with one of `beginnings`, or all installed ones if there is
+// none. `force_library`: see scipy().
 std::vector<std::unique_ptr<Peer>> selected_peers(const std::vector<std::string>& beginnings,
                                                   const std::string& force_library,
                                                   LeftOut& left_out);

@@ -9,13 +9,13 @@ namespace qddot::bench {
 
 using namespace measure;
 
-// A scene as its user hands it to somebody else's solver: M q'' = f(q) over the coordinates of the
-// free nodes, in the order of the scene, and nothing else left out.
+// A scene as a user gives it to a peer: M q'' = f(q) over the coordinates of the free nodes, in the
+// order of the scene, without other reductions.
 struct Problem {
-  // `started`: the scene as its motion starts, `until` [s]; `drawn` is what the reference, which
-  // is kept in `folder`, is written of, with `origin`. Throws InvalidInput where a free node has no
-  // mass, and where the positions at the end are beyond the horizon of a chaotic motion, since
-  // nobody knows them; and NoReference.
+  // `started`: the scene as its motion starts; `until`: end time [s]. The reference is kept in
+  // `folder` with `drawn`, its scene, and `origin`. Throws InvalidInput if a free node has no mass,
+  // or if the end is beyond the horizon of a chaotic motion, where the positions are unknown.
+  // Throws NoReference.
   Problem(const Scene& drawn, const Scene& started, double until, const std::string& folder,
           const nlohmann::json& origin);
 
@@ -31,7 +31,7 @@ struct Problem {
   double length, speed;   // what positions [m] and velocities [m/s] are large or small by
 };
 
-// The state of all free nodes, in the unknowns of a scene of which pins alone are left out.
+// The state of all free nodes, in the unknowns of a scene that is reduced by pins alone.
 State state_of(const std::vector<Node>& nodes, int dimension, double t);
 
 }  // namespace qddot::bench

@@ -4,9 +4,9 @@
 
 namespace qddot::bench {
 
-// Adds the time [s] that this thread's processor spends on it from its construction to its end, be
-// that by an exception. With nothing else on the machine it is the wall time; where others take
-// turns it leaves theirs out, which would count long runs alone.
+// Adds the processor time [s] of this thread from construction to destruction, also after an
+// exception. It is the wall time if nothing else runs. Time of other processes does not count; else
+// it would be added to long runs alone.
 class ProcessorTime {
  public:
   explicit ProcessorTime(double& seconds) : seconds_(seconds), start_(now()) {}

@@ -13,8 +13,8 @@ bool reaches(const Measured& point, double error) {
   return point.is_good() && point.error <= error;
 }
 
-// What a sweep that was cut short before that accuracy spent on it in vain [s]; infinite where it
-// was not.
+// The time [s] that a sweep spent without reaching the accuracy before it was over budget; infinite
+// if it was not over budget.
 double spent_in_vain(const Sweep& sweep, double accuracy) {
   const bool was_cut = sweep.points.back().outcome == Outcome::over_budget;
   const auto is_there = [&](const Measured& point) { return reaches(point, accuracy); };

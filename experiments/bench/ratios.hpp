@@ -14,8 +14,8 @@ using namespace measure;
 struct Ratio {
   double accuracy = 0;
   std::string peer, force;
-  // The peer's fastest point of at most that error; where its runs were over budget before, none,
-  // and `ratio` is what it is at least.
+  // The peer's fastest point of at most that error. nullptr if its runs were over budget before;
+  // `ratio` is then a lower bound.
   const Measured* theirs = nullptr;
   const Measured* ours = nullptr;  // our fastest of no larger error than theirs (or than accuracy)
   bool is_bound = false;
@@ -28,9 +28,9 @@ struct Ratio {
 const Measured* fastest(const std::vector<Sweep>& sweeps, double error,
                         const std::function<bool(const Sweep&)>& counts);
 
-// A ratio for each sweep of a peer at each accuracy, ours with all reductions (`smallest`) or with
-// pins alone; and, for each f, one of the fastest of the stock implicit peers. Points stay borrowed
-// from the sweeps.
+// A ratio for each sweep of a peer at each accuracy. Our methods run with all reductions
+// (`smallest`) or with pins alone. There is one more ratio for each f: that of the fastest stock
+// implicit peer. Points are borrowed from the sweeps.
 std::vector<Ratio> ratios(const std::vector<Sweep>& sweeps, bool smallest,
                           const std::vector<double>& accuracies);
 

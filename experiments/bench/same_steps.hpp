@@ -19,8 +19,8 @@ struct SameSteps {
   Outcome peer_outcome{}, outcome{};
   // The least time of a step of several runs [s]; ours with what begins a run, some microseconds.
   double peer_step = 0, step = 0;
-  // The largest distance of a node at the end from where the other has it [m], and the error of
-  // position (see Errors) that either would have if the other were right.
+  // The largest distance [m] between a node's two positions at the end, and the position error (see
+  // Errors) of either if the other were right.
   double distance = 0, difference = 0;
 
   bool is_good() const {

@@ -1,5 +1,5 @@
-// SciPy's solve_ivp, in a Python of its own for each point: scipy_peer.py reads the free nodes and
-// springs from a file, runs and times, and prints where they end.
+// SciPy's solve_ivp, in a Python process of its own for each point. scipy_peer.py reads the free
+// nodes and springs from a file, times a run, and prints the end.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

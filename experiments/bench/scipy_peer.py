@@ -1,8 +1,8 @@
 """Runs one scene with one method of SciPy's solve_ivp, for bench, and prints how it went as JSON.
 
 Call: scipy_peer.py PROBLEM.json METHOD RTOL LIMIT [LIBRARY SCENE.toml]. PROBLEM holds the free
-nodes and their springs (see scipy_peer.cpp); LIMIT is the seconds a run may take. With LIBRARY, f
-is the library's, of the scene file; else NumPy's, by a sparse incidence matrix.
+nodes and their springs (see scipy_peer.cpp); LIMIT is the seconds a run may take. f is LIBRARY's
+for the scene file, if given; else it is computed by NumPy with a sparse incidence matrix.
 """
 
 import ctypes

@@ -42,9 +42,9 @@ struct Pace {
 using Recall =
     std::function<Measured(const std::string& name, const std::function<Measured()>& take)>;
 
-// A peer over its values, until its error is small enough or no longer falls, or a run is over
-// budget; steps of a fixed size, ours and theirs, closer near the limit of their stability (see
-// ladder.hpp). `report` sees each point as it comes.
+// Runs a peer over its values, until its error is small enough or no longer falls, or a run is over
+// budget. Fixed steps, ours and theirs, are denser near their stability limit (see ladder.hpp).
+// `report` is called with each point.
 Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
             const Recall& recall, const std::function<void(const Measured&)>& report);
 

@@ -1,8 +1,9 @@
-"""Draws what a Python user's ways take beside the module's.
+"""Draws the times of a Python user's solvers beside those of this project's module.
 
 Call: beside_scipy.py DIR, the folder with runs.csv of measure.py; writes DIR/beside_scipy.png and
-DIR/beside_scipy.svg. A panel is a problem: the time of a run against the error of its positions. Of
-ways with several methods the lower envelope is drawn: the shortest time to that error or a smaller one.
+DIR/beside_scipy.svg. A panel is a problem: the time of a run against the error of its positions.
+Solvers with several methods are drawn by their lower envelope: the shortest time to that error or a
+smaller one.
 """
 
 import csv
@@ -42,7 +43,7 @@ def read(folder):
 
 def envelope(pairs):
     """Those that nobody with a smaller error is faster than, from coarse to fine."""
-    # From the most accurate on, a coarser one counts only where it is faster.
+    # Going from the most accurate run to coarser ones, a run counts only if it is faster.
     best, front = float("inf"), []
     for error, time in sorted(pairs):
         if time < best:
@@ -57,7 +58,7 @@ def draw(folder):
     with open(os.path.join(folder, "runs.json"), encoding="utf-8") as file:
         about = json.load(file)
     sheet = Sheet(LEFT + len(runs) * PANEL + (len(runs) - 1) * GAP + 0.25, TOP + HEIGHT + BOTTOM)
-    sheet.text(0.25, 0.28, "What a Python user waits for, to the same error", size=14, weight="bold",
+    sheet.text(0.25, 0.28, "How long a Python user waits, to the same error", size=14, weight="bold",
                va="center")  # fmt: skip
     sheet.text(0.25, 0.57, f"time of a run against the error of positions at its end; {about['processor']},"
                " one core", size=10, color=FAINT, va="center")  # fmt: skip

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""How long a Python user's ways take to the same error: solve_ivp and a Verlet loop in NumPy beside
-this project's module, on the user's own f and on its own.
+"""Times of a Python user's solvers to the same error: solve_ivp and a Verlet loop in NumPy beside
+this project's module. The module runs on the user's f and on its own.
 
     ./run beside_scipy
     PYTHONPATH=build/python /usr/bin/python3 experiments/beside_scipy/measure.py --out DIR
@@ -46,7 +46,7 @@ def written(force):
 
 
 def step_sizes(p, order, longest):
-    """From the longest that may hold, each for a fourth of the error."""
+    """Step sizes from the longest that may be stable, each for a fourth of the error."""
     for k in range(40):
         yield p.until / math.ceil(p.until / longest * 4 ** (k / order))
 
@@ -116,8 +116,8 @@ def sweep(p, exact, way, options):
 
 
 def time_at(runs, accuracy):
-    """The time that a way takes to an error, between the runs that it made; None where it came to no
-    such error."""
+    """The time of a solver at an error, interpolated between its runs; None if it reached no such
+    error."""
     reached = [run["time_s"] for run in runs if run["error_position"] <= accuracy]
     if not reached:
         return None

@@ -8,8 +8,8 @@ namespace qddot::command {
 
 void add_accuracy_of_option(CommandLine& line, std::string& of) {
   line.add_option("--accuracy-of", of,
-                  "what --accuracy is of: positions at the end, their path, or the energy on the "
-                  "way (positions, path, energy; default: positions)");
+                  "the error that --accuracy bounds: positions (at the end), path (positions at "
+                  "all times) or energy (at all times) (default: positions)");
 }
 
 AccuracyOf accuracy_of(const std::string& of) {
@@ -22,8 +22,8 @@ AccuracyOf accuracy_of(const std::string& of) {
 void require_allowed_accuracy(double accuracy, const std::string& option) {
   if (accuracy >= least_accuracy && accuracy < 1) return;
   throw InvalidInput(
-      fmt::format("{} {:g} is not allowed; it is a relative error, from 1e-14, where "
-                  "rounding decides, to below 1, where nothing is known",
+      fmt::format("{} {:g} is not allowed; it is a relative error from 1e-14 (rounding) to below 1 "
+                  "(as large as the motion)",
                   option, accuracy));
 }
 

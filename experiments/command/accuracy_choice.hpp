@@ -13,13 +13,13 @@ using namespace measure;
 // Adds --accuracy-of.
 void add_accuracy_of_option(CommandLine& line, std::string& of);
 
-// What that names; throws InvalidInput for anything but positions, path and energy.
+// The value of --accuracy-of; throws InvalidInput for anything but positions, path and energy.
 AccuracyOf accuracy_of(const std::string& of);
 
-// Throws InvalidInput unless the accuracy that the option was given is one that can be had.
+// Throws InvalidInput unless the accuracy given to `option` is one that can be reached.
 void require_allowed_accuracy(double accuracy, const std::string& option = "--accuracy");
 
-// A knob with its value, and a time, for people: "h = 0.00057 s", "4.2 ms".
+// A knob with its value, and a time [s], in words: "h = 0.00057 s", "4.2 ms".
 std::string knob_in_words(const Method& method, double value);
 std::string time_in_words(double seconds);
 

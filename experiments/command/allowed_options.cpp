@@ -23,19 +23,18 @@ void require_rtol(double rtol, const std::string& option) {
   require_positive(rtol, option, "a relative tolerance");
   if (rtol >= least_rtol && rtol < 1) return;
   throw InvalidInput(
-      fmt::format("{} {:g} is not allowed; it is a relative tolerance from {:g}, some roundings of "
-                  "a number, to "
-                  "below 1, all that moves",
+      fmt::format("{} {:g} is not allowed; it is a relative tolerance from {:g} (some roundings of "
+                  "a number) to below 1 (as large as the motion)",
                   option, rtol, least_rtol));
 }
 
 void require_step_size(double h, const std::string& option, double until) {
   require_positive(h, option, "h in s");
   if (h < until / most_steps) {
-    throw InvalidInput(fmt::format(
-        "{} {:g} is not allowed; it is h in s, at least {:.3g}, as the {:g} s to run hold at most "
-        "{:g} steps that double precision tells apart",
-        option, h, until / most_steps, until, most_steps));
+    throw InvalidInput(
+        fmt::format("{} {:g} is not allowed; it is h in s, at least {:.3g}: in {:g} s, double "
+                    "precision can tell apart at most {:g} steps",
+                    option, h, until / most_steps, until, most_steps));
   }
   if (h >= least_step && h <= largest_step) return;
   throw InvalidInput(
@@ -59,8 +58,8 @@ void require_atol(const Options& options) {
 std::string tolerance_warning(const Options& options) {
   if (options.rtol > coarse_rtol) {
     return fmt::format(
-        "--rtol {:g} lets a step be off by {:g} of what moves: the result hardly "
-        "means anything",
+        "--rtol {:g} allows an error of {:g} of the motion in a step: the result hardly means "
+        "anything",
         options.rtol, options.rtol);
   }
   if (options.rtol > 0 && options.rtol < fine_rtol) {

@@ -6,23 +6,22 @@
 
 namespace qddot::command {
 
-// Throws InvalidInput unless the relative tolerance is from 1e-15 to below 1. A step's error adds
-// up several roundings of 2.2e-16, from which no smaller one can be told; at 1 an error of all that
-// moves passes.
+// Throws InvalidInput unless the relative tolerance is from 1e-15 to below 1. Errors below 1e-15
+// cannot be told from the several roundings of 2.2e-16 in a step. A tolerance of 1 allows an error
+// as large as the motion.
 void require_rtol(double rtol, const std::string& option);
 
-// Throws InvalidInput unless h [s] is finite, greater than 0, its square a number of full precision
-// and, where an end time `until` [s] is given, at least 1e-15 of that.
+// Throws InvalidInput unless h [s] is finite and greater than 0 and has a square of full precision.
+// If an end time `until` [s] is given, h must be at least 1e-15 of it.
 void require_step_size(double h, const std::string& option, double until = 0);
 
-// Throws InvalidInput unless the absolute tolerance [m and m/s] is below one of Options::length and
-// Options::speed, without which no error counts, and above 1e-30 of both, the rounding of a
-// rounding. One of zero is none.
+// Throws InvalidInput unless the absolute tolerance [m and m/s] is zero (none), or below
+// Options::length or Options::speed and above 1e-30 of both. No error would count against a larger
+// one; a smaller one is the rounding of a rounding.
 void require_atol(const Options& options);
 
-// What hardly can mean anything of tolerances that are allowed, in a sentence; empty where nothing
-// is to be said: an rtol above 0.1 or below 1e-14, an atol above the size of positions or of
-// velocities.
+// A sentence on allowed tolerances that hardly make sense: an rtol above 0.1 or below 1e-14, an
+// atol above the size of positions or of velocities. Empty for all others.
 std::string tolerance_warning(const Options& options);
 
 }  // namespace qddot::command

@@ -14,18 +14,18 @@ class Option;
 
 namespace qddot::command {
 
-// The options that a program takes and those that it was given. CLI11 behind a pointer: every
-// source that includes its headers takes six seconds longer to compile.
+// The options that a program takes, and their values on the command line. CLI11 is hidden behind a
+// pointer, because its headers make every source compile six seconds longer.
 class CommandLine {
  public:
-  // What CLI11 is to know of an option beside its name; its functions have CLI11's names.
+  // Settings of an option for CLI11; its functions have CLI11's names.
   class Taken {
    public:
     explicit Taken(CLI::Option* option) : option_(option) {}
-    Taken& take_last();            // where it is given more than once
-    Taken& take_each();            // one value each time that it is given
+    Taken& take_last();            // if it is given more than once
+    Taken& take_each();            // one value each time it is given
     Taken& delimiter(char c);      // between the entries of a list
-    Taken& capture_default_str();  // --help shows the value that it has now
+    Taken& capture_default_str();  // --help shows its present value
     Taken& default_str(const std::string& text);
 
    private:
@@ -35,8 +35,8 @@ class CommandLine {
   CommandLine(const std::string& purpose, const std::string& program);
   ~CommandLine();
 
-  // Declares an option `--name` (or, without dashes, what stands alone), where its value goes, and
-  // what --help says of it.
+  // Declares an option `--name` (or, without dashes, a positional argument), the variable for its
+  // value, and its text `what` in --help.
   Taken add_option(const std::string& name, double& value, const std::string& what);
   Taken add_option(const std::string& name, int& value, const std::string& what);
   Taken add_option(const std::string& name, std::string& value, const std::string& what);
@@ -44,7 +44,7 @@ class CommandLine {
   Taken add_option(const std::string& name, std::vector<int>& values, const std::string& what);
   Taken add_option(const std::string& name, std::vector<std::string>& values,
                    const std::string& what);
-  // The same, where `take` gets the value and may throw InvalidInput.
+  // The same; `take` is called with the value and may throw InvalidInput.
   Taken add_option_function(const std::string& name, const std::function<void(int)>& take,
                             const std::string& what);
   Taken add_option_function(const std::string& name,
@@ -54,16 +54,16 @@ class CommandLine {
   void add_flag(const std::string& name, const std::string& what);
   void set_version(const std::string& version);
 
-  // Reads what the user gave into the values. Returns the program's status where that is all it is
-  // to do: --help and --version print. Throws InvalidInput.
+  // Reads the user's arguments into the variables. Returns the program's exit status if nothing
+  // more is to be done, as after --help and --version. Throws InvalidInput.
   std::optional<int> parse(int argc, const char* const* argv);
   void parse(const std::string& options);
 
   std::string program() const;
   bool has(const std::string& option) const;
-  // The options that were given and what each was given, as declared.
+  // The options that were given with their values, in the order of declaration.
   std::vector<std::pair<std::string, std::vector<std::string>>> given() const;
-  // Their names as often as, and in the order in which, they were given.
+  // Their names, repeated and in the order in which they were given.
   std::vector<std::string> order() const;
 
  private:

@@ -12,12 +12,13 @@
 
 namespace qddot::command {
 
-// A table as RFC 4180 has it, lines ended by a line feed: one header row, numbers with 17
-// significant digits (enough to read back the same double), what is not finite left empty.
+// A table in CSV (RFC 4180), with lines ended by a line feed and one header row. Numbers have 17
+// significant digits, enough to read back the same double; fields of numbers that are not finite
+// are empty.
 class Csv {
  public:
   explicit Csv(const std::vector<std::string>& header);
-  // Rows alone, for the rows() of another.
+  // A table of rows without a header, for the rows() of another table.
   Csv() = default;
 
   // Appends one row, a field for each argument: numbers, or text that is quoted where it must be.
@@ -54,7 +55,7 @@ class Csv {
 // The sidecar X.json of a table X.csv.
 std::string sidecar_of(const std::string& path);
 
-// The text of a sidecar that says how a result was made (see provenance.hpp).
+// The text of a sidecar that records how a result was made (see provenance.hpp).
 std::string text_of_sidecar(const nlohmann::json& origin);
 
 // A Csv that goes to a file X.csv as it grows, and appears there on commit(), together with its
@@ -64,13 +65,13 @@ class CsvFile : public Csv {
   CsvFile(const std::string& path, const std::vector<std::string>& header);
 
   const std::string& path() const { return file_.path(); }
-  // Writes out what has gathered, once that is worth a call.
+  // Writes the rows to the file once they exceed a megabyte.
   void flush_if_large() {
     if (text().size() > (1 << 20)) flush();
   }
-  // Writes all that is left of both. `origin`: how the table was made (see provenance.hpp).
+  // Writes the rest of table and sidecar. `origin`: how the table was made (see provenance.hpp).
   void complete(const nlohmann::json& origin);
-  // Lets both appear, which cannot fail for want of space any more.
+  // Gives both files their names. The disk holds all of them already.
   void commit();
   void commit(const nlohmann::json& origin) {
     complete(origin);

@@ -9,15 +9,14 @@
 
 namespace qddot::command {
 
-// What --help says of a program, and which options it shares with others.
+// The name and summary of a program for --help, and the options that it shares with others.
 struct Entry {
   std::string name, summary;
   bool has_threads = false, has_resume = false, has_shares = false;
 };
 
-// main() of a program. declare(line, arguments) adds the program's own options; body(line,
-// arguments, words) does the work, where `words` is the command line as it was given (see
-// run_program).
+// The main() of a program. declare(line, arguments) adds the program's own options; body(line,
+// arguments, words) does the work. `words` is the command line as given (see run_program).
 template <class Arguments, class Declare, class Body>
 int enter(const Entry& entry, const Declare& declare, const Body& body, int argc, char** argv) {
   CommandLine line(entry.summary, entry.name);

@@ -9,17 +9,17 @@ namespace qddot::command {
 
 using namespace measure;
 
-// Lets an interruption wait so long [s] for an answer: for a program that has results to save. It
-// waits for none at first.
+// Sets how long [s] an interruption waits for an answer, for a program that has results to save.
+// The default is zero.
 void wait_for_answer(double seconds);
 
-// While it lives, SIGINT, SIGTERM and a time limit request the interruption. A process that ignores
-// these signals goes on doing so. A second signal ends the process at once, and so does the first
-// one, or the time limit, where nothing answers it in time: by stop_if_interrupted() or
-// interrupted(). Unfinished files go then, what is in journals stays.
+// While it lives, SIGINT, SIGTERM and a time limit interrupt the process's work. A process that
+// ignores these signals goes on ignoring them. The process ends at once after a second signal, or
+// if nothing answers the first one or the time limit in time. An answer is a call of
+// stop_if_interrupted() or interrupted(). Unfinished files are removed then; journals stay.
 class Interruptible {
  public:
-  // `program` names it where nothing answers.
+  // `program`: its name, for the message if nothing answers.
   explicit Interruptible(std::string program);
   ~Interruptible();
   Interruptible(const Interruptible&) = delete;

@@ -11,35 +11,38 @@
 
 namespace qddot::command {
 
-// What a study has measured so far, in a file that outlives the process: each piece is written with
-// one call as it comes, so that a process that is killed loses no more than the piece at hand.
-// The file: the line "qddot journal 1", a record holding the key, then one a piece, [name, value];
-// a record is its size and its CRC-32 (four bytes each, little-endian) and CBOR (RFC 8949), which
-// keeps every double. Reading ends at the first record that is not whole. Thread-safe.
+// The file of all pieces that a study has measured so far. Each piece is written with one call when
+// it is measured, so that a killed process loses only the piece in progress.
+// The file begins with the line "qddot journal 1" and a record of the key; a record [name, value]
+// for each piece follows. A record is its size, its CRC-32 (four bytes each, little-endian) and its
+// content in CBOR (RFC 8949), which keeps every double. Reading ends at the first incomplete
+// record. Thread-safe.
 class Journal {
  public:
-  // What a file of that kind holds. `is_own`: it is one, or the beginning of one.
+  // The contents of a journal. `is_own`: the file is a journal, or the beginning of one.
   struct Contents {
     bool is_own = false;
     nlohmann::json key{};
     std::map<std::string, nlohmann::json> pieces{};
     std::size_t whole = 0;  // bytes up to the end of the last whole record
   };
-  // Reads it, whoever may be writing it; nothing is whole in a file that is not there.
+  // Reads a journal, even while another process writes it. A missing file has no contents.
   static Contents read(const std::string& path);
 
-  // Starts an empty one, or, if `goes_on`, goes on with the pieces of the file that is there.
-  // Throws InvalidInput if another process is writing it, if it is to go on and its key is another
-  // one, which is then named, if it is no journal and may not be replaced, or if it cannot be
-  // written.
+  // Starts an empty journal or, if `goes_on`, continues the existing one with its pieces. Throws
+  // InvalidInput if
+  // - another process writes the file,
+  // - it is to continue a journal with another key; the message names the difference,
+  // - the file is no journal and may not be replaced,
+  // - the file cannot be written.
   Journal(const std::string& path, const nlohmann::json& key, bool goes_on);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  // How many pieces there are.
+  // The number of pieces.
   std::size_t size() const;
-  // How many there were before it was started as an empty one.
+  // The number of pieces of the former file that an empty journal replaced.
   std::size_t dropped() const { return dropped_; }
   std::optional<nlohmann::json> find(const std::string& name) const;
   // Throws CannotWrite.
@@ -58,7 +61,7 @@ class Journal {
   mutable std::mutex mutex_;
 };
 
-// In which entry two keys differ, with both values, in words; empty where they do not.
+// The entry in which two keys differ, with both values, in words; empty if they are equal.
 std::string difference(const nlohmann::json& there, const nlohmann::json& asked);
 
 }  // namespace qddot::command

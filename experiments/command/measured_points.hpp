@@ -12,18 +12,18 @@ namespace qddot::command {
 
 using namespace measure;
 
-// What work_precision left in a folder: its points, and what it was told of the runs.
+// The results of work_precision in a folder: its points, and the settings of the runs.
 struct MeasuredPoints {
   std::string scene_hash;              // of the scene as drawn
   double until = 0;                    // [s]
-  std::vector<std::string> no_reduce;  // what was left in the scene
+  std::vector<std::string> no_reduce;  // reductions that were left out
   Options options;                     // beside the knob
   nlohmann::json key;                  // of the study
-  std::vector<Point> points;  // what was not measured is no number; of the counts the steps
+  std::vector<Point> points;           // NaN if not measured; of the counts the steps alone
 };
 
 // Reads points.csv and its sidecar in `folder`. Throws InvalidInput, in a sentence that names the
-// file, where either is missing or not as work_precision writes it.
+// file, if one is missing or not as work_precision writes it.
 MeasuredPoints measured_points(const std::string& folder);
 
 }  // namespace qddot::command

@@ -4,14 +4,14 @@
 
 namespace qddot::command {
 
-// What the process has allocated and not freed [bytes].
+// The memory that the process has allocated and not freed [bytes].
 double allocated_memory();
 
-// What the machine could still give to it without swapping [bytes], and within the limits of its
-// address space and control group; infinite where nothing says.
+// The memory [bytes] that the process can still get without swapping, within the limits of its
+// address space and control group. Infinite if unknown.
 double free_memory();
 
-// That memory ran out, how much was in use, and what takes less; a sentence.
+// A sentence that says that memory ran out, how much was in use, and how to need less.
 std::string out_of_memory();
 
 }  // namespace qddot::command

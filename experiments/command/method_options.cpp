@@ -54,24 +54,24 @@ void require_values(const CommandLine& line, const Options& o, int highest_order
 
 void add_method_options(CommandLine& line, Options& options) {
   line.add_option("--max-order", options.max_order,
-                  "the highest order that methods of variable order may take (default: their own)")
+                  "the highest order of methods of variable order (default: the method's own)")
       .take_last();
   line.add_flag("--stability-detection", options.stability_detection,
-                "let CVODE's BDF lower its order where it finds itself unstable");
+                "let CVODE's BDF lower its order when it detects an instability");
   line.add_option("--iterations", options.iterations,
-                  "how many a step, of methods that take as many as they are told (default: their "
-                  "own)")
+                  "number of iterations in a step, for methods with a fixed number (default: the "
+                  "method's own)")
       .take_last();
   const std::string own =
       options.solve_tolerance > 0 ? fmt::format("{}", options.solve_tolerance) : "the method's own";
   line.add_option("--solve-tolerance", options.solve_tolerance,
-                  "what part of the error of its prediction a nonlinear solve of a hand-written "
-                  "implicit method may leave (default: " +
+                  "tolerance of the nonlinear solves of hand-written implicit methods, relative to "
+                  "the error of the first guess (default: " +
                       own + ")")
       .take_last();
   line.add_option("--spectral-radius", options.spectral_radius,
-                  "what a step of generalised-alpha methods leaves of a vibration of infinite "
-                  "frequency, from 0 to 1")
+                  "the part of an infinitely fast vibration that a step of the generalised-alpha "
+                  "methods keeps, from 0 to 1")
       .take_last()
       .capture_default_str();
   line.add_option_function(
@@ -81,7 +81,7 @@ void add_method_options(CommandLine& line, Options& options) {
             require_that(solver.has_value(), "--solver", name, "one of " + solver_list());
             options.solver = *solver;
           },
-          "what solves with the n x n matrices of implicit steps: one of " + solver_list())
+          "the solver for the n x n matrices of implicit steps, one of " + solver_list())
       .take_last()
       .default_str(std::string(name(options.solver)));
 }
@@ -99,7 +99,7 @@ void require_options(const CommandLine& line, const Options& options, const Meth
     if (!line.has(name) || method.listens_to(option)) continue;
     throw InvalidInput(fmt::format(
         "{} is not for {}; it is for {}", name, method.name,
-        names_where([option](const Method& other) { return other.listens_to(option); })));
+        names_where([option = option](const Method& other) { return other.listens_to(option); })));
   }
   require_values(line, options, method.order);
 }

@@ -8,11 +8,11 @@
 
 namespace qddot::command {
 
-// The columns of a table of nodes in 1, 2 or 3 dimensions behind those of `header`:
-// node,x,y,z,vx,vy,vz (node,x,vx in 1D).
+// Appends the columns of a table of nodes in 1, 2 or 3 dimensions to `header`: node,x,y,z,vx,vy,vz
+// (node,x,vx in 1D).
 std::vector<std::string> node_header(int dimension, std::vector<std::string> header);
 
-// Ends the row of such a table: index, position [m] and velocity [m/s] of a node.
+// Completes a row of such a table: index, position [m] and velocity [m/s] of a node.
 void write_node(Csv& csv, std::size_t index, const Node& node, int dimension);
 
 }  // namespace qddot::command

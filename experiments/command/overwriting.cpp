@@ -32,7 +32,7 @@ std::string beginning_of(const std::string& path, std::size_t most) {
   return text;
 }
 
-// Whether it is one of qddot's JSON files: each says of which sources the program was made.
+// Whether it is one of qddot's JSON files: each contains the hash of the program's sources.
 bool is_own_json(const std::string& path) {
   constexpr std::size_t longest_beginning = 1 << 20;  // even with a long command line
   const std::string text = beginning_of(path, longest_beginning);

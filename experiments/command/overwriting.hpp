@@ -4,22 +4,22 @@
 
 namespace qddot::command {
 
-// What outputs may replace: nothing that the program has read, and no file that somebody else wrote
-// unless the user says so (--force).
+// The files that outputs may replace. A file that the program has read is never replaced, and a
+// file that qddot did not write only with --force.
 
-// From now on no output may go to the place of this file, which was read.
+// Protects a file that was read: no output may replace it from now on.
 void protect_input(const std::string& path);
-// From now on files of others may be replaced.
+// Allows outputs to replace files that qddot did not write.
 void allow_replacing();
 
-// Throws InvalidInput, which names the place, if an output may not go there. Replaceable are files
-// that are empty, that begin with `beginning` (a table's own header row), whose sidecar `sidecar`
-// says that qddot wrote it, or that say so themselves.
+// Throws InvalidInput, which names the path, if an output may not replace that file. Replaceable
+// are empty files, files that begin with `beginning` (a table's own header row), and files that
+// qddot wrote as their sidecar `sidecar` or their own text says.
 void require_replaceable(const std::string& path, const std::string& beginning = {},
                          const std::string& sidecar = {});
 
-// A text with a line before it, a comment in TOML, by which qddot knows it again as its own as long
-// as nobody changes it.
+// The text after a line, a comment in TOML, by which qddot recognises it as its own while nobody
+// changes it.
 std::string signed_text(const std::string& text);
 
 }  // namespace qddot::command

@@ -20,8 +20,8 @@ constexpr double worth_a_word = 60;  // [s]
 constexpr std::array looks = {1., 3., 9., 27.};
 // A run without a first step after this long [s] is said to be one.
 constexpr double patience = 9;
-// A terminal's line is written after a second, and again once this part of the time is over, but at
-// most every second: each time the thread wakes for microseconds.
+// A terminal's line is written after a second, and again after each such part of the time, but at
+// most every second. The thread wakes for microseconds each time.
 constexpr double first_look = 1, look_again = 0.01;
 
 }  // namespace

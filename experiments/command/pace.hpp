@@ -11,24 +11,24 @@
 
 namespace qddot::command {
 
-// That a run which has come to `t` of `until` [s] in so many seconds takes more than a minute in
-// all, and how long; empty where it takes less.
+// A sentence on the time that a run will take in all, from the time `t` of `until` [s] that it
+// reached in `seconds` of wall time. Empty if that is a minute or less.
 std::string pace_in_words(double t, double until, double seconds);
 
-// Says on stderr how long a run will take, from a sleeping thread; the run only notes its time. A
-// terminal's line is written over from the first second on (see Progress). Elsewhere it is said
-// once, where the pace after a second, or a few, lets one expect more than a minute.
+// Reports on stderr how long a run will take. A sleeping thread does that; the run only notes its
+// time. A terminal shows one line that is updated from the first second on (see Progress).
+// Elsewhere there is one message, if the pace after some seconds promises more than a minute.
 class Pace {
  public:
   // `integrator` must outlive this and runs from time 0 to `until` [s].
   Pace(std::string program, const Integrator& integrator, double until);
-  // Takes the line away.
+  // Removes the line.
   ~Pace();
   Pace(const Pace&) = delete;
   Pace& operator=(const Pace&) = delete;
 
  private:
-  // Whether the run goes on still after so many seconds.
+  // Sleeps until `seconds` after the start; whether the run still goes on then.
   bool sleep_until(double seconds, const std::stop_token& over);
   void say_once(const std::string& program, const Integrator& integrator, double until,
                 const std::stop_token& over);

@@ -10,9 +10,9 @@ namespace qddot::command {
 
 using namespace measure;
 
-// What those who show a table of points say beside it, for the table's sidecar: "methods", of each
-// method among the points its name, the line on it ("summary") and which options it listens to
-// ("takes"); "outcomes", for each way in which one of them failed a sentence on it.
+// Notes on a table of points, for its sidecar and for all who show the table. "methods": the name,
+// "summary" and options ("takes") of each method among the points. "outcomes": a sentence for each
+// outcome of a point that failed.
 nlohmann::json notes_on(const std::vector<Point>& points);
 
 }  // namespace qddot::command

@@ -7,13 +7,13 @@ namespace qddot::command {
 
 using namespace measure;
 
-// A point as a journal keeps it, with all its numbers, and back. point_of throws
+// Converts a point to its record in a journal, with all its numbers, and back. point_of throws
 // nlohmann::json::exception for anything else.
 nlohmann::json record_of(const Point& point);
 Point point_of(const nlohmann::json& record);
 
-// Points that are pieces of the study, named by `prefix`, method and value: what Effort::recall
-// takes. Borrows the study.
+// A function for Effort::recall whose points are pieces of the study, named by `prefix`, method and
+// value. Borrows the study.
 std::function<Point(const Method&, double, const Effort::Take&)> points_of(Study& study,
                                                                            std::string prefix = {});
 

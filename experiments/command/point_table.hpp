@@ -9,14 +9,14 @@ namespace qddot::command {
 
 using namespace measure;
 
-// A row of points.csv: a point of a scene whose reference is off by up to `certified`.
+// A row of points.csv: a point of a scene whose reference has an error of up to `certified`.
 struct PointRow {
   const std::string& scene;
   const Point& point;
   double certified;
 };
 
-// The columns of points.csv; what was not measured is an empty field.
+// The columns of points.csv; fields of values that were not measured are empty.
 const Columns<PointRow>& point_columns();
 
 }  // namespace qddot::command

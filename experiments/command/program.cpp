@@ -36,9 +36,10 @@ struct EveryProgram {
                                  build_info::compiler));
     line.add_flag("--force", force, "replace files that qddot did not write");
     line.add_option("--time-limit", seconds,
-                    "seconds after which the program ends in order, with what it has")
+                    "seconds after which the program ends in order and keeps its results so far "
+                    "(default: none)")
         .take_last();
-    line.add_option("--progress", form, "how stderr says how far it is, one of auto, plain, none")
+    line.add_option("--progress", form, "how progress is shown on stderr, one of auto, plain, none")
         .take_last()
         .capture_default_str();
   }
@@ -120,7 +121,7 @@ void add_threads_option(CommandLine& line) {
             require_within(threads, 1, 256, "--threads");
             omp_set_num_threads(threads);
           },
-          "how many cores a run of a large scene may use (default: 1)")
+          "number of cores that a run of a large scene may use (default: 1)")
       .take_last();
 }
 

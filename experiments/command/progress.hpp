@@ -11,15 +11,15 @@
 
 namespace qddot::command {
 
-// Says on stderr how far a program is and how long the rest takes at most: on one line of a
-// terminal that is written over, or in a plain line now and then. Speaks only when it is told
-// something, between runs that are timed: it has no thread that would wake in them. What comes
-// faster than ten times a second is left out. Thread-safe.
+// Reports on stderr how far a program is, with an upper bound of the remaining time. It updates one
+// line of a terminal, or writes a plain line now and then. It writes only when one of its functions
+// is called, between timed runs: it has no thread that could disturb them. It shows at most ten
+// reports a second. Thread-safe.
 class Progress {
  public:
   enum class Form { line, plain, none };
 
-  // Where it speaks, and by which clock.
+  // Its output and its clock.
   struct Screen {
     std::function<double()> now;  // [s]
     std::function<std::size_t()> columns;
@@ -28,33 +28,33 @@ class Progress {
   // stderr, by the steady clock.
   static Screen standard_error();
 
-  // A plain line says at least so many seconds after the one before that a piece is done.
+  // The least time [s] between two plain lines.
   static constexpr double plain_pause = 30;
-  // A bound that is more than so many times what the slowest piece so far makes of the rest helps
-  // nobody, and is not said.
+  // A bound of the remaining time is not shown if it is more than so many times the estimate from
+  // the slowest piece so far.
   static constexpr double loosest_bound = 8;
 
-  // Says nothing until it is started.
+  // Is silent until start().
   explicit Progress(Screen screen = standard_error()) : screen_(std::move(screen)) {}
-  // From now on time counts. The first plain line comes `quiet` seconds later at the soonest.
+  // Starts the clock. The first plain line comes after `quiet` seconds or later.
   void start(const std::string& program, Form form, double quiet = 0);
 
-  // What is done before, between or after pieces: no number of it is said.
+  // Names the work before, between or after pieces, which has no number.
   void stage(const std::string& what);
-  // So many pieces are to come.
+  // Sets the number of pieces to come.
   void begin(std::size_t pieces);
-  // What is measured next, of the first piece that is not done.
+  // Names the work on the first piece that is not finished.
   void now_at(const std::string& what);
-  // A piece is done, kept from before or not.
+  // Counts a finished piece, measured now or kept from before.
   void finish(const std::string& what);
-  // All that is left takes at most so many seconds; nothing where none can be said.
+  // Sets an upper bound of the remaining time [s]; empty if unknown.
   void left_at_most(std::optional<double> seconds);
-  // All that is left takes about so long.
+  // Sets an estimate of the remaining time [s].
   void left_about(double seconds);
 
-  // Takes the line away, before anything else is written to the terminal.
+  // Removes the line, before anything else is written to the terminal.
   void wipe();
-  // The same, and says nothing any more.
+  // The same, and is silent from now on.
   void close();
   Form form() const;
   // The time on its clock [s].
@@ -77,10 +77,10 @@ class Progress {
   bool is_visible_ = false;
 };
 
-// That of this process.
+// The progress of this process.
 Progress& progress();
 
-// Starts it in the form `auto`, plain or none: auto is the line where stderr is a terminal, else
+// Starts it in the form auto, plain or none. auto is the updated line if stderr is a terminal, else
 // plain lines from the thirtieth second on. TERM=dumb is no terminal. Throws InvalidInput for
 // another word.
 void start_progress(const std::string& program, const std::string& form);

@@ -9,19 +9,18 @@ namespace qddot::command {
 // How far a program is.
 struct ProgressState {
   std::string program;
-  std::size_t number = 0, pieces = 0;  // of the piece at hand; 0: none is
-  std::string what{};                  // is done now, or has been
+  std::size_t number = 0, pieces = 0;  // of the present piece; 0: there is none
+  std::string what{};                  // the present work, or the last
   double elapsed = 0;                  // [s]
-  // What is left [s], if anything can be said of it: at most so long, or about.
+  // Remaining time [s], if known: an upper bound, or an estimate.
   std::optional<double> left{};
   bool is_bound = true;
 };
 
-// A duration [s] as clocks show it, in whole seconds, 1:03 or 2:01:03; the next one where it is
-// `at_most` so long.
+// A duration [s] in whole seconds as a clock shows it, 1:03 or 2:01:03; rounded up if `at_most`.
 std::string clock_words(double seconds, bool at_most = false);
 
-// The text without control characters and what is no UTF-8, cut to so many columns of a terminal.
+// The text without control characters and invalid UTF-8, cut to `columns` of a terminal.
 std::string in_columns(const std::string& text, std::size_t columns);
 
 // The state in one line of at most so many columns, "work_precision 12/56  verlet h = 0.0005

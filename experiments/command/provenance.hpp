@@ -10,29 +10,29 @@
 
 namespace qddot::command {
 
-// Where a result comes from: command line, version of the code, compiler and flags, the kernels'
-// level, processor, libraries, date (UTC).
+// The record of how a result was made: command line, version of the code, compiler and flags, the
+// kernels' level, processor, libraries, date (UTC).
 nlohmann::json provenance(const std::vector<std::string>& command_line);
 
 // The same with the scene and its content hash.
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn);
 
-// The same with what was left out of the scene and what is left: see Explanation, whose eigenvalues
-// are null for scenes that are not at_a_glance. `start`: the
-// scene as it starts.
+// The same with the reductions of the scene and the rest (see Explanation, whose eigenvalues are
+// null for scenes that are not at_a_glance). `start`: the scene as it starts.
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,
                           const Scene& start, const ReducedScene& reduced);
 
-// What of a machine decides how long its runs take and how they round: processor ("cpu"), level of
-// the kernels, roots, libraries.
+// The properties of the machine that decide the times and the rounding of runs: processor ("cpu"),
+// level of the kernels, roots, libraries.
 nlohmann::json machine();
-// What is built alike wherever results are: hash of the sources ("code"), compiler and flags.
+// The properties of the build, equal on all machines of a study: hash of the sources ("code"),
+// compiler and flags.
 nlohmann::json build();
 
 // This machine's name in its network.
 std::string host();
 
-// Now, by this machine's clock, as 2026-01-31T12:00:00Z (UTC).
+// The present time by this machine's clock, as 2026-01-31T12:00:00Z (UTC).
 std::string date_now();
 
 // Hash of all sources that decide a motion; changes when the code does.

@@ -25,7 +25,7 @@ using namespace measure;
 namespace {
 
 constexpr double longest_making = 60;  // [s]
-// It ends as soon as two agree, so that the limit is for those that nearly do.
+// Refinement ends as soon as two methods agree; the limit is for scenes where two nearly agree.
 constexpr double longest_agreeing = 300;  // [s]
 
 constexpr const char* divisors =
@@ -253,8 +253,8 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
   if (!found.is_null() && !is_of_others) {
     progress().wipe();
     fmt::print(stderr,
-               "{}: it is not as it was written (its checksum or its numbers are wrong): the "
-               "reference is made anew\n",
+               "{}: the file was changed or is damaged (its checksum or its numbers are wrong): "
+               "the reference is made anew\n",
                in_one_line(file));
   }
   Reference reference = made(scene, start, until, needed);
@@ -263,7 +263,7 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
   json["key"] = key;
   json["scene"] = drawn.name;
   json["until"] = until;
-  // Numbers that are not finite are null when read again, and text is what can be written.
+  // Reading back turns numbers that are not finite into null, and text into valid UTF-8.
   json = nlohmann::json::parse(written(json, -1));
   json["checksum"] = checksum(json);
   whole.write(written(json, 1) + "\n");

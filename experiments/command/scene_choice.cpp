@@ -20,9 +20,10 @@
 namespace qddot::command {
 void add_scene_options(CommandLine& line, SceneChoice& choice) {
   line.add_option("--scene", choice.name, "a generator's name or a scene file");
-  line.add_option("--no-reduce", choice.no_reduce,
-                  fmt::format("a,b,... to leave in the scene what need not be there, of {}",
-                              fmt::join(reduction_names, ", ")))
+  line.add_option(
+          "--no-reduce", choice.no_reduce,
+          fmt::format("a,b,...: reductions of the scene to leave out (default: none), of {}",
+                      fmt::join(reduction_names, ", ")))
       .delimiter(',');
 }
 
@@ -68,15 +69,16 @@ void require_fit(const Method& method, const ReducedScene& scene, const std::str
     return names_where([&](const Method& other) { return applies_to(other, scene.system()); });
   };
   if (why == Outcome::stiffness_varies) {
-    throw InvalidInput(fmt::format(
-        "{}: {} needs a K that is the same everywhere, and here it is not; allowed are {}", source,
-        method.name, others()));
+    throw InvalidInput(
+        fmt::format("{}: {} needs a K that is the same everywhere, and K of this scene changes "
+                    "with the motion; allowed are {}",
+                    source, method.name, others()));
   }
   if (why == Outcome::no_stiff_set) {
-    throw InvalidInput(
-        fmt::format("{}: stiff_above: it is missing, and {} takes the forces of stiff springs "
-                    "apart; allowed are finite numbers above 0 in N/m, or the methods {}",
-                    source, method.name, others()));
+    throw InvalidInput(fmt::format(
+        "{}: stiff_above: it is missing, and {} integrates the forces of stiff springs apart from "
+        "the others; allowed are finite numbers above 0 in N/m, or the methods {}",
+        source, method.name, others()));
   }
   const auto massless = scene.massless_nodes();
   if (!massless.empty() && !method.is(Trait::accepts_massless)) {

@@ -26,10 +26,14 @@ std::optional<std::string> given(const CommandLine& line, const std::string& opt
 void add_share_options(CommandLine& line) {
   static std::string share, journal;  // given() has what they were given
   line.add_flag("--list-shares",
-                "print what processes can measure apart from each other, and the study's key");
-  line.add_option("--share", share, "measure this share alone, into --journal").take_last();
-  line.add_option("--journal", journal, "the file for what is measured of a share").take_last();
-  line.add_flag("--kept", "measure nothing: make the tables of what the folder's journal holds");
+                "print, as JSON, the shares of the study that processes can measure independently, "
+                "and its key");
+  line.add_option("--share", share, "measure this share alone, into the file --journal")
+      .take_last();
+  line.add_option("--journal", journal, "the file for the results of --share").take_last();
+  line.add_flag(
+      "--kept",
+      "measure nothing: make the tables from the complete shares in the folder's journal");
 }
 
 bool lists_shares(const CommandLine& line) { return given(line, "--list-shares").has_value(); }

@@ -4,7 +4,7 @@
 
 namespace qddot::command {
 
-// One word of a shell's command: quoted where a shell would read it as something else.
+// The word as a shell reads it back: quoted if necessary.
 std::string shell_word(const std::string& word);
 
 }  // namespace qddot::command

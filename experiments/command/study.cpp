@@ -57,7 +57,8 @@ std::optional<int> status_of(const std::vector<std::string>& tables, const nlohm
 }  // namespace
 
 void add_resume_option(CommandLine& line) {
-  line.add_flag("--resume", "measure only what an interrupted run of the same command has not");
+  line.add_flag("--resume",
+                "go on with an interrupted run of the same command: measure only what is missing");
 }
 
 Study::Study(const CommandLine& line, const std::string& folder,
@@ -103,7 +104,7 @@ void Study::open_share(const CommandLine& line, const Shares& shares) {
                                    fmt::join(shares.names, ", ")));
   }
   path_ = journal_of(line);
-  require_given(path_, "--journal", "the file for what is measured of the share");
+  require_given(path_, "--journal", "the file for the results of the share");
   key_["share"] = share_;
   const Journal::Contents there = Journal::read(path_);
   const std::string what = there.whole > 0 ? difference(there.key, key_) : "";

@@ -4,8 +4,8 @@
 
 #include "qddot/integrators/integrator.hpp"
 
-// What became of a run, as a journal keeps it, by the names of the members; Seconds are left out.
-// In the namespace of these types, where nlohmann::json looks for it.
+// The records of a run's Summary and Counts in a journal, by the names of their members; Seconds
+// are left out. They are in the namespace of these types, where nlohmann::json looks for them.
 namespace qddot {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Counts, steps, rejected, force_evaluations,

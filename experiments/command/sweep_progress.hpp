@@ -16,18 +16,19 @@ class SweepProgress {
  public:
   using Recall = std::function<Point(const Method&, double value, const Effort::Take& take)>;
 
-  // `bound`: of what is left, if nothing follows that takes nobody knows how long; `prefix` stands
-  // before what is said.
+  // `bound`: of the remaining time, if no work of unknown length follows. `prefix`: put before each
+  // text.
   SweepProgress(std::vector<const Method*> methods, std::optional<SweepBound> bound,
                 std::string prefix = {}, Progress& shown = progress());
 
-  // What Effort::recall is to be, so that each point is said before it is taken; it borrows this.
+  // A function for Effort::recall that reports each point before it is measured. It borrows this
+  // object.
   Recall seen(Recall recall);
-  // A point of the method at hand.
+  // Counts a point of the present method.
   void take(const Point& point);
-  // The method at hand is done.
+  // Ends the present method.
   void finish();
-  // The most that is left [s], if a bound is known.
+  // An upper bound of the remaining time [s], if known.
   std::optional<double> left() const;
 
  private:
@@ -37,8 +38,8 @@ class SweepProgress {
   Progress& shown_;
   std::size_t at_ = 0;  // methods_
   int points_ = 0;      // of that one
-  double seconds_ = 0;  // that the last point took
-  double begun_;        // it was then, on the clock of the Progress [s]
+  double seconds_ = 0;  // time of the last point
+  double begun_;        // start of the point, on the Progress's clock [s]
 };
 
 }  // namespace qddot::command

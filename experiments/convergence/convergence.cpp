@@ -45,8 +45,8 @@ namespace {
 
 constexpr int most_halvings = 12;
 constexpr double longest_run = 10;  // [s]
-// Errors are this many times what the reference may be off by where they count for an order, which
-// then is off by 1 / (20 ln 2) = 0.07 at most.
+// Errors count for an order if they are this many times the certified error of the reference. The
+// order is then wrong by 1 / (20 ln 2) = 0.07 at most.
 constexpr double well_above = 20;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
@@ -60,7 +60,8 @@ struct Arguments {
 void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
   line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
-  line.add_option("--methods", a.methods, "a,b,... (default: all of fixed step)").delimiter(',');
+  line.add_option("--methods", a.methods, "a,b,...: the methods, of fixed steps (default: all)")
+      .delimiter(',');
   line.add_option("--out", a.out, "the folder for order.csv and reference.json");
 }
 
@@ -109,9 +110,9 @@ std::vector<Point> halvings(const Method& method, const ReducedScene& scene, dou
   return points;
 }
 
-// The most seconds that halvings() takes: a run that ends within the budget may take all of it, and
-// each that is half as many steps half as long, but that Newton's iterations may be ten times as
-// many; then there is the one that is stopped.
+// An upper bound of the seconds of halvings(). A run that ends within the budget may take all of
+// it. A run with half as many steps takes half as long, except that it may need ten times as many
+// Newton iterations. The last run is stopped.
 double halvings_at_most(const Method& method, const Effort& effort) {
   double seconds = effort.seconds;
   double run = effort.seconds * (method.is(Trait::implicit) ? 10 : 1);

@@ -1,31 +1,31 @@
-// When does an implicit method win? The fastest method for each accuracy on a scene some of whose
-// springs are `ratio` times as stiff as what sets its motion.
+// When does an implicit method win? The study finds the fastest method for each accuracy on scenes
+// with some stiff springs. These are `ratio` times as stiff as the springs that set the motion.
 //
 //   crossover --family frame --out results/frame
 //   crossover --family chain --ratios 1,1e3,1e6 --methods verlet,ida --out results/chain
 //
-//  1. For each ratio a scene (stiff_scenes.hpp) and a reference that is good to a tenth of the
-//     finest accuracy, kept in ratio_R/reference.json for the next time (agreed_reference).
-//  2. All methods but SUNDIALS' stock ways, which are slower than the same ones with the structure,
-//     are swept as in work_precision, those first that were fast at the ratio before. One
-//     that will be 20 times slower than the fastest at each accuracy that it has yet to reach is
-//     not followed further; where an explicit one is that slow throughout it is not tried at larger
-//     ratios.
-//  3. points.csv holds every point; crossover.csv, for each ratio and accuracy from 1e-1 to 1e-6,
-//     the fastest method and the next; kinds.csv the fastest of each kind: explicit, implicit,
-//     split (stiff springs apart from the others). Empty is what no method reached, or what the
-//     reference does not certify.
+//  1. Each ratio has a scene (stiff_scenes.hpp) and a reference (agreed_reference) that is good to
+//     a tenth of the finest accuracy. It is kept in ratio_R/reference.json for the next time.
+//  2. Methods are swept as in work_precision, those first that were fast at the former ratio.
+//     SUNDIALS' stock variants are left out: they are slower than the same methods with the
+//     structure. A sweep ends early if the method will be 20 times slower than the fastest at each
+//     accuracy that it has not reached yet. An explicit method that is so slow throughout is not
+//     tried at larger ratios.
+//  3. points.csv has every point. crossover.csv has, for each ratio and accuracy from 1e-1 to 1e-6,
+//     the fastest method and the next. kinds.csv has the fastest of each kind: explicit, implicit,
+//     split (stiff springs apart from the others). Fields are empty if no method reached the
+//     accuracy, or if the reference does not certify it.
 //
-// What to expect: the largest step of an explicit method is c / w_max, and w_max grows as
-// sqrt(ratio). Where that limit and not the accuracy decides, it takes
+// Expected results: the largest step of an explicit method is c / w_max, and w_max grows as
+// sqrt(ratio). If that limit and not the accuracy decides, the method takes
 //   t_explicit = sqrt(ratio) T w_1 / c x (time of a force),
-// w_1 that at ratio 1. The steps of an implicit method follow the motion and not the stiffest
-// spring: t_implicit = (steps) x (time of a step), whatever the ratio. They are equal at
+// where w_1 is w_max at ratio 1. The steps of an implicit method follow the motion and not the
+// stiffest spring: t_implicit = (steps) x (time of a step) at any ratio. Both times are equal at
 //   ratio = (implicit steps x time of an implicit step / (explicit steps at ratio 1 x time of a
 //   force))^2.
-// An accuracy that makes implicit steps n times as many moves that by n^2, as long as it leaves
-// explicit steps at their limit. It fails where vibrations of stiff springs are part of what is
-// asked: an implicit method then has to resolve them too.
+// If an accuracy needs n times as many implicit steps, that ratio grows by n^2, as long as explicit
+// steps stay at their limit. The formula fails if vibrations of stiff springs are part of the
+// motion: an implicit method then has to resolve them too.
 #include <algorithm>
 #include <functional>
 #include <limits>
@@ -84,13 +84,16 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--family", a.family, fmt::format("{}", fmt::join(families, ", ")))
       .take_last()
       .capture_default_str();
-  line.add_option("--nodes", a.nodes, "along a side of the cloth or in the chain (default: 12, 30)")
+  line.add_option("--nodes", a.nodes,
+                  "number of nodes along a side of the cloth, or in the chain (default: 12 or 30)")
       .take_last();
   line.add_option("--until", a.until, "the time to run to in s (default: 0.25)").take_last();
-  line.add_option("--ratios", a.ratios, "a,b,... how many times stiffer the stiff springs are")
+  line.add_option("--ratios", a.ratios,
+                  "a,b,...: stiffness ratios, how many times stiffer the stiff springs are")
       .delimiter(',')
       .capture_default_str();
-  line.add_option("--methods", a.methods, "a,b,... (default: all but SUNDIALS' stock ways)")
+  line.add_option("--methods", a.methods,
+                  "a,b,...: the methods (default: all but the stock ways of SUNDIALS, _klu)")
       .delimiter(',');
   line.add_option("--repeats", a.effort.repeats, "timed runs of each point")
       .take_last()
@@ -139,7 +142,7 @@ std::vector<RatioStudy> ratio_studies(const Arguments& a, const StiffFamily& fam
   return all;
 }
 
-// At the largest ratio springs are named stiff if they are at any.
+// If springs are named stiff at any ratio, they are at the largest.
 std::vector<const Method*> competitors(const Arguments& a, const RatioStudy& stiffest) {
   auto selected = select_methods(a.methods, *stiffest.scene, a.family);
   if (a.methods.empty()) {
@@ -281,7 +284,7 @@ nlohmann::json origin_of(const std::vector<std::string>& command_line, const std
   return origin;
 }
 
-// For each accuracy the fastest methods, with the ratios from and to which each is.
+// Prints the fastest methods for each accuracy, with their ranges of ratios.
 void print_winners(const std::vector<RatioStudy>& all) {
   for (std::size_t row = 0; row < Pruning::accuracies.size(); ++row) {
     std::vector<std::string> words;
@@ -362,8 +365,10 @@ int crossover(const CommandLine& line, Arguments a, const std::vector<std::strin
   print_winners(all);
   for (const RatioStudy& one : all) {
     if (!one.reference || one.reference->certified.position <= Pruning::accuracies.back()) continue;
-    fmt::print("at ratio {:g} the reference is certified to {:.1e}: nothing is said below that\n",
-               one.ratio, one.reference->certified.position);
+    fmt::print(
+        "at ratio {:g} the reference is certified to {:.1e}: smaller accuracies have no fastest "
+        "method\n",
+        one.ratio, one.reference->certified.position);
   }
   return study.finish({&winners, &of_kinds, &points}, origin, is_whole ? done : end_not_reached);
 }

@@ -3,10 +3,10 @@
 Call: crossover.py DIR. Reads crossover.csv, kinds.csv and crossover.json in DIR and writes
 crossover.png and crossover.svg there.
 
-Each cell is one scene and one accuracy: its hue says of which kind the fastest method is, its depth
-and the number in it how many times slower the next method is. The line is where the fastest
-explicit and the fastest implicit method take the same time, log time read between the ratios as
-straight in log ratio.
+Each cell is one scene and one accuracy. Its hue is the kind of the fastest method; its depth and
+the number in it say how many times slower the next method is. The line shows where the fastest
+explicit and the fastest implicit method take the same time; log time is interpolated linearly in
+log ratio.
 """
 
 import json
@@ -65,7 +65,7 @@ def read_table(path, columns):
 
 
 def read_kinds(path):
-    """For each ratio and accuracy the fastest of each kind, as kind: (method, seconds)."""
+    """The fastest method of each kind by ratio and accuracy, as kind: (method, seconds)."""
     return {
         key: {
             row["kind"]: (row["method"], parse(path, line, row, "time_s", True))
@@ -97,8 +97,8 @@ def edges(values):
 
 
 def border(kinds, ratios, accuracy):
-    """The log of the ratio from which on the fastest implicit method stays ahead of the fastest
-    explicit one; None where it never does. Where one of them has no time, half way."""
+    """The log of the least ratio above which the fastest implicit method stays faster than the
+    fastest explicit one; None if it never does. Half way if one of them has no time."""
     leads = []
     for ratio in ratios:
         times = kinds.get((ratio, accuracy), {})

@@ -18,7 +18,8 @@ constexpr const char* kind_name(Kind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-// Split is what takes stiff and soft forces apart, whichever of them it takes implicitly.
+// Methods that separate stiff and soft forces are split, whichever of them they integrate
+// implicitly.
 inline Kind kind_of(const Method& method) {
   if (method.asks(Need::split_forces)) return Kind::split;
   return method.is(Trait::implicit) ? Kind::implicit_steps : Kind::explicit_steps;
@@ -45,14 +46,15 @@ class Pruning {
   explicit Pruning(const Reference& reference);
 
   void take(const Point& point);
-  // Whether finer points of the method than this one are of no interest: it has reached the finest
-  // accuracy, or would come to each that is left too late if its time then grows as its
-  // order says, time ~ error^(-1/order).
+  // Whether finer points of the method than this one are of no interest. It has then reached the
+  // finest accuracy, or it would be too slow at each remaining one if its time grows by its order,
+  // time ~ error^(-1/order).
   bool is_over(const Point& point) const;
-  // Seconds after which a run is too slow at the finest accuracy; infinite where none reached that.
+  // Time [s] after which a run is too slow even at the finest accuracy; infinite if no method
+  // reached that accuracy.
   double seconds_of_interest() const;
-  // How many times slower the method is than the fastest, at the accuracy where that is least.
-  // Infinite where it reached none; points: of that method.
+  // The least factor, over all accuracies, by which the method is slower than the fastest one.
+  // Infinite if it reached no accuracy. `points`: of that method.
   double handicap(const std::vector<Point>& points) const;
 
  private:

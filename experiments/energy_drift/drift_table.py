@@ -78,7 +78,7 @@ def groups_of(rows):
 
 
 def table_height(rows):
-    """In inches."""
+    """The height in inches."""
     return sum(HEADING + ROW * len(own) + GROUP_GAP for _, own in groups_of(rows))
 
 

@@ -52,9 +52,9 @@ namespace {
 
 constexpr double standard_resolution = 0.5;  // h w_max
 constexpr double standard_steps = 1e6, most_steps = 1e12;
-// The methods' own tolerances are for the positions of shorter runs. Over a million steps what
-// their solves leave adds up: on the orbit generalised-alpha then loses half the energy that it
-// should, and the trapezoidal rule, which should keep it, gains.
+// The methods' own tolerances are made for positions in shorter runs. The errors of their solves
+// add up over a million steps. Generalised-alpha then loses only half the energy that it should on
+// the scene orbit, and the trapezoidal rule, which should keep it, gains energy.
 constexpr double standard_solve_tolerance = 1e-9;
 
 struct Arguments {
@@ -69,22 +69,22 @@ struct Arguments {
 
 void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
-  line.add_option("--step-size", a.step_size,
-                  "h in s, of methods of fixed step (default: 1/2 over the largest frequency)");
+  line.add_option(
+      "--step-size", a.step_size,
+      "the step size h in s, for methods of fixed steps (default: 1/2 over the largest frequency)");
   line.add_option("--until", a.until, "the time to run to in s (default: a million steps)");
   line.add_option("--methods", a.methods,
-                  "a,b,... (default: all but the stock ways of SUNDIALS, _klu)")
+                  "a,b,...: the methods (default: all but the stock ways of SUNDIALS, _klu)")
       .delimiter(',');
-  line.add_option("--rtol", a.rtols, "a,b,... relative tolerances, of adaptive methods")
+  line.add_option("--rtol", a.rtols, "a,b,...: relative tolerances, for adaptive methods")
       .delimiter(',')
       .capture_default_str();
-  line.add_flag(
-      "--compensated", a.compensated,
-      "let splittings (verlet, symplectic_euler, kahan_li8, ...) keep what rounding takes "
-      "from their sums");
+  line.add_flag("--compensated", a.compensated,
+                "use compensated sums in splittings (verlet, symplectic_euler, kahan_li8, ...), "
+                "which add up less rounding");
   line.add_option("--method-limit", a.method_limit,
-                  "seconds that a method may take, all of its tolerances together; what it reached "
-                  "by then gets the verdict")
+                  "seconds that a method may take with all of its tolerances; if they run out, the "
+                  "verdict is on the time that it reached")
       .take_last()
       .capture_default_str();
   add_method_options(line, a.options);
@@ -105,10 +105,10 @@ Course course_of(const CommandLine& line, const Arguments& a, const ReducedScene
   } else {
     h.step_size = standard_resolution / fastest_frequency(scene);
     if (!std::isfinite(h.step_size)) {
-      throw InvalidInput(fmt::format(
-          "--step-size is missing, and nothing in {} vibrates that would say how long a step is; "
-          "it is h in s, greater than 0",
-          a.scene.name));
+      throw InvalidInput(
+          fmt::format("--step-size is missing, and nothing in {} vibrates that could give a "
+                      "default; it is h in s, greater than 0",
+                      a.scene.name));
     }
   }
   if (line.has("--until")) {

@@ -1,9 +1,10 @@
 """Draws where each method's energy goes over a long run of one scene.
 
 Call: energy_drift.py DIR, the folder with drift.csv, summary.csv and tolerance.csv of the program
-energy_drift; writes DIR/energy_drift.png and DIR/energy_drift.svg. Above on the left the size of
-the energy error over time for some methods of each fate, below it that of the adaptive methods
-over their tolerance; on the right the verdict on every method. One colour a fate in all three.
+energy_drift; writes DIR/energy_drift.png and DIR/energy_drift.svg. The upper left panel shows the
+size of the energy error over time for some methods of each verdict. The lower left one shows that
+of the adaptive methods over their tolerance. The right one shows the verdict on every method. Each
+verdict has one colour in all three.
 """
 
 import csv

@@ -69,17 +69,17 @@ struct Arguments {
 
 void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
-  line.add_option("--methods", a.methods, "a,b,... of fixed step")
+  line.add_option("--methods", a.methods, "a,b,...: the methods, of fixed steps")
       .delimiter(',')
       .capture_default_str();
   line.add_option("--h-omega", a.h_omega,
-                  "a,b,...: the steps times the highest frequency of the stiff springs")
+                  "a,b,...: step sizes as h w, with w the highest frequency of the stiff springs")
       .delimiter(',')
       .capture_default_str();
   line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
   line.add_option("--every", a.every,
-                  "how far apart the times of exchange.csv are in s, about (default: a thousandth "
-                  "of the time)");
+                  "the approximate time between samples in exchange.csv in s (default: a "
+                  "thousandth of --until)");
   line.add_option("--out", a.out, "the folder for exchange.csv and summary.csv");
 }
 

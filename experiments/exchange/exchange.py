@@ -1,8 +1,8 @@
 """Draws how the stiff springs of a scene exchange their energy, by method and step size.
 
 Call: exchange.py DIR, the folder with exchange.csv and summary.csv of the program exchange; writes
-DIR/exchange.png and DIR/exchange.svg. A row is a method, a column a step size; each panel has the
-energies of the springs over time, what they are in the reference in grey, and a verdict.
+DIR/exchange.png and DIR/exchange.svg. A row is a method, a column a step size. Each panel has the
+energies of the springs over time, those of the reference in grey, and a verdict.
 """
 
 import csv
@@ -19,7 +19,8 @@ from style import COOL, FAINT, GRID, INK, WARM, number, use_style
 
 PANEL_WIDTH, PANEL_HEIGHT, ACROSS, DOWN = 2.45, 0.86, 0.12, 0.12
 RIGHT, TOP, BOTTOM = 0.25, 1.0, 0.55
-# For the axis' labels and, each character, for the longest method's name; for title and meanings.
+# Space for the axis' labels, for each character of the longest method's name, and for title and
+# key.
 LABELS, CHARACTER, LEAST_WIDTH = 0.45, 0.082, 11.3
 REFERENCE_HEIGHT, HEADS = 1.45, 0.3
 HIGHEST = 1.45
@@ -158,7 +159,9 @@ def main(folder):
     height = first + len(methods) * (PANEL_HEIGHT + DOWN) - DOWN + BOTTOM
     sheet = Sheet(width, height)
     panels = Panels(sheet, reference, origin["until"])
-    title = f"{shown(origin['scene']['name'])}: which method lets stiff springs exchange their energy?"
+    title = (
+        f"{shown(origin['scene']['name'])}: which method lets stiff springs exchange their energy?"
+    )
     sheet.text(0.2, 0.3, title, size=15, weight="bold", va="center", color=INK)
     words = (
         f"energies of stiff springs over time, in parts of their sum at the start; "

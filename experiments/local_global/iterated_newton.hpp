@@ -4,14 +4,14 @@
 
 namespace qddot::local_global {
 
-// Implicit Euler by a given number of Newton's iterations (Options::iterations), to be laid over
-// those of the methods that take a number of iterations, too: from v = v_n
+// Implicit Euler by a given number of Newton's iterations (Options::iterations), for comparison
+// with the other methods of a given number of iterations. It starts at v = v_n and iterates
 //   r = M (v - v_n) - h f(q_n + h v),  p = (M - h^2 K)^-1 r,  v = v - alpha p
 // with the first alpha of 1, 1/2, 1/4, ... that lowers the energy by Armijo's rule (none: v stays).
-// `newton_exact` takes K itself and, where M - h^2 K is not positive definite, as much of the
-// compression as lets it be (see SplitStiffness); `newton_clamped` takes none of it ever.
-// No methods of the registry: one that stops where nothing is left to gain, and keeps its factors
-// as long as they serve, is implicit_euler.
+// `newton_exact` uses K itself. If M - h^2 K is not positive definite, it uses as much of the
+// compression as keeps it so (see SplitStiffness). `newton_clamped` never uses compression.
+// Both are not in the registry. Its implicit_euler stops when iterations gain nothing more, and
+// keeps its factors as long as they serve.
 const Method& newton_exact();
 const Method& newton_clamped();
 

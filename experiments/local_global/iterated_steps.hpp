@@ -26,9 +26,9 @@ struct Solved {
   std::string failure{};  // why a step of more iterations than these is not there; mostly empty
 };
 
-// Steps of h [s] of the cloth by all methods that take a number of iterations, and by Newton's with
-// K as it is and clamped, for numbers of them up to `most`; and the lowest energy that any came to.
-// A solver whose step fails is left at the iterations before.
+// Steps of h [s] of the cloth with 1 to `most` iterations, and the lowest energy that any solver
+// reached. Solvers are all methods with a given number of iterations, and Newton's method with K
+// exact and clamped. A solver whose step fails keeps its results with fewer iterations.
 struct Comparison {
   Comparison(const SwingingCloth& on, double h, int most, int repeats);
   // The energy above its minimum, in parts of the prediction's.

@@ -1,26 +1,26 @@
-// What the iterations of local_global, of its accelerations and of Newton's method buy in one step
-// of implicit Euler: Figures 2 and 3 of Liu, Bargteil, O'Brien and Kavan (SIGGRAPH Asia 2013), and
-// what they leave out: the step's own error, below which further iterations buy nothing.
+// How much do iterations of local_global, of its accelerations and of Newton's method gain in one
+// step of implicit Euler? The study repeats Figures 2 and 3 of Liu, Bargteil, O'Brien and Kavan
+// (SIGGRAPH Asia 2013) and adds the step's own error. Iterations below that error gain nothing.
 //
 //   local_global --out results/local_global
 //   local_global --nodes 65 --stiffness 2400 --step-size 0.0333 --out results/coarse
 //   local_global --speed --out results/speed
 //
-// The scene is a square cloth of 1 m and 1 kg on two corners that has swung for --swing seconds;
-// one step of --step-size follows, from the same state for all solvers. A row is a step of that
-// many iterations: the step that a user of `simulate --iterations` gets, not an intermediate state
-// of a longer one.
+// The scene is a square cloth of 1 m and 1 kg, held at two corners, after --swing seconds of
+// swinging. One step of --step-size follows, from the same state for all solvers. A row is a step
+// with that many iterations, as `simulate --iterations` makes it, not an intermediate state of a
+// longer iteration.
 //
 //  convergence.csv  (g(x_i) - g*) / (g(x_0) - g*) of the energy g that the step minimises, x_0 the
-//                   inertial prediction; seconds are without analysis and, of solvers whose matrix
-//                   is constant, without its one factorisation, both of which the sidecar has
-//  positions.csv    the largest distance of a node from where it is in the converged step, and the
-//                   step's own error: the converged step's distance from the true motion
+//                   inertial prediction. Seconds are without analysis and, if a solver's matrix is
+//                   constant, without its one factorisation; the sidecar has both
+//  positions.csv    the largest distance of a node to its place in the converged step, and the
+//                   step's own error: the distance of the converged step to the true motion
 //  stiffness.csv    convergence.csv for several stiffnesses
 //  resolution.csv   and for several resolutions, with stiffness in proportion
-//  run.csv          whole runs of --until: how far off they end, what energy they have lost
-//  speed.csv        --speed alone: one iteration, set-up, and what one of Newton's iterations
-//                   takes to assemble and factorise, for 33, 65 and 101 nodes
+//  run.csv          whole runs of --until: the error at the end and the energy lost
+//  speed.csv        --speed alone: one iteration, set-up, and the assembly and factorisation of
+//                   one of Newton's iterations, for 33, 65 and 101 nodes
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -73,29 +73,30 @@ struct Arguments {
 
 void declare(CommandLine& line, Arguments& a) {
   line.add_option("--out", a.out, "the folder for the tables");
-  line.add_option("--nodes", a.nodes, "how many nodes along a side of the cloth, 3 to 400")
+  line.add_option("--nodes", a.nodes, "number of nodes along a side of the cloth, 3 to 400")
       .capture_default_str();
   line.add_option("--stiffness", a.stiffness,
-                  "of springs between neighbours in N/m; diagonals have half of it, second "
-                  "neighbours a tenth")
+                  "stiffness of springs between neighbours in N/m; diagonals have half of it, "
+                  "second neighbours a tenth")
       .capture_default_str();
   line.add_option("--step-size", a.step_size, "h in s").capture_default_str();
-  line.add_option("--swing", a.swing, "how long the cloth has swung before the step, in s")
+  line.add_option("--swing", a.swing, "the time that the cloth swings before the step in s")
       .capture_default_str();
-  line.add_option("--until", a.until, "how long the runs of run.csv are, in s")
+  line.add_option("--until", a.until, "the time to run to in s, for run.csv").capture_default_str();
+  line.add_option("--iterations", a.iterations, "the largest number of iterations, 1 to 100000")
       .capture_default_str();
-  line.add_option("--iterations", a.iterations, "how far to go, 1 to 100000").capture_default_str();
   line.add_option(
           "--repeats", a.repeats,
-          "timed runs of each, of which the shortest counts; the median of them with --speed")
+          "timed runs of each step, of which the shortest counts, or the median with --speed")
       .capture_default_str();
-  line.add_option("--stiffnesses", a.stiffnesses, "a,b,... in N/m, for stiffness.csv")
+  line.add_option("--stiffnesses", a.stiffnesses, "a,b,...: stiffnesses in N/m, for stiffness.csv")
       .delimiter(',')
       .capture_default_str();
-  line.add_option("--resolutions", a.resolutions, "a,b,... nodes along a side, for resolution.csv")
+  line.add_option("--resolutions", a.resolutions,
+                  "a,b,...: numbers of nodes along a side, for resolution.csv")
       .delimiter(',')
       .capture_default_str();
-  line.add_flag("--speed", a.speed, "measure one iteration and the set-up instead, to speed.csv");
+  line.add_flag("--speed", a.speed, "instead, time one iteration and the set-up, into speed.csv");
 }
 
 double median_of(int repeats, const auto& action) {
@@ -382,7 +383,7 @@ int main(int argc, char** argv) {
   return qddot::command::enter<Arguments>(
       {.name = "local_global",
        .summary =
-           "Measures what the iterations of a step of implicit Euler buy, by several solvers.",
+           "Measures how much iterations gain in a step of implicit Euler, by several solvers.",
        .has_threads = true,
        .has_resume = true},
       declare, local_global_program, argc, argv);

@@ -1,10 +1,10 @@
-"""Draws what the iterations of one step of implicit Euler buy, over their number and their time.
+"""Draws how much iterations gain in one step of implicit Euler, over their number and their time.
 
 Call: local_global.py DIR, the folder with convergence.csv and positions.csv of the program
-local_global; writes DIR/local_global.png and DIR/local_global.svg. Above, the error of the energy
-that the step minimises; below, how far positions still are from the converged step, and the line
-that tells when that is no longer what matters: how far the converged step itself is from the true
-motion.
+local_global; writes DIR/local_global.png and DIR/local_global.svg. The upper panels show the error
+of the energy that the step minimises. The lower ones show the distance of positions to the
+converged step. A line shows the distance of the converged step to the true motion; iterations below
+it do not matter.
 """
 
 import csv
@@ -34,7 +34,7 @@ OWN_ERROR = (
     ("yellow: nearer to the\nconverged step than\nthat is to the truth", (0.43, 0.2)),
     (
         "the line is the step's own error:\nsolved to the end, it is still {}\n"
-        "from the true motion. Below it,\nmore iterations buy nothing",
+        "from the true motion. Below it,\nmore iterations gain nothing",
         (0.02, 0.03),
     ),
 )
@@ -95,9 +95,7 @@ def label_lines(axes, lines, taken):
             ink.add_line(start, end, 2.0)
         anchors.append(pixels[1:] if len(pixels) > 1 else pixels)
         words, look = SOLVERS[name]
-        label = line_label(
-            axes, words, look.color, look.text_color, FONT_SIZE, on_white=True
-        )
+        label = line_label(axes, words, look.color, look.text_color, FONT_SIZE, on_white=True)
         texts.append(label)
     sizes = [Text.get_window_extent(text).size for text in texts]
     for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
@@ -159,7 +157,7 @@ def main(folder):
     folder = Path(folder)
     origin = json.loads((folder / "positions.json").read_text(encoding="utf-8"))
     sheet = Sheet(WIDTH, HEIGHT)
-    title = "What the iterations of one implicit step buy"
+    title = "What the iterations of one implicit step gain"
     sheet.text(0.2, 0.3, title, size=15, weight="bold", va="center", color=INK)
     scene = origin["scene"]
     words = (
@@ -182,9 +180,7 @@ def main(folder):
     below = TOP + PANEL_HEIGHT + DOWN
     positions = read(folder / "positions.csv")
     words = "farthest node from the converged step in m"
-    draw_row(
-        sheet, below, positions, "distance_to_converged", words, limits, origin["step_error"]
-    )
+    draw_row(sheet, below, positions, "distance_to_converged", words, limits, origin["step_error"])
     for extension in ("png", "svg"):
         sheet.save(str(folder / f"local_global.{extension}"))
 

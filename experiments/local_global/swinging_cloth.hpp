@@ -6,13 +6,13 @@
 
 namespace qddot::local_global {
 
-// Throws InvalidInput, which names the option that asks for it, where the true motion of such a
-// cloth over `duration` [s] takes more steps than 1e7, some hours.
+// Throws InvalidInput if the true motion of such a cloth over `duration` [s] takes more than 1e7
+// steps (some hours). The message names `option`.
 void require_reachable(int nodes, double stiffness, double duration, const std::string& option);
 
-// A square cloth of 1 m and 1 kg on two corners, `nodes` along a side, with springs of `stiffness`
-// [N/m] between neighbours, half of it along diagonals and a tenth between second neighbours; all
-// of it, as a scene without its symmetry would be. It has swung for `swing` s before the start.
+// A square cloth of 1 m and 1 kg, held at two corners, with `nodes` nodes along a side. Its springs
+// have `stiffness` [N/m] between neighbours, half of it along diagonals, and a tenth of it between
+// second neighbours. Its symmetry is not reduced. It has swung for `swing` s before the start.
 struct SwingingCloth {
   SwingingCloth(int nodes, double stiffness, double swing);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a program outside needs of qddot: scenes and own systems, methods, and the measurements of
-// both. Everything is in namespace qddot; what measures is in qddot::measure as well.
+// All that a program outside the project needs of qddot: scenes, own systems, methods and
+// measurements. Everything is in namespace qddot; measurements are in qddot::measure too.
 
 #include "qddot/analysis/equilibrium.hpp"
 #include "qddot/analysis/largest_frequency.hpp"

@@ -1,11 +1,11 @@
-// The natural modes of a scene: the frequencies and shapes of its small motions, about where it is
-// drawn or about its equilibrium.
+// The natural modes of a scene: the frequencies and shapes of its small motions, about the drawn
+// state or about its equilibrium.
 //
 //   modes --scene cloth --out results/cloth --count 6 --at equilibrium
 //
-// modes.csv has the lowest and the highest of them by rank. A mode whose shape grows instead of
-// vibrating (w^2 < 0: where the scene is no minimum of its energy) has omega = -(growth rate); one
-// whose w^2 is zero within rounding has omega = 0.
+// modes.csv has the lowest and the highest modes by rank. A mode that grows instead of vibrating
+// has omega = -(growth rate); it has w^2 < 0, at a state that is no minimum of the energy. A mode
+// with w^2 = 0 within rounding has omega = 0.
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -46,8 +46,10 @@ void declare(CommandLine& line, Arguments& a) {
                   "the folder for modes.csv (a mode that grows instead of vibrating has omega = "
                   "-growth rate), shapes.csv of the lowest ones, and springs.csv");
   line.add_option("--count", a.count,
-                  "how many modes at each end of the spectrum, 1 to 1000 (default: 10)");
-  line.add_option("--at", a.at, "drawn or equilibrium (default: where the scene starts)");
+                  "number of modes at each end of the spectrum, 1 to 1000 (default: 10)");
+  line.add_option(
+      "--at", a.at,
+      "the state of the scene: drawn or equilibrium (default: where its motion starts)");
 }
 
 // Angular frequency [rad/s], or minus the rate of growth [1/s].
@@ -56,8 +58,8 @@ double omega(double square) { return std::copysign(std::sqrt(std::abs(square)), 
 // Both ends of the spectrum, by rank.
 struct Spectrum {
   Index finite = 0;
-  NaturalModes lowest, highest;  // highest: without those that are among the lowest
-  CurvatureSigns signs;          // by rank: those that grow, then those that rounding hides
+  NaturalModes lowest, highest;  // highest: without the lowest
+  CurvatureSigns signs;          // by rank: growing modes, then those hidden by rounding
 
   Spectrum(const ReducedScene& scene, Index count)
       : finite(finite_modes(scene.system())),

@@ -1,8 +1,8 @@
 """Draws the lowest natural modes that the program modes found.
 
 Call: modes.py DIR, the folder with modes.csv, shapes.csv, springs.csv; writes DIR/modes.png and
-DIR/modes.svg. Up to six modes are drawn: those that grow, then those that vibrate from the lowest
-on, and those of frequency zero where there are no others.
+DIR/modes.svg. Up to six modes are drawn: first the growing ones, then the vibrating ones from the
+lowest on. Modes of frequency zero are drawn if there are no others.
 """
 
 import csv
@@ -25,8 +25,8 @@ TOP, SIDE = 0.85, 0.15
 # The largest displacement as a part of the scene's size, as it is seen.
 AMPLITUDE = 0.16
 REST = "#BDBDBD"
-# The more springs, the thinner; where there are more than MANY, without those that are longer by
-# this factor than the shortest at both of their ends, such as the diagonals of grids.
+# Lines are thinner the more springs there are. If there are more than MANY, springs are left out
+# that are longer by DIAGONAL than the shortest at both of their ends, such as diagonals of grids.
 THICK, THIN, MANY = 1.3, 0.35, 4000
 DIAGONAL = 1.35
 # The least and the greatest height of a panel as a part of its width.

@@ -8,8 +8,8 @@
 
 namespace qddot::motion_files {
 
-// What joins the nodes in a picture: a point for each node on no spring and no face, a line for
-// each spring, a triangle for each face; cells are counted in that order.
+// The cells of a picture, numbered in this order: a point for each node on no spring and no face, a
+// line for each spring, a triangle for each face.
 struct Cells {
   std::vector<std::size_t> points;
   std::vector<std::array<std::size_t, 2>> lines;
@@ -20,9 +20,9 @@ struct Cells {
 
 Cells cells_of(const Scene& scene);
 
-// The lengths [m] by which strains of the scene's springs are taken, (l - length) / length: the
-// rest length; where that is zero, the length between the nodes as the motion starts, `nodes`. Zero
-// where both are.
+// The lengths [m] of the scene's springs that define their strains, (l - length) / length. A length
+// is the rest length or, if that is zero, the distance of the nodes at the start of the motion,
+// `nodes`; zero if both are.
 std::vector<double> strain_lengths(const Scene& scene, const std::vector<Node>& nodes);
 
 }  // namespace qddot::motion_files

@@ -10,8 +10,8 @@
 namespace qddot::motion_files {
 namespace {
 
-// What a stream may be longer than its bytes: headers of stored blocks, five bytes for each 65535
-// and for one more, and the six of the stream itself.
+// The largest size of a stream. It may exceed its bytes by headers of stored blocks, five bytes for
+// each 65535 and for one more, and by six bytes of the stream itself.
 std::size_t room_for(std::size_t bytes) { return bytes + 5 * (bytes / 65535 + 2) + 6; }
 
 // ISA-L leaves numbers in the upper halves of the vector registers. All of SSE then takes up to

@@ -13,7 +13,7 @@
 namespace qddot::motion_files {
 namespace {
 
-// In bit 31: whether the exponent is the one of infinities and of what is no number.
+// Bit 31 says whether the exponent is that of infinities and NaN.
 inline std::uint32_t overflow(float value) {
   constexpr std::uint32_t exponent = 0x7f800000, last_of_exponent = 0x00800000;
   return (std::bit_cast<std::uint32_t>(value) & exponent) + last_of_exponent;
@@ -37,9 +37,9 @@ inline float short_form(double value, std::uint32_t& overflows) {
   return result;
 }
 
-// Makes `width` numbers of each of the items from `first` to `end` floats. `fetch`(i, numbers)
-// looks for those of item i; `form`(k, number, overflows) makes number k of all a float, without
-// branches: a block of them is in the first cache and is done in vectors. Returns the overflows.
+// Converts `width` numbers of each item from `first` to `end` to floats. `fetch`(i, numbers) gets
+// the numbers of item i. `form`(k, number, overflows) makes number k of all a float. It has no
+// branches: a block is in the first cache and is converted in vectors. Returns the overflows.
 template <std::size_t width, class Fetch, class Form>
 std::uint32_t fill(float* floats, std::size_t first, std::size_t end, const Fetch& fetch,
                    const Form& form) {

@@ -7,8 +7,8 @@
 
 namespace qddot::motion_files {
 
-// How many bits behind the first one a field keeps: a rounding of 2^-8, which is the step of a
-// colour scale of 256 shades. The zeros behind them are what makes files small.
+// The number of bits after the first one that a field keeps: a rounding of 2^-8, the step of a
+// colour scale of 256 shades. The zeros after them make files small.
 constexpr int kept_bits = 7;
 
 // The numbers of one frame, as a file holds them: node after node, x, y and z of each.

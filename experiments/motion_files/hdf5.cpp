@@ -78,7 +78,7 @@ Failure::Failure() : std::runtime_error(reason()) {}
 Handle new_properties(hid_t kind) { return {H5Pcreate(kind), H5Pclose}; }
 
 void be_quiet() {
-  // At the process's end HDF5 would try again to write what a full disk did not take.
+  // HDF5 would try again at the process's end to write data that a full disk did not take.
   H5dont_atexit();
   checked(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
 }

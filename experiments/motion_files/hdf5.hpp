@@ -47,8 +47,8 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-// From now on HDF5 prints nothing of what fails in the calling thread, and does nothing at the
-// process's end. To be called before anything else of HDF5's.
+// Keeps HDF5 from printing errors of the calling thread, and from doing anything at the process's
+// end. Must be called before any other function of HDF5.
 void be_quiet();
 
 // A file in place of what is there, of HDF5 1.10's format, which HDF5 does not lock.

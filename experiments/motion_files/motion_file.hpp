@@ -35,8 +35,8 @@ class MotionFile {
   virtual void commit() = 0;
 };
 
-// All files that a motion at this path consists of, the path first. Throws InvalidInput where its
-// ending names no format; `option` is what the sentence calls the path.
+// All files that a motion at this path consists of, the path first. Throws InvalidInput if its
+// ending names no format; the message names the path by `option`.
 std::vector<std::string> files_of_motion(const std::string& path, const std::string& option);
 
 // The fields of these names, "none" for none; `path` is the motion's. Throws InvalidInput for
@@ -47,8 +47,8 @@ Fields fields_named(const std::vector<std::string>& names, const std::string& pa
 // Opens the files of a motion in the format that the path's ending names: .vtkhdf (with an .xdmf
 // beside it) or .pc2 (with an .obj). `start`: the scene as its motion starts; `scene`: that scene
 // reduced, which must outlive the file; `has_reference`: whether add gets one. Throws InvalidInput
-// for another ending, where a file cannot be written, where the format cannot count the scene's
-// nodes, and where the start is beyond 32-bit floats.
+// if the ending is another one, a file cannot be written, the format cannot count the scene's
+// nodes, or the start exceeds 32-bit floats.
 std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& start,
                                         const ReducedScene& scene, bool has_reference = false,
                                         const Fields& fields = {});

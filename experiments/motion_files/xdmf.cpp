@@ -58,7 +58,7 @@ std::string xdmf_text(const XdmfFields& about, const std::vector<double>& times)
     add("<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\">{}</Topology>\n", about.cells,
         item(fmt::format("{}", about.cell_numbers), "Int", 8, frames + "cells"));
     add("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n", points);
-    // For readers that take one geometry for all frames.
+    // Readers that use one geometry for all frames need it.
     add("<Attribute Name=\"position\" AttributeType=\"Vector\" Center=\"Node\">{}</Attribute>\n",
         points);
     for (const auto& field : about.fields) {

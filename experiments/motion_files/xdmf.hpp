@@ -25,8 +25,8 @@ extern const std::string xdmf_beginning;
 // The name of a frame's group.
 std::string frame_name(std::size_t frame);
 
-// The text of an XDMF 3 file of frames at these times [s]: one whole dataset for each of geometry
-// and fields, no part of one, which ParaView 5.11's own reader would show empty.
+// The text of an XDMF 3 file of frames at these times [s]. Geometry and each field are one whole
+// dataset; ParaView 5.11's own reader would show a part of a dataset as empty.
 std::string xdmf_text(const XdmfFields& about, const std::vector<double>& times);
 
 // Whether XML and XDMF can name that file: UTF-8 without control characters and colons.

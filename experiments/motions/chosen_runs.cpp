@@ -10,7 +10,7 @@
 namespace qddot::motions {
 namespace {
 
-// In the order in which they are chosen; each point once, with all that it shows.
+// The chosen runs in order; each point once, with all reasons to show it.
 class Choice {
  public:
   void add(const Point* point, const std::string& why) {
@@ -34,7 +34,7 @@ bool is_good(const Point& point) { return point.outcome == Outcome::reached_end;
 // "1e-4", as pictures write it.
 std::string in_words(double accuracy) { return fmt::format("1e{:.0f}", std::log10(accuracy)); }
 
-// Names the fastest of `which`; those that are the fastest of all are named as such already.
+// Adds the fastest runs of `which`; those that are the fastest of all are there already.
 void add_fastest(Choice& choice, const std::vector<FrontRow>& front, const Point* FrontRow::*which,
                  const std::string& whose) {
   for (auto first = front.begin(); first != front.end();) {

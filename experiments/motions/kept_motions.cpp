@@ -208,8 +208,8 @@ std::string KeptMotions::difference(const Point& point, const State& end,
   const double on_chart = point.errors.position;
   if (std::abs(error - on_chart) <= seen * on_chart + 2 * reference.certified.position) return "";
   return fmt::format(
-      "its steps end at the frames here, which makes its error {:.1e} in the place of {:.1e}",
-      error, on_chart);
+      "its steps end at the frames here, so that its error is {:.1e} instead of {:.1e}", error,
+      on_chart);
 }
 
 double KeptMotions::largest_distance(const std::vector<State>& states, std::size_t every,

@@ -18,9 +18,9 @@ namespace qddot::motions {
 // ones at the end, or never.
 class KeptMotions {
  public:
-  // Throws InvalidInput where the folder cannot be written. The scene must outlive it; `start` is
-  // that scene as its motion starts, `times` [s] are those that are seen, the start first, and
-  // `origin` says how each motion was made (see provenance.hpp).
+  // Throws InvalidInput where the folder cannot be written. The scene must outlive it. `start` is
+  // the drawn scene as its motion starts. `times` [s] are those of the frames, the start first.
+  // `origin` records how each motion was made (see provenance.hpp).
   KeptMotions(const std::string& folder, const Scene& start, const ReducedScene& scene,
               std::vector<double> times, const nlohmann::json& origin);
   // Removes what has not appeared.
@@ -31,8 +31,8 @@ class KeptMotions {
   // Keeps the motion that all others are compared with, before any of them.
   void add_reference(const ReferenceMotion& motion);
   // Makes the run once more, up to so many `seconds`, and keeps its motion. Throws Interrupted.
-  // What can be seen at the ends of its steps alone takes more of them to end at the frames: such a
-  // run has a frame for every fourth of the steps that it took on the chart, at most.
+  // Methods that can be seen only at the ends of steps take more steps to end at the frames. Such a
+  // run has at most one frame for four of its steps on the chart.
   void add(const ChosenRun& run, const Options& options, const Reference& reference,
            double seconds);
   // How many runs beside the reference, and how many the folder had before; bytes of files.
@@ -48,8 +48,8 @@ class KeptMotions {
     std::size_t frames = 0;
   };
 
-  // Writes the file of a motion that has a state at every so many-th frame, and its energies, up to
-  // the first state whose numbers the file cannot hold.
+  // Writes the file of a motion, which has a state at every `every`-th frame, and its energies.
+  // Ends before the first state whose numbers the file cannot hold.
   Written write(const std::string& name, const std::vector<State>& states, std::size_t every,
                 bool is_reference);
   // That the run ended elsewhere than on the chart, as steps which end at frames are others; empty

@@ -66,12 +66,11 @@ struct Arguments {
 void declare(CommandLine& line, Arguments& a) {
   line.add_option("--scene", a.scene.name, "a generator's name or a scene file");
   line.add_option("--frames", a.frames,
-                  "how many times are seen after the start (default: 100, fewer of large scenes)")
+                  "number of frames after the start (default: 100, fewer for large scenes)")
       .take_last();
-  line.add_option(
-          "--runs", a.runs,
-          "how many runs, the most telling first (default: 120, fewer where these take more "
-          "than 256 MB or a minute)")
+  line.add_option("--runs", a.runs,
+                  "number of runs to keep, the most telling first (default: 120, fewer if these "
+                  "take more than 256 MB or a minute)")
       .take_last();
   line.add_option("--out", a.out,
                   "the folder of work_precision's points.csv, for motions.csv and motions/");
@@ -114,10 +113,10 @@ int motions(const CommandLine& line, Arguments& a, const std::vector<std::string
   const Scene drawn = load(a.scene);
   const MeasuredPoints study = measured_points(a.out);
   if (study.scene_hash != content_hash(drawn)) {
-    throw InvalidInput(fmt::format(
-        "--scene {}: {}/points.csv is of another scene, or of what this one was before it changed; "
-        "work_precision measures this one",
-        a.scene.name, a.out));
+    throw InvalidInput(
+        fmt::format("--scene {}: {}/points.csv is of another scene, or of this one before it was "
+                    "changed; work_precision measures this one",
+                    a.scene.name, a.out));
   }
   a.scene.no_reduce = study.no_reduce;
   const Scene start = started(drawn, a.scene);
@@ -152,7 +151,7 @@ int motions(const CommandLine& line, Arguments& a, const std::vector<std::string
   progress().wipe();
   if (why && kept.runs() < kept.earlier_runs()) {
     fmt::print(stderr,
-               "motions: interrupted by {}: {} of {} runs were made; the {} of before stay\n",
+               "motions: interrupted by {}: {} of {} runs were made; the {} former ones stay\n",
                why->by, kept.runs(), all, kept.earlier_runs());
     return why->status;
   }

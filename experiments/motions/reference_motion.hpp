@@ -18,16 +18,14 @@ struct ReferenceMotion {
   double error = 0;                // its position error at the end: nearer distances mean nothing
 };
 
-// The states of a run at `times` [s], of which the first is 0 and the last the end; fewer where it
-// does not come as far.
+// The states of a run at `times` [s], from 0 to the end; fewer if it does not reach the end.
 std::vector<State> states_at(const std::vector<double>& times, const ReducedScene& scene,
                              const Method& method, const Options& options, double seconds);
 
-// The motion of the reference at `times`: by Kahan and Li's composition with smaller and smaller
-// steps, until it is as near to the reference's end as that is certified to be, rounding is all
-// that is left, or so many `seconds` are over; or by the most accurate of the points, where that is
-// nearer. Nothing where neither comes to 1e-6 of the end, as beyond the horizon of a chaotic
-// motion.
+// The motion of the reference at `times` [s]. It is Kahan and Li's composition with smaller and
+// smaller steps, until its distance to the reference's end is the certified error, only rounding is
+// left, or `seconds` are over. It is the run of the most accurate point if that is nearer. Empty if
+// neither comes within 1e-6 of the end, as beyond the horizon of a chaotic motion.
 std::optional<ReferenceMotion> reference_motion(const std::vector<double>& times,
                                                 const ReducedScene& scene,
                                                 const Reference& reference,

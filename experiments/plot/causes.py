@@ -1,5 +1,5 @@
-"""The strip under a work-precision chart that says, cause by cause, how many methods have runs which
-are no points of it, and where."""
+"""The strip under a work-precision chart. It says for each cause of failure how many methods have
+failed runs, and at which values of their knobs."""
 
 from failures import FONT_SIZE, KNOBS, TITLE
 from style import FAINT, number
@@ -19,8 +19,8 @@ def is_point(sweep):
 
 
 def threshold(sweep, cause):
-    """From where on a sweep fails, where runs of this cause are at one end of it: ("≥", value) or
-    ("≤", value); ("", value) where good runs are on both sides."""
+    """The value at which a sweep starts to fail, if runs of this cause are at one end of it: ("≥",
+    value) or ("≤", value); ("", value) if good runs are on both sides."""
     values = [run.value for run in sweep if run.failure == cause]
     good = [run.value for run in sweep if not run.failure]
     if min(values) > max(good):
@@ -31,8 +31,8 @@ def threshold(sweep, cause):
 
 
 def where(groups, cause, named):
-    """In words, at which values of the knobs methods with some points fail for a cause: the least
-    and the largest of their limits, with or without the methods' names."""
+    """The values of the knobs, in words, at which methods with some points fail for a cause: the
+    least and the largest of their limits, with or without the methods' names."""
     ends = {}
     for knob, group in groups.items():
         symbol = KNOBS.get(knob, ("", knob))[1]

@@ -18,7 +18,7 @@ def caveats(reference, interruption, is_work=False):
 
 WORK = (
     "Times are not measured: they are counts of forces, stiffness matrices, factorisations and"
-    " solves,\ntimes what each of these takes on one machine. What else a step does counts nothing."
+    " solves,\ntimes what each of these takes on one machine. Other work of a step is not counted."
 )
 
 

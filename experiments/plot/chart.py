@@ -83,7 +83,7 @@ class Chart:
         """Draws everything; the labels come last, when all they must not hide is known."""
         self.draw_floor()
         if self.floor_visible and any(run.is_uncertain for run in self.good):
-            words = "bars: error ± what the reference may be off by"
+            words = "bars: error ± error bound of the reference"
             style = {"size": 9.5, "color": FAINT, "ha": "right", "va": "center"}
             self.note(words, 1, (0, BELOW_TICKS), **style)
         self.draw_chaos()
@@ -151,7 +151,7 @@ class Chart:
         """The staircase of the shortest time that reaches each error or a smaller one."""
         corners = []
         counting = [run for run in self.good if run.counts]
-        # Known to be reached is what the error is at most.
+        # An error is known to be reached if it is at least the run's upper bound.
         bounds = [(max(run.bound, self.smallest), run.time) for run in counting]
         for error, time in sorted(bounds):
             if not corners or time < corners[-1][1]:
@@ -191,7 +191,8 @@ class Chart:
         self.draw_doubts(sweep, style)
 
     def draw_doubts(self, sweep, style):
-        """From what the error of a run is at least to what it is at most, where these are apart."""
+        """Draws the range of a run's error, from its lower to its upper bound, if these are
+        apart."""
         for run in sweep:
             if run.failure or not run.is_uncertain:
                 continue

@@ -9,8 +9,8 @@ from prominent import looks_by_prominence, strong_methods
 from style import FAINT, assign_looks, family_look
 
 LABEL_SIZE = 9.5
-# In a crowded chart of all methods those that are nowhere nearer to the front than this, where errors
-# are small enough to matter, stay in the background.
+# A method stays in the background of a crowded chart if it is nowhere nearer to the front than
+# this; only errors small enough to matter count.
 NEAR = 3.0
 MATTERS = 0.1
 CROWD = 24

@@ -30,7 +30,7 @@ class Cells:
 
     @property
     def width(self):
-        """Of all columns together."""
+        """The width of all columns together."""
         return self.column * len(self.accuracies)
 
     @property

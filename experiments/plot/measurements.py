@@ -79,19 +79,20 @@ class Reference:
     scene: str | None
     until: float | None
     certified: float | None
-    # The error below which runs differ by their roundings alone; None where that is no more than
-    # the reference's own.
+    # The error below which runs differ by roundings alone; None if it is no more than the
+    # reference's own.
     chaotic_below: float | None
-    # Where the end is beyond the horizon of a chaotic motion: from which time on two runs that start
-    # one rounding apart are apart, and how fast they part in 1/s.
+    # The horizon [s] of a chaotic motion and the rate [1/s] at which runs from nearly the same
+    # start part; None if the end is not beyond the horizon.
     horizon: float | None = None
     lyapunov: float | None = None
-    # What chance makes of the distance of two distributions of energy.
+    # The distance by chance of two distributions of energy.
     modal_floor: float | None = None
-    # Where the motion exists in exact symmetry alone: from which time on a push out of it has parted
-    # the nodes.
+    # The time [s] from which a push out of symmetry has moved the nodes apart, if the motion exists
+    # in exact symmetry alone.
     symmetric_until: float | None = None
-    # What position errors are divided by in m: the least and the largest of the scene's parts.
+    # The lengths [m] that position errors are divided by: the least and the largest of the scene's
+    # parts.
     displacements: tuple | None = None
 
 

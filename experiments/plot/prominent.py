@@ -1,4 +1,5 @@
-"""Which methods of a work-precision study stand out: those that a reader would choose between."""
+"""Chooses the methods of a work-precision study that stand out: a reader would choose among
+them."""
 
 from measurements import fastest_at_each_accuracy
 from style import assign_looks
@@ -17,8 +18,8 @@ def best(runs):
 
 
 def kinds(runs):
-    """The runs by what is worth telling apart, what matters most first: the families, the stock
-    ways, then in each family the methods that solve linear systems and those that do not."""
+    """The runs in groups that are worth telling apart, the most important first: the families, the
+    stock variants, then in each family methods with and without linear solves."""
     solving = {run.method for run in runs if run.solves > 0}
     own = [run for run in runs if not run.stock_of]
     groups = {}
@@ -49,8 +50,8 @@ def strong_methods(runs, front):
 
 
 def looks_by_prominence(known, strong):
-    """The looks of the methods {name: (family, stock_of)}; those that stand out take the first
-    colours, and with a stock way the method whose colour it has."""
+    """The looks of the methods {name: (family, stock_of)}. Methods that stand out get the first
+    colours; a stock variant has the colour of its method, which then counts too."""
     owners = {known[method][1] for method in known if method in strong}
     first = [method for method in known if method in strong or method in owners]
     return assign_looks({method: known[method] for method in dict.fromkeys([*first, *known])})

@@ -39,7 +39,7 @@ MOMENTUM = Quantity(
     "error_momentum_max",
     "its momentum error up to",
     "relative momentum error",
-    "momentum error on the way: of what the scene keeps of the linear and the angular one",
+    "momentum error on the way: largest change of the conserved linear and angular momentum",
 )
 MODES = Quantity(
     "error_modal_shares",
@@ -105,7 +105,7 @@ def view(directory, quantity, reference):
     if quantity is MOMENTUM:
         return View(quantity, runs, [])
     if quantity is MODES and reference.modal_floor:
-        words = f"chance makes {number(reference.modal_floor)}"
+        words = f"difference by chance {number(reference.modal_floor)}"
         return View(quantity, runs, [], reference.modal_floor, words)
     if quantity is ENERGY and reference.modal_floor and MODES.column in header:
         modes = measurements.read_runs(path, MODES.column)

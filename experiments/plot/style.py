@@ -8,8 +8,8 @@ import matplotlib
 from matplotlib import ticker
 from matplotlib.colors import to_hex, to_rgb
 
-# Warm against cool: the two families differ in hue as well as in line and marker, and inside
-# either list neighbours differ in lightness, so that colour-blind readers can tell them apart.
+# Warm and cool colours: the two families differ in hue as well as in line and marker. Neighbours in
+# either list differ in lightness, so that colour-blind readers can tell them apart.
 WARM = ("#D55E00", "#000000", "#E69F00", "#882255", "#CC79A7", "#7F6A1F")
 COOL = ("#0072B2", "#009E73", "#56B4E9", "#332288", "#44AA99", "#5D7A99")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
@@ -119,7 +119,7 @@ def assign_looks(methods):
 
 
 def short_names(methods):
-    """The names; those that begin with the same two words as the one before, without these."""
+    """The names; a name that begins with the same two words as the one before loses these."""
     short = []
     for before, method in zip([None, *methods], methods):
         words, others = method.split("_"), before.split("_") if before else []

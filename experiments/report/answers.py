@@ -82,7 +82,7 @@ def warning(run, margin, certified):
         side = "above" if margin < 0 else "below"
         warnings.append(f"{abs(100 * margin):.2g} % {side} {NEAR_ITS_LIMIT}")
     if certified is not None and certified > 0.1 * run.error:
-        warnings.append(f"error known to within {certified:.1e} alone, as the reference itself is")
+        warnings.append(f"error known only to within {certified:.1e}, as the reference itself is")
     return "; ".join(warnings) or None
 
 

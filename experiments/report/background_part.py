@@ -15,7 +15,7 @@ def in_words(value, unit=""):
 
 
 def labelled(*pairs):
-    """The pairs of label and words as lists, without those of which nothing is known."""
+    """The pairs of label and words as lists, without unknown ones."""
     return [[label, str(words)] for label, words in pairs if words not in (None, "")]
 
 
@@ -120,7 +120,7 @@ def sentence(words):
 
 
 def chaos_in_words(reference):
-    """Below which errors rounding decides; None where it decides nothing, or where the horizon says
+    """The error below which rounding decides; None if it decides nothing, or if the horizon says
     more."""
     limit = reference.chaotic_below
     if limit is None or reference.horizon or limit <= (reference.certified or 0.0):

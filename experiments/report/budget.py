@@ -5,8 +5,8 @@ import numpy as np
 # While what is shown is too large, frames are dropped down to the first number and then runs down
 # to the second, then both to the next pair.
 LEAST_FRAMES_AND_RUNS = ((60, 20), (30, 8), (16, 4), (8, 2), (2, 1))
-# A few frames far apart tell what a frame takes beside what a run takes anyway; of more frames,
-# nearer to each other, each takes less, by experience not below this part.
+# The bytes of a few frames, far apart, give those of a frame and of a whole run. Each of many
+# frames near to each other takes less, but by experience not below this part.
 SAMPLE_FRAMES = 4
 NEAR_FRAMES_TAKE = 0.5
 

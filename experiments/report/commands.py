@@ -6,7 +6,7 @@ from study_folder import look
 
 LISTS = ("--methods", "--no-reduce", "--accuracies")
 FLAGS = ("--stability-detection",)
-# What a run takes of the options of its study, beside those that its method listens to.
+# The options of the study that every run takes, beside those of its method.
 OF_EVERY_RUN = ("--no-reduce", "--threads")
 METHOD_OPTIONS = (
     "--max-order",

@@ -10,7 +10,7 @@ import numpy as np
 from measurements import BadInput, parse, read_rows
 
 PHASES = ("all", "force", "stiffness", "factorization", "solve")
-# Bytes of unpacked chunks: frames are read one by one, of which a chunk may hold many.
+# Bytes of unpacked chunks: frames are read one by one, and a chunk may hold many.
 CACHE = 1 << 26
 # The columns of the energies and their significant digits in a page: of the total its small changes are shown.
 ENERGIES = {"t": 7, "kinetic": 7, "potential": 7, "total": 17}

@@ -127,7 +127,7 @@ def quantity_entry(view):
 
 
 def quantities_part(study):
-    """The errors that a chart may stand over; the first is what answers are judged by."""
+    """The kinds of error that a chart may show; answers are judged by the first."""
     others = (quantities.ENERGY, quantities.MOMENTUM, quantities.MODES)
     views = [quantities.view(study.directory, other, study.reference) for other in others]
     entries = [quantity_entry(view) for view in (position_view(study), *filter(None, views))]

@@ -107,15 +107,15 @@ class Study:
         return MACHINE_EPSILON if self.judged_by == "energy" else self.reference.certified
 
     def judged_runs(self):
-        """The runs with the error that they are judged by; those that are another motion, by their
-        modal shares, do not count."""
+        """The runs with the error that they are judged by. A run that is another motion, by its
+        modal shares, does not count."""
         if self.judged_by == "position":
             return self.runs
         return energy_runs(self.directory, self.columns, self.reference)
 
 
 def energy_runs(directory, columns, reference):
-    """The runs with their energy errors, of which what is not known is one rounding."""
+    """The runs with their energy errors, each uncertain by one rounding."""
     path = os.path.join(directory, "points.csv")
     runs = measurements.read_runs(path, quantities.ENERGY.column)
     runs = [

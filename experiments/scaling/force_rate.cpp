@@ -11,8 +11,8 @@ namespace {
 // are read, its f is written, and its position goes to memory and back.
 constexpr double bytes_of_spring = 2 * 2 * sizeof(double);
 constexpr double bytes_of_unknown = 5 * sizeof(double);
-// At each end d = x_j - x_i: 3; l^2 = d.d: 5; l: 1; s = l - l0: 1; tau = k s: 1; tau/l: 1;
-// f_i += (tau/l) d: 6.
+// Operations at each end. d = x_j - x_i: 3; l^2 = d.d: 5; l: 1; s = l - l0: 1; tau = k s: 1; tau/l:
+// 1; f_i += (tau/l) d: 6.
 constexpr double flops_of_spring = 2 * 18;
 
 }  // namespace

@@ -21,13 +21,13 @@ struct PhaseCost {
   double bytes = std::numeric_limits<double>::quiet_NaN();  // that it holds; no number: none
 };
 
-// How the seconds and the bytes of a phase grow with the number of nodes, by theory and up to a
-// constant: n, but where the factors come in (see SizedScenes).
+// The growth of a phase's seconds and bytes with the number of nodes, by theory and up to a
+// constant. It is n, except for phases that depend on the factors (see SizedScenes).
 double growth_of_seconds(const SizedScenes& scenes, const std::string& phase, double nodes);
 double growth_of_bytes(const SizedScenes& scenes, const std::string& phase, double nodes);
 
-// What a phase's costs `all` let one expect at that many nodes, growing as theory has it from the
-// last of that scene and method; zero where there is none yet.
+// The expected cost of a phase at that many nodes: the last cost of that scene and method among
+// `all`, times the growth by theory. Zero if there is none yet.
 double expected_seconds(const std::vector<PhaseCost>& all, const SizedScenes& scenes,
                         const std::string& method, const std::string& phase, double nodes);
 double expected_bytes(const std::vector<PhaseCost>& all, const SizedScenes& scenes,
@@ -41,9 +41,9 @@ struct Exponent {
   double nodes_from, nodes_to;
 };
 
-// The exponents of all phases over the last one and a half decades of each one's nodes, in the
-// order in which they first appear; `fill` is that of the bytes of the factors. Phases with fewer
-// than three points there, or that take no time, have none.
+// The exponents of all phases, in the order of their first rows, each over the last one and a half
+// decades of its nodes. `fill` is the exponent of the bytes of the factors. Phases without time, or
+// with fewer than three points there, have none.
 std::vector<Exponent> exponents_of(const std::vector<PhaseCost>& all);
 
 }  // namespace qddot::scaling

@@ -1,13 +1,14 @@
-// How the cost of a step grows with the number of nodes, phase by phase, against theory and against
-// what the machine can do.
+// How does the cost of a step grow with the number of nodes? Each phase of a step is compared with
+// theory and with the limits of the machine.
 //
 //   scaling --out results/scaling
 //   scaling --scenes lattice --methods semi_implicit_euler --most-nodes 3e4 --out results/lattice
 //
-// Each scene is drawn at 1e2 to 1e6 nodes, three sizes a decade, and reduced but for its symmetries
-// (--no-reduce), so that n unknown nodes are n. Explicit methods step by half of what is certainly
-// stable, 1/w for a bound w of w_max, implicit ones by --step-size. A size is left out, and said to
-// be, where theory and the size before let expect more than --point-limit or --memory-limit.
+// Each scene is drawn at 1e2 to 1e6 nodes, three sizes a decade. It is reduced, but not by its
+// symmetries (--no-reduce), so that all n nodes remain. The step of explicit methods is half of the
+// certainly stable one, 1/w for a bound w of w_max; that of implicit ones is --step-size. A size is
+// left out, with a message, if theory and the size before predict more than --point-limit or
+// --memory-limit.
 //
 //  scaling.csv    seconds and bytes of each phase:
 //                 scene, reduce        once; what they leave allocated
@@ -67,28 +68,31 @@ struct Arguments {
 };
 
 void declare(CommandLine& line, Arguments& a) {
-  line.add_option("--scenes", a.scenes, "a,b,... of chain, cloth and lattice")
+  line.add_option("--scenes", a.scenes, "a,b,...: the scenes, of chain, cloth and lattice")
       .delimiter(',')
       .capture_default_str();
-  line.add_option("--methods", a.methods, "a,b,... of fixed step")
+  line.add_option("--methods", a.methods, "a,b,...: the methods, of fixed steps")
       .delimiter(',')
       .capture_default_str();
   line.add_option("--solvers", a.solvers,
-                  fmt::format("a,b,... of {}, for implicit methods", solver_list()))
+                  fmt::format("a,b,...: the solvers of implicit methods, of {}", solver_list()))
       .delimiter(',')
       .capture_default_str();
-  line.add_option("--least-nodes", a.least_nodes, "how many nodes the smallest scene has, about")
+  line.add_option("--least-nodes", a.least_nodes,
+                  "approximate number of nodes of the smallest scene")
       .capture_default_str();
-  line.add_option("--most-nodes", a.most_nodes, "and the largest").capture_default_str();
-  line.add_option("--sizes", a.sizes, "how many sizes a decade").capture_default_str();
-  line.add_option("--step-size", a.step_size, "h of implicit methods in s").capture_default_str();
+  line.add_option("--most-nodes", a.most_nodes, "approximate number of nodes of the largest scene")
+      .capture_default_str();
+  line.add_option("--sizes", a.sizes, "number of sizes per decade").capture_default_str();
+  line.add_option("--step-size", a.step_size, "the step size h of implicit methods in s")
+      .capture_default_str();
   line.add_option("--point-limit", a.point_limit,
                   "seconds that a step and its analysis may take; larger scenes are left out")
       .capture_default_str();
   line.add_option("--memory-limit", a.memory_limit,
-                  "GB that a scene and a method may take (default: 0.8 of what is free)");
+                  "GB that a scene and a method may take (default: 0.8 of the free memory)");
   line.add_option("--no-reduce", a.choice.no_reduce,
-                  "a,b,... to leave in the scenes what need not be there")
+                  "a,b,...: reductions of the scenes to leave out")
       .delimiter(',')
       .capture_default_str();
   line.add_option("--out", a.out, "the folder for the tables");
@@ -135,8 +139,7 @@ std::vector<Solver> select_solvers(const std::vector<std::string>& names) {
   return solvers;
 }
 
-// The methods, all of which step by an h and can be used on the scene, with each solver where they
-// have use for one.
+// The methods, each with all solvers if it uses one. All have fixed steps and can run the scene.
 std::vector<SolvedMethod> select(const SizedScenes& scenes, const Arguments& a) {
   const ReducedScene smallest(scenes.draw(least_nodes_allowed), reductions_of(a.choice));
   const auto solvers = select_solvers(a.solvers);

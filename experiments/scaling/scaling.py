@@ -46,11 +46,18 @@ SCENES = {
     "cloth": Look("#D55E00", "s", IMPLICIT),
     "lattice": Look("#0072B2", "o", IMPLICIT),
 }
-# By scene what theory has factorisations and the fill of the factors grow like; all else is n.
-FACTORIZATION = {"chain": (lambda n: n, "n"), "cloth": (lambda n: n**1.5, "n^{3/2}"),
-                 "lattice": (lambda n: n**2, "n^2")}
-FILL = {"chain": (lambda n: n, "n"), "cloth": (lambda n: n * np.log(n), r"n\,\log\,n"),
-        "lattice": (lambda n: n ** (4 / 3), "n^{4/3}")}
+# The growth of factorisations and of the fill of the factors by theory, by scene; all else grows as
+# n.
+FACTORIZATION = {
+    "chain": (lambda n: n, "n"),
+    "cloth": (lambda n: n**1.5, "n^{3/2}"),
+    "lattice": (lambda n: n**2, "n^2"),
+}
+FILL = {
+    "chain": (lambda n: n, "n"),
+    "cloth": (lambda n: n * np.log(n), r"n\,\log\,n"),
+    "lattice": (lambda n: n ** (4 / 3), "n^{4/3}"),
+}
 LINEAR = (lambda n: n, "n")
 
 
@@ -68,7 +75,7 @@ def read(path):
 
 
 def series(rows, number="seconds"):
-    """By scene, method and phase the nodes and numbers of its rows."""
+    """The nodes and numbers of the rows by scene, method and phase."""
     lines = {}
     for row in rows:
         if isinstance(row[number], float):
@@ -152,8 +159,10 @@ def draw_scenes(sheet, rows, origin):
     lines = series(rows)
     scenes = [scene for scene in SCENES if any(key[0] == scene for key in lines)]
     implicit = next((key[1] for key in lines if key[2] == "factorization"), None)
-    explicit = next((key[1] for key in lines if key[2] == "step" and ":" not in key[1]
-                     and key[1] != implicit), None)
+    explicit = next(
+        (key[1] for key in lines if key[2] == "step" and ":" not in key[1] and key[1] != implicit),
+        None,
+    )
     panels = []
     for i, scene in enumerate(scenes):
         left = LEFT + i * (PANEL_WIDTH + ACROSS)
@@ -166,8 +175,10 @@ def draw_scenes(sheet, rows, origin):
         if cut:
             words = f"{implicit} left out from {cut[0]:,.0f} nodes on"
             axes.text(0.99, 0.02, words, size=8, color=FAINT, ha="right", transform=axes.transAxes)
-    reach = [[f(a.get_xlim()[i] for a, _ in panels) for i, f in enumerate((min, max))],
-             [f(a.get_ylim()[i] for a, _ in panels) for i, f in enumerate((min, max))]]
+    reach = [
+        [f(a.get_xlim()[i] for a, _ in panels) for i, f in enumerate((min, max))],
+        [f(a.get_ylim()[i] for a, _ in panels) for i, f in enumerate((min, max))],
+    ]
     for i, (axes, drawn) in enumerate(panels):
         axes.set_xlim(*reach[0])
         axes.set_ylim(*reach[1])
@@ -199,8 +210,10 @@ def draw_roofline(sheet, rows):
         points = np.array([bytes_held, column["springs_per_second"]])
         draw_series(axes, points, look)
         drawn.append((points, scene, look))
-        limit = np.minimum(column["triad_bytes_per_second"] / column["bytes_per_spring"],
-                           column["peak_flops_per_second"] / column["flops_per_spring"])
+        limit = np.minimum(
+            column["triad_bytes_per_second"] / column["bytes_per_spring"],
+            column["peak_flops_per_second"] / column["flops_per_spring"],
+        )
         axes.plot(bytes_held, limit, color=look.color, linestyle=(0, (1, 1.2)), linewidth=1.5)
         drawn.append((np.array([bytes_held, limit]), "", look))
     axes.set_xlabel("memory that one evaluation of f reads and writes", fontsize=10)
@@ -208,8 +221,7 @@ def draw_roofline(sheet, rows):
     low, high = axes.get_ylim()
     axes.set_ylim(low / 1.3, high * 1.2)
     words = (
-        "dotted: what the triad's bandwidth and the\n"
-        "peak of multiplications and additions allow"
+        "dotted: what the triad's bandwidth and the\n" "peak of multiplications and additions allow"
     )
     sheet.text(LEFT + 2.0, BELOW - 0.07, words, size=8, color=FAINT, va="bottom")
     label_series(axes, drawn)
@@ -242,11 +254,18 @@ def draw_memory(sheet, rows):
 
 def draw_exponents(sheet, rows):
     """The exponents with their intervals, and theory's as ticks, a row a phase."""
-    names = {"symbolic": "analysis", "force": "f", "stiffness": "K", "factorization":
-             "factorisation", "solve": "solve", "fill": "factors' memory"}
+    names = {
+        "symbolic": "analysis",
+        "force": "f",
+        "stiffness": "K",
+        "factorization": "factorisation",
+        "solve": "solve",
+        "fill": "factors' memory",
+    }
     axes = sheet.axes(EXPONENTS_LEFT + 1.15, BELOW, WIDTH - EXPONENTS_LEFT - 1.35, LOWER_HEIGHT)
-    sheet.text(EXPONENTS_LEFT, BELOW - 0.15, "Exponents, and theory's", size=11, weight="bold",
-               color=INK)
+    sheet.text(
+        EXPONENTS_LEFT, BELOW - 0.15, "Exponents, and theory's", size=11, weight="bold", color=INK
+    )
     implicit = next((r["method"] for r in rows if r["phase"] == "factorization"), None)
     own = [row for row in rows if row["method"] == implicit and row["phase"] in names]
     for row in own:
@@ -255,8 +274,9 @@ def draw_exponents(sheet, rows):
         axes.plot([row["theory"]] * 2, [place - 0.12, place + 0.12], color=INK, linewidth=1.6)
         if isinstance(row["low"], float):
             axes.plot([row["low"], row["high"]], [place] * 2, color=look.color, linewidth=1.4)
-        axes.plot(row["exponent"], place, linestyle="none", color=look.color,
-                  **look.marker_style(4.5))
+        axes.plot(
+            row["exponent"], place, linestyle="none", color=look.color, **look.marker_style(4.5)
+        )
     axes.set_yticks(range(len(names)), names.values(), size=FONT_SIZE)
     axes.set_ylim(len(names) - 0.5, -0.5)
     axes.set_xlim(*EXPONENTS_SHOWN)

@@ -217,7 +217,7 @@ bool ScalingRun::fits(const SizedScenes& scenes, const std::string& method,
   }
   if (!method.empty()) bytes = expected_bytes(costs_, scenes, method, "step", nodes);
   bytes *= memory;
-  if (method.empty() && bytes == 0) {  // the first size, of which nothing is measured
+  if (method.empty() && bytes == 0) {  // the first size: nothing is measured yet
     const auto count = [](double x) { return static_cast<std::size_t>(x); };
     bytes = memory_of({count(nodes), count(scenes.springs_a_node * nodes)});
   }

@@ -66,8 +66,8 @@ class ScalingRun {
   bool has_failed() const { return has_failed_; }
 
  private:
-  // The scene at one size, all methods that fit; erases those that do not. False where the scene
-  // itself does not.
+  // Measures the scene at one size with all methods that fit, and erases those that do not. False
+  // if the scene itself does not fit.
   bool measure_size(const SizedScenes& scenes, double size, std::vector<SolvedMethod>& methods);
   void measure_methods(const SizedScenes& scenes, const ReducedScene& scene,
                        std::vector<SolvedMethod>& methods);

@@ -18,9 +18,9 @@ struct StepCost {
   }
 };
 
-// Runs steps of that size [s] from the scene's start: one to warm up, then again and again as many
-// as the clock needs, of which the fastest run counts; a first step of some seconds is taken as it
-// is. Forces before the first step belong to no step and are taken off.
+// Measures the cost of a step of `step_size` [s] from the scene's start. After one step to warm up,
+// it repeats runs long enough for the clock; the fastest counts. A first step of some seconds is
+// not repeated. Forces before the first step are subtracted.
 StepCost step_cost(Integrator& integrator, double step_size, const ReducedScene& scene);
 
 }  // namespace qddot::scaling

@@ -21,16 +21,16 @@ namespace qddot::simulate {
 
 void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
-  line.add_option("--method", a.method, "a method's name (--list-methods)");
+  line.add_option("--method", a.method, "the method's name (see --list-methods)");
   line.add_option("--accuracy", a.accuracy,
-                  "a relative error that the motion may have, in place of a method: the fastest "
-                  "one for it is found and run, and its error is bounded by another run");
+                  "a relative error, in place of --method: the fastest method for it is found and "
+                  "run, and another run bounds its error");
   add_accuracy_of_option(line, a.accuracy_of);
-  line.add_option("--step-size", a.step_size, "h in s, for methods of fixed step");
+  line.add_option("--step-size", a.step_size, "the step size h in s, for methods of fixed steps");
   line.add_option("--rtol", a.rtol, "relative tolerance, for adaptive methods");
   line.add_option("--atol", a.atol,
-                  "absolute tolerance in m and m/s (default: --rtol times the scene's extent, and "
-                  "times the speed that it starts towards)");
+                  "absolute tolerance in m and m/s, for adaptive methods (default: --rtol times "
+                  "the scene's extent, and times its typical speed)");
   add_method_options(line, a.options);
   line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
   line.add_option("--final", a.final_path, "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
@@ -40,23 +40,21 @@ void declare(CommandLine& line, Arguments& a) {
                   "all nodes over time in 32-bit floats, with springs and faces: .vtkhdf for "
                   "ParaView, h5py and MATLAB (with an .xdmf), .pc2 for Blender (with an .obj)");
   line.add_option("--motion-fields", a.motion_fields,
-                  "a,b,... that a .vtkhdf has beside positions, of velocity, kinetic_energy, "
+                  "a,b,...: fields of a .vtkhdf beside positions, of velocity, kinetic_energy, "
                   "strain, or none (default: all)")
       .delimiter(',');
-  line.add_option(
-      "--write-scene", a.written_scene_path,
-      "TOML of the scene as nodes and springs, to the last bit; without --method nothing "
-      "else is done");
+  line.add_option("--write-scene", a.written_scene_path,
+                  "TOML file of the scene as nodes and springs, exact to the last bit; without "
+                  "--method the program does only this");
   line.add_option("--every", a.every,
-                  "the time between samples in s, which change no steps of fixed size. Stands "
-                  "behind the output it "
-                  "is for, or once for all")
+                  "the time between samples in s; samples do not change steps of fixed size. Give "
+                  "it after the output that it is for, or once for all outputs")
       .take_each();
   line.add_flag("--explain", a.explain,
-                "say what need not be integrated of the scene and why, and run nothing");
-  line.add_flag("--list-methods", a.list_methods, "print the methods there are");
+                "print the reductions of the scene with their reasons, and run nothing");
+  line.add_flag("--list-methods", a.list_methods, "print all methods");
   line.add_flag("--list-scenes", a.list_scenes, "print the scene generators and their parameters");
-  line.add_flag("--csv", a.csv, "lists as CSV");
+  line.add_flag("--csv", a.csv, "print lists as CSV");
 }
 
 void assign_every(const CommandLine& line, Arguments& a) {
@@ -70,7 +68,7 @@ void assign_every(const CommandLine& line, Arguments& a) {
       require_positive(a.every[next], "--every", "the time between samples in s");
       if (a.every.size() > 1 && (!owner || *owner != 0)) {
         throw InvalidInput(
-            fmt::format("--every {}: of several, each stands behind the --trajectory, "
+            fmt::format("--every {}: if there are several, each comes after the --trajectory, "
                         "--energy or --motion that it is for, one for each",
                         a.every[next]));
       }
@@ -81,10 +79,9 @@ void assign_every(const CommandLine& line, Arguments& a) {
   if (a.every.size() == 1) a.trajectory_every = a.energy_every = a.motion_every = a.every[0];
   const auto require = [](const std::string& path, double every, const char* option) {
     if (!path.empty() && every == 0) {
-      throw InvalidInput(
-          fmt::format("--every is missing behind {}; it is the time between samples "
-                      "in s, greater than 0",
-                      option));
+      throw InvalidInput(fmt::format(
+          "--every is missing after {}; it is the time between samples in s, greater than 0",
+          option));
     }
   };
   require(a.trajectory_path, a.trajectory_every, "--trajectory");

@@ -11,9 +11,9 @@
 
 namespace qddot::simulate {
 
-// Shows the states of a run to `look` on a thread of its own, in order, while the run goes on: what
-// is made of them, such as the text of a table, then costs the run a copy of each. Where looking
-// takes longer than running, the run waits.
+// Calls `look` with the states of a run, in order, on a thread of its own while the run goes on. So
+// the work on them, such as the text of a table, costs the run only a copy of each state. If `look`
+// is slower than the run, the run waits.
 class BackgroundObserver {
  public:
   explicit BackgroundObserver(std::function<void(const State&)> look);

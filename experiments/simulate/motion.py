@@ -1,9 +1,9 @@
-"""Draws one motion as several methods make it at one step size: its path or shape, and its energy.
+"""Draws one motion by several methods at one step size: its path or shape, and its energy.
 
 Call: motion.py VIEW SCENE H T OUT.png, with the step size H and the end T in seconds.
 
-VIEW is phase (x against v / omega of one mass in 1D), path (one mass in the plane of its motion)
-or cloth (the shape of a square cloth). The motion called exact is made by kahan_li8 at H / 20.
+VIEW is phase (x against v / omega of one mass in 1D), path (one mass in the plane of its motion) or
+cloth (the shape of a square cloth). The motion called exact is by kahan_li8 at H / 20.
 build/bin/simulate must be there.
 """
 

@@ -14,8 +14,8 @@
 
 namespace qddot::simulate {
 
-// The tables that a run writes: all nodes at its end, all nodes over time, as a table or as a
-// motion that others open, the energy over time.
+// The outputs of a run: all nodes at its end, all nodes over time (as a table or a motion file for
+// other programs), and the energy over time.
 class Outputs {
  public:
   // Throws InvalidInput where a file cannot be written. The scene must outlive it.

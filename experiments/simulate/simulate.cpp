@@ -1,5 +1,5 @@
-// One run of one method on one scene: where it ends, how it gets there, what its energy does. Where
-// an accuracy is asked for in place of a method, the run that comes to it in the least time.
+// One run of one method on one scene: its end, its motion and its energy. If an accuracy is given
+// in place of a method, the fastest run that reaches it.
 //
 //   simulate --scene cloth --method verlet --step-size 5e-4 --until 0.1 --final end.csv
 //   simulate --scene cloth --method arkode_dirk4 --rtol 1e-5 --trajectory path.csv --every 0.01

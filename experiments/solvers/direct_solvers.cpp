@@ -67,8 +67,8 @@ class EigenSolver final : public DirectSolver {
   Eigen::SimplicialLDLT<SymmetricMatrix> factors_;
 };
 
-// With (I - h J) (a, b) = (r, c), J the Jacobian of (q, v)' = (v, M^-1 f(q)) and h^2 = s:
-// (M - s K) b = M c + h K r.
+// Let J be the Jacobian of (q, v)' = (v, M^-1 f(q)) and h^2 = s. Then (I - h J) (a, b) = (r, c)
+// gives (M - s K) b = M c + h K r.
 class KluSolver final : public DirectSolver {
  public:
   explicit KluSolver(const System& system)

@@ -18,9 +18,8 @@ class DirectSolver {
   // x = (M - s K)^-1 b with the last factors; b, x: n.
   virtual void solve(const Vec& b, Vec& x) = 0;
 
-  // What one factorisation takes, additions and multiplications counted one by one, and the bytes
-  // of the factors that a solve reads (twice, where they are L and its transpose); 0 where the
-  // solver does not tell.
+  // `flops`: additions and multiplications of one factorisation. `bytes`: those of the factors that
+  // a solve reads (twice, if they are L and its transpose). 0 if the solver does not report them.
   double flops = 0, bytes = 0;
 };
 
@@ -30,9 +29,9 @@ struct DirectSolverKind {
   std::function<std::unique_ptr<DirectSolver>(const System&)> make;
 };
 
-// multifrontal and cholmod (see effective_mass.hpp); eigen: its simplicial LDL' in the order of
-// AMD; klu: the 2n x 2n matrix of the first-order form, factorised with the pivots of the first
-// time, as SUNDIALS' users have it.
+// The solvers. multifrontal and cholmod: see effective_mass.hpp. eigen: its simplicial LDL' with
+// the ordering AMD. klu: factors of the 2n x 2n matrix of the first-order form with the pivots of
+// the first time, as SUNDIALS' users have it.
 const std::vector<DirectSolverKind>& direct_solvers();
 
 }  // namespace qddot::solvers

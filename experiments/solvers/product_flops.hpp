@@ -2,8 +2,8 @@
 
 namespace qddot::solvers {
 
-// How fast one core multiplies dense matrices that its second cache holds [operations/s], by the
-// BLAS at hand, which takes the widest vectors of the processor: the fastest of the passes of
+// The rate [operations/s] at which one core multiplies dense matrices in its second cache, by the
+// installed BLAS, which uses the widest vectors of the processor. The fastest of all passes in
 // `seconds`.
 double product_flops(double seconds);
 

@@ -52,9 +52,10 @@ struct Arguments {
 
 void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
-  line.add_option("--solvers", a.solvers, "a,b,... of multifrontal, cholmod, eigen, klu (all)")
+  line.add_option("--solvers", a.solvers,
+                  "a,b,...: the solvers, of multifrontal, cholmod, eigen, klu (default: all)")
       .delimiter(',');
-  line.add_option("--step-size", a.step_size, "h of M - h^2 K in s")
+  line.add_option("--step-size", a.step_size, "the step size h of M - h^2 K in s")
       .take_last()
       .capture_default_str();
   line.add_option("--repeats", a.repeats, "timed samples of each solver")
@@ -120,7 +121,7 @@ class Contender {
     csv.row(scene, b_.size(), name_, analysis_, factorization, solve, gflops, rate,
             known(solver_->bytes), solved_ ? residual_ : nothing);
     if (!solved_) {
-      fmt::print("{:<13} the matrix is singular to it\n", name_);
+      fmt::print("{:<13} it finds the matrix singular\n", name_);
       return;
     }
     const auto number = [](double x) { return std::isnan(x) ? "" : fmt::format("{:.1f}", x); };
@@ -170,10 +171,10 @@ int solvers(const CommandLine& line, const Arguments& a,
   const ReducedScene scene(start, reductions_of(a.scene));
   const System& system = scene.system();
   if (system.size() == 0) {
-    throw InvalidInput(fmt::format(
-        "{}: nothing of it is unknown, so that there is no matrix; allowed are scenes with free "
-        "nodes on springs",
-        a.scene.name));
+    throw InvalidInput(
+        fmt::format("{}: it has no unknowns, so that there is no matrix; allowed are scenes with "
+                    "free nodes on springs",
+                    a.scene.name));
   }
   require_folder(a.out);
   Study study(

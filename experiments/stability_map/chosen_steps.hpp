@@ -4,10 +4,10 @@
 
 namespace qddot::stability_map {
 
-// What steps a method of adaptive steps takes where the motion that it sees is slow and a fast
-// vibration is all but at rest beside it: q1'' = -q1 from (1, 0) and q2'' = -w^2 q2 from (0, 1e-6),
-// over ten periods of the slow one. An explicit method has to hold h w below its limit all the
-// same: by a bound of w, or else by steps that it rejects once q2 has grown to where it is seen.
+// The steps of an adaptive method on a slow motion beside a fast vibration almost at rest: q1'' =
+// -q1 from (1, 0) and q2'' = -w^2 q2 from (0, 1e-6), over ten periods of q1. An explicit method
+// still has to keep h w below its limit. It does so by a bound of w, or by rejecting steps once q2
+// has grown to a visible size.
 struct ChosenSteps {
   Outcome outcome{};
   Counts counts{};

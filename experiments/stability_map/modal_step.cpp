@@ -16,9 +16,9 @@ namespace qddot::stability_map {
 using namespace measure;
 namespace {
 
-// The largest displacement as a part of the scene's extent, in the fastest mode: small enough for
-// forces to be linear (what is even in it cancels between the two sides), large enough for
-// rounding. Slow modes go across springs, whose stretching is the stiffer against them.
+// The largest displacement in the fastest mode, as a part of the scene's extent. It is small enough
+// for linear forces (even terms cancel between the two sides) and large enough for rounding. Slow
+// modes are smaller: they move across springs, whose stretching is stiffer.
 constexpr double displacement = 3e-6;
 double displacement_in(const Mode& mode) { return displacement * std::sqrt(mode.part); }
 // What both leave of the responses.
@@ -28,9 +28,9 @@ constexpr double solved = 1e-12;
 constexpr double growth_noise = 1e-6;
 const double living = std::log(2) / (4 * M_PI * 10), killing = std::log(10) / (2 * M_PI);
 
-// Steps between one response and the next. In slow modes so many that what a method remembers of
-// its start is gone after them and that damping adds up, but no more than an eighth of a period:
-// three of them are less than a half.
+// Steps between one response and the next. Slow modes have so many that the method forgets its
+// start and damping adds up. They are at most an eighth of a period: three of them are less than a
+// half.
 constexpr double least_stride = 8, most_stride = 16;
 int stride_in(double h_omega, bool others_grow) {
   if (others_grow) return 1;  // for they drown this one
@@ -61,9 +61,9 @@ Summary run(const Method& method, const ReducedScene& rest, State state, const O
   return make_integrator(method, rest.system(), options)->advance(state, each.times.back(), each);
 }
 
-// By what the responses to a displacement grow and turn in a step on average. w_n = q - i v/w turns
-// by the root's angle; the sums of two windows, turned back by about that, differ by the root's
-// power. Windows that begin and end smoothly leave little of what turns by other angles.
+// The mean factor (growth and rotation) of the responses to a displacement in a step. w_n = q - i
+// v/w rotates by the root's angle. The sums of two windows, rotated back by about that angle,
+// differ by the root's power. Windows with smooth ends suppress parts that rotate by other angles.
 std::complex<double> mean_root(const Responses& y) {
   const std::size_t width = (y.size() - 1) / 2;
   const auto w = [&](std::size_t n) { return std::complex<double>(y[n](0, 0), -y[n](1, 0)); };
@@ -95,9 +95,9 @@ LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode
       linear_step(method, h_omega / mode.part).spectral_radius() > 1 + growth_noise;
   const Looks looks = looks_at(method, stride_in(h_omega, others_grow));
   if (others_grow && looks.before > 0) {
-    throw std::runtime_error(
-        fmt::format("{} in mode {}: vibrations grow at this step size, and drown it in {} steps",
-                    method.name, mode.rank, looks.before));
+    throw std::runtime_error(fmt::format(
+        "{} in mode {}: vibrations grow at this step size, and hide the mode within {} steps",
+        method.name, mode.rank, looks.before));
   }
   const Vec& q = rest.initial().q;
   const Vec weights = rest.system().mass().cwiseProduct(mode.shape);

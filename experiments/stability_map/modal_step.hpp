@@ -9,16 +9,17 @@ namespace qddot::stability_map {
 
 using namespace measure;
 
-// The step that the method makes of one natural mode of a scene at rest, found by exciting it: runs
-// of a few steps from small displacements and velocities along it, to both sides, projected on it.
-// What differs from linear_step at the same h w is what the method makes of this scene's own forces
-// (unfinished iterations, or matrices that mix modes). `rest` is at rest in scene.initial().q.
-// Nonlinear solves are carried to the end. Throws as linear_step does.
+// The method's step on one natural mode of a scene at rest, found by exciting the mode. It runs a
+// few steps from small displacements and velocities along the mode, in both directions, and
+// projects the results on it. Differences to linear_step at the same h w come from this scene's
+// forces (unfinished iterations, or matrices that mix modes). `rest` is at rest in
+// rest.initial().q. Nonlinear solves are carried to the end. Throws as linear_step does.
 LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode& mode,
                       Options options);
 
-// In a word: blows up (grows by more than 1e-6 a step), lives (keeps half of its energy for ten
-// periods and more), is killed (loses nine tenths of its amplitude within one period), is damped.
+// The verdict in a word: blows up (grows by more than 1e-6 a step), lives (keeps half of its energy
+// for ten periods or more), is killed (loses nine tenths of its amplitude within one period), else
+// is damped.
 std::string modal_verdict(const LinearStep& step);
 
 }  // namespace qddot::stability_map

@@ -14,11 +14,11 @@ using namespace command;
 // The columns of modal.csv.
 const std::vector<std::string>& modal_columns();
 
-// A row for each method that has a step of its own and each of a dozen natural modes of the scene
-// at rest: damping ratio, period error and spectral radius at the step h = `step_size` [s], or
-// 1/w_max where that is 0, predicted on an oscillator and measured by exciting the mode, and the
-// verdict; in its place, why a method does not make the steps. On all cores (OpenMP); the rows of a
-// method are a piece of the study.
+// Writes a row for each method that has a step of its own and each of a dozen natural modes of the
+// scene at rest. A row has the damping ratio, period error and spectral radius, predicted on an
+// oscillator and measured by exciting the mode, and the verdict. If a method fails to make the
+// steps, the reason replaces the verdict. h = `step_size` [s], or 1/w_max if that is 0. Runs on all
+// cores (OpenMP); the rows of a method are a piece of the study.
 void tabulate_modes(Study& study, Csv& csv, const std::vector<const Method*>& methods,
                     const ReducedScene& rest, double step_size);
 

@@ -25,14 +25,13 @@ struct MapSettings {
   double until, tolerated, seconds;
 };
 
-// The largest rate [1/s] at which linear theory lets one of the modes grow, or, where all decay,
-// the smallest decay as a negative one; no number for a method that chooses its steps, or that has
-// no step on an oscillator, or whose step is too long for numbers.
+// The largest growth rate [1/s] of a mode by linear theory; negative if all modes decay. NaN for a
+// method that chooses its steps, that has no step on an oscillator, or whose step overflows.
 double predicted_growth_rate(const Cell& cell);
 
-// Runs all cells on all cores (OpenMP), the long ones first; each is a piece of the study. Nothing
-// stands for those that were not run before the program is to end. `progress` is called with how
-// many are done, from one thread at a time.
+// Runs all cells on all cores (OpenMP), the long ones first; each is a piece of the study. Cells
+// that were not run before an interruption are empty. `progress` is called with the number of cells
+// that are done, from one thread at a time.
 std::vector<std::optional<RunOutcome>> run_outcomes(
     Study& study, const std::vector<Cell>& cells, const MapSettings& settings,
     const std::function<void(std::size_t done)>& progress);

@@ -231,7 +231,7 @@ class OutcomeSheet:
         """Title, subtitle and the key."""
         scene = self.origin.get("scene", {}).get("name", "the scene")
         until, tolerated = self.origin.get("until"), self.origin.get("tolerated")
-        title = f"{shown(scene)}: what becomes of a run, by method, step size and amplitude"
+        title = f"{shown(scene)}: outcome of a run, by method, step size and amplitude"
         self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
         length = f"each cell one run of {number(until)} s or 100 steps" if until else ""
         across = f"to the right h ω_max{self.fastest()}"
@@ -252,7 +252,7 @@ class OutcomeSheet:
         return f" (ω_max {number(omega)} rad/s)" if omega else ""
 
     def draw_key(self):
-        """What colours and lines mean: those that there are."""
+        """The key of all colours and lines that appear."""
         there = {run.outcome for run in self.runs}
         ordered = [o for o in OUTCOMES if o in there] + sorted(there - set(OUTCOMES))
         keys = []

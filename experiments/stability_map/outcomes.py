@@ -13,7 +13,7 @@ OUTCOMES = {
     "diverged": ("diverged: the deeper, the faster", "#B3261E"),
     "newton_failed": ("Newton failed", "#8B5A9F"),
     "indefinite_matrix": ("matrix indefinite", "#2B2B2B"),
-    "unconverged": ("iterations end elsewhere", "#8A7B1E"),
+    "unconverged": ("too few iterations", "#8A7B1E"),
     "step_too_small": ("step collapsed", "#CC79A7"),
     "over_budget": ("not finished in time", "#FFFFFF"),
 }
@@ -115,7 +115,7 @@ def sections_of(panels):
             lambda p: p.is_swept and p.limit < math.inf,
         ),
         (
-            "Linear theory: stable at every step size; whatever fails here, it does not see",
+            "Linear theory: stable at every step size; failures here are not linear",
             lambda p: p.is_swept and p.limit == math.inf,
         ),
         ("No linear limit known", lambda p: p.is_swept and math.isnan(p.limit)),

@@ -27,12 +27,12 @@ namespace {
 constexpr int watched_steps = 200, samples_more = 400;
 // A growth of fewer samples is fitted from its beginning.
 constexpr std::ptrdiff_t few = 8;
-// At 1 the push of compressed springs makes M - h^2 K singular.
+// The push of compressed springs makes M - h^2 K singular at 1.
 constexpr double nearly_singular = 0.9;
-// X over X(0): of a run that may be diverging, that is growing, and that has no bound any more.
+// X over X(0) from which a run may be diverging, is growing, and is unbounded.
 constexpr double suspicious = 10, growing = 3, unbounded = 1e6;
-// How many times as many iterations show whether a run's own were enough, and which part of the
-// motion's size they may change.
+// A run's iterations are checked with this many times as many, which may change the motion by at
+// most this part of its size.
 constexpr int more_iterations = 5;
 constexpr double other_motion = 0.1;
 

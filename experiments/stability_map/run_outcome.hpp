@@ -17,16 +17,17 @@ struct RunPlan {
 };
 constexpr int least_steps = 100;
 
-// What became of a run. `outcome` is
-//   bounded      X keeps its size (that of Verlet's may oscillate by much, near its limit)
-//   diverged     X grew beyond ten times what it was and went on growing, or beyond all bounds
-//   indefinite_matrix   of linearly implicit methods: X jumped beyond ten times what it was from
-//                where compressed springs made M - h^2 K singular or nearly so (h times the rate at
-//                which they push to the side above 0.9)
-//   gained       X ended up above 1 + tolerated of what it was, on the mean of the last quarter
-//   leaked       X ended up below 1 - tolerated
-//   unconverged  of methods that take as many iterations as they are told: with five times as
-//                many the motion is another one, by a tenth of its size
+// The outcome of a run, where X is its energy above rest. `outcome` is
+//   bounded      X keeps its size (with Verlet's method it may oscillate much near its limit)
+//   diverged     X grew beyond ten times its start value and went on growing, or beyond all bounds
+//   indefinite_matrix   of linearly implicit methods: X jumped beyond ten times its start value at
+//   a
+//                state where compressed springs made M - h^2 K singular or nearly so (h times the
+//                rate at which they push sideways above 0.9)
+//   gained       X ended above 1 + tolerated of its start value, on the mean of the last quarter
+//   leaked       X ended below 1 - tolerated
+//   unconverged  of methods with a given number of iterations: five times as many change the motion
+//                by a tenth of its size
 // or the name of the outcome with which the integrator itself failed.
 struct RunOutcome {
   std::string outcome;
@@ -38,9 +39,10 @@ struct RunOutcome {
   Counts counts{};
 };
 
-// Runs the method from scene.initial() and judges. X is looked at after each of the first 200 steps
-// and 400 times more. Growth is fitted to the later half of where X exceeds three times what it was
-// (all of it where that is short), or, where it does not stay there, of the run.
+// Runs the method from scene.initial() and judges the run. X is measured after each of the first
+// 200 steps and 400 times more. If X stays above three times its start value, growth is fitted to
+// the second half of that time (or all of it if it is short). Else it is fitted to the second half
+// of the run.
 RunOutcome run_outcome(const Method& method, const Options& options, const ReducedScene& scene,
                        const RunPlan& plan);
 

@@ -5,16 +5,16 @@
 //   stability_map --scene strut --vary compression --amplitudes 0.5,0.7,0.9 --out results/strut
 //
 //  1. limits.csv and linear.csv: every method of fixed steps on q'' = -w^2 q, where each step is a
-//     matrix (linear_step.hpp): its spectral radius, damping ratio and period error for h w from
-//     0.01 to 100, and the h w at which it starts to grow, predicted and found by bisection
-//     (linear_limit.hpp); h is that over w_max of the scene as it starts.
+//     matrix (linear_step.hpp). They have its spectral radius, damping ratio and period error for
+//     h w from 0.01 to 100. They also have the h w at which it starts to grow, predicted and found
+//     by bisection (linear_limit.hpp), and h as that h w over w_max of the scene at its start.
 //     adaptive.csv: the steps of methods that choose them (chosen_steps.hpp).
 //  2. modal.csv: the same in natural modes of the scene about its equilibrium at one h
-//     (modal_step.hpp): predicted by 1, and measured by exciting the mode.
-//  3. map.csv: what becomes of whole runs over h w_max and amplitude (run_outcome.hpp). Amplitude a
-//  starts at
-//     q_rest + a (q - q_rest), a v: 1 is the scene itself, small ones are linear. With --vary it is
-//     a parameter of the generator. For its time a method has --cell-limit.
+//     (modal_step.hpp), predicted as in 1 and measured by exciting the mode.
+//  3. map.csv: outcomes of whole runs over h w_max and amplitude (run_outcome.hpp). A run of
+//     amplitude a starts at q_rest + a (q - q_rest), a v: a = 1 is the scene itself, small
+//     amplitudes are linear. With --vary, the amplitude is a parameter of the generator. Each
+//     method has --cell-limit for a run.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -68,24 +68,27 @@ struct Arguments {
 
 void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
-  line.add_option("--methods", a.methods,
-                  "a,b,... (default: all; in the map all hand-written ones of fixed steps)")
+  line.add_option(
+          "--methods", a.methods,
+          "a,b,...: the methods (default: all; in the map all hand-written ones of fixed steps)")
       .delimiter(',');
   line.add_option("--vary", a.vary,
-                  "a parameter of the scene's generator that the amplitudes are values of "
-                  "(default: the distance from rest, in that of the scene)");
-  line.add_option("--amplitudes", a.amplitudes, "a,b,... the rows of the map")
+                  "a parameter of the scene's generator, whose values are the amplitudes (default: "
+                  "amplitudes are distances from rest, relative to the scene's)");
+  line.add_option("--amplitudes", a.amplitudes,
+                  "a,b,...: the amplitudes, one for each row of the map")
       .delimiter(',')
       .capture_default_str();
   line.add_option("--low", a.low, "the least h w_max of the map").capture_default_str();
-  line.add_option("--high", a.high, "the largest").capture_default_str();
-  line.add_option("--columns", a.columns, "how many from one to the other").capture_default_str();
+  line.add_option("--high", a.high, "the largest h w_max of the map").capture_default_str();
+  line.add_option("--columns", a.columns, "number of columns of the map, from --low to --high")
+      .capture_default_str();
   line.add_option("--until", a.until,
-                  "the time of a run in s, 100 steps at least (default: the scene's own)");
+                  "the time to run to in s, at least 100 steps (default: the scene's own)");
   line.add_option("--step-size", a.step_size,
-                  "h in s, of the modes (default: 1/w_max, w_max at rest)");
+                  "the step size h in s for the modes (default: 1/w_max, w_max at rest)");
   line.add_option("--tolerated", a.tolerated,
-                  "the part of the energy that a run may lose or gain and count as bounded")
+                  "the part of the energy that a bounded run may lose or gain")
       .capture_default_str();
   line.add_option("--cell-limit", a.cell_limit,
                   "seconds that a run of the map may take; slower ones become over_budget")
@@ -285,7 +288,7 @@ void print(const std::vector<Limit>& limits) {
   }
 }
 
-// How many runs of each method came to which end.
+// Prints the number of runs of each method by outcome.
 void print(const std::vector<Cell>& cells, const Fates& all) {
   std::vector<const Method*> order;
   std::map<const Method*, std::map<std::string, int>> counts;

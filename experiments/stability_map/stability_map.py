@@ -1,8 +1,8 @@
 """Draws where methods are stable, by theory and measured, as the program stability_map found it.
 
 Call: stability_map.py DIR, the folder with limits.csv, linear.csv, modal.csv, adaptive.csv and
-map.csv; writes DIR/stability_map.png and .svg, what becomes of whole runs, and DIR/stability_modes.png
-and .svg, the damping of an oscillator and of the scene's natural modes.
+map.csv. Writes DIR/stability_map.png and .svg with the outcomes of whole runs. Writes
+DIR/stability_modes.png and .svg with the damping of an oscillator and of the scene's natural modes.
 """
 
 import json
@@ -30,7 +30,7 @@ STEP_NUMBERS = (
 
 
 def read_limits(path):
-    """For each method the limit of h w, predicted and measured; infinite where there is none."""
+    """The limit of h w of each method, predicted and measured; infinite if there is none."""
     limits = {}
     columns = ("h_omega_limit_predicted", "h_omega_limit_measured")
     for line, row in read_rows(path, ("method", *columns)):
@@ -51,7 +51,7 @@ def read_runs(path):
 
 
 def read_linear(path):
-    """For each method its points (h w, damping ratio), the latter NaN where a step overflows."""
+    """The points (h w, damping ratio) of each method; the ratio is NaN if a step overflows."""
     linear = {}
     for line, row in read_rows(path, ("method", "h_omega", "damping_ratio")):
         h_omega = parse(path, line, row, "h_omega", True)

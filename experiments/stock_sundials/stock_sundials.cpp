@@ -1,16 +1,18 @@
-// What SUNDIALS' implicit methods gain from the second-order structure: each of them with the n x n
-// matrix M - gamma^2 K beside itself as its users have it, KLU on 2n x 2n.
+// What do SUNDIALS' implicit methods gain from the second-order structure? Each of them runs with
+// the n x n matrix M - gamma^2 K, and as its users run it, with KLU on 2n x 2n.
 //
 //   stock_sundials --scene cloth --until 0.1 --out results/cloth
-//   stock_sundials --scene lattice --methods arkode_dirk4,cvode_bdf --rtol 1e-3,1e-5 --out
-//   results/l
+//   stock_sundials --scene lattice --methods arkode_dirk4,cvode_bdf --rtol 1e-5 --out results/l
 //
-//  1. Both solve the same equations to the same tolerances and, but for rounding, in the same
-//     steps; errors are against work_precision's reference.
-//  2. They run by turns, each once untimed and then --repeats times, on one thread; the ratio is
-//     the median of the ratios of each pair of runs.
-//  3. One more run of each says where its time goes: force, K, factorisation, solves, and SUNDIALS
-//     itself with its vectors (rest). structure.csv holds a row for each method and tolerance.
+//  1. Both variants solve the same equations to the same tolerances and, except for rounding, in
+//  the
+//     same steps. Errors are against work_precision's reference.
+//  2. They run by turns, each once untimed and then --repeats times, on one thread. The ratio is
+//  the
+//     median of the ratios of all pairs of runs.
+//  3. One more run of each measures where its time goes: force, K, factorisation, solves, and
+//     SUNDIALS itself with its vectors (rest). structure.csv has a row for each method and
+//     tolerance.
 #include <algorithm>
 #include <chrono>
 
@@ -50,9 +52,9 @@ void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
   line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
   line.add_option("--methods", a.methods,
-                  "a,b,... of those that there are in both ways (default: all)")
+                  "a,b,...: the methods, of those that also have a stock way, _klu (default: all)")
       .delimiter(',');
-  line.add_option("--rtol", a.rtols, "a,b,... relative tolerances")
+  line.add_option("--rtol", a.rtols, "a,b,...: relative tolerances")
       .delimiter(',')
       .capture_default_str();
   line.add_option("--repeats", a.effort.repeats, "timed pairs of runs")

@@ -27,7 +27,7 @@ namespace qddot::sweep {
 using namespace command;
 namespace {
 
-// The scenes' parts in the order of the plan: of these tasks, those that are whole.
+// The scenes' parts in the order of the plan, made of the complete ones among these tasks.
 std::vector<ScenePart> parts_of(const std::vector<Task>& tasks,
                                 const std::vector<TaskState>& states, const MachineShare& share,
                                 const std::string& folder) {
@@ -47,7 +47,7 @@ std::vector<ScenePart> parts_of(const std::vector<Task>& tasks,
   return parts;
 }
 
-// Calls work(part) on all cores; the causes of those that failed, by the part's folder.
+// Calls work(part) on all cores. Returns the causes of failures by the part's folder.
 template <class Work>
 std::map<std::string, std::string> on_all(const std::vector<ScenePart>& parts, const char* what,
                                           const Work& work) {

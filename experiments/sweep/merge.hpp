@@ -11,11 +11,11 @@ struct Merging {
   bool has_pictures = true;
 };
 
-// Makes of what the tasks measured, in the sweep's folder, for each scene what its program makes
-// (tables, a chart, a report) in a folder of its name; and of work_precision's points.csv of all
-// scenes, fastest.csv, crossovers.csv and a picture of them. missing.csv and stdout say what is not
-// there, why, and which command measures it. Returns the program's status. Throws InvalidInput
-// where times of unlike machines would be compared.
+// Makes, from the results of the tasks, for each scene a folder of its name with the outputs of the
+// study's program (tables, a chart, a report). If the program is work_precision, also makes
+// fastest.csv, crossovers.csv and a picture of them from the points.csv of all scenes. missing.csv
+// and stdout name missing results, the reason, and the command that measures them. Returns the exit
+// status. Throws InvalidInput if times of unlike machines would be compared.
 int merge(const std::string& folder, const Merging& how);
 
 }  // namespace qddot::sweep

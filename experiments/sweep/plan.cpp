@@ -80,7 +80,7 @@ Listed listed(const StudyFile& study, std::vector<std::string> arguments) {
   return all;
 }
 
-// The shares of a scene. Of the study's methods those are left out that cannot run it.
+// The shares of a scene, without those of methods that cannot run it.
 Listed shares_of(const StudyFile& study, const StudyScene& scene, const std::string& scene_word) {
   Listed all = listed(study, arguments_of(study, scene, scene_word, study.methods));
   if (all.refusal.empty() || study.methods.empty()) return all;

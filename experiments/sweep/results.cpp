@@ -89,7 +89,7 @@ struct Crossover {
   double margin() const { return std::exp(std::fmin(-at_low, at_high)); }
 };
 
-// All of them, those that are the clearest first.
+// All crossovers, the clearest first.
 std::vector<Crossover> crossovers(const std::vector<SceneResult>& results,
                                   const std::vector<double>& accuracies) {
   std::vector<Crossover> all;

@@ -32,11 +32,12 @@ std::vector<double> accuracies_of(const Task& task);
 void write_fastest(const std::string& path, const std::vector<SceneResult>& results,
                    const std::vector<double>& accuracies, const nlohmann::json& origin);
 
-// `path`, crossovers.csv: between which neighbouring values of a parameter of a generator, or
-// horizons, all else alike, the fastest method changes, and where the two take equally long: where
-// the line through the logarithm of the ratio of their times, over the logarithm of the parameter,
-// is zero. `margin`: how many times as long the other takes at either end, at least; the largest
-// come first, as those of nearly 1 are within what times vary by.
+// Writes `path`, crossovers.csv. A row has two neighbouring values of a generator's parameter, or
+// end times, between which the fastest method changes while all else is equal. It also has the
+// value at which both methods take equally long. That is the zero of the line through the logarithm
+// of the ratio of their times, over the logarithm of the parameter. `margin`: how many times as
+// long the other method takes at either end, at least. The largest margins come first; those near 1
+// are within the variation of times.
 void write_crossovers(const std::string& path, const std::vector<SceneResult>& results,
                       const std::vector<double>& accuracies, const nlohmann::json& origin);
 

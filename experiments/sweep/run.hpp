@@ -27,14 +27,14 @@ struct ShardEnd {
   bool is_complete() const { return elsewhere + waiting + failed == 0; }
 };
 
-// The tasks of a stage that the shard takes; those of one id alone where that is given.
+// The tasks of a stage in the shard, or the one task of an id if that is given.
 std::vector<Task> chosen(const std::vector<Task>& tasks, const std::string& stage,
                          const Shard& shard);
 
-// Measures the tasks of `mine` that are not done, one after the other, each in a process of its
-// own; with `again`, also those that were measured on another kind of machine than this one, whose
-// results are replaced. `all` tells which references there are. Throws Interrupted where the work
-// is to end: the task at hand keeps its points.
+// Measures the unfinished tasks of `mine` one after the other, each in a process of its own.
+// `again`: whether to replace results that another kind of machine measured. `all` tells which
+// references there are. Throws Interrupted if the work is to end; the present task keeps its
+// points.
 ShardEnd run_tasks(const TaskFiles& files, const std::vector<Task>& mine,
                    const std::vector<Task>& all, bool again = false);
 

@@ -6,8 +6,8 @@
 namespace qddot::sweep {
 
 // The scenes of one table of a study's list of scenes: { file = ... } or { generator = ... }, whose
-// lists and ranges multiply; `horizons` where it names no `until` itself. Throws InvalidInput where
-// it is wrong, or where there would be more than `most` scenes, before any is made.
+// lists and ranges multiply. `horizons` [s] are the end times if the table has no `until`. Throws
+// InvalidInput if the table is wrong, or if it would make more than `most` scenes.
 std::vector<StudyScene> scenes_of(const TomlTable& entry, const toml::table& table,
                                   const std::vector<double>& horizons, double most);
 

@@ -14,9 +14,9 @@ struct ScenePart {
   nlohmann::json machine{};  // of the points
 };
 
-// Lets the program make its tables of what the tasks measured, as if it had measured all by itself;
-// with `by_work`, times are counts times costs on this machine. Empty, or why that failed. Throws
-// CannotWrite.
+// Lets the program make its tables from the results of the tasks, as if it had measured all by
+// itself. `by_work`: whether times are counts times costs on this machine. Returns why that failed;
+// empty on success. Throws CannotWrite.
 std::string make_tables(const TaskFiles& files, const ScenePart& part, bool by_work);
 
 // Draws the program's picture of the folder and, of work_precision, its page. Empty, or why that

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t most_shown = 10;
 
-// How long tasks take, from those that are done: the mean of all, times how many times as long as
-// that the tasks of the same scene take, and those of the same method.
+// Expected times of tasks, from finished ones: the mean of all, times two factors for tasks of the
+// same scene and of the same method.
 class Durations {
  public:
   void add(const Task& task, double seconds) {

@@ -4,8 +4,8 @@
 
 namespace qddot::sweep {
 
-// Prints what of a sweep is done, running, begun and ended, failed and missing, by stage, what
-// failed and why, and how long the rest takes, by what is done. Returns the program's status.
+// Prints by stage how many tasks of a sweep are done, running, begun but ended, failed and missing.
+// Prints which failed and why, and the expected time of the rest. Returns the exit status.
 int print_status(const std::string& folder);
 
 }  // namespace qddot::sweep

@@ -44,8 +44,8 @@ struct StudyFile {
 
 inline constexpr double most_scenes = 100000;
 
-// Reads it. Throws InvalidInput, in a sentence that names file, line, field, value and what is
-// allowed, for an unknown key or program, an empty list, or more than `most_scenes` scenes.
+// Reads a study. Throws InvalidInput for an unknown key or program, an empty list, or more than
+// `most_scenes` scenes. The sentence names file, line, field, value and what is allowed.
 StudyFile read_study(const std::string& path);
 
 }  // namespace qddot::sweep

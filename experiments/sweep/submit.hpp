@@ -12,10 +12,13 @@ struct Submission {
   std::vector<std::string> options{};  // of sbatch, or of parallel
 };
 
-// Three lines of a shell that have Slurm run a sweep: an array of jobs for the references, one for
-// the points that waits until all of these went well, and the merge, which waits until the points
-// have ended, however: a shard of which a task failed is a failed job to Slurm. Each job gets a
-// core of its own, no thread beside it; what the user gives sbatch comes last and counts.
+// Three lines of a shell that make Slurm run a sweep:
+// - an array of jobs for the references,
+// - an array for the points, which waits for the success of all references,
+// - the merge, which waits for the end of the points, successful or not: a shard with a failed task
+//   is a failed job to Slurm.
+// Each job gets a core of its own, without another thread on it. The user's options for sbatch come
+// last and override these.
 std::string slurm_lines(const std::string& folder, const Submission& how);
 
 // The same with GNU parallel: one process a core, here or, with --sshlogin, on others that see the

@@ -1,18 +1,21 @@
-// Studies of many scenes, divided among processes, machines or a cluster, and put together again.
+// Studies of many scenes, divided among processes, machines or a cluster, and merged again.
 //
-//   sweep plan STUDY.toml --out S                      # S/tasks.jsonl (study_file.hpp has the
-//   format) sweep run S --stage references                     # all of them here, or sweep run S
-//   --stage points --shard 3/100           # a hundredth of the points sweep status S sweep merge S
-//   # tables, charts, reports and who wins where sweep submit S --slurm --partition=short --go #
-//   all of that by Slurm sweep submit S --parallel --sshlogin a,b --go      # or by GNU parallel
+//   sweep plan STUDY.toml --out S              # writes S/tasks.jsonl (format: study_file.hpp)
+//   sweep run S --stage references             # measures all references here
+//   sweep run S --stage points --shard 3/100   # a hundredth of the points
+//   sweep status S
+//   sweep merge S                              # tables, charts, reports, fastest methods
+//   sweep submit S --slurm --partition=short --go       # all of that by Slurm
+//   sweep submit S --parallel --sshlogin a,b --go       # or by GNU parallel
 //
-//  1. plan asks the study's program what of each scene can be measured apart: the reference, then a
-//     task for each method (or a stiffness ratio of crossover, a case of advice). A task's name is
-//     a hash of all that decides what it measures: scene, horizon, method, options, code and flags.
-//  2. run measures the tasks of a shard, each in a process of the program, into a file of its own
-//     that appears whole or not at all. What is done is skipped: the same command goes on where a
-//     process was killed, and two processes that measure the same do no harm.
-//  3. merge hands each scene's files to the program, which makes its tables as if it had measured
+//  1. plan asks the study's program which shares of each scene can be measured independently: the
+//     reference, then a task for each method (or for a stiffness ratio of crossover, or a case of
+//     advice). A task's name is a hash of all that decides its results: scene, end time, method,
+//     options, code and flags.
+//  2. run measures the tasks of a shard. Each task has a process of the program, and a file that
+//     appears whole or not at all. Tasks that are done are skipped: the same command goes on after
+//     a process was killed, and two processes that measure the same task do no harm.
+//  3. merge gives each scene's files to the program, which makes its tables as if it had measured
 //     them by itself. Times of unlike machines are never compared.
 #include <algorithm>
 #include <filesystem>
@@ -72,18 +75,17 @@ void declare(CommandLine& line, Arguments& a) {
   line.add_option("--stage", a.stage, "run: references or points").take_last();
   line.add_option("--shard", a.shard, "run: I/N, one of N shards of the stage (default: 1/1)")
       .take_last();
-  line.add_option("--task", a.task, "run: the one task of this id").take_last();
+  line.add_option("--task", a.task, "run: the id of a single task").take_last();
   line.add_flag("--again", a.again,
-                "run: measure again what another kind of machine than this one measured");
+                "run: measure again tasks that another kind of machine has measured");
   line.add_flag("--per-machine", a.per_machine, "merge: a folder for each kind of machine");
-  line.add_option("--by", a.by, "merge: work, counts times costs in the place of times")
-      .take_last();
-  line.add_flag("--no-pictures", a.has_no_pictures, "merge: tables alone");
+  line.add_option("--by", a.by, "merge: work, to replace times by counts times costs").take_last();
+  line.add_flag("--no-pictures", a.has_no_pictures, "merge: make tables, but no pictures");
   line.add_flag("--slurm", a.slurm,
-                "submit: print three lines of sbatch; what follows is for sbatch");
+                "submit: print three lines of sbatch; all words after it go to sbatch");
   line.add_flag("--parallel", a.parallel,
-                "submit: print three lines of GNU parallel; what follows is for parallel");
-  line.add_option("--shards", a.shards, "submit: how many jobs for the points, at most")
+                "submit: print three lines of GNU parallel; all words after it go to parallel");
+  line.add_option("--shards", a.shards, "submit: the largest number of jobs for the points")
       .take_last()
       .capture_default_str();
   line.add_flag("--go", a.go, "submit: run these lines");
@@ -94,7 +96,7 @@ void require_action(const CommandLine& line, const Arguments& a) {
   if (own == actions().end()) {
     throw InvalidInput(fmt::format(
         "{}; allowed are plan, run, merge, submit and status",
-        a.action.empty() ? "what to do is missing" : a.action + " is nothing that sweep does"));
+        a.action.empty() ? "the action is missing" : a.action + " is no action of sweep"));
   }
   for (const Action& other : actions()) {
     for (const std::string& option : other.options) {
@@ -229,7 +231,7 @@ int main(int argc, char** argv) {
   for (const std::string& word : words.own) own.push_back(const_cast<char*>(word.c_str()));
   return qddot::command::enter<Arguments>(
       {.name = "sweep",
-       .summary = "Divides a study of many scenes among processes and puts it together again."},
+       .summary = "Divides a study of many scenes among processes and merges the results."},
       declare,
       [&](const auto& line, const Arguments& a, const auto&) {
         return sweep(line, a, words.passed_on);

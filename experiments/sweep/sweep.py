@@ -1,8 +1,8 @@
 """Draws which method is the fastest on each of many scenes, at each accuracy.
 
-Call: sweep.py DIR. Reads fastest.csv and, where they are there, crossovers.csv and sweep.json in
-DIR, and in its folders, one a scene, points.csv with its sidecar points.json; where accuracy is
-that of the energy, reference.json too. Writes fastest.png and fastest.svg to DIR.
+Call: sweep.py DIR. Reads fastest.csv in DIR, and crossovers.csv and sweep.json if they exist. Reads
+points.csv and its sidecar points.json in the folder of each scene, and reference.json if accuracy
+is that of the energy. Writes fastest.png and fastest.svg to DIR.
 
 A row is a scene, in the order of fastest.csv; at most MOST are drawn. A scene whose folder cannot
 be read is left out and counted.

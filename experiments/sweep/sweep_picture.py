@@ -79,7 +79,7 @@ def foot(study):
         if study.is_work
         else f"Times of whole runs {core}."
     )
-    steps = "Steps: the fewest of Verlet, T ω/2 at the largest ω."
+    steps = "Steps: the fewest that Verlet can take, T ω/2 at the largest ω."
     by_position = "Errors at the end T, over the largest displacement."
     by_energy = (
         "By energy: the motion is chaotic, and its errors are those of the energy on the way."

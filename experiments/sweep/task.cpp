@@ -79,7 +79,7 @@ std::vector<Task> read_tasks(const std::string& folder) {
 void write_tasks(const std::string& folder, std::vector<Task> tasks) {
   std::ranges::sort(tasks, {},
                     [](const Task& task) { return std::pair(task.stage != references, task.id); });
-  // Its own, as its first line says of which sources it is.
+  // qddot may replace the file: its first line has the hash of the sources.
   WholeFile file(path_of(folder), R"({"arguments":)");
   for (const Task& task : tasks) file.write(text_of(task) + "\n");
   file.complete();

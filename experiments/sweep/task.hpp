@@ -26,16 +26,15 @@ struct Task {
 
 inline const std::string references = "references", points = "points";
 
-// The content hash of a share of a study: of all that decides what it measures (scene, horizon,
-// method, options, code, compiler and flags), as 16 hexadecimal digits; not of the machine, which
-// decides how long that takes.
+// The hash, 16 hexadecimal digits, of all that decides the results of a share: scene, end time,
+// method, options, code, compiler and flags. The machine is not part of it; it decides only the
+// times.
 std::string id_of(nlohmann::json key, const std::string& share);
 
-// All tasks in the order in which they are measured: those of references first and each stage by
-// the ids, which is at random. No shard then gets one scene's tasks, or one method's, and those
-// that are done say without bias how long the rest takes. Throws InvalidInput, naming file and
-// line, where `folder`/tasks.jsonl is missing or not as it was written, or was planned by other
-// code than this.
+// All tasks in the order of measurement: references first, and each stage by its ids, which is a
+// random order. So no shard gets all tasks of one scene or method, and finished tasks predict the
+// time of the rest without bias. Throws InvalidInput, which names file and line, if
+// `folder`/tasks.jsonl is missing or damaged, or was planned by other code.
 std::vector<Task> read_tasks(const std::string& folder);
 // Writes them in that order, a line each.
 void write_tasks(const std::string& folder, std::vector<Task> tasks);

@@ -33,8 +33,8 @@ struct TaskState {
 //   tasks/whole/ID.journal           what a task measured, never written again
 //   tasks/begun/ID.HOST.PID.journal  what a process is measuring, or measured until it was ended
 //   tasks/failed/ID.json             why a task failed last
-// They need no locks: a process writes a file of its own, which becomes ID.journal at once, by a
-// link that fails where another process was first. Locks only say whether somebody is at work.
+// Writing needs no locks: each process writes a file of its own. A link makes it ID.journal at
+// once, and fails if another process was first. Locks only tell whether a process is at work.
 class TaskFiles {
  public:
   // Makes the folders if asked to. Throws InvalidInput where that cannot be done.
@@ -48,9 +48,9 @@ class TaskFiles {
   // The file for this process to measure the task into, with the pieces that ended processes have
   // kept. Throws InvalidInput or CannotWrite as Journal does.
   std::string begin(const Task& task) const;
-  // The task is whole in the file that begin() gave: gives it its name, unless another process was
-  // first and this one `replaces` nothing, and forgets that it failed and what others kept of it.
-  // False, and nothing done, where the file is not whole.
+  // Gives a complete file of begin() its final name, unless another process was first and
+  // `replaces` is false. Removes the record of a failure and other unfinished files of the task.
+  // Returns false, and does nothing, if the file is not complete.
   bool finish(const Task& task, const std::string& journal, bool replaces = false) const;
   // Removes what ended processes have kept of a task that is done.
   void tidy(const Task& task) const;

@@ -15,8 +15,9 @@ struct WorkCosts {
   double force = 0, stiffness = 0, factorization = 0, solve = 0;
 };
 
-// Measured now, each the least of many calls: f and K at the start, the numeric factorisation of
-// M - h^2 K and a solve with it, h = 1 / w_max so that it is positive definite where K allows.
+// Measures the costs now, each as the least of many calls: f and K at the start, the numeric
+// factorisation of M - h^2 K, and a solve with it. h = 1 / w_max makes the matrix positive definite
+// if K allows.
 WorkCosts measured_costs(const ReducedScene& scene);
 
 // The costs on the scene of the task, on this machine: kept in `folder`/costs.json, or measured and

@@ -1,9 +1,10 @@
-// With z = exp(i theta) and x = 1 - cos(theta), a factor of rho(z)/z^{k/2} is
+// Let z = exp(i theta) and x = 1 - cos(theta). A factor of rho(z)/z^{k/2} is
 //   (z - 1)^2/z = -2 x   or   (z^2 - 2 c z + 1)/z = 2 ((1 - c) - x),
 // so that rho(z)/z^{k/2} = -R(x) with R(x) = 2 x prod 2 ((1 - c_i) - x). Symmetric beta make
-// beta(z)/z^{k/2} = S(x), a polynomial of degree k/2 - 1. On q'' = -w^2 q the formula's roots obey
-// h^2 w^2 = R(x)/S(x), and the exact motion theta = h w. The order is k where R - theta^2 S is of
-// order theta^{k+2}, as x^{k/2+1} is: S is the series of R/theta^2 in x up to x^{k/2-1}, with
+// beta(z)/z^{k/2} = S(x), a polynomial of degree k/2 - 1. The formula's roots for q'' = -w^2 q obey
+// h^2 w^2 = R(x)/S(x); the exact motion has theta = h w. The order is k if R - theta^2 S is of
+// order theta^{k+2}, which is that of x^{k/2+1}. So S is the series of R/theta^2 in x up to
+// x^{k/2-1}, with
 //   theta^2 = arccos(1 - x)^2 = 2 sum_{m>=1} (2 x)^m / (m^2 binomial(2 m, m)).
 #include "experiments/symmetric_roots/formula_of_cosines.hpp"
 

@@ -16,8 +16,8 @@ struct Coefficients {
 
 Coefficients coefficients_of(const SymmetricFormula& formula);
 
-// The formula of k = 2 n + 2 steps and order k whose n pairs of spurious roots exp(+-i phi) have
-// these n cosines of phi, each from -1 to 1 and none twice; n at least 1.
+// The formula of k = 2 n + 2 steps and order k with n pairs of spurious roots exp(+-i phi).
+// `cosines` are those of the n phi, each from -1 to 1 and none twice; n >= 1.
 Coefficients formula_of_cosines(const std::vector<double>& cosines);
 
 }  // namespace qddot::spurious_roots

@@ -6,9 +6,9 @@
 
 namespace qddot::spurious_roots {
 
-// The scene `orbit` in its own units, in which w = 1 and the spring is 1 long at rest: what a
-// formula's energy does where the motion changes the frequencies that the roots see. Made once for
-// all formulas, since the exact positions of the first steps cost more than a run.
+// The energy error of formulas on the scene `orbit`, whose motion changes the frequencies that the
+// roots depend on. Units are w = 1 and a rest length of 1. It is made once for all formulas, since
+// the exact positions of the first steps cost more than a run.
 class OrbitSwing {
  public:
   // Runs will be of `steps` steps at eight h w from h_omega/2 to h_omega, by formulas of up to

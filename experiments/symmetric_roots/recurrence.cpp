@@ -12,8 +12,8 @@ namespace {
 
 using Powers = std::vector<double>;  // of y, the lowest first
 
-// p(z)/z^d of a palindrome of degree 2 d, which is p_d + sum 2 p_{d+i} T_i(y), in powers of
-// y = (z + 1/z)/2, with Chebyshev's T_{i+2} = 2 y T_{i+1} - T_i.
+// p(z)/z^d of a palindrome of degree 2 d, in powers of y = (z + 1/z)/2. It is p_d + sum 2 p_{d+i}
+// T_i(y), with Chebyshev's T_{i+2} = 2 y T_{i+1} - T_i.
 Powers powers_of_cosine(const std::vector<double>& palindrome) {
   const std::size_t degree = palindrome.size() / 2;
   Powers sum(degree + 1), now(degree + 1), next(degree + 1);  // T_i and T_{i+1}
@@ -61,9 +61,9 @@ std::vector<double> critical_points(const Powers& a, const Powers& b) {
 
 }  // namespace
 
-// With h^2 w^2 = -rho/beta, a function of the cosine y, all roots begin on the circle, each with
-// its real y from -1 to 1. One leaves it where it meets another, which is where the function has no
-// slope, or at y = -1.
+// h^2 w^2 = -rho/beta is a function of the cosine y. All roots begin on the unit circle, each with
+// a real y from -1 to 1. A root leaves the circle when it meets another, where the function has
+// zero slope, or at y = -1.
 double stability_limit(const Coefficients& formula) {
   const Powers rho = powers_of_cosine(formula.rho), beta = powers_of_cosine(formula.beta);
   std::vector<double> points = critical_points(rho, beta);

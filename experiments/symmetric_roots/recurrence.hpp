@@ -13,8 +13,8 @@ double stability_limit(const Coefficients& formula);
 // nearest point on it.
 std::vector<double> root_angles(const Coefficients& formula, double h_omega);
 
-// |theta - h w| / (h w), theta the angle [rad] of the root nearest to the exact motion's: what part
-// of each period the phase is off by.
+// The relative error of the phase in each period: |theta - h w| / (h w), with theta the angle [rad]
+// of the root nearest to the exact motion's.
 double phase_error(const Coefficients& formula, double h_omega);
 
 // The smallest angle [rad] between two roots, one of them spurious, at any of `h_omegas`. Where two

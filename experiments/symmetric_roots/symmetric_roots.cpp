@@ -1,19 +1,19 @@
-// What the spurious roots of symmetric multistep formulas trade: how large steps may be, how much
-// the phase is off, and how far the roots stay apart.
+// What do the spurious roots of symmetric multistep formulas trade? The study compares how large
+// steps may be, how large the phase error is, and how far the roots stay apart.
 //
 //   symmetric_roots --out results/symmetric_roots
 //   symmetric_roots --samples 20000 --at 0.3 --out results/finer
 //
 // A formula of k steps has order k and is made from the cosines of its k/2 - 1 pairs of spurious
-// roots (formula_of_cosines.cpp). For k = 4, 6, 8, 10 and 12, roots.csv has a row for each set of
-// cosines that was sampled, and one for each of the registry's formulas, with its name:
+// roots (formula_of_cosines.cpp). roots.csv is for k = 4, 6, 8, 10 and 12. It has a row for each
+// sampled set of cosines, and one for each of the registry's formulas, with its name:
 //   limit         the least h w at which a vibration grows
-//   phase_error   on a vibration at h w = --at, the part of each period that the phase is off by
+//   phase_error   relative error of the phase of a vibration at h w = --at, in each period
 //   gap           the smallest angle in rad between two roots, one of them spurious, at any of
-//                 eight h w up to --at, since the vibrations of a scene have all of these
-//   energy_swing  on the scene orbit, the largest energy error over the largest kinetic energy: of
+//                 eight h w up to --at; the vibrations of a scene have all of these
+//   energy_swing  the largest energy error over the largest kinetic energy on the scene orbit, in
 //                 5000 steps at each of eight h w from half of --at to --at; 1: a run was ended
-// Where the limit is not above --at, the last three are empty.
+// The last three are empty if the limit is not above --at.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -60,10 +60,11 @@ struct Arguments {
 void declare(CommandLine& line, Arguments& a) {
   line.add_option("--out", a.out, "the folder for roots.csv");
   line.add_option("--samples", a.samples,
-                  "how many sets of roots for each pair in them, 1 to 100000")
+                  "number of sampled sets of roots, for each pair of roots in a set, 1 to 100000")
       .capture_default_str();
-  line.add_option("--at", a.at,
-                  "the h w of phase errors and gaps, and the largest of the energy's, 0.01 to 2")
+  line.add_option(
+          "--at", a.at,
+          "the h w of phase errors, and the largest h w of gaps and energy errors, 0.01 to 2")
       .capture_default_str();
 }
 

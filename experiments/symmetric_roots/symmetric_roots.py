@@ -2,10 +2,9 @@
 
 Call: symmetric_roots.py DIR, the folder with roots.csv of the program symmetric_roots; writes
 DIR/symmetric_roots.png and DIR/symmetric_roots.svg. A dot is a formula, a colour its number of
-steps. To the left the phase error over the limit of h w, in the middle how far roots stay apart
-over the same limit, to the right what the energy of an orbit does over how far they stay apart. A
-line is the best that formulas reach at that limit or a larger one; to the left they are those whose
-roots stay well apart.
+steps. The left panel shows the phase error over the limit of h w, the middle one the gap between
+roots over the same limit, the right one the energy error of an orbit over the gap. A line is the
+best of all formulas with that limit or a larger one; in the left panel, of those with a large gap.
 """
 
 import csv

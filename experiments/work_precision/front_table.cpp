@@ -94,7 +94,7 @@ void print_front(const std::string& scene, double until, const std::vector<Front
   }
   for (const std::string& warning : small_margins(front)) fmt::print("{}\n", warning);
   if (has_doubts)
-    fmt::print("? known to within {:.1e} alone, which the reference itself may be off\n",
+    fmt::print("? known only to within {:.1e}, the error bound of the reference itself\n",
                certified(reference));
 }
 

@@ -81,7 +81,7 @@ def draw_foot(sheet, top, rows):
     processors = ", ".join(dict.fromkeys(row.processor for row in rows))
     lines = (
         f"Times of whole runs on one core of {processors}. Errors at the end T, over the largest"
-        " displacement. Steps: the fewest of Verlet, T ω/2 at the largest ω.",
+        " displacement. Steps: the fewest that Verlet can take, T ω/2 at the largest ω.",
         "SUNDIALS’ best: how many times as long as the fastest, median over the accuracies, least to"
         " most. –: no run reached it in the time it had.",
     )

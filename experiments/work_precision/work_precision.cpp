@@ -3,17 +3,18 @@
 //   work_precision --scene cloth --until 0.1 --out results/cloth
 //   work_precision --scene my.toml --methods verlet,ida --repeats 9 --out results/my
 //
-//  1. A reference is made by two unlike methods of high order, or exactly where the motion is
-//     linear. What bounds its error, by how far they and their last refinements differ, is the
-//     certified floor (reference.json, kept for the next time). A third run that starts one
-//     rounding away shows from which time on the motion is chaotic; where the motion has a plane, a
-//     line or mirrors to itself, a fourth one shows what a push out of these does.
-//  2. Each method runs from coarse to fine: once untimed unless that takes long, then timed several
-//     times, one thread; and once more, watched on its way: its largest energy error, its momenta.
-//  3. points.csv holds every point, the failed ones with the reason; front.csv, for each accuracy
-//     from 1e-1 to 1e-9, the fastest method known to have reached it: of the positions at the end
-//     or, where that is beyond the chaotic motion's horizon and nobody knows them, of the energy on
-//     the way. With --accuracies those alone, and no method is measured more accurately than that.
+//  1. Two unlike methods of high order make a reference, which is exact if the motion is linear.
+//     The differences of both and of their last refinements bound its error (reference.json, kept
+//     for the next time). A third run, which starts one rounding away, shows the horizon of a
+//     chaotic motion. If the motion stays in a plane, on a line or symmetric, a fourth run shows
+//     the effect of a push out of symmetry.
+//  2. Each method runs from coarse to fine on one thread: once untimed unless that takes long, then
+//     several times timed. One more run measures the largest energy error and the momenta over
+//     time.
+//  3. points.csv has every point, failed ones with the reason. front.csv has, for each accuracy
+//     from 1e-1 to 1e-9, the fastest method known to reach it. Accuracy is that of the positions at
+//     the end, or of the energy over time if the end is beyond the horizon of a chaotic motion.
+//     --accuracies chooses other accuracies; no method is then measured at finer ones.
 #include <algorithm>
 #include <functional>
 #include <optional>
@@ -60,9 +61,10 @@ struct Arguments {
 void declare(CommandLine& line, Arguments& a) {
   add_scene_options(line, a.scene);
   line.add_option("--until", a.until, "the time to run to in s (default: the scene's own)");
-  line.add_option("--methods", a.methods, "a,b,... (default: all)").delimiter(',');
+  line.add_option("--methods", a.methods, "a,b,...: the methods (default: all)").delimiter(',');
   line.add_option("--accuracies", a.accuracies,
-                  "a,b,... the accuracies that matter (default: 1e-1 to 1e-9)")
+                  "a,b,...: accuracies (relative errors) to find the fastest method for (default: "
+                  "1e-1 to 1e-9)")
       .delimiter(',');
   line.add_option("--repeats", a.effort.repeats, "timed runs of each point")
       .take_last()

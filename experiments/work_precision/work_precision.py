@@ -1,10 +1,10 @@
 """Draws the work-precision chart of one experiment: time of a run against error reached.
 
-Call: work_precision.py DIR [--all]. Reads points.csv, front.csv and, if there, reference.json in DIR
-and writes there, as .png and .svg, chart: over the position error or, where the end is beyond the
-horizon of a chaotic motion, over what then means something; and chart_energy, over the energy error.
-At most a dozen methods stand out, others are pale and failures are counted; --all names every method
-and shows which of its runs failed.
+Call: work_precision.py DIR [--all]. Reads points.csv, front.csv and, if it exists, reference.json
+in DIR. Writes chart and chart_energy there, as .png and .svg. chart is over the position error. If
+the end is beyond the horizon of a chaotic motion, it is over the kind of error that still means
+something. chart_energy is over the energy error. Up to a dozen methods stand out; others are pale
+and failures are counted. --all names every method and shows its failed runs.
 """
 
 import os
@@ -74,7 +74,7 @@ def key_line(family):
 
 
 def draw_key(sheet, top, emphasis):
-    """How the lines of each family look, and those that stand back."""
+    """The key of the lines of each family, and of pale ones."""
     families = dict.fromkeys(emphasis.looks[method].family for method in emphasis.shown)
     lines = [key_line(family) for family in sorted(families, key=lambda family: family is STOCK)]
     rest = emphasis.rest()

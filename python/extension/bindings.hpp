@@ -17,14 +17,14 @@ namespace qddot::python {
 
 using Names = std::vector<std::string>;
 
-// What is run: the smallest system of a scene, or a system of the caller's own.
+// The model that is run: the smallest system of a scene, or a system of the caller's own.
 struct Model {
   std::shared_ptr<const ReducedScene> reduced;
-  // The scene as its motion starts; none of an own system.
+  // The scene as its motion starts; null for a system of the caller's own.
   std::shared_ptr<const Scene> start{};
 };
 
-// A certified motion, and whose it is.
+// A certified motion, and the model that it is of.
 struct HeldReference {
   Model model;
   measure::Reference reference;

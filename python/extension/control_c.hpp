@@ -4,9 +4,9 @@
 
 namespace qddot::python {
 
-// While this lives, Ctrl-C asks for a stop, if it is made in Python's main thread, which is the one
-// that Python answers signals in. The signal goes on to Python, which raises KeyboardInterrupt
-// where raise_what_came() is called. One within another's life stands before it.
+// While this lives, Ctrl-C requests a stop, if it was made in Python's main thread: Python handles
+// signals only there. The signal goes on to Python, which raises KeyboardInterrupt in
+// raise_what_came(). An inner ControlC replaces the outer one while it lives.
 class ControlC {
  public:
   ControlC();  // holds the GIL
@@ -16,9 +16,9 @@ class ControlC {
 
   const std::stop_source& source() const { return source_; }
   std::stop_token stop() const { return source_.get_token(); }
-  // A process that was forked has to begin anew.
+  // Starts again in a forked process.
   static void begin_anew();
-  // Throws what Python's handlers of signals raise; holds the GIL.
+  // Throws the exceptions of Python's signal handlers; holds the GIL.
   static void raise_what_came();
 
  private:

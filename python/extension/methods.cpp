@@ -16,7 +16,7 @@ Names names_in(const SetOf<Kind>& set, const std::array<const char*, count>& nam
   return held;
 }
 
-// In the order of the enumerations in method.hpp.
+// These have the order of the enumerations in method.hpp.
 constexpr std::array traits = {"implicit",        "linearly_implicit", "symplectic",
                                "cancels_torques", "accepts_massless",  "interpolates",
                                "bounds_steps"};

@@ -34,7 +34,7 @@ PYBIND11_MODULE(_qddot, module) {
   module.attr("__version__") = QDDOT_VERSION;
   python::add_exception<InvalidInput>(
       module, "InvalidInput", PyExc_ValueError,
-      "A scene that cannot be; says where, what and what is allowed.");
+      "Wrong input for a scene; says where, what is wrong and what is allowed.");
   python::add_exception<measure::NoReference>(module, "NoReference", PyExc_RuntimeError,
                                               "No reference can be made of a motion; says why.");
   python::prepare_for_forks();

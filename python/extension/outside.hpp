@@ -9,7 +9,7 @@
 
 namespace qddot::python {
 
-// While this lives, forces and factorisations take so many threads where this one asks for them.
+// While this lives, forces and factorisations of this thread use `count` threads.
 class Threads {
  public:
   explicit Threads(int count);
@@ -21,23 +21,23 @@ class Threads {
   int before_;
 };
 
-// Lets forked processes begin anew: to be called once.
+// Lets forked processes start again; must be called once.
 void prepare_for_forks();
 
-// Ends all work that goes on outside Python, and waits for it: to be called when the interpreter is
-// about to exit, after which nobody gets the GIL back. No more work begins.
+// Ends all work outside Python and waits for its end; no more work begins. Must be called before
+// the interpreter exits, since nobody gets the GIL back after that.
 void close_outside();
 
-// What a callable raised within outside(), to be raised again at its end even where a library took
-// it for a failure of its own.
+// Keeps the exception of a callable within outside(). It is raised again at the end, even if a
+// library took it for a failure of its own.
 void remember(std::exception_ptr thrown);
 
-// Lets the work call callables from within Python, with the GIL; what they raise is nobody's but
-// the caller's.
+// Lets the work call callables from within Python, with the GIL; their exceptions go to the caller.
 void inside_python(const std::function<void()>& work);
 
-// Does the work without the GIL, on so many threads, so that other threads of Python go on. Ctrl-C
-// ends it (see OwnInterruption), and is raised then; so is what a callable raised.
+// Does the work without the GIL, on `threads` threads, so that other threads of Python go on.
+// Ctrl-C ends it (see OwnInterruption) and raises KeyboardInterrupt. Exceptions of callables are
+// raised too.
 void outside(int threads, const std::function<void(std::stop_token)>& work);
 
 }  // namespace qddot::python

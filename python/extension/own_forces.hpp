@@ -15,18 +15,18 @@ namespace qddot::python {
 using CForce = void (*)(const double*, double*, std::int64_t);
 using CPotential = double (*)(const double*, std::int64_t);
 
-// What a callable of Python sees of the solver's memory: arrays of a fixed shape, each made once
-// for a place and shown again while nobody else has it. To be called with the GIL.
+// Arrays of a fixed shape through which Python callables see the solver's memory. Each is made once
+// for a place and reused while nobody else holds it. Callers hold the GIL.
 class Views {
  public:
   explicit Views(std::vector<py::ssize_t> shape) : shape_(std::move(shape)) {}
 
   // An array whose numbers are those at `place`, for one call.
   py::object show(const double* place, bool may_write);
-  // Ends that call. Throws std::runtime_error where somebody has kept the array, whose memory is
-  // the solver's.
+  // Ends that call. Throws std::runtime_error if somebody has kept the array, whose memory is the
+  // solver's.
   void take_back(py::object view, const char* callable, const char* argument);
-  // Gives the array, which a traceback may hold, memory of its own.
+  // Gives an array that a traceback may hold memory of its own.
   static void part(const py::object& view);
 
  private:
@@ -34,8 +34,8 @@ class Views {
   std::vector<py::object> spare_;
 };
 
-// The forces of somebody who writes Python: f, and V and K where he has them, as callables or, of f
-// and V, as C functions. What a callable raises ends the run (see outside()). Callables:
+// The forces of a user of Python: f, and optionally V and K, as callables; f and V may be C
+// functions. An exception of a callable ends the run (see outside()). Callables:
 //   force(q, f)    writes f [N], returns nothing or f
 //   potential(q)   returns V [J]
 //   stiffness(q)   returns K [N/m], n x n and symmetric: dense, or a tuple (data, indices, indptr)
@@ -46,7 +46,7 @@ class OwnForces final : public System {
   using Force = std::variant<CForce, py::object>;
   using Potential = std::variant<std::monostate, CPotential, py::object>;
 
-  // `pattern`: of K; 0 x 0 where there is no stiffness.
+  // `pattern`: of K; 0 x 0 without a stiffness.
   OwnForces(Vec mass, std::vector<py::ssize_t> shape, Force force, Potential potential,
             py::object stiffness, SymmetricMatrix pattern);
   ~OwnForces() override;
@@ -58,7 +58,7 @@ class OwnForces final : public System {
   void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
 
  private:
-  // Calls with a view of q; `use` sees what is returned.
+  // Calls the callable with a view of q, and `use` with its result.
   template <class Use>
   void call(const py::object& callable, const char* name, const ConstVec& q, const Use& use) const;
 
@@ -69,8 +69,8 @@ class OwnForces final : public System {
   mutable Views views_;
 };
 
-// The lower triangle that has these entries and all of the diagonal, with values zero. Throws
-// std::invalid_argument for one beyond n.
+// The lower triangle with these entries and the whole diagonal, all zero. Throws
+// std::invalid_argument for an entry beyond n.
 SymmetricMatrix pattern_of(const Indices& rows, const Indices& columns, Index n);
 
 }  // namespace qddot::python

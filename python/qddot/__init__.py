@@ -1,14 +1,14 @@
-"""Time integration of deformable objects: mass-spring networks, or an own M q'' = f(q), by all of
-qddot's methods and SUNDIALS', with references, charts, advice and answers with an error bar.
+"""Time integration of deformable objects: mass-spring networks, or your own M q'' = f(q). It offers
+all of qddot's methods and SUNDIALS', references, charts, advice, and answers with an error bar.
 
     import qddot
     cloth = qddot.scenes.cloth(nodes=30)
     solution = qddot.solve(cloth, "blanes_moan4", step_size=1e-3, until=0.5)
     sure = qddot.solve(cloth, accuracy=1e-4, until=0.5)
 
-Arrays are float64 in C order, (nodes, dimension) or, over time, (times, nodes, dimension). Units are
-SI. A run that fails is a Solution with an outcome; `or_raise()` makes an exception of it. What cannot
-be asked for is a ValueError with one sentence.
+Arrays are float64 in C order, (nodes, dimension) or, over time, (times, nodes, dimension). Units
+are SI. A run that fails returns a Solution with an outcome; its `or_raise()` raises an exception
+instead. Wrong arguments raise a ValueError with one sentence.
 """
 
 from qddot import scenes

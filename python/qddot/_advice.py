@@ -1,4 +1,4 @@
-"""Which method to take."""
+"""Advice on the fastest method for an accuracy."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from qddot._system import System
 
 @dataclass(frozen=True)
 class Candidate:
-    """A run that might be made: what it is expected to miss by and to take [s]."""
+    """A run that might be made, with its expected error and time [s]."""
 
     method: str
     knob: str
@@ -30,9 +30,9 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Advice:
-    """What to take for one accuracy; take is None where no run is expected to come so far, and why
-    says what stands against it. The runner-up takes `margin` times as long. is_seen: whether the
-    error was seen in a run and its check, and not only expected."""
+    """The run to take for one accuracy. `take` is None if no run is expected to reach it; `why`
+    then says the reason. The runner-up takes `margin` times as long. is_seen: whether the error was
+    measured in a run and its check, and not only expected."""
 
     accuracy: float
     take: Candidate | None
@@ -47,9 +47,9 @@ class Advice:
 
 @dataclass(frozen=True, repr=False)
 class Advices:
-    """Advice for each accuracy, and what the scene asks of a method: largest frequencies [rad/s] at
-    the start and over the motion, Verlet's largest stable step [s], the horizon [s] of a chaotic
-    motion."""
+    """Advice for each accuracy, and the properties of the scene that decide it: the largest
+    frequencies [rad/s] at the start and over the motion, Verlet's largest stable step [s], and the
+    horizon [s] of a chaotic motion."""
 
     for_each: list[Advice]
     w_start: float
@@ -100,8 +100,8 @@ def advise(
     q0: ArrayLike | None = None,
     v0: ArrayLike | None = None,
 ) -> Advices:
-    """Which method comes to each accuracy in the least time, found out in at most half a second or
-    twice the run that is advised."""
+    """Finds the method that reaches each accuracy in the least time. That takes at most half a
+    second, or about twice the run that is advised."""
     require_measurable(of, "advise")
     asked = [number(a, "accuracy") for a in np.atleast_1d(np.asarray(accuracies, dtype=object))]
     for accuracy in asked:

@@ -1,4 +1,4 @@
-"""What is known of a scene or a method without a run."""
+"""Properties of a scene or a method that need no run."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ from qddot._system import System
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A stable rest, downhill from the start: all nodes' positions [m], V there [J].
+    """A stable equilibrium, downhill from the start: the positions [m] of all nodes, and V there
+    [J].
 
-    outcome: "reached", "unbounded" or "not_converged", message says why in a sentence. residual is
-    the largest force [N], smallest_eigenvalue that of -K [N/m]. isolated: whether V rises in every
-    direction; if not, it is flat within rounding in so many.
+    outcome: "reached", "unbounded" or "not_converged"; message says why in a sentence. residual:
+    the largest force [N]. smallest_eigenvalue: that of -K [N/m]. isolated: whether V rises in every
+    direction. flat_directions: the number of directions in which V is flat within rounding.
     """
 
     positions: Floats
@@ -40,9 +41,8 @@ class Equilibrium:
 class Modes:
     """The lowest natural modes about the start, by rank.
 
-    squares: w^2 [1/s^2], below zero where a shape grows. shapes: (modes, nodes, dimension),
-    x with x'Mx = 1. omega_max [rad/s]: the largest natural frequency; finite: how many modes there
-    are.
+    squares: w^2 [1/s^2], below zero where a shape grows. shapes: (modes, nodes, dimension), x with
+    x'Mx = 1. omega_max [rad/s]: the largest natural frequency. finite: the number of all modes.
     """
 
     squares: Floats
@@ -52,15 +52,15 @@ class Modes:
 
     @property
     def omega(self) -> Floats:
-        """w [rad/s], or minus the rate of growth [1/s]."""
+        """w [rad/s], or minus the growth rate [1/s] of a growing mode."""
         return np.copysign(np.sqrt(np.abs(self.squares)), self.squares)
 
 
 @dataclass(frozen=True)
 class LinearStep:
-    """What a method of fixed steps does to a vibration q'' = -w^2 q in a step of h w = h_omega: the
-    roots that the motion is multiplied by, the largest of which is spectral_radius; the damping ratio
-    and the relative error of the period that come of it."""
+    """The effect of one step of a fixed-step method on a vibration q'' = -w^2 q at h w = h_omega.
+    roots: the factors that multiply the motion. spectral_radius: the largest modulus of a root.
+    damping_ratio, period_error: the damping ratio and the relative error of the period."""
 
     h_omega: float
     roots: tuple[complex, ...]
@@ -71,8 +71,8 @@ class LinearStep:
 
 @dataclass(frozen=True)
 class StabilityLimit:
-    """The largest h w at which a method lets no vibration grow, by theory and as it is; infinite where
-    there is none. For a scene also the step h [s] that this is."""
+    """The largest h w at which no vibration grows with a method, predicted by theory and measured;
+    infinite if there is none. step_size is the corresponding h [s] on a scene, if one is given."""
 
     method: str
     predicted: float
@@ -83,8 +83,8 @@ class StabilityLimit:
 def equilibrium(
     of: Scene | System, q0: ArrayLike | None = None, *, length: float = 1.0
 ) -> Equilibrium:
-    """The stable equilibrium that is reached downhill from where a scene is drawn, or from q0 of a
-    System of the size `length` [m]."""
+    """The stable equilibrium downhill from the drawn scene, or from q0 of a System of the size
+    `length` [m]."""
     if isinstance(of, Scene):
         start = _qddot.model_of(of._handle, None, [])
     else:
@@ -107,8 +107,8 @@ def modes(
     *,
     at_equilibrium: bool = False,
 ) -> Modes:
-    """The `count` lowest modes of a scene where its motion starts (or at its equilibrium), in all
-    directions in which its nodes may move; of a System at q0."""
+    """The `count` lowest modes of a scene at its start (or at its equilibrium), or of a System at
+    q0. Nodes move in all directions that they have."""
     count = whole_number(count, "count")
     require_stiffness(of, "modes")
     if at_equilibrium:
@@ -123,7 +123,7 @@ def modes(
 
 
 def linear_step(method: str, h_omega: float, **options: Any) -> LinearStep:
-    """What the method does to a vibration in a step of h w; options are those of solve()."""
+    """The effect of a step of the method on a vibration at h w; options are those of solve()."""
     chosen = method_named(method)
     given = options_for(chosen, {**options, chosen.knob: 1.0})
     record = _qddot.linear_step(method, number(h_omega, "h_omega"), given)
@@ -134,8 +134,8 @@ def linear_step(method: str, h_omega: float, **options: Any) -> LinearStep:
 def stability_limit(
     method: str, of: Scene | System | None = None, q0: ArrayLike | None = None
 ) -> StabilityLimit:
-    """The method's limit of h w, by theory and found by bisection; and the step that it is on a scene,
-    or a System at q0, where w is the largest natural frequency of the start."""
+    """The method's limit of h w, by theory and found by bisection. step_size is the step h [s] at
+    that limit on a scene, or a System at q0, for the largest natural frequency of the start."""
     predicted, measured = _qddot.stability_limit(method_named(method).name)
     step = None
     if of is not None:
@@ -146,7 +146,7 @@ def stability_limit(
 
 
 def require_stiffness(of: Scene | System, what: str) -> None:
-    """A sentence for a System without K."""
+    """Raises ValueError for a System without K."""
     if isinstance(of, System) and not of.has_stiffness:
         raise ValueError(f"{what}: the System has no K; give it its stiffness, or a pattern of it")
 

@@ -1,4 +1,4 @@
-"""How arrays come in and go out."""
+"""Conversion of arrays on their way in and out."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ A = TypeVar("A", bound="np.ndarray[Any, Any]")
 
 
 def floats(value: ArrayLike, name: str, one: bool = False) -> Floats:
-    """Numbers in C order; a scalar is an array of one where that may be."""
+    """Numbers in C order; a scalar becomes an array of one if that is allowed."""
     require_unmasked(value, name)
     try:
         given = np.asarray(value)
@@ -36,7 +36,7 @@ def whole_numbers(value: ArrayLike, name: str) -> NDArray[np.int64]:
 
 
 def require_unmasked(value: ArrayLike, name: str) -> None:
-    """A sentence for a masked array, whose mask would be lost."""
+    """Raises ValueError for a masked array, whose mask would be lost."""
     if np.any(getattr(value, "mask", False)):
         raise ValueError(f"{name}: some of its entries are masked; allowed are numbers alone")
 

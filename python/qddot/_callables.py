@@ -8,7 +8,7 @@ from typing import Any
 
 
 def require_arguments(function: Any, name: str, count: int) -> None:
-    """A sentence for a callable that takes something else than q, and f."""
+    """Raises ValueError for a callable that takes other arguments than q, or q and f."""
     if not callable(function):
         raise ValueError(
             f"{name}: it is neither a callable nor a C function (a Numba cfunc, a ctypes "

@@ -16,9 +16,9 @@ from qddot._system import System
 
 @dataclass(frozen=True, eq=False)
 class Convergence:
-    """Errors of a method at h, h/2, h/4, ... [s], and the order that each halving shows: log2 of the
-    ratio of errors, no number where one of them did not come to the end or is near what the reference
-    certifies."""
+    """Errors of a method at h, h/2, h/4, ... [s], and the order of each halving: log2 of the ratio
+    of errors. An order is NaN if one of its two runs did not reach the end, or if an error is near
+    the certified one."""
 
     method: str
     step_size: Floats
@@ -50,7 +50,7 @@ def convergence(
         if solution.success:
             errors = exact.errors(solution)
             q[i], v[i] = errors.position, errors.velocity
-    # Twenty times what is certified is an error of 0.07 in the order.
+    # An error of twenty times the certified one is wrong by up to 5 %: 0.07 in the order.
     known = np.where(q > 20 * exact.certified.position, q, np.nan)
     order = np.full(len(steps), np.nan)
     order[1:] = np.log2(known[:-1] / known[1:])

@@ -1,4 +1,4 @@
-"""Whether V, f and K are each other's derivatives."""
+"""Checks that f and K are the derivatives of V and f."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ import numpy as np
 from qddot import _qddot
 from qddot._arrays import Floats
 
-# How far differences may be from what they should be. Those of second order are off by some 1e-10
-# where V is smooth; a wrong sign or factor is far beyond it.
+# The allowed error of differences. Those of second order have errors of about 1e-10 for a smooth V;
+# a wrong sign or factor gives far larger ones.
 TOLERANCE = 1e-4
-# What sums leave of their terms by rounding, in parts of their result.
+# The relative rounding error of sums.
 ROUNDING = 1e-12
-# In so many unknowns each force is looked at by itself; in more, along this many directions.
+# Up to FEW unknowns each force is checked by itself; more are checked along DIRECTIONS directions.
 FEW, DIRECTIONS = 100, 3
 AS_IT_IS = "(check=False takes it as it is)"
 
 
 def check(model: _qddot.Model, length: float, has_own_stiffness: bool) -> None:
-    """Holds f, V and K against each other beside the start, where no symmetry hides anything. `length`
-    [m]: what is small there."""
+    """Compares f, V and K with each other's differences beside the start, where no symmetry hides
+    anything. `length` [m]: a small length there."""
     start = model.q
     f = model.force(start)
     if not np.all(np.isfinite(f)):
-        # A number that a callable did not write is found so as well.
+        # This also finds a number that a callable did not write.
         i = int(np.flatnonzero(~np.isfinite(f))[0])
         raise ValueError(
             f"force: f[{i}] is {f[i]} at the start; is it written there, as by "
@@ -35,7 +35,7 @@ def check(model: _qddot.Model, length: float, has_own_stiffness: bool) -> None:
     x = start + 1e-3 * length * random.uniform(-1, 1, start.size)
     if not np.all(np.isfinite(model.force(x))):
         x = start
-    # Differences over less would be rounding, far from the origin.
+    # Smaller differences would be rounding, far from the origin.
     d = max(6e-6 * length, 2e-11 * float(np.max(np.abs(x))))
     if model.has_potential:
         for u in _directions(x.size, random):

@@ -15,8 +15,8 @@ from qddot._starts import end_of, seconds_of
 @dataclass(frozen=True, eq=False)
 class ExchangeRun:
     """One method at one step size. energies: (times, stiff springs), the oscillatory energy of each
-    [J]. tempo: how fast they exchange it beside the reference, misfit what is left of the difference
-    then; None where the run failed. verdict says it in words."""
+    [J]. tempo: the speed of the exchange over that of the reference. misfit: the remaining
+    difference at that tempo. Both are None if the run failed. verdict says it in words."""
 
     method: str
     step_size: float
@@ -34,8 +34,8 @@ class ExchangeRun:
 
 @dataclass(frozen=True, eq=False)
 class Exchange:
-    """How methods exchange the energy of stiff springs. omega [rad/s] is these springs' highest
-    frequency, certified what the reference may be off by, in parts of their energy."""
+    """How methods exchange the energy of stiff springs. omega [rad/s]: the highest frequency of
+    these springs. certified: the error bound of the reference, relative to their energy."""
 
     omega: float
     certified: float
@@ -51,9 +51,9 @@ def exchange(
     until: float | None = None,
     every: float | None = None,
 ) -> Exchange:
-    """Follows the energies of the stiff springs (Scene.stiff_above) by each method at each step h with
-    h w as given, w the springs' highest frequency; seen about `every` [s], a thousandth of the time
-    where not given."""
+    """Follows the energies of the stiff springs (Scene.stiff_above) by each method at each step h,
+    given as h w with the springs' highest frequency w. Samples are about `every` [s] apart, by
+    default a thousandth of the time."""
     if not isinstance(of, Scene):
         raise TypeError("exchange is for a qddot.Scene, whose springs may be stiff")
     for name in methods:

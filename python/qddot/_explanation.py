@@ -1,4 +1,4 @@
-"""What is left of a scene to be integrated."""
+"""The unknowns of a scene that remain after its reductions."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Explanation:
-    """What is left of a scene to be integrated, what was left out of it and why.
+    """The unknowns of a scene that remain, the reductions, and their reasons.
 
     `left_out` has pairs (reduction, sentence). `omega_max` [rad/s] is the largest natural frequency
-    at the start, at most `omega_bound`; `largest_stable_step` = 2/omega_max [s] is that of Verlet's
-    method. `unstable` is the number of directions in which the energy falls at the start, the
-    fastest of which grows as exp(growth t). print() it for all of that in sentences.
+    at the start, at most `omega_bound`. `largest_stable_step` = 2/omega_max [s] is that of Verlet's
+    method. `unstable` is the number of directions in which the energy falls at the start; the
+    motion along the fastest one grows as exp(growth t). print() shows all of that in sentences.
     """
 
     text: str

@@ -1,4 +1,4 @@
-"""What there is to integrate with."""
+"""The registry of methods."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from qddot._arrays import count, number
 
 @dataclass(frozen=True)
 class Method:
-    """An integrator: an entry of the registry, which tables, tests and studies are driven by.
+    """A method (integrator): an entry of the registry.
 
-    `order` is that of the global error, 0 where there is none. `knob` is what trades speed for
-    accuracy: "step_size" [s] or "rtol". `stability_limit` is the largest h w at which an explicit
-    method of fixed steps lets no oscillation grow; None for others. `takes` names the options of
-    solve() that it listens to, `needs` what it asks of a System beside its forces.
+    `order` is that of the global error, 0 if there is none. `knob` is the number that trades speed
+    for accuracy: "step_size" [s] or "rtol". `stability_limit` is the largest h w at which no
+    oscillation grows with an explicit method of fixed steps; None for others. `takes` has the
+    options of solve() that the method uses. `needs` has what it requires of a System beside its
+    forces.
     """
 
     name: str
@@ -46,12 +47,12 @@ def _all() -> dict[str, Method]:
 
 
 def methods() -> list[Method]:
-    """All methods, in the order in which they are listed and drawn."""
+    """All methods, in the order of lists and pictures."""
     return list(_all().values())
 
 
 def method(name: str) -> Method:
-    """The method of that name; a ValueError that names all there are where there is none."""
+    """The method of that name. If there is none, raises a ValueError that names all methods."""
     found = _all().get(name) if isinstance(name, str) else None
     if found is None:
         raise ValueError(f"{name!r} is no method; there are {', '.join(_all())}")
@@ -85,8 +86,8 @@ _OPTIONS: dict[str, Callable[[Any, str], Any]] = {
 
 
 def options_for(chosen: Method, given: dict[str, Any]) -> dict[str, Any]:
-    """The options that were given, as the method takes them; a ValueError for those it ignores and
-    where its knob is missing."""
+    """The given options in the form that the method takes. Raises ValueError for options that it
+    ignores, and if its knob is missing."""
     options = {
         n: _OPTIONS.get(n, number)(value, n) for n, value in given.items() if value is not None
     }

@@ -18,8 +18,9 @@ from qddot._system import System
 
 @dataclass(frozen=True)
 class Errors:
-    """Relative errors: the largest of any node, over the largest displacement or speed of the motion
-    (of its part of the scene); of the energy, over the largest kinetic energy."""
+    """Relative errors. Those of positions and velocities are the largest of any node, over the
+    largest displacement or speed of its part of the scene. That of the energy is over the largest
+    kinetic energy."""
 
     position: float
     velocity: float
@@ -28,11 +29,10 @@ class Errors:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Reference:
-    """The motion at `until` [s], and how far it can be trusted: `certified` bounds its errors.
+    """The motion at the time `until` [s]; `certified` bounds its errors.
 
-    q, v: all nodes. made_by names the two ways that agree. chaotic: whether a rounding of the start
-    grows exponentially; from `horizon` [s] on nobody knows the positions, which part as
-    exp(lyapunov t).
+    q, v: all nodes. made_by: the two methods that agree. chaotic: whether a rounding of the start
+    grows exponentially, as exp(lyapunov t). Positions are unknown from the time `horizon` [s] on.
     """
 
     until: float
@@ -59,13 +59,13 @@ class Reference:
         )
 
     def require(self, of: Scene | System, q0: ArrayLike | None, v0: ArrayLike | None) -> None:
-        """A sentence where it is the reference of another motion."""
+        """Raises ValueError if it is the reference of another motion."""
         if self._motion != motion_of(of, q0, v0):
             raise ValueError("reference: it is that of another scene, System or start")
 
     def errors(self, motion: Solution | State | ArrayLike, v: ArrayLike | None = None) -> Errors:
-        """The errors of a solution that ended at `until`, or of q and v of all nodes there, whoever
-        computed them."""
+        """The errors of a solution that ended at `until`, or of any q and v of all nodes at that
+        time."""
         state = motion.end if isinstance(motion, Solution) else motion
         if isinstance(state, State):
             if state.t != self.until:
@@ -95,8 +95,8 @@ def reference(
     v0: ArrayLike | None = None,
     seconds: float = 10,
 ) -> Reference:
-    """A certified motion, made in about so many seconds at most by two unlike ways. Raises NoReference
-    where either never reaches the end."""
+    """Makes a certified motion by two unlike methods, in about `seconds` at most. Raises
+    NoReference if either never reaches the end."""
     require_measurable(of, "reference")
     end, limit = end_of(of, until), seconds_of(seconds, "seconds")
     model = model_of(of, q0, v0)
@@ -106,7 +106,7 @@ def reference(
 
 
 def motion_of(of: Scene | System, q0: ArrayLike | None, v0: ArrayLike | None) -> tuple[Any, ...]:
-    """What tells one motion from another."""
+    """All that distinguishes a motion from another."""
     if isinstance(of, Scene):
         return (of.content_hash(),)
     start = (None if x is None else floats(x, "start").tobytes() for x in (q0, v0))

@@ -1,4 +1,4 @@
-"""What is drawn: nodes, springs, gravity."""
+"""Scenes: nodes, springs, gravity."""
 
 from __future__ import annotations
 
@@ -17,14 +17,13 @@ from qddot._mesh import mesh_toml
 class Scene:
     """A network of masses and springs, immutable.
 
-    positions: (nodes, dimension) [m], dimension 1, 2 or 3. springs: (springs, 2), the nodes of each,
-    from 0. stiffness [N/m], rest_length [m] (default: as drawn) and quartic [N/m^3] (default: none):
-    of each spring, or one for all. mass [kg]: of each node, or one for all; 0 is massless. pinned:
-    the nodes that stay, by number or as a mask. gravity: (dimension) [m/s^2]. velocities: as
-    positions [m/s]. until [s]: the end of its runs where none is asked for. stiff_above [N/m]:
-    springs of more are the stiff ones of methods that take these apart. With starts_at_equilibrium
-    its motion begins at rest, downhill from the positions. Raises InvalidInput, in a sentence, for
-    what cannot be.
+    positions: (nodes, dimension) [m], dimension 1, 2 or 3. springs: (springs, 2), the nodes of
+    each, from 0. stiffness [N/m], rest_length [m] (default: as drawn) and quartic [N/m^3] (default:
+    none): of each spring, or one for all. mass [kg]: of each node, or one for all; 0 is massless.
+    pinned: the fixed nodes, by number or as a mask. gravity: (dimension) [m/s^2]. velocities: as
+    positions [m/s]. until [s]: the default end time of runs. stiff_above [N/m]: stiffer springs are
+    the stiff ones for methods that separate these. starts_at_equilibrium: whether the motion begins
+    at rest, downhill from the positions. Raises InvalidInput, with one sentence, for wrong input.
     """
 
     _handle: _qddot.Scene
@@ -98,12 +97,12 @@ class Scene:
 
     @classmethod
     def load(cls, name_or_path: str | os.PathLike[str]) -> Scene:
-        """The scene of a TOML file, or that a generator draws by its standard values."""
+        """The scene of a TOML file, or of a generator with its default values."""
         return cls._of(_qddot.Scene.load(os.fspath(name_or_path)))
 
     @classmethod
     def from_toml(cls, text: str, folder: str | os.PathLike[str] = ".") -> Scene:
-        """The scene of a TOML text; meshes that it names are sought from the folder."""
+        """The scene of a TOML text; paths of meshes in it are relative to the folder."""
         return cls._of(_qddot.Scene.parse(text, "the text", os.fspath(folder)))
 
     @classmethod
@@ -120,8 +119,8 @@ class Scene:
         gravity: Sequence[float] | None = None,
         until: float | None = None,
     ) -> Scene:
-        """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh): every edge is a spring at its own
-        length. `pins`: boxes (min, max) whose nodes stay."""
+        """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh): every edge is a spring at its rest
+        length. `pins`: boxes (min, max) whose nodes are fixed."""
         path = os.path.abspath(os.fspath(file))
         numbers = {
             "stiffness": stiffness,
@@ -138,12 +137,12 @@ class Scene:
 
     @property
     def until(self) -> float | None:
-        """The end of its runs where none is asked for [s]."""
+        """The default end time of runs [s]."""
         return self._handle.until
 
     @property
     def stiff_above(self) -> float | None:
-        """Springs of more stiffness than that [N/m] are the stiff ones."""
+        """Springs with more stiffness than this [N/m] are the stiff ones."""
         return self._handle.stiff_above
 
     @property
@@ -153,7 +152,7 @@ class Scene:
 
     @property
     def warnings(self) -> list[str]:
-        """What one should know of how the scene was read."""
+        """Warnings from reading the scene."""
         return self._handle.warnings
 
     @property
@@ -173,7 +172,7 @@ class Scene:
 
     @property
     def pinned(self) -> NDArray[np.bool_]:
-        """(nodes), whether each stays where it is."""
+        """(nodes), whether each is fixed."""
         return frozen(self._handle.pinned)
 
     @property
@@ -202,7 +201,7 @@ class Scene:
         return frozen(self._handle.quartic)
 
     def replace(self, **changes: Any) -> Scene:
-        """The same scene but for these arguments of Scene()."""
+        """The same scene with these arguments of Scene() replaced."""
         names = (
             "positions springs stiffness mass pinned gravity velocities rest_length quartic name "
             "until stiff_above starts_at_equilibrium"
@@ -226,15 +225,16 @@ class Scene:
         return self._handle.content_hash()
 
     def explain(self, keep: Sequence[str] = ()) -> Explanation:
-        """What is left of it to be integrated and why, w_max and the largest stable step."""
+        """The unknowns that remain, the reductions with their reasons, w_max and the largest stable
+        step."""
         record = self._model(keep=keep).explain()
         record["left_out"] = tuple(record["left_out"])
         return Explanation(**record)
 
     def model(self, keep: Sequence[str] = ()) -> _qddot.Model:
-        """The smallest system that moves as the scene does: mass, force(q), potential(q) and, as
-        (data, indices, indptr) of its lower triangle, stiffness(q), over the unknowns q alone;
-        nodes_at(q, v, t) has all nodes. `keep`: reductions that are not made."""
+        """The smallest system with the motion of the scene, over its unknowns q: mass, force(q),
+        potential(q) and stiffness(q), as (data, indices, indptr) of its lower triangle. nodes_at(q,
+        v, t) has all nodes. `keep`: reductions to leave out."""
         return self._model(keep=keep)
 
     def _started(self) -> _qddot.Scene:
@@ -245,7 +245,7 @@ class Scene:
     def _model(
         self, method: str | None = None, accepts_massless: bool = False, keep: Sequence[str] = ()
     ) -> _qddot.Model:
-        # What a method has left of a scene depends on no more of it than that.
+        # The reductions that a method allows depend on these of its properties alone.
         key = (accepts_massless, *sorted(keep))
         if key not in self._models:
             name = method if accepts_massless else None

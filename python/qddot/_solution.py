@@ -1,4 +1,4 @@
-"""What comes of a run."""
+"""The result of a run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from qddot._arrays import Floats
 
 
 class RunFailed(RuntimeError):
-    """A run that did not reach its end or its accuracy; `solution` has how far it came and why."""
+    """A run that did not reach its end or its accuracy; `solution` has the time it reached and the
+    reason."""
 
     def __init__(self, solution: Solution) -> None:
         super().__init__(solution.message)
@@ -56,15 +57,15 @@ class State:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Solution:
-    """The motion that a method computed, at the times t of `save_at` that it reached (at its end alone
-    where none were asked for), and at its end.
+    """The motion that a method computed, at the times t of `save_at` that it reached (at its end
+    alone if none were asked for), and at its end.
 
     q, v: (times, nodes, dimension), or (times, n) of a System without a dimension; views into one
-    buffer. energy is None for a System without a potential. outcome is "reached_end" or says why
-    not, message in a sentence. seconds is the wall time of the run. Where an accuracy was asked for,
-    error_estimate bounds the relative error, error_estimate_kind says how it was made ("compared",
-    "refined", "conserved", "rounding", "none"), is_reached whether it is at most the accuracy, and
-    horizon [s] from when on nobody can know the motion.
+    buffer. energy is None for a System without a potential. outcome is "reached_end" or the kind of
+    failure; message says it in a sentence. seconds is the wall time of the run. If an accuracy was
+    asked for: error_estimate bounds the relative error, error_estimate_kind says how the bound was
+    made ("compared", "refined", "conserved", "rounding", "none"), is_reached says whether it is at
+    most the accuracy, and the motion is unknown from the time horizon [s] on.
     """
 
     method: str
@@ -92,19 +93,19 @@ class Solution:
 
     @property
     def success(self) -> bool:
-        """Whether the run reached its end and, where one was asked for, its accuracy."""
+        """Whether the run reached its end and, if one was asked for, its accuracy."""
         return self.outcome == "reached_end" and self.is_reached is not False
 
     def or_raise(self) -> Solution:
-        """Itself; raises RunFailed where it is no success."""
+        """Returns itself, or raises RunFailed if it is no success."""
         if not self.success:
             raise RunFailed(self)
         return self
 
     def diagnosis(self, seconds: float = 5) -> str:
-        """Why the run failed and what would have held, found out by trying for some seconds; or, of
-        one that did not fail, what is wrong with its steps all the same. Empty where nothing is to
-        be said, and for a System without V or K."""
+        """Why the run failed, and steps or methods that do not fail, found by trying for some
+        seconds. If it did not fail, what is wrong with its steps, if anything. Empty if there is
+        nothing to say, and for a System without V or K."""
         return self._diagnose(seconds) if self._diagnose else ""
 
     def __getstate__(self) -> dict[str, Any]:

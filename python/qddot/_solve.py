@@ -43,21 +43,22 @@ def solve(
     solver: str | None = None,
     compensated: bool | None = None,
 ) -> Solution:
-    """The motion of a scene, or of a System from q0 and v0 (at rest where not given), up to `until`.
+    """The motion of a scene, or of a System from q0 and v0 (default: at rest), up to `until` [s].
 
-    Either by a method at its knob, step_size [s] or rtol (and atol; by default rtol times the
-    scene's own sizes); or, with `accuracy`, a relative error of the positions at the end ("path": at
-    all times, "energy"), by whatever method takes the least time for it, with its error bounded.
+    Give a method and its knob: step_size [s], or rtol (and atol; default: rtol times the scene's
+    own sizes). Or give an `accuracy`: the fastest method for it is found, and its error is bounded.
+    accuracy_of says of what it is the relative error: "positions" at the end, "path" (positions at
+    all times) or "energy".
 
-    save_at: times [s], ascending, from 0 to `until`, at which q and v are returned; where it is not
-    given, they are those of the state that was reached. Methods of fixed steps take the same steps with
-    it and without; SUNDIALS' adaptive ones land on these times. `seconds`: the run is stopped after so
-    many. `keep`: reductions that are not made. The other options are for the methods that name them
+    save_at: times [s], ascending, from 0 to `until`, at which q and v are returned; without it,
+    they are those of the state that was reached. Methods of fixed steps take the same steps with it
+    and without; SUNDIALS' adaptive ones end steps at these times. `seconds`: limit of the run's
+    wall time. `keep`: reductions to leave out. The other options are for the methods that name them
     (Method.takes).
 
-    The GIL is free meanwhile, and Ctrl-C stops the run. A run that fails is a Solution with an
-    outcome. Raises ValueError, in a sentence, for what cannot be asked for; and what a callable of a
-    System raises.
+    The GIL is released during the run, and Ctrl-C stops it. A run that fails returns a Solution
+    with an outcome. Raises ValueError, with one sentence, for wrong arguments, and the exceptions
+    of a System's callables.
     """
     given = dict(
         step_size=step_size,
@@ -103,7 +104,7 @@ def solve(
 
 def _times(save_at: ArrayLike, end: float) -> list[float]:
     times = floats(save_at, "save_at", one=True).reshape(-1).copy()
-    # What np.arange makes of the end may be some roundings beyond it.
+    # The last number of np.arange may be some roundings beyond the end.
     times[(times > end) & (times <= end * (1 + 1e-14))] = end
     if times.size and not (np.all(np.diff(times) >= 0) and times[0] >= 0 and times[-1] <= end):
         raise ValueError(
@@ -225,8 +226,8 @@ def _answer(
     if times is None:
         about["_diagnose"] = _diagnosis(start, chosen, options, end)
         return _at_end(start.of, record, State(**record["end"]), about)
-    # The chosen run once more, seen on its way; it ends at the same place but for methods that land
-    # on the times.
+    # Repeats the chosen run and looks at these times. It ends in the same state, except with
+    # methods that end steps at the times.
     left = None if seconds is None else max(seconds - record["seconds_in_all"], 1e-3)
     run = _run(start, chosen, options, end, times, left, threads)
     message = record["why"] or run.message

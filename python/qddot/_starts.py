@@ -1,4 +1,4 @@
-"""What is run, from where, and until when."""
+"""The model that is run, its start and its end time."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def model_of(
     chosen: Method | None = None,
     keep: Sequence[str] = (),
 ) -> _qddot.Model:
-    """What is run: of a scene what is left of it, of a System itself from that start."""
+    """The model that is run: a scene after its reductions, or a System from that start."""
     if isinstance(of, System):
         if keep:
             raise ValueError("keep: it is for scenes; nothing is left out of a System")
@@ -42,7 +42,7 @@ def model_of(
 
 
 def end_of(of: Scene | System, until: float | None) -> float:
-    """The time to run to: that asked for, or the scene's own."""
+    """The time to run to [s]: the one asked for, or the scene's own."""
     own = of.until if isinstance(of, Scene) else None
     if own is None and until is None:
         raise ValueError("until is missing; it is the time to run to in s, above 0")
@@ -53,7 +53,7 @@ def end_of(of: Scene | System, until: float | None) -> float:
 
 
 def require_measurable(of: Scene | System, what: str) -> None:
-    """A sentence for a System that has not what references and answers take."""
+    """Raises ValueError for a System without the V and K that references and answers need."""
     if not isinstance(of, System):
         return
     for has, missing in (
@@ -65,7 +65,7 @@ def require_measurable(of: Scene | System, what: str) -> None:
 
 
 def require_offered(of: System, chosen: Method) -> None:
-    """A sentence for a method that needs what the System does not compute."""
+    """Raises ValueError for a method that needs something that the System does not compute."""
     others = {
         "constant_stiffness": "a K that is the same everywhere",
         "split_forces": "stiff springs",
@@ -95,7 +95,7 @@ def seconds_of(value: object, name: str) -> float:
 
 @dataclass(frozen=True)
 class Start:
-    """What is run, and from where."""
+    """The model that is run, and its start."""
 
     of: Scene | System
     q0: ArrayLike | None
@@ -103,7 +103,7 @@ class Start:
     keep: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        # A diagnosis may ask again when the caller's arrays have become others.
+        # A copy: a diagnosis may ask again after the caller's arrays have changed.
         for name in ("q0", "v0"):
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else np.array(value))

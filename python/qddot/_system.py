@@ -1,4 +1,4 @@
-"""An own M q'' = f(q): by callables, or by C functions at full speed."""
+"""Your own M q'' = f(q), by Python callables or, at full speed, by C functions."""
 
 from __future__ import annotations
 
@@ -19,28 +19,30 @@ if TYPE_CHECKING:
 
 
 class System:
-    """Forces of one's own: M q'' = f(q), with f = -dV/dq.
+    """Your own forces: M q'' = f(q), with f = -dV/dq.
 
-    mass [kg]: (n), or (nodes) and (nodes, dimension) where a dimension 1, 2 or 3 is given. q and f
+    mass [kg]: (n); or (nodes) or (nodes, dimension), if a dimension 1, 2 or 3 is given. q and f
     have the shape (n), or (nodes, dimension).
 
-    force(q, f) writes f [N]. potential(q) returns V [J]. stiffness(q) returns K = df/dq [N/m], n x n and symmetric, as a scipy.sparse matrix or an array; mind the sign, many
-    codes have -K. q and f are views of the solver's memory: q cannot be written, and neither may be
-    kept beyond the call. force and potential may also be C functions (a Numba cfunc, a ctypes or
-    cffi pointer), which cost no more than those of qddot:
+    force(q, f) writes f [N]. potential(q) returns V [J]. stiffness(q) returns K = df/dq [N/m], n x
+    n and symmetric, as a scipy.sparse matrix or an array; mind the sign, many codes have -K. q and
+    f are views of the solver's memory: q is read-only, and neither may be kept after the call.
+    force and potential may also be C functions (a Numba cfunc, a ctypes or cffi pointer), which
+    cost no more than those of qddot:
         void force(const double* q, double* f, int64_t n);
         double potential(const double* q, int64_t n);
 
-    What is missing decides what is offered. By force alone: explicit methods. With potential:
-    energies, and a line search in implicit ones. With stiffness, or a pattern of K (its nonzeros: a
-    sparse or dense matrix of n x n unknowns or of nodes x nodes, pairs (m, 2) of unknowns, or
-    "dense") by which K is made of differences of f: implicit methods, SUNDIALS', references, answers
-    to an accuracy.
+    What you give decides what you can use:
+    - force: explicit methods,
+    - potential: energies, and a line search in implicit methods,
+    - stiffness or `pattern`: implicit methods, SUNDIALS', references, answers to an accuracy.
+    A pattern has the nonzeros of K, which then is made of differences of f: a sparse or dense
+    matrix of n x n unknowns or of nodes x nodes, pairs (m, 2) of unknowns, or "dense".
 
-    `length` [m]: a small length of the motion, for these differences; where not given, how far the
-    start spreads. With `check` the system is looked at beside its first start: f must be finite, -dV/dq,
-    and K what differences of f say. Forces that depend on the velocity or on time are not modelled: a
-    force that takes them is refused.
+    `length` [m]: a small length of the motion, for these differences; default: the extent of the
+    start. `check`: whether the system is checked beside its first start: f must be finite and equal
+    -dV/dq, and K must agree with differences of f. Forces that depend on the velocity or on time
+    are not modelled: a force that takes them is refused.
     """
 
     def __init__(
@@ -88,7 +90,7 @@ class System:
 
     @property
     def dimension(self) -> int | None:
-        """How many coordinates a node has; None where there are no nodes."""
+        """The number of coordinates of a node; None if there are no nodes."""
         return self._dimension
 
     @property
@@ -147,12 +149,13 @@ class System:
         )
 
     def _columns(self, q: Floats) -> Any:
-        """K as the extension takes it: dense, or (data, indices, indptr) of its sorted columns."""
+        """K in the form that the extension takes: dense, or (data, indices, indptr) of its sorted
+        columns."""
         assert self._stiffness is not None
         k = self._stiffness(q)
         if not hasattr(k, "tocsc"):
             return np.asarray(k, dtype=np.float64)
-        # Rows are columns, as K is symmetric. The caller's own matrix stays as it is.
+        # Rows serve as columns, as K is symmetric. The caller's own matrix is not changed.
         if k.format not in ("csr", "csc"):
             k = k.tocsc()
         if not k.has_canonical_format:
@@ -229,6 +232,6 @@ class System:
 
 
 def _size_of(q: Floats) -> float:
-    """How far the start spreads, wherever it is; of one number its own size; else 1."""
+    """The extent of the start; the size of the number if there is only one; else 1."""
     spread = float(np.max(np.ptp(q, axis=0))) if len(q) > 1 else 0.0
     return spread or float(np.max(np.abs(q))) or 1.0

@@ -1,4 +1,4 @@
-"""Where the energy goes in a long run."""
+"""The trend of the energy error in a long run."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from qddot._starts import end_of, seconds_of
 
 @dataclass(frozen=True, repr=False, eq=False)
 class EnergyTrend:
-    """The energy error of a run over time, taken apart.
+    """The energy error of a run over time, separated into drift and oscillation.
 
     error: (E(t) - E(0)) over the motion's largest kinetic energy, at times t. verdict: "bounded",
     "drifts", "dissipates", "grows", "widens", "round_off", "blows_up", "undecided" or "unknown";
-    words says it with numbers. drift [1/s] is (value, low, high), low and high its 95 % interval, of
-    the fitted line; oscillation is half of what 95 % of the errors span about it.
+    words says it with numbers. drift [1/s]: (value, low, high), the slope of the fitted line and
+    its 95 % interval. oscillation: half the span of 95 % of the errors about the line.
     """
 
     method: str
@@ -48,8 +48,9 @@ def energy_trend(
     seconds: float = 60,
     **options: Any,
 ) -> EnergyTrend:
-    """Runs the method on a scene up to `until` [s], for so many seconds at most, and says whether its
-    energy error stays bounded, drifts, is dissipated or blows up. Options as in solve()."""
+    """Runs the method on a scene up to `until` [s], for `seconds` of wall time at most. Says
+    whether its energy error stays bounded, drifts or blows up, or its energy is dissipated. Options
+    as in solve()."""
     if not isinstance(of, Scene):
         raise TypeError("energy_trend is for a qddot.Scene, whose momenta are known")
     chosen = method_named(method)

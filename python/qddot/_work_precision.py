@@ -53,11 +53,11 @@ class Point:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class WorkPrecision:
-    """What every method takes and misses by, from coarse to fine, against a reference.
+    """Times and errors of every method, from coarse to fine, against a reference.
 
-    points: a structured array with the columns of points.csv, fit for pandas.DataFrame(points);
-    front: the fastest point at each accuracy, with the best of each family. In a notebook it draws
-    itself, if matplotlib is there.
+    points: a structured array with the columns of points.csv, fit for pandas.DataFrame(points).
+    front: the fastest point at each accuracy, with the best of each family. A notebook shows the
+    chart, if matplotlib is installed.
     """
 
     reference: Reference
@@ -66,15 +66,15 @@ class WorkPrecision:
     scene: str
 
     def _judged(self) -> NDArray[np.float64]:
-        """What each point's accuracy is judged by, at most."""
-        # Beyond the horizon positions are known to nobody.
+        """Upper bounds of the errors that decide each point's accuracy."""
+        # Positions are unknown beyond the horizon.
         column = "error_energy_max" if self.reference.beyond_horizon else "error_position_at_most"
         error = np.array(self.points[column], dtype=float)
         error[self.points["outcome"] != "reached_end"] = np.inf
         return np.where(np.isnan(error), np.inf, error)
 
     def best(self, accuracy: float) -> Point | None:
-        """The fastest point that is known to come to the accuracy; None where none is."""
+        """The fastest point that is known to reach the accuracy; None if there is none."""
         good = np.flatnonzero(self._judged() <= accuracy)
         if good.size == 0:
             return None
@@ -84,12 +84,12 @@ class WorkPrecision:
 
     def save(self, folder: str | os.PathLike[str]) -> None:
         """Writes points.csv, front.csv and reference.json into the folder, as the program
-        work_precision does, which its pictures are drawn from."""
+        work_precision does. Pictures are drawn from these files."""
         tables = {"points": self.points, "front": self.front}
         save(folder, tables, self.scene, self.reference._record)
 
     def draw(self, path: str | os.PathLike[str]) -> None:
-        """Draws the chart into a PNG or SVG file. Raises RuntimeError where matplotlib is missing."""
+        """Draws the chart into a PNG or SVG file. Raises RuntimeError if matplotlib is missing."""
         with tempfile.TemporaryDirectory() as parent:
             folder = os.path.join(parent, "chart")
             self.save(folder)
@@ -149,7 +149,7 @@ def _table(names: Sequence[str], records: list[dict[str, Any]]) -> NDArray[Any]:
 
 
 class _Progress:
-    """A line on stderr that says what was measured last."""
+    """A line on stderr with the last measured point."""
 
     def __init__(self) -> None:
         self.shown = 0
@@ -179,11 +179,12 @@ def work_precision(
     reference_seconds: float = 10,
     progress: bool | Callable[[Point], None] = False,
 ) -> WorkPrecision:
-    """Measures methods, all that can run it where none are named, over the values of their knobs.
+    """Measures methods over the values of their knobs; without names, all that can run the scene or
+    System.
 
-    A run takes `point_limit` seconds at most and is timed `repeats` times, one after the other on one
-    thread. `reference`: one that was made of the same. `progress`: True for a line on stderr, or a
-    callable that sees each point.
+    A run takes `point_limit` seconds at most and is timed `repeats` times on one thread.
+    `reference`: one of the same motion. `progress`: True for a line on stderr, or a callable that
+    is called with each point.
     """
     require_measurable(of, "work_precision")
     if isinstance(methods, str):

@@ -1,5 +1,5 @@
-"""Scenes drawn from a few numbers: qddot.scenes.cloth(nodes=30). dir(qddot.scenes) lists them, and
-help() says which numbers each takes, in which range."""
+"""Generators of scenes: qddot.scenes.cloth(nodes=30). dir(qddot.scenes) lists them, and help() says
+which parameters each takes, with their ranges."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from qddot._scene import Scene
 
 
 class Generator(Protocol):
-    """Draws a scene; parameters that are not named take their standard value."""
+    """Draws a scene; parameters that are not given have their default values."""
 
     def __call__(self, **parameters: float) -> Scene: ...
 

@@ -81,8 +81,8 @@ SymmetricMatrix chain(int n, double stiffness) {
 
 }  // namespace
 
-// What the residual leaves in the largest norm is the tolerance times at most the root of the ratio
-// of the largest and smallest block, 1e2 for the scenes' masses and stiffnesses, and of n.
+// The residual in the largest norm is at most the tolerance times the root of n and of the ratio of
+// the largest and smallest block. That ratio is 1e2 for the scenes' masses and stiffnesses.
 BOOST_AUTO_TEST_CASE(every_scene_is_solved_or_known_to_be_indefinite) {
   int found = 0, indefinite = 0;
   for (const Generator& generator : generators()) {
@@ -143,9 +143,9 @@ BOOST_AUTO_TEST_CASE(the_tolerance_is_what_is_left) {
   }
 }
 
-// |e_i|_A <= 2 ((root - 1)/(root + 1))^i |e_0|_A with root = sqrt(kappa), and a residual is at most
-// root times as large beside the first as the error beside the first: after root/2 ln(2 root/tol)
-// iterations it is below tol. One iteration brings the right-hand side one mass further along.
+// |e_i|_A <= 2 ((root - 1)/(root + 1))^i |e_0|_A with root = sqrt(kappa), and the relative residual
+// is at most root times the relative error. So it is below tol after root/2 ln(2 root/tol)
+// iterations. One iteration brings the right-hand side one mass further along.
 BOOST_AUTO_TEST_CASE(iterations_grow_with_the_root_of_the_condition_number) {
   constexpr int n = 400;
   constexpr double tolerance = 1e-8;
@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(too_many_iterations_are_given_up) {
   BOOST_TEST((factors->solve(Vec::Unit(n, 0), x) == SolveOutcome::not_converged));
 }
 
-// From both sides of the s at which the largest eigenvalue lambda of M^-1 K makes M - s K
+// s lies on both sides of the value at which the largest eigenvalue lambda of M^-1 K makes M - s K
 // indefinite.
 BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_found_out_by_a_right_hand_side_that_sees_it) {
   for (const auto& at :
@@ -192,7 +192,8 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_found_out_by_a_right_hand_side_that
     const bool passes = factors->factorize_positive(1, 1.01 / lambda, at.k);
     BOOST_TEST((factors->solve(b, x) == SolveOutcome::indefinite));
     BOOST_TEST(factors->negative_pivots() == 1);
-    // And not by one in the eigenvectors of P^-1 A of which it is positive, where it is solved.
+    // A right-hand side in the eigenvectors of P^-1 A with positive eigenvalues does not find it
+    // out; it is solved.
     if (!passes) continue;
     BOOST_TEST(factors->factorize_positive(1, 1.01 / lambda, at.k));
     const SymmetricMatrix a = whole(at.mass(), 1.01 / lambda, at.k);

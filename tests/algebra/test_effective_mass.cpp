@@ -44,7 +44,7 @@ Case scene_case(const std::string& name, const GeneratorValues& values, double s
   return {{reduced, &reduced->system()}, reduced->initial().q};
 }
 
-// From one unknown with a simplicial factor to a few hundred with a supernodal one.
+// Cases from one unknown with a simplicial factor to a few hundred with a supernodal one.
 std::vector<Case> cases(double stretch) {
   std::mt19937 random(3);
   std::vector<Case> all;
@@ -75,7 +75,7 @@ struct Compressed {
   double lambda;  // the largest eigenvalue, positive
 };
 
-// Those of the compressed cases that can be indefinite. In 1D none can: a spring has no direction
+// Those of the compressed cases that can be indefinite. None can in 1D: a spring has no direction
 // across.
 const std::vector<Compressed>& compressed_cases() {
   static const std::vector<Compressed> all = [] {
@@ -88,8 +88,8 @@ const std::vector<Compressed>& compressed_cases() {
   return all;
 }
 
-// |A x - b| over |A| |x| + |b|, in the largest norm, of a solve with the last factors: how far the
-// matrix that was solved with is from A.
+// |A x - b| over |A| |x| + |b|, in the largest norm, of a solve with the last factors. It is the
+// relative distance of the factorised matrix to A.
 double backward_error(EffectiveMass& solver, const Eigen::MatrixXd& a) {
   const Vec b = Vec::LinSpaced(a.rows(), -1, 2);
   Vec x(a.rows());
@@ -194,7 +194,8 @@ BOOST_AUTO_TEST_CASE(factors_again_and_again_whatever_came_before) {
       BOOST_TEST(solver.factorize_positive(1, s, k) == (expected == Definiteness::positive));
       BOOST_TEST(solver.factorize(1, s, k) == expected);
       BOOST_TEST(backward_error(solver, a) < indefinite_tolerance);
-      // Between them one that leaves no usable factors, and one that is indefinite.
+      // Two factorisations come between: one leaves no usable factors, one is of an indefinite
+      // matrix.
       BOOST_TEST(solver.factorize(0, 0, k) == Definiteness::singular);
       BOOST_TEST(solver.factorize(1, 1.5 / lambda, c.k()) == Definiteness::indefinite);
     }
@@ -245,8 +246,8 @@ BOOST_AUTO_TEST_CASE(factors_take_the_room_of_their_numbers) {
     for (const Case& c : cases(1.2)) {
       const Index n = c.system->size(), entries = c.system->stiffness_pattern().nonZeros();
       const EffectiveMass solver(*c.system, who);
-      // L has at least the entries of K's lower triangle, and at most those of a square, filled up
-      // to strips of 8, besides the pivots; each has 8 bytes, or 12 with its row's index.
+      // Besides the pivots, L has at least the entries of K's lower triangle and at most those of a
+      // square, filled up to strips of 8. An entry has 8 bytes, or 12 with its row's index.
       BOOST_TEST(solver.bytes() >= 8 * entries);
       BOOST_TEST(solver.bytes() <= 12 * (n + 16) * (n + 1));
     }

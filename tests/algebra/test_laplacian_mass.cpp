@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(axes_that_are_alike_have_one_matrix) {
   const Scene scene = cloth(11);
   const ReducedScene whole(scene, Reductions().without(Reduction::mirror));
   BOOST_TEST((LaplacianMass(whole.system()).sizes() == std::vector<Index>{11 * 11 - 2}));
-  // In the mirror x = 0.5 the middle column has no x, and links to images have another sign there.
+  // The middle column has no x in the mirror x = 0.5, and links to images have another sign there.
   const ReducedScene half(scene);
   BOOST_TEST((LaplacianMass(half.system()).sizes() == std::vector<Index>{11 * 6 - 1, 11 * 5 - 1}));
 }

@@ -154,8 +154,8 @@ Solved solve_with(int threads, Factors& factors, const Matrix& m, double s, bool
   return solved;
 }
 
-// Large enough for several threads to divide the work: with one separator or thousands of parts, in
-// the plane and in space, and a front at the top that takes several panels.
+// Cases large enough for several threads: with one separator or thousands of parts, in the plane
+// and in space, and with a front at the top that takes several panels.
 std::vector<Matrix> large_cases() {
   const auto pins = Reductions::only({Reduction::pins});
   std::vector<Matrix> all = {

@@ -130,8 +130,8 @@ BOOST_AUTO_TEST_CASE(signs_of_random_networks_are_those_of_more_digits_at_all_ra
           const auto below = [&](Real value) { return (values.array() < value).count(); };
           BOOST_TEST(signs.negative <= below(0));
           BOOST_TEST(signs.negative + signs.flat >= below(0));
-          // Two rows of K of up to 40 springs' roundings each, 32 eps of both and of k, and what
-          // positions add: all of it is below 1e-12 of the stiffness at the place.
+          // Roundings come from two rows of K with up to 40 springs each (32 eps of both and of k)
+          // and from positions. All of them are below 1e-12 of the stiffness at the place.
           BOOST_TEST(signs.flat <= below(1e-12L) - below(-1e-12L));
           if (signs.flat > 0) {
             const Column rates = reference.eigenvalues(system->mass().cast<Real>());

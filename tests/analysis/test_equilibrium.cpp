@@ -22,8 +22,8 @@ using Outcome = Equilibrium::Outcome;
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-// Whether it is what it says: a place without force to the rounding of its coordinates, from which
-// the energy falls in no direction. The curvature may be negative by rounding, 1e-11 of the row
+// Checks that the equilibrium is a minimum: no force, up to the rounding of its coordinates, and an
+// energy that falls in no direction. The curvature may be negative by rounding, 1e-11 of the row
 // sum.
 void check_minimum(const System& system, const Equilibrium& e, double length) {
   BOOST_TEST((e.outcome == Outcome::reached), e.message);
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(one_mass_hangs_where_its_weight_says) {
 }
 
 BOOST_AUTO_TEST_CASE(hanging_chain_is_stretched_by_the_weight_below_each_spring) {
-  // From the horizontal, and from soft to stiff: 1 kg in all on 1 m.
+  // The chain starts horizontal, soft or stiff, with 1 kg in all on 1 m.
   for (const double stiffness : {30.0, 1e3, 1e6}) {
     const int nodes = 30;
     const auto scene = draw("chain", {{"nodes", nodes}, {"stiffness", stiffness}});
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(upright_pendulum_ends_hanging) {
     const auto system = make_mass_spring(network);
     Vec down = Vec::Zero(dimension);
     down[dimension - 1] = -(l0 + m * g / k);
-    // In exact balance on its compressed spring, and above and below that.
+    // The mass starts in exact balance on its compressed spring, and above and below that.
     for (const double height : {l0 - m * g / k, l0, 0.3, 2.0}) {
       Vec up = Vec::Zero(dimension);
       up[dimension - 1] = height;
@@ -161,8 +161,8 @@ BOOST_AUTO_TEST_CASE(upright_pendulum_ends_hanging) {
 }
 
 BOOST_AUTO_TEST_CASE(saddle_is_left_to_the_lower_side) {
-  // A node in balance between two compressed springs along x, on a third from below whose push its
-  // weight cancels and whose energy is steeper downwards: 1/4 c (y - 0.3)^4.
+  // A node in balance between two compressed springs along x. A third spring pushes from below and
+  // cancels its weight; its energy 1/4 c (y - 0.3)^4 is steeper downwards.
   const SpringLaw beside{.stiffness = 100, .rest_length = 1.1};
   const SpringLaw below{.stiffness = 5, .rest_length = 1.3, .quartic = 20};
   for (const double turn : {1.0, -1.0}) {
@@ -182,7 +182,7 @@ BOOST_AUTO_TEST_CASE(saddle_is_left_to_the_lower_side) {
 
 BOOST_AUTO_TEST_CASE(what_nothing_holds_falls_for_ever) {
   const auto free_chain = draw("chain", {{"nodes", 30}, {"pinned_ends", 0}});
-  // A cloth of which one node hangs on nothing.
+  // A cloth with one node that hangs on nothing.
   Scene torn = generate(*find_generator("cloth"), {{"nodes", 8}}, "test");
   std::erase_if(torn.springs, [](const Spring& s) { return s.nodes[0] == 20 || s.nodes[1] == 20; });
   const ReducedScene torn_cloth(torn, Reductions::all_directions());

@@ -59,8 +59,8 @@ double equation_error(const MotionFrom& motion, const System& system, double t) 
   expected << now.v, force_at(system, now.q).cwiseQuotient(system.mass());
   return distance(finite_difference_jacobian(path, Vec::Constant(1, t), 3e-4), expected);
 }
-// With amplitudes of at most 10 m and frequencies w <= 40 rad/s: h^4 w^6 10 m / 30 = 1e-5 from
-// truncation in v', and rounding far below it.
+// Amplitudes of up to 10 m and frequencies w <= 40 rad/s give a truncation of h^4 w^6 10 m / 30 =
+// 1e-5 in v', and rounding far below it.
 constexpr double difference_error = 1e-5;
 
 }  // namespace

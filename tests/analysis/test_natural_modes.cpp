@@ -76,8 +76,8 @@ double residual(const Case& c, const NaturalModes& modes) {
   return r.cwiseAbs().maxCoeff() / std::sqrt(c.system->mass().maxCoeff());
 }
 
-// What any method may leave of the largest w^2: rounding sums up to about root n of it, and Lanczos
-// stops at a residual of 1e-10 of the inverse, 1e-10 w^2 / (offset of the shift).
+// The error that any method may leave, relative to the largest w^2. Rounding sums up to about root
+// n of it. Lanczos stops at a residual of 1e-10 of the inverse, 1e-10 w^2 / (offset of the shift).
 constexpr double value_tolerance = 1e-13;
 constexpr double vector_tolerance = 1e-9;
 
@@ -221,7 +221,7 @@ BOOST_AUTO_TEST_CASE(massless_nodes_follow_and_leave_the_finite_modes) {
 }
 
 BOOST_AUTO_TEST_CASE(massless_node_that_nothing_holds_is_refused) {
-  // In 3D a straight spring at rest does not hold what is on it sideways.
+  // A straight spring at rest does not hold a node sideways in 3D.
   for (const int n : {3, 200}) {
     Network network{.dimension = 3, .node_mass = Vec::Ones(n)};
     network.node_mass[1] = 0;

@@ -77,7 +77,7 @@ BOOST_AUTO_TEST_CASE(large_cloth_is_counted_as_a_small_one_is) {
 }
 
 BOOST_AUTO_TEST_CASE(free_and_slack_bodies_are_not_unstable) {
-  // At rest lengths nothing holds a chain across, and nothing pushes it there.
+  // Nothing holds a chain at rest lengths across, and nothing pushes it there.
   for (const double pins : {0.0, 1.0, 2.0}) {
     const ReducedScene chain(
         generate(*find_generator("chain"), {{"nodes", 40}, {"pinned_ends", pins}}, "test"),
@@ -87,8 +87,8 @@ BOOST_AUTO_TEST_CASE(free_and_slack_bodies_are_not_unstable) {
 }
 
 BOOST_AUTO_TEST_CASE(strut_between_two_forces_buckles_in_two_directions) {
-  // One node between two pins on springs that are compressed by 10 %: -K = k across the line is
-  // 2 tau / l < 0, and 2 k along it.
+  // One node between two pins, on springs compressed by 10 %: -K is 2 tau / l < 0 across the line
+  // and 2 k along it.
   const auto system =
       make_mass_spring({.dimension = 3,
                         .node_mass = Vec::Ones(1),

@@ -52,8 +52,8 @@ Table points(const std::string& list, const Words& more, const std::string& scen
   return read_csv(folder / "out/points.csv");
 }
 
-// 30 masses in a row between two pins, linear, that start as their slowest mode: the others' h w
-// lie where BDF of order 3 to 5 lets vibrations grow.
+// 30 masses in a row between two pins, linear, that start in their slowest mode. The h w of the
+// other modes lie where vibrations grow with BDF of order 3 to 5.
 std::string slowest_mode() {
   constexpr int masses = 30;
   std::string nodes, springs;
@@ -192,8 +192,7 @@ BOOST_AUTO_TEST_CASE(options_of_how_steps_are_solved_are_refused_where_they_mean
 }
 
 BOOST_AUTO_TEST_CASE(iterations_follow_the_solve_tolerance_and_damping_the_spectral_radius) {
-  // At one of the step sizes from the coarsest on: how many there are depends on the time they
-  // take.
+  // One of the step sizes, counted from the coarsest: their number depends on the time they take.
   const auto seventh = [](const Table& table, const char* column) {
     return table.value(6, column);
   };

@@ -20,7 +20,7 @@ std::string said(const Method& method, const Scene& scene) {
   return refusal_of([&] { require_fit(method, ReducedScene(scene), scene.name); });
 }
 
-// In two parts, and with stiff springs in one of them if asked for.
+// A scene in two parts, one of them with stiff springs if asked for.
 Scene pairs(std::optional<double> stiff_above) {
   Scene scene{.name = "two pairs", .dimension = 2, .stiff_above = stiff_above};
   for (const double x : {0., 3.}) {

@@ -15,7 +15,7 @@ using namespace qddot::command;
 
 namespace {
 
-// What is said of a file with this text, of which the columns a and b are needed.
+// The message on a file with this text, if the columns a and b are needed.
 std::string complaint(const std::string& text) {
   const Folder folder;
   const std::string path = folder.write("x.csv", text);

@@ -1,4 +1,4 @@
-"""Folders of results that studies wrote before, to be found, spoiled, by those that are fuzzed."""
+"""Folders of results that studies wrote before, spoiled for the fuzzed studies to find."""
 
 import os
 import subprocess

@@ -8,11 +8,12 @@ them.
 Two ways to fail a write. "limit": RLIMIT_FSIZE with SIGXFSZ ignored, so that every write beyond n
 bytes of a file fails with EFBIG, as one on a full disk fails with ENOSPC. This reaches the writes
 inside glibc's stdio, which no preloaded library sees, as they are not called through the linker's
-table. "disk": a tmpfs of 1 MB, filled but for n bytes, where the calls fail that make files and
-folders, too. n runs from 0 to where the program has room enough.
+table. With "disk", a tmpfs of 1 MB is filled up to n bytes, so that calls which make files and
+folders fail too. n runs from 0 to a size with enough room for the program.
 
-Wanted: status 0 with all files whole, or 2 or 3 with one sentence that names a file; results of an
-earlier run whole and as they were or replaced; no .part file left. Status 1: something was found.
+A program must end with status 0 and whole files, or with 2 or 3 and one sentence that names a file.
+Results of an earlier run must stay whole, unchanged or replaced. No .part file may be left. Status
+1: something was found.
 """
 
 import argparse

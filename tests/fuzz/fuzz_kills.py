@@ -5,10 +5,10 @@ disturbed.
   tests/fuzz/fuzz_kills.py --bin build/bin --kills 200 --jobs 2
   tests/fuzz/fuzz_kills.py --bin build/bin --kills 3 --study convergence,energy_drift
 
-A trial sends SIGKILL, SIGINT or SIGTERM at a moment that is uniform in the study's duration, one
-to three times, and runs the same command with --resume until it ends. All columns but measured
-times have to be equal, to the digit; no .part file may be left at the end. After SIGINT and SIGTERM the
-status is 130, what tables there are are whole, and each sidecar says "interrupted". Status 1:
+A trial sends SIGKILL, SIGINT or SIGTERM one to three times, at moments that are uniform in the
+study's duration. Then it runs the same command with --resume until it ends. All columns but
+measured times must be equal, to the digit; no .part file may be left at the end. After SIGINT and
+SIGTERM the status is 130, all tables are whole, and each sidecar says "interrupted". Status 1:
 something was found.
 """
 
@@ -119,9 +119,7 @@ class Study:
             # What an earlier kill left goes when a run first writes there, which this one may not
             # have come to.
             names = [
-                n
-                for n in names
-                if not (n.endswith(".part") and os.path.join(results, n) in before)
+                n for n in names if not (n.endswith(".part") and os.path.join(results, n) in before)
             ]
             found += [f"after {which.name}: {fault}" for fault in faults(results, names)]
             found += [

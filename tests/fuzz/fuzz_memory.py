@@ -3,10 +3,10 @@
 
   tests/fuzz/fuzz_memory.py --bin build/bin --sizes 10 --jobs 2
 
-The least address space in which a program prints its help, and the least in which it does its
-work, are found by bisection; the sizes between are tried. Wanted: status 0, or 2 or 3 with a
-sentence on memory that has a number in it, and files whole or not there at all. Status 1:
-something was found.
+Bisection finds the least address space in which a program prints its help, and the least in which
+it does its work. Sizes between these are tried. A program must end with status 0, or with 2 or 3
+and a sentence on memory with a number in it. Files must be whole or missing. Status 1: something
+was found.
 """
 
 import argparse
@@ -96,8 +96,8 @@ def attempt(argv, place, size):
 
 
 def least(argv, place, low, high):
-    """The least size in bytes, within 2 %, from which on the command ends with status 0; None if
-    at none.
+    """The least size in bytes, within 2 %, above which the command ends with status 0; None if
+    there is none.
     """
     if attempt(argv, place, high)[0].status != 0:
         return None

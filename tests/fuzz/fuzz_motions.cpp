@@ -1,11 +1,11 @@
-// Does a scene move as it is drawn, whatever is left out of it and whatever method steps it?
+// Does a scene move as it is drawn, with any reductions and any method?
 //
 //   fuzz_motions --count 1000 --seed 1
 //   fuzz_motions --seconds 3600
 //
-// Each scene is made by chance (tests/independent/random_scene.hpp). Its motion to a horizon of
-// some vibrations is computed by a model that shares nothing with qddot's but the scene: plain
-// forces, spring by spring, in long double, by extrapolation. Held against it are
+// Each scene is random (tests/independent/random_scene.hpp). An independent model computes its
+// motion over some vibrations. It shares only the scene with qddot's model: plain forces, spring by
+// spring, in long double, by extrapolation. These are compared with it:
 //   states    energies, force and what is drawn, for each set of reductions, at and near the start;
 //   motions   the end of the motion with each set of reductions;
 //   methods   and the end by every method, of every tenth scene.
@@ -66,15 +66,15 @@ int main(int argc, char** argv) {
                "fuzz_motions");
   std::uint64_t count = 1'000'000'000, seed = 1, methods_every = 10;
   double seconds = 0;
-  app.add_option("--count", count, "how many scenes at most");
-  app.add_option("--seconds", seconds, "for so long at most (default: without end)");
-  app.add_option("--seed", seed, "of the first scene; each later one has the next number")
+  app.add_option("--count", count, "the largest number of scenes");
+  app.add_option("--seconds", seconds, "the longest time in s (default: without end)");
+  app.add_option("--seed", seed, "the seed of the first scene; each later one has the next number")
       ->capture_default_str();
   app.add_option("--methods-every", methods_every,
-                 "the scenes by whose motions every method is tried: 1 all, 10 every tenth, 0 none")
+                 "try every method on every so many-th scene: 1 all, 10 every tenth, 0 none")
       ->capture_default_str();
   std::string only;
-  app.add_option("--kind", only, "scenes of one kind alone, as coincident or massless");
+  app.add_option("--kind", only, "only scenes of this kind, as coincident or massless");
   CLI11_PARSE(app, argc, argv);
   return qddot::fuzz(count, seed, seconds, methods_every, only);
 }

@@ -1,15 +1,15 @@
-// Does what a reference certifies bound its error?
+// Does the certified error of a reference bound its true error?
 //
 //   fuzz_references --count 200 --seed 1
 //
-// The reference of each random scene is held against the motion of the scene as drawn, in quadruple
-// precision and by a model that shares nothing with the one under test (tests/independent). Printed
-// are the scenes whose error is larger than certified, the part of scenes whose error is not, and
-// quantiles of the certified over the true error. Status 1 where less than 99 % are covered.
+// The reference of each random scene is compared with the motion of the scene as drawn. That motion
+// is computed in quadruple precision by an independent model (tests/independent). The program
+// prints the scenes whose error is larger than certified, the fraction of scenes whose error is
+// not, and quantiles of the certified over the true error. Status 1 if less than 99 % are covered.
 //
-// A motion that symmetry reduced is the drawn one only as far as the rounding of the start, which
-// is off the symmetry, does not grow. Where that is known to move the end farther than is
-// certified, the error may be ten times that, and the scene counts as out of symmetry.
+// A motion that was reduced by symmetry is the drawn one only while the rounding of the start,
+// which breaks the symmetry, does not grow. If this rounding is known to move the end by more than
+// the certified error, the error may be ten times that, and the scene counts as out of symmetry.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -163,11 +163,10 @@ int main(int argc, char** argv) {
   std::uint64_t count = 200, seed = 1;
   double seconds = 2;
   bool shows_all = false;
-  app.add_option("--count", count, "how many scenes")->capture_default_str();
-  app.add_option("--seed", seed, "of the first scene; each later one has the next number")
+  app.add_option("--count", count, "number of scenes")->capture_default_str();
+  app.add_option("--seed", seed, "the seed of the first scene; each later one has the next number")
       ->capture_default_str();
-  app.add_option("--seconds", seconds, "that the making of a reference may take")
-      ->capture_default_str();
+  app.add_option("--seconds", seconds, "seconds that a reference may take")->capture_default_str();
   app.add_flag("--all", shows_all, "print each scene, not only those not covered");
   CLI11_PARSE(app, argc, argv);
   return qddot::fuzz(count, seed, seconds, shows_all);

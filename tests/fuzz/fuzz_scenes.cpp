@@ -142,8 +142,8 @@ int fuzz(std::uint64_t count, std::uint64_t seed) {
 int main(int argc, char** argv) {
   CLI::App app("Reads spoiled scene and mesh files.", "fuzz_scenes");
   std::uint64_t count = 10'000, seed = 1;
-  app.add_option("--count", count, "how many inputs")->capture_default_str();
-  app.add_option("--seed", seed, "of the first input; each later one has the next number")
+  app.add_option("--count", count, "number of inputs")->capture_default_str();
+  app.add_option("--seed", seed, "the seed of the first input; each later one has the next number")
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   return qddot::fuzz(count, seed);

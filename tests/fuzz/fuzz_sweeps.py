@@ -4,11 +4,11 @@ that was never disturbed.
 
   tests/fuzz/fuzz_sweeps.py --bin build/bin --trials 20 --seed 1
 
-A trial runs several shards of a small study at once, some of them twice. Again and again it sends
-SIGKILL, SIGTERM or SIGINT to one of them, or SIGKILL to the program that it runs, or cuts a file that
-a killed process left, and starts the shard anew. In between no whole task may change or go. At the
-end all points are those of the sweep that was not disturbed, to the digit but for measured times, and
-no file of a begun task is left. Status 1: something was found.
+A trial runs several shards of a small study at once, some of them twice. It repeatedly sends
+SIGKILL, SIGTERM or SIGINT to a shard, or SIGKILL to the program of a shard, or cuts a file that a
+killed process left. Then it starts the shard again. No complete task may change or vanish
+meanwhile. All points at the end must equal those of the undisturbed sweep, to the digit except for
+measured times. No file of a begun task may be left. Status 1: something was found.
 """
 
 import argparse

@@ -13,8 +13,8 @@ class Mutator {
   explicit Mutator(std::uint64_t seed) : random_(seed) {}
 
   std::size_t below(std::size_t n) { return n == 0 ? 0 : random_() % n; }
-  // `text` with one to eight changes: bytes, ranges, lines, words and numbers altered, repeated,
-  // swapped or left out; parts of `other`, nesting and bytes that are no text put in.
+  // `text` with one to eight changes. Bytes, ranges, lines, words and numbers are altered,
+  // repeated, swapped or left out; parts of `other`, nesting and invalid bytes are inserted.
   std::string spoiled(std::string text, const std::string& other);
 
  private:

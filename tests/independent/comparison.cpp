@@ -42,7 +42,7 @@ std::vector<NamedReductions> sets_of_reductions() {
   return sets;
 }
 
-// For the nodes where they are and as fast, by the independent model.
+// Energies of nodes with these positions and velocities, by the independent model.
 struct PlainEnergies {
   long double kinetic = 0, potential = 0;  // [J]
   // What rounding of the nodes' coordinates is multiplied by in the potential and in a force.
@@ -87,7 +87,7 @@ PlainEnergies plain_energies(const PlainModel<long double>& model, const std::ve
   return plain;
 }
 
-// By how much the reduced scene's energies and force at a state differ from those of all nodes.
+// Differences of the reduced scene's energies and force at a state to those of all nodes.
 void compare_state(const ReducedScene& reduced, const PlainModel<long double>& model,
                    const State& state, std::mt19937_64& random, const std::string& where,
                    Comparisons& all) {
@@ -103,7 +103,7 @@ void compare_state(const ReducedScene& reduced, const PlainModel<long double>& m
   agree("the kinetic energy", reduced.kinetic(state), plain.kinetic, plain.kinetic);
   agree("the potential energy", reduced.potential(state), plain.potential, plain.potential_size);
 
-  // With x = P q + c, f_reduced . w = f . P w for every w; and P w is a difference of velocities.
+  // If x = P q + c, then f_reduced . w = f . P w for every w; P w is a difference of velocities.
   const Index n = reduced.system().size();
   Vec w(n), f(n);
   std::normal_distribution<double> normal;
@@ -111,7 +111,7 @@ void compare_state(const ReducedScene& reduced, const PlainModel<long double>& m
   reduced.system().force(state.q, f);
   const auto fast = reduced.expand({state.t, state.q, w});
   const auto still = reduced.expand({state.t, state.q, Vec::Zero(n)});
-  // In the frame that falls with a part its nodes have no weight.
+  // Nodes of a part have no weight in the frame that falls with it.
   std::vector<bool> has_weight(nodes.size(), true);
   for (const qddot::reduce::Part& part : reduced.parts()) {
     for (const std::size_t node : part.nodes()) has_weight[node] = !part.fall().moves();

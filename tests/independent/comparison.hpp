@@ -23,11 +23,11 @@ class DrawnMotion {
   double known_until() const { return known_until_; }
   bool is_known() const { return known_until_ == until(); }
 
-  // The largest difference of a node's position from the motion at the end, in parts of the largest
-  // displacement, and of its velocity, in parts of the largest speed; the larger of both.
+  // The larger of two errors at the end: the largest of a node's position over the largest
+  // displacement, and the largest of a node's velocity over the largest speed.
   double error(const std::vector<Node>& nodes) const;
-  // What a code has to be forgiven: a thousand times what one rounding of the drawn positions and
-  // velocities does to the end. Some thousand steps make no more of theirs.
+  // The allowed error: a thousand times the effect of one rounding of the drawn positions and
+  // velocities on the end. The roundings of some thousand steps have no larger effect.
   double floor() const { return floor_; }
   // The same difference between two ends.
   double difference(const std::vector<Node>& a, const std::vector<Node>& b) const;
@@ -49,16 +49,16 @@ struct Comparisons {
   Comparisons& operator+=(const Comparisons& more);
 };
 
-// The energies and the force of the reduced scene at its start and at states near it, by each
-// reduction alone, without each, with all and with none: those of all drawn nodes at the same
-// place.
+// Compares the energies and the force of the reduced scene with those of all drawn nodes in the
+// same state, at the start and near it. Sets of reductions are each alone, all but each, all and
+// none.
 Comparisons compare_states(const Scene& scene, std::uint64_t seed);
 
 // The motion with the same sets of reductions, by one method of high order.
 Comparisons compare_reductions(const DrawnMotion& motion);
 
-// The motion by every method that can take the reduced scene, at three values of its knob: as these
-// differ by less and less, so must they from the motion.
+// Compares the motion by every method that can run the reduced scene, at three values of its knob.
+// Their errors must fall as their differences do.
 Comparisons compare_methods(const DrawnMotion& motion);
 
 }  // namespace tests

@@ -7,9 +7,9 @@
 namespace qddot {
 inline namespace tests {
 
-// Newton's iteration on -K d = f over the coordinates of the massless nodes that the scene's
-// dimension has, by Cholesky's factorisation without blocks: where a pivot is not positive the
-// place is no minimum. Steps are halved while they do not lower the potential of the springs.
+// Newton's iteration on -K d = f over the coordinates of the massless nodes in the scene's
+// dimension, by Cholesky's factorisation without blocks. If a pivot is not positive, the place is
+// no minimum. Steps are halved while they do not lower the potential of the springs.
 template <class Real>
 bool PlainModel<Real>::place_massless(Vector& x) const {
   if (massless_.empty()) return true;
@@ -74,8 +74,8 @@ bool PlainModel<Real>::place_massless(Vector& x) const {
       for (std::size_t c = r + 1; c < n; ++c) d[r] -= k[c * n + r] * d[c];
       d[r] /= k[r * n + r];
     }
-    // Converged where rounding no longer lets the residual fall, and that is what it consists of:
-    // on the way down from afar it may rise as well.
+    // Converged if rounding keeps the residual from falling and the residual is as small as
+    // rounding: it may also rise on the way from afar.
     Real extent = 0;
     for (const Real& coordinate : x)
       extent = std::max(extent, coordinate < 0 ? -coordinate : coordinate);

@@ -8,7 +8,7 @@
 namespace qddot {
 inline namespace tests {
 
-// A real of quadruple precision (113 bits), of which the language has no root.
+// A real of quadruple precision (113 bits); the language has no root of it.
 using Quadruple = __float128;
 
 inline double plain_root(double x) { return std::sqrt(x); }
@@ -21,9 +21,9 @@ inline Quadruple plain_root(Quadruple x) {
   return s;
 }
 
-// The equations of motion of a scene as drawn, with nothing left out and nothing shared with the
-// model under test but the scene: positions x and velocities v of all nodes, node after node, three
-// coordinates each; forces one spring after the other. Real is double, long double or Quadruple.
+// The equations of motion of a scene as drawn, without reductions and independent of the model
+// under test. x and v are positions and velocities of all nodes, node after node, three coordinates
+// each. Forces are summed one spring after the other. Real is double, long double or Quadruple.
 template <class Real>
 class PlainModel {
  public:
@@ -110,8 +110,8 @@ class PlainModel {
     return sum;
   }
 
-  // Moves massless nodes from where they are to where no force acts on them, a minimum of V; false
-  // where Newton's iteration finds none. Does nothing where there are none.
+  // Moves massless nodes to a place without force, a minimum of V; false if Newton's iteration
+  // finds none. Does nothing without massless nodes.
   bool place_massless(Vector& x) const;
 
  private:

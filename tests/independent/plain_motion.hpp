@@ -17,11 +17,11 @@ struct PlainState {
   std::vector<Real> x, v;
 };
 
-// The motion of a scene's drawn nodes by extrapolation: Verlet's method over a long step H in
-// n = 1, 2, ... short ones has an error in even powers of 1/n, which Aitken and Neville's scheme
-// takes away up to order 24 (16 in long double) (Hairer, Norsett, Wanner, Solving Ordinary
-// Differential Equations I, II.14). H is chosen so that the last two orders agree to `tolerance` of
-// the motion's size.
+// The motion of a scene's drawn nodes by extrapolation (Hairer, Norsett, Wanner, Solving Ordinary
+// Differential Equations I, II.14). Verlet's method makes a long step H of n = 1, 2, ... short
+// ones. Its error is in even powers of 1/n; Aitken and Neville's scheme removes it up to order 24
+// (16 in long double). H is chosen so that the last two orders agree to `tolerance` of the motion's
+// size.
 template <class Real>
 class PlainMotion {
  public:
@@ -86,8 +86,8 @@ class PlainMotion {
   static constexpr int most_forced_in_a_row = 20;
   using Vector = std::vector<Real>;
 
-  // Leaves the state after h in x_[0], v_[0]; returns how far the last two orders differ, in parts
-  // of the largest motion so far, or nothing where a massless node found no place.
+  // Leaves the state after h in x_[0], v_[0]. Returns the difference of the last two orders over
+  // the largest motion so far; empty if a massless node found no place.
   std::optional<Real> extrapolate(Real h) {
     const std::size_t n = now_.x.size();
     Vector a0(n), a(n), last_x(n), last_v(n);

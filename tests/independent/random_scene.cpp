@@ -47,7 +47,7 @@ bool coincide(const Scene& scene, std::size_t i, std::size_t j) {
 }
 
 // A spring between nodes that is stretched or compressed by up to `strain` where they are drawn.
-// Between nodes at one place only rest length zero is allowed.
+// Nodes at one place are only joined with rest length zero.
 void join(Scene& scene, Chance& chance, std::size_t i, std::size_t j, double strain = 0.2) {
   const double length = (scene.nodes[j].position - scene.nodes[i].position).norm();
   SpringLaw law{.stiffness = chance.decades(1, 3)};
@@ -134,7 +134,7 @@ Scene mirrored(const Scene& half, Chance& chance, int planes, bool part_there) {
   return scene;
 }
 
-// Springs between the ends of which nothing is left, where a rest length needs a direction.
+// Drops springs of length zero, whose rest length would need a direction.
 void drop_impossible(Scene& scene) {
   std::erase_if(scene.springs, [&](const Spring& spring) {
     const auto [i, j] = spring.nodes;
@@ -231,9 +231,9 @@ void shuffle(Scene& scene, Chance& chance) {
   }
 }
 
-// Without pins and thrown as a whole, under gravity in any direction: about its centre of mass it
-// moves anyhow, in a plane, along a line, with massless joints, or not at all. Beside another part
-// at times, which may be pinned.
+// A scene without pins, thrown as a whole, under gravity in any direction. It moves about its
+// centre of mass in any way, in a plane, along a line, with massless joints, or not at all.
+// Sometimes there is another part, which may be pinned.
 Scene falling(Chance& chance, int dimension) {
   const std::size_t variant = chance.below(5);
   if (variant == 2) dimension = std::max(dimension, 2);  // joints on a line are another matter

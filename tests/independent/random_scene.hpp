@@ -15,10 +15,14 @@ struct RandomScene {
   std::string kind;
 };
 
-// Scenes of every kind that reductions look for, and those to be told from them: networks;
-// mirror images, with coincident nodes too; lines, planes and chains, along the axes and askew; a
-// hair out of those; grids at rest in two layers; several parts with free nodes, double and slack
-// springs; springs of rest length zero; massless joints; and all of it far from the origin.
+// Scenes of every kind that reductions look for, and scenes that only look like them:
+// - networks,
+// - mirror images, also with coincident nodes,
+// - lines, planes and chains, along the axes and askew, exact or with a tiny deviation,
+// - grids at rest in two layers,
+// - several parts with free nodes, double and slack springs,
+// - springs of rest length zero, massless joints,
+// - all of these far from the origin.
 RandomScene random_scene(std::uint64_t seed);
 
 }  // namespace tests

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <cstdlib>
 
-// Counts the allocations of the program, those of its libraries among them: operator new, Eigen,
-// CHOLMOD, KLU and SUNDIALS all come to malloc and its siblings, which are defined here and hand on
-// to the C library's. To be included in one file of a program.
+// Counts the allocations of the program and of its libraries. Operator new, Eigen, CHOLMOD, KLU and
+// SUNDIALS all call malloc and its siblings. These are defined here and call the C library's.
+// Include it in one file of a program.
 inline std::atomic<std::int64_t> allocations = 0;
 
 #ifdef __SANITIZE_ADDRESS__

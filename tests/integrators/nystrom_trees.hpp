@@ -7,10 +7,10 @@
 namespace qddot {
 inline namespace tests {
 
-// A term of the Taylor series of q'' = g(q) and what the stages of a Nystrom method make of it
-// (Hairer, Norsett and Wanner, Solving ODEs I, section II.14): the derivative of g in c_i v of some
-// copies and in the terms of `children` of the others. g along the motion has it as
-// exact h^(order - 1), stage i as phi_i h^(order - 1).
+// A term of the Taylor series of q'' = g(q), and its value in the stages of a Nystrom method
+// (Hairer, Norsett and Wanner, Solving ODEs I, section II.14). It is a derivative of g, in the
+// direction of v for some arguments and in those of the terms `children` for the others. It is
+// exact h^(order - 1) in g along the motion, and phi_i h^(order - 1) in stage i.
 struct NystromTree {
   int order;
   double exact;
@@ -32,7 +32,7 @@ class NystromTrees {
       }
     }
     for (int order = 1; order <= highest_order; ++order) {
-      // With the same children and as many copies in v as bring it to its order.
+      // The tree with the same children and as many copies in v as its order needs.
       const std::size_t complete = trees_.size();
       grow({1, 1, Vec::Ones(s), Vec::Ones(s)}, order, 0, complete);
     }
@@ -66,7 +66,7 @@ class NystromTrees {
   std::vector<NystromTree> trees_;
 };
 
-// By how much the weights b and b' miss their conditions of exactly that order, at most:
+// The largest defect of the weights b and b' in their conditions of exactly that order:
 //   sum_i b'_i phi_i = exact / r for trees of order r = p,
 //   sum_i b_i phi_i = exact / (r (r + 1)) for those of order r = p - 1,
 // over all trees; relative to what is added up.

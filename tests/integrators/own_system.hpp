@@ -7,8 +7,8 @@
 
 #include "qddot/model/capabilities.hpp"
 
-// Systems that are no spring networks, as somebody would write them who brings a force law of his
-// own: a chain in the plane between two pins, whose neighbours are bound by Lennard and Jones' law
+// Systems that are no spring networks, as a user with a force law of his own would write them. They
+// are a chain in the plane between two pins, with neighbours bound by Lennard and Jones' law
 //   V(r) = e ((s/r)^12 - 2 (s/r)^6),  e = 1 J, at rest at s = 1 m, where V'' = 72 N/m.
 
 namespace qddot {
@@ -44,7 +44,7 @@ class Chain : public System {
   static constexpr double gravity = 1;  // [N] of each node
 
   Index nodes() const { return size() / 2; }
-  // From node b - 1 to node b, where the first and the last are the pins.
+  // The vector from node b - 1 to node b; the first and the last node are the pins.
   Eigen::Vector2d between(const Vec& q, Index b) const {
     const auto place = [&](Index i) -> Eigen::Vector2d {
       if (i < 0 || i == nodes()) return {static_cast<double>(i + 1), 0};
@@ -99,8 +99,8 @@ class ChainWithStiffness : public Chain {
   SymmetricMatrix pattern_;
 };
 
-// With Gonzalez' discrete gradient, for any potential: the force in the middle, and along b - a
-// what the work is short of.
+// Adds Gonzalez' discrete gradient, for any potential: the force in the middle, corrected along b -
+// a by the missing work.
 template <class Base>
 class WithGradient : public Base, public DiscreteGradient {
  public:
@@ -114,7 +114,7 @@ class WithGradient : public Base, public DiscreteGradient {
   }
 };
 
-// With its bonds named stiff, and its weight soft.
+// The chain with its bonds named stiff, and its weight soft.
 class DividedChain final : public WithGradient<ChainWithStiffness>, public SplitForces {
  public:
   const Split& split() const override { return split_; }

@@ -43,7 +43,7 @@ inline Options options_of(const Method& method, double step_size, double rtol) {
   return method.knob == Knob::step_size ? Options{.step_size = step_size} : Options{.rtol = rtol};
 }
 
-// For methods that a test names; an unknown name throws.
+// The method of that name; throws for an unknown one.
 inline const Method& method_named(std::string_view name) {
   const Method* found = find_method(name);
   if (!found) throw std::invalid_argument("no method is named " + std::string(name));
@@ -96,9 +96,9 @@ inline double distance(const State& a, const State& b) {
   return std::max(distance(a.q, b.q), distance(a.v, b.v));
 }
 
-// The order p of a method that chooses its steps, from `start` to `exact`: where each step is as
-// long as its own error allows, errors go with steps^-p. The slope of the line through 13 runs,
-// from the tolerance given to a thousandth of it, for errors of single runs cancel by chance.
+// The order p of a method that chooses its steps, from `start` to `exact`. If each step is as long
+// as its error allows, errors are proportional to steps^-p. p is the slope of the line through 13
+// runs, from the given tolerance to a thousandth of it, as errors of single runs cancel by chance.
 inline double order_by_tolerance(const Method& method, const System& system, const State& start,
                                  const State& exact, double coarsest_rtol) {
   constexpr int runs = 13;
@@ -116,7 +116,7 @@ inline bool is_finite(const State& state) {
   return std::isfinite(state.t) && state.q.allFinite() && state.v.allFinite();
 }
 
-// To the last bit.
+// Whether the states are equal to the last bit.
 inline bool same(const State& a, const State& b) { return a.t == b.t && a.q == b.q && a.v == b.v; }
 
 inline std::ostream& operator<<(std::ostream& out, const Counts& c) {
@@ -127,8 +127,8 @@ inline std::ostream& operator<<(std::ostream& out, const Counts& c) {
              << c.order_reductions << " reductions), " << c.stability_limited_steps << " limited";
 }
 
-// Speaks for another system, and lets a test see or change what it says. Of its capabilities it
-// offers those that are below.
+// Passes calls on to another system, and lets a test see or change the results. It offers the
+// capabilities below.
 class Relay final : public System,
                     public SplitStiffness,
                     public DiscreteGradient,
@@ -188,9 +188,9 @@ inline Problem linear_hammock(int dimension) {
   return p;
 }
 
-// n masses in 1D between two pins at 0 and n + 1, on n + 1 equal springs of zero rest length. Its
-// frequencies are 2 sqrt(k/m) sin(j pi / (2 (n + 1))), j = 1 ... n, with mode shapes
-// sin(i j pi / (n + 1)), i = 1 ... n.
+// n masses in 1D between two pins at 0 and n + 1, on n + 1 equal springs of zero rest length. Mode
+// j = 1 ... n has the frequency 2 sqrt(k/m) sin(j pi / (2 (n + 1))) and the shape sin(i j pi / (n +
+// 1)), i = 1 ... n.
 inline Network linear_chain(int n, double mass, double stiffness) {
   Network network{.dimension = 1, .node_mass = Vec::Constant(n, mass)};
   for (int i = 0; i + 1 < n; ++i) network.links.push_back({i, i + 1, {stiffness}});

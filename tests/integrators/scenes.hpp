@@ -29,8 +29,8 @@ inline std::vector<Node> nodes_after(const Scene& scene, const Reductions& reduc
   return reduced.expand(r.state);
 }
 
-// A body of `count` free nodes in a row of steps of 1 m from `corner` on, in no symmetry: springs
-// between neighbours, second neighbours and some others, stretched and compressed by up to a fifth.
+// Adds a body of `count` free nodes, 1 m apart in a row from `corner` on, without symmetry. Springs
+// join neighbours, second neighbours and some others, stretched and compressed by up to a fifth.
 inline void add_random_body(std::mt19937& random, std::size_t count, const Eigen::Vector3d& corner,
                             Scene& scene) {
   const auto uniform = [&](double low, double high) {

@@ -7,8 +7,8 @@
 namespace qddot {
 inline namespace tests {
 
-// Speaks for another split system, and lets a test see or change what its halves say; what is asked
-// of the stiff block is asked of the stiff half.
+// Passes calls on to another split system, and lets a test see or change the results of its halves.
+// Calls of the stiff block go to the stiff half.
 class SplitRelay final : public System,
                          public SplitStiffness,
                          public DiscreteGradient,

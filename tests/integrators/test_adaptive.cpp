@@ -81,8 +81,8 @@ Film film(int frames, double t_end) {
   return result;
 }
 
-// A mass that runs into a wall of springs that are the stiffer the farther it comes: q'' = -50 q^3
-// at 10 m/s from far away, with a fraction of its fastest rates at first.
+// A mass that runs into a wall that stiffens with depth: q'' = -50 q^3 at 10 m/s from far away. Its
+// rates at first are a fraction of the fastest ones.
 Problem wall() {
   Problem p{{.dimension = 1, .node_mass = Vec::Ones(1)}, {0, Vec{{-0.05}}, Vec{{10}}}};
   p.network.anchors = {{0, {0, 0, 0}, {.stiffness = 1e-3, .quartic = 5000}}};
@@ -115,8 +115,8 @@ BOOST_AUTO_TEST_CASE(a_step_of_a_pair_errs_by_its_order_and_one) {
   std::normal_distribution<double> normal(0, 0.5);
   for (const Case& c : {linear(), nonlinear()}) {
     for (const auto& [name, pair] : pairs) {
-      // Over 20 starts, for errors of single ones vanish by chance at some h; from h w = 1 to 4 on,
-      // and down to where rounding would show.
+      // There are 20 starts, as errors of single ones vanish by chance at some h. h w goes from 1
+      // to 4 down to a value above the influence of rounding.
       constexpr int count = 5;
       Vec logs(count), q = Vec::Zero(count), v = q;
       for (int start = 0; start < 20; ++start) {
@@ -154,8 +154,8 @@ BOOST_AUTO_TEST_CASE(errors_go_with_steps_to_the_minus_order) {
 }
 
 BOOST_AUTO_TEST_CASE(forces_are_those_of_the_stages_and_nothing_else) {
-  // A start, a first step by one Euler step; each attempt s - 1 stages anew, an end of a step its
-  // own unless it is the last stage.
+  // Forces: one at the start, one of an Euler step for the first step size, s - 1 stages of each
+  // attempt, and one at the end of a step unless that is the last stage.
   const auto system = make_mass_spring(wall().network);
   for (const auto& [name, pair] : pairs) {
     std::int64_t rejected = 0;
@@ -268,7 +268,8 @@ BOOST_AUTO_TEST_CASE(between_steps_errors_are_of_the_size_of_those_at_their_ends
         }
         const double between = largest_error(watched.seen, c), at_ends = largest_error(ends, c);
         BOOST_TEST_CONTEXT(name << " at " << rtol << ": " << between << ", " << at_ends) {
-          // At 20 ends and 316 times between; rounding of q by 1e-15 is enlarged 1/h times in v.
+          // There are 20 ends and 316 times between; a rounding of q by 1e-15 is enlarged 1/h times
+          // in v.
           BOOST_TEST(between < 5 * at_ends + 1e-11);
         }
       }
@@ -352,8 +353,8 @@ BOOST_AUTO_TEST_CASE(a_run_can_be_stopped_between_two_steps) {
 }
 
 BOOST_AUTO_TEST_CASE(tolerances_are_weighed_by_the_lengths_and_speeds_they_are_for) {
-  // The same motion 1024 times as small takes the same steps with scales as small, and so do
-  // tolerances given outright that are what the scales make of rtol.
+  // The same motion 1024 times as small takes the same steps with scales as small. So it does with
+  // absolute tolerances equal to rtol times the scales.
   const Problem p = linear_hammock(2);
   Problem small = p;
   small.initial.q /= 1024;

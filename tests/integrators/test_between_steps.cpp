@@ -69,9 +69,9 @@ BOOST_AUTO_TEST_CASE(what_is_seen_between_steps_has_the_order_of_the_method) {
     std::vector<State> exact;
     const Observer reference{times, [&](const State& s) { exact.push_back(s); }};
     run(method_named("kahan_li8"), *c.system, c.initial, 1, {.step_size = 1. / 512}, reference);
-    // The largest error of all that is seen; the first steps are so long that orders above 5 stay
-    // clear of rounding; but multistep methods of order 8 and 10 begin with 7 and 9 steps of
-    // another kind.
+    // The largest error at all looks. The first steps are so long that errors of orders above 5
+    // stay above rounding. Multistep methods of order 8 and 10 begin with 7 and 9 steps of another
+    // kind.
     std::vector<double> errors;
     const bool is_long = method.name == "symmetric8" || method.name == "symmetric10";
     const int first = is_long ? 24 : method.order > 5 ? 12 : method.order == 1 ? 160 : 40;
@@ -142,8 +142,9 @@ BOOST_AUTO_TEST_CASE(a_state_between_steps_is_kept_where_the_next_step_fails) {
           run(method, relay, p.initial, 1, {.step_size = 0.1}, {{0.25, 0.55}, begin_to_fail});
       if (method.asks(Need::laplacian) && r.summary.outcome == Outcome::reached_end) continue;
       BOOST_TEST(r.thrown == "no more");
-      // To complete a state some methods evaluate what the next step begins with, and multistep
-      // methods compute their first steps together: their next force is that of a later step.
+      // Some methods complete a state by evaluating the force at the start of the next step.
+      // Multistep methods compute their first steps together: their next force is that of a later
+      // step.
       BOOST_TEST(r.state.t == (method.recurrence_roots ? 0.1 * std::max(6, method.order) : 0.55));
     }
   }

@@ -15,7 +15,7 @@ std::vector<Method> compensated_methods() {
   return list;
 }
 
-// The quadratic form that one step (q, v) -> A (q, v) of determinant 1 keeps:
+// The quadratic form that is conserved by a step (q, v) -> A (q, v) of determinant 1:
 //   c q^2 + (d - a) q v - b v^2 with A = (a b; c d).
 struct Form {
   double qq, qv, vv;
@@ -35,7 +35,7 @@ Form kept_form(const Method& method, const System& system, double h) {
   return {one.v[0], other.v[0] - one.q[0], -other.q[0]};
 }
 
-// By how much steps of h change the form at most, relative to it.
+// The largest relative change of the form by steps of h.
 double largest_change(const Method& method, double h, int steps, bool compensated) {
   const auto system = make_mass_spring(unit_oscillator);
   const Form form = kept_form(method, *system, h);

@@ -161,8 +161,8 @@ BOOST_AUTO_TEST_CASE(symplectic_methods_and_the_linear_midpoint_keep_it_for_free
       for (const Reductions& reductions : with_and_without) {
         BOOST_TEST_CONTEXT(method.name << " in dimension " << dimension) {
           const double lost = change(scene, reductions, method).angular.norm();
-          // 200 steps round x p of up to 100 kg m^2/s, or leave 1e-10 of it to Newton's iteration;
-          // other methods err by their order, 1, 2 or 4.
+          // 200 steps round x p of up to 100 kg m^2/s; Newton's iteration leaves an error of 1e-10
+          // of it. Other methods have errors by their order, 1, 2 or 4.
           if (keeps_angular_momentum(method)) {
             BOOST_TEST(lost <
                        (method.is(Trait::symplectic) && method.is(Trait::implicit) ? 1e-6 : 1e-10));

@@ -18,7 +18,7 @@ Problem falling() {
   return p;
 }
 
-// The oscillator pushed from rest length, so that all of its energy is what it starts with.
+// The oscillator pushed from rest length, so that all of its energy is kinetic at the start.
 Problem pushed(double omega, double v0 = 1) {
   return Oscillator{.mass = 1, .stiffness = omega * omega, .x0 = 0, .v0 = v0}.problem();
 }
@@ -58,7 +58,7 @@ BOOST_AUTO_TEST_CASE(motions_as_they_should_be_have_no_more_energy_than_they_beg
 }
 
 BOOST_AUTO_TEST_CASE(what_rests_in_balance_does_not_grow) {
-  // Rest far from the origin, where V rounds by 1e-10 J of which nothing is motion.
+  // A mass at rest far from the origin, where V rounds by 1e-10 J without any motion.
   Problem p{{.dimension = 1, .gravity = {9.81, 0, 0}, .node_mass = Vec::Ones(1)}, {}};
   p.network.anchors = {{0, {1000, 0, 0}, {981, 1}}};
   p.initial = {0, Vec::Constant(1, 1001.01), Vec::Zero(1)};

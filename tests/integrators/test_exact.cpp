@@ -179,8 +179,8 @@ BOOST_AUTO_TEST_CASE(free_masses_fly_on_parabolas_at_every_step) {
 }
 
 BOOST_AUTO_TEST_CASE(a_free_pair_falls_with_its_centre_and_swings_about_it) {
-  // Relative coordinate with w^2 = k (1/m1 + 1/m2) = 100; the centre's w^2 = 0 may come out as
-  // some eps 100, which bends its parabola of 30 m by that times t^2.
+  // The relative coordinate has w^2 = k (1/m1 + 1/m2) = 100. The centre's w^2 = 0 may become some
+  // eps 100 by rounding, which bends its parabola of 30 m by that times t^2.
   Problem p{{.dimension = 1, .gravity = {2, 0, 0}, .node_mass = Vec{{1, 3}}}, {}};
   p.network.links = {{0, 1, {75}}};
   p.initial = {0, Vec{{-1, 2}}, Vec{{4, -2}}};

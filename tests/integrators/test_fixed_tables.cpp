@@ -83,8 +83,8 @@ State step(const Table& table, const System& system, const State& start, double 
   return {start.t + h, start.q + h * q_rate * table.b, start.v + h * v_rate * table.b};
 }
 
-// Newton's iteration leaves a tenth of 1e-10 of positions and velocities in each stage; where the
-// motion is linear it leaves far less, for a second iteration confirms the first.
+// Newton's iteration leaves a relative error of a tenth of 1e-10 in each stage. It leaves far less
+// if the motion is linear, as a second iteration confirms the first.
 constexpr double newton = 1e-10;
 // What that is worth after 100 steps that add up.
 constexpr double newton_of_100_steps = 1e-8;
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(implicit_euler_by_arkode_is_the_hand_written_one) {
     const auto system = make_mass_spring(p.network);
     for (const double h : {0.003, 0.01, 0.05}) {
       BOOST_TEST_CONTEXT("h = " << h) {
-        // With a shorter last step.
+        // The run has a shorter last step.
         const Options options{.step_size = h, .solve_tolerance = 1e-13};
         const double t_end = 100.4 * h;
         const Run ours = run(method_named("implicit_euler"), *system, p.initial, t_end, options);

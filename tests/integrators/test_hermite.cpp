@@ -11,7 +11,7 @@ namespace {
 
 const std::vector<double> times = {0.3, 1.2, 0.55, 0.8, 1.5, 0.1};  // of any order and spacing
 
-// Two coordinates of which the first is t^degree, and the second three times that and 5.
+// Two coordinates: t^degree, and three times that plus 5.
 Instant monomial(double t, int degree) {
   const double q = std::pow(t, degree), v = degree * std::pow(t, degree - 1),
                a = degree * (degree - 1) * std::pow(t, degree - 2);

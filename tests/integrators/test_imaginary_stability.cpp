@@ -128,8 +128,8 @@ BOOST_AUTO_TEST_CASE(the_amplification_is_the_series_of_exp_where_stages_are_as_
 }
 
 BOOST_AUTO_TEST_CASE(limits_are_those_of_the_literature_and_what_a_thousandth_of_growth_adds) {
-  // At order 4, |R|^2 = 1 - y^6/72 + y^8/576 is 1 at y = 2 sqrt 2; of order 3,
-  // 1 - y^4/12 + y^6/36 at y = sqrt 3; of order 2, 1 + y^4/4 only at 0.
+  // |R|^2 is 1 at the limit. Order 4: 1 - y^6/72 + y^8/576, at y = 2 sqrt 2. Order 3: 1 - y^4/12 +
+  // y^6/36, at y = sqrt 3. Order 2: 1 + y^4/4, only at 0.
   struct {
     ARKODE_ERKTableID id;
     int p;
@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(explicit_methods_hold_their_steps_to_the_limit_of_the_stiff
       BOOST_TEST(static_cast<double>(bounded.counts.steps) * longest < 1.5 * chain.t_end);
       BOOST_TEST(bounded.counts.stability_limited_steps > bounded.counts.steps / 2);
       BOOST_TEST(bounded.counts.rejected == 0);
-      // In speeds of up to 31 m/s.
+      // Speeds are up to 31 m/s.
       BOOST_TEST(bounded.error < 10 * rtol);
     }
   }

@@ -15,9 +15,9 @@ namespace {
 // the errors of order 5 come to 330 times the tolerance; else to 150 times.
 constexpr double largest_factor = 500;
 
-// The largest error at rtol = 1e-3, 1e-5, 1e-7, 1e-9 as a multiple of rtol; infinite where a finer
-// tolerance does not lower the error, unless the steps of the coarser one were held to the
-// stability limit, so that it is as low as may be.
+// The largest error at rtol = 1e-3, 1e-5, 1e-7, 1e-9 as a multiple of rtol. Infinite if a finer
+// tolerance does not lower the error, unless the stability limit already forced the steps of the
+// coarser one.
 double worst_factor(const Method& method, const System& system, const State& start,
                     const State& end) {
   double worst = 0, last = INFINITY;

@@ -44,7 +44,8 @@ struct Formula {
   const char* method;
   Amplification matrix;
 };
-// For one-step methods; an acceleration is carried along as a third number where there is one.
+// Formulas of one-step methods; an acceleration, if there is one, is carried along as a third
+// number.
 const Formula formulas[] = {
     {"implicit_euler", rational([](const MatrixXd& z) { return (one - z).inverse(); })},
     {"implicit_midpoint",

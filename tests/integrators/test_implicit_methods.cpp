@@ -31,7 +31,7 @@ double discrete_gradient_residual(const Ends& e) {
   return std::max(distance(e.b.v, e.a.v + e.h * f.cwiseQuotient(e.system.mass())),
                   distance(e.b.q, e.a.q + e.h / 2 * (e.a.v + e.b.v)));
 }
-// With a_n = M^-1 f(q_n) to begin with.
+// The method begins with a_n = M^-1 f(q_n).
 double generalized_alpha_residual(const Ends& e, double rho) {
   const double m = (2 * rho - 1) / (rho + 1), f = rho / (rho + 1);
   const double gamma = 0.5 - m + f, beta = std::pow(1 - m + f, 2) / 4;
@@ -145,8 +145,9 @@ BOOST_AUTO_TEST_CASE(midpoint_and_trbdf2_by_arkode_are_the_hand_written_ones) {
 }
 
 BOOST_AUTO_TEST_CASE(the_discrete_gradient_keeps_energy_and_momenta_at_large_steps_others_do_not) {
-  // h w is about 1; energies of 50 J, 1000 steps that each round some 1e-15 of it and leave 1e-9 of
-  // what their predictions were wrong by, up to 0.05 m or 1 m/s of masses of 2 kg at 3 m/s.
+  // h w is about 1 and the energy 50 J. Each of 1000 steps rounds some 1e-15 of it and leaves 1e-9
+  // of the error of its prediction. That error is up to 0.05 m or 1 m/s, with masses of 2 kg at 3
+  // m/s.
   const Change kept = change("discrete_gradient", 0.05, 1000);
   BOOST_TEST(kept.energy < 5e-6);
   BOOST_TEST(kept.momenta < 5e-6);

@@ -11,10 +11,10 @@ namespace {
 constexpr int masses = 5;
 constexpr double stiffness = 100;
 
-// A straight column of unit masses and springs along x, each 1/ratio times as long as its room of
-// 1 m. It swings along itself in its slowest mode, which stays linear. For ratios below 1 it would
-// buckle at rates of up to 2 sqrt(k (1/ratio - 1)) = 27/s, but that nothing pushes it off its line,
-// not even rounding: M - gamma^2 K is indefinite where gamma is above 1/27 s.
+// A straight column of unit masses and springs along x, each 1/ratio times as long as its room of 1
+// m. It swings along itself in its slowest mode, which stays linear. It would buckle for ratios
+// below 1, at rates of up to 2 sqrt(k (1/ratio - 1)) = 27/s, but nothing pushes it off its line,
+// not even rounding. M - gamma^2 K is indefinite if gamma is above 1/27 s.
 struct Column {
   explicit Column(double ratio) {
     Problem p{{.dimension = 2, .node_mass = Vec::Ones(masses)}, {}};
@@ -39,7 +39,7 @@ struct Column {
 constexpr double t_end = 1;  // s, of a period of 1.2 s
 constexpr double compressed = 0.35, in_tension = 1.1;
 
-// In one period errors come to a few tolerances, with BDF to fifty (see the suite `sundials`).
+// Errors reach a few tolerances in one period, or fifty with BDF (see the suite `sundials`).
 double largest_factor(const Method& method) { return method.name.starts_with("arkode") ? 20 : 200; }
 
 }  // namespace
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(matrices_are_positive_where_springs_are_in_tension) {
 }
 
 BOOST_AUTO_TEST_CASE(semi_implicit_euler_survives_half_of_the_singular_step_and_is_refused_at_it) {
-  // One mass of 0.1 kg between two pins on springs compressed to 0.8 of their length, straight:
+  // One mass of 0.1 kg between two pins, on straight springs compressed to 0.8 of their length.
   // lambda = (2 k/m) (l0/l - 1) = 5000/s^2 across, so that h^2 lambda = 1 at h = 1/sqrt(5000) s.
   Network network{.dimension = 2, .node_mass = Vec::Constant(1, 0.1)};
   const SpringLaw law{.stiffness = 1000, .rest_length = 0.625};

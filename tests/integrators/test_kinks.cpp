@@ -10,8 +10,8 @@ using namespace qddot;
 namespace {
 
 // m x'' = -k (x - l0 sign x): a mass on a line that swings through the pin of its spring, from rest
-// at x0 > 2 l0. x = l0 + (x0 - l0) cos w t until it is at the pin, at t1; from there it goes on as
-// it came, x(t1 + s) = -x(t1 - s).
+// at x0 > 2 l0. It moves as x = l0 + (x0 - l0) cos w t until it reaches the pin at t1. After that
+// x(t1 + s) = -x(t1 - s).
 struct ThroughThePin {
   double k, m, l0, x0, origin = 0;
 
@@ -138,8 +138,8 @@ BOOST_AUTO_TEST_CASE(where_springs_turn_that_should_not_a_run_goes_on_as_drawn) 
         BOOST_TEST(a.summary.message == "");
         BOOST_TEST(b.summary.message == "");
         has_turned = has_turned || !is_linear_at(*directed, b.state.q);
-        // A hundred steps' solves to 1e-12 of a step's 0.1 m, and what a force of 45 N that jumps
-        // makes of these; a spring taken as if it had not turned is off by metres.
+        // A hundred steps solve to 1e-12 of a step's 0.1 m, and a force that jumps by 45 N enlarges
+        // these errors. A spring taken as if it had not turned gives errors of metres.
         BOOST_TEST(distance(a.state, b.state) < 1e-7);
       }
     }

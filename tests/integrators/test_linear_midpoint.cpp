@@ -74,7 +74,7 @@ Network two_springs(double w_f, double w_s) {
   return network;
 }
 
-// By how much sqrt(w^2 q^2 + v^2) grows in each of the last half of `steps` steps.
+// The growth of sqrt(w^2 q^2 + v^2) in a step, from the last half of `steps` steps.
 double observed_growth(const Form& form, double h, double w_f, double w_s, int steps) {
   const auto system = make_mass_spring(two_springs(w_f, w_s));
   const auto amplitude = [&](int count) {
@@ -90,7 +90,7 @@ double observed_growth(const Form& form, double h, double w_f, double w_s, int s
 void check_growth(const Form& form, double h, double w_f) {
   const double expected = growth(form, h, w_f, 1);
   BOOST_TEST(expected > 1.03);
-  // By half of the steps the growing mode is 1e26 times the other one.
+  // The growing mode is 1e26 times the other one after half of the steps.
   const int steps = 2 * static_cast<int>(std::ceil(30 / std::log(expected)));
   BOOST_TEST(std::abs(observed_growth(form, h, w_f, 1, steps) / expected - 1) < 1e-9);
 }
@@ -224,7 +224,7 @@ BOOST_AUTO_TEST_CASE(soft_springs_bound_the_step_and_stiff_ones_do_not) {
 
 BOOST_AUTO_TEST_CASE(five_steps_at_a_time_grow_in_narrow_bands) {
   const Form& five = forms().back();
-  // At h w_s = 1.75 and w_f = 5 w_s they turn the vibration by a multiple of pi.
+  // They turn the vibration by a multiple of pi at h w_s = 1.75 and w_f = 5 w_s.
   check_growth(five, 1.75, 5);
   BOOST_TEST(observed_growth(five, 1.65, 5, 1, 20000) < 1.001);
   BOOST_TEST(growth(five, 1.65, 5, 1) == 1);

@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(the_energy_falls_with_every_iteration) {
 }
 
 BOOST_AUTO_TEST_CASE(many_iterations_end_where_implicit_euler_does) {
-  // At this h every network's energy has one minimum near by, which all of them find.
+  // Every network's energy has one minimum near by at this h, which all methods find.
   constexpr double h = 0.02;
   for (const Problem& p : networks()) {
     const auto system = make_mass_spring(p.network);
@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(many_iterations_end_where_implicit_euler_does) {
         // A line search stops where rounding hides what is left of the energy, some
         // sqrt(1e-16 100 J / 1 kg).
         BOOST_TEST(distance(step(method, *system, p.initial, h, 500).v, exact.v) < 1e-6);
-        // On a line only quartic springs leave anything to a second iteration.
+        // Only quartic springs need a second iteration on a line.
         if (p.network.dimension == 1 && offered<Laplacian>(*system).bounds_stiffness()) continue;
         BOOST_TEST(distance(step(method, *system, p.initial, h, 1).v, exact.v) > 1e-6);
       }
@@ -156,8 +156,8 @@ BOOST_AUTO_TEST_CASE(where_springs_have_no_rest_length_one_iteration_is_the_whol
   }
 }
 
-// Across the spring H = m + h^2 tau/l and the metric is P = m + h^2 k, so that each iteration
-// leaves (P - H)/P = h^2 k (l0/l) / (m + h^2 k) of the error there.
+// Across the spring, H = m + h^2 tau/l and the metric is P = m + h^2 k. So each iteration leaves (P
+// - H)/P = h^2 k (l0/l) / (m + h^2 k) of the error there.
 BOOST_AUTO_TEST_CASE(errors_shrink_by_what_theory_says) {
   using T = Transverse;
   const T t;

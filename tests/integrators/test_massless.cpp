@@ -119,9 +119,9 @@ std::vector<Method> accepting(Knob knob) {
   return list;
 }
 
-// What Newton's iteration of an adaptive method leaves of the force on a massless node [N]: a
-// third of the tolerance, in the root mean square over up to 12 entries of 2 m, of a place between
-// springs of 500 N/m.
+// The force on a massless node [N] that Newton's iteration of an adaptive method leaves. The place
+// between springs of 500 N/m has an error of a third of the tolerance, in the root mean square over
+// up to 12 entries of 2 m.
 double balance(double rtol) { return (k1 + k2) / 3 * std::sqrt(12) * 3 * rtol; }
 
 // The hammock with its second node massless and all springs in tension; that node is drawn where
@@ -158,8 +158,8 @@ BOOST_AUTO_TEST_CASE(two_springs_with_a_massless_node_between_are_the_one_in_ser
     for (const int dimension : {1, 3}) {
       BOOST_TEST_CONTEXT(method.name << " in dimension " << dimension) {
         const Verdict verdict = judge(method, dimension);
-        // On the line forces are linear, so that even one Newton step finds balance: rounding of
-        // 100 steps with forces of 100 N and a matrix of condition 1e3.
+        // Forces are linear on the line, so that one Newton step finds balance. What is left is
+        // rounding of 100 steps with forces of 100 N and a matrix of condition 1e3.
         BOOST_TEST(verdict.force < 1e-9);
         BOOST_TEST(verdict.difference < 1e-11);
       }
@@ -208,7 +208,7 @@ BOOST_AUTO_TEST_CASE(a_massless_node_drawn_out_of_balance_is_brought_to_it_and_m
             // No energy is lost, but for the 1000 tolerances of sums of 100 J.
             BOOST_TEST(std::abs(total_energy(*system, s) - energy) < 1000 * rtol * 100);
           }
-          // At first the others have not moved.
+          // The others have not moved at first.
           for (const Index node : {0, 2, 3}) {
             const auto at = [&](const Vec& x) { return x.segment(node * dimension, dimension); };
             BOOST_TEST(distance(at(seen[0].q), at(p.initial.q)) < 1e-5);
@@ -252,8 +252,8 @@ BOOST_AUTO_TEST_CASE(random_networks_with_massless_nodes_run_at_every_tolerance_
 
 BOOST_AUTO_TEST_CASE(what_springs_hardly_hold_at_the_start_is_no_obstacle_at_any_tolerance) {
   // A mass hangs, aside, on two springs with a massless node between them, drawn at rest lengths of
-  // six digits: they are stretched by some 1e-7 m and hold the node across by 1e-7 of their
-  // stiffness, so that rounding of forces moves it by more than 1e-12 m.
+  // six digits. They are stretched by some 1e-7 m and hold the node across by 1e-7 of their
+  // stiffness. So rounding of forces moves it by more than 1e-12 m.
   Problem p{{.dimension = 3, .gravity = {0, 0, -g}}, {}};
   p.network.node_mass = Vec{{0, 1}};
   p.network.anchors = {{0, {0, 0, 0}, {83140.4, 0.850063}}};

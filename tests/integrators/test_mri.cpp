@@ -13,8 +13,8 @@ std::vector<Method> mri_methods() {
   return {method_named("arkode_mri3"), method_named("arkode_mri4")};
 }
 
-// The hammock let go from rest, its springs along the row `ratio` times stiffer, of the length that
-// they are drawn with, and named stiff; braces and anchors are soft.
+// The hammock released from rest. Its springs along the row are `ratio` times stiffer, at their
+// drawn length, and named stiff; braces and anchors are soft.
 Problem railed_hammock(int dimension, double ratio) {
   Problem p = hammock(dimension);
   const auto at = [&](int i) { return p.initial.q.segment(dimension * i, dimension); };
@@ -118,8 +118,8 @@ BOOST_AUTO_TEST_CASE(soft_forces_are_evaluated_a_few_times_a_step_and_stiff_ones
         BOOST_TEST(asked.whole_force == 0);
         // One at the start beside the stages.
         BOOST_TEST(asked.soft_force == slow * steps + 1);
-        // Steps of h/m from each stage to the next; ARKODE takes a force more at the end of some of
-        // them, and once a step and at the start.
+        // Inner steps of h/m go from each stage to the next. ARKODE evaluates one more force at the
+        // end of some of them, once a step, and at the start.
         const double small_steps = steps * slow * std::ceil(m / slow);
         BOOST_TEST(asked.stiff_force >= small_steps * fast);
         BOOST_TEST(asked.stiff_force <= small_steps * (fast + 1) + steps + 2);
@@ -136,7 +136,8 @@ BOOST_AUTO_TEST_CASE(steps_far_beyond_what_the_stiff_springs_let_an_explicit_met
   for (const Method& method : mri_methods()) {
     const Run coarse = run(method, *system, p.initial, 1, options);
     BOOST_TEST(coarse.summary.message == "");
-    // In 1 s the nodes move by metres; the soft forces' time is some 0.1 s, ten of the steps.
+    // Nodes move by metres in 1 s; the time scale of the soft forces is some 0.1 s, ten of the
+    // steps.
     BOOST_TEST(distance(coarse.state.q, run(method, *system, p.initial, 1, fine).state.q) < 0.02);
   }
   const Run one = run(method_named("verlet"), *system, p.initial, 1, options);

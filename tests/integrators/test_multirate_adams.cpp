@@ -29,7 +29,7 @@ Orders observed_orders(const Method& method, const System& system, const State& 
   return {observed_order(std::span(q).last(5)), observed_order(std::span(v).last(5))};
 }
 
-// At order 5 few halvings fit between where higher terms matter and rounding.
+// Few halvings fit between higher terms and rounding at order 5.
 bool is_of_order(int p, const Orders& observed) {
   const double slack = p > 4 ? 0.3 : 0.2;
   return std::abs(observed.q - p) <= slack && std::abs(observed.v - p) <= slack;
@@ -110,8 +110,8 @@ BOOST_AUTO_TEST_CASE(without_stiff_springs_order_2_is_velocity_verlet) {
 BOOST_AUTO_TEST_CASE(a_step_takes_one_soft_force_and_stiff_ones_of_short_steps) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(with_split(p.network));
-  // Beside one a step: those of the first step, of k - 1 parts, twice at k = 3 and three times at
-  // k = 4, of which one is the step's own, and one of the start.
+  // Forces besides one a step: one of the start, and those of the first step. It has k - 1 parts,
+  // done twice at k = 3 and three times at k = 4; one of these forces is the step's own.
   for (const auto& [name, at_start] :
        {std::pair("multirate_adams2", 1), {"multirate_adams4", 4}, {"multirate_adams5", 9}}) {
     SplitRelay relay(*system);

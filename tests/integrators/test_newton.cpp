@@ -111,8 +111,9 @@ BOOST_AUTO_TEST_CASE(a_bent_strut_buckles_and_comes_to_rest_without_compression)
   const Minimisation problem(p, 0.03);
   const Run r = problem.step(3);
   BOOST_TEST(r.summary.message == "");
-  // Springs of rest length in the room there is make the energy zero; what is left after 100
-  // strongly damped steps is far below the 6 springs' first 1/2 k (0.43 m)^2 = 900 J each.
+  // The energy is zero if springs have their rest length in the room that they have. The energy
+  // after 100 strongly damped steps is far below the first 1/2 k (0.43 m)^2 = 900 J of each of 6
+  // springs.
   BOOST_TEST(total_energy(problem.system(), r.state) < 1);
   BOOST_TEST(total_energy(problem.system(), p.initial) > 5000);
 }

@@ -79,9 +79,9 @@ double condition(const MatrixXd& a) {
   return sigma[0] / sigma[sigma.size() - 1];
 }
 
-// How far the solution of `solver` is from LU's of the dense matrix, as a multiple of what rounding
-// explains: eps, times the condition of the n x n matrix, times the 1/gamma by which differences of
-// the first half are divided to make the second, times the size of the solution.
+// The distance of the solution of `solver` to that of dense LU, as a multiple of the expected
+// rounding. This is eps times the condition of the n x n matrix, times the size of the solution,
+// times the 1/gamma that differences of the first half are multiplied by in the second.
 double roundings(Solver& solver, Form form, const System& system, double gamma,
                  const SymmetricMatrix& k, const Vec& b) {
   const MatrixXd a = dense_matrix(form, system, gamma, k);
@@ -99,7 +99,7 @@ Vec random_vector(std::mt19937& random, Index n) {
   return Vec::NullaryExpr(n, [&] { return normal(random); });
 }
 
-// Two unit masses in 1D, of which a test gives K as it likes.
+// Two unit masses in 1D; a test replaces their K.
 Network two_masses() {
   Network network{.dimension = 1, .node_mass = Vec::Ones(2)};
   network.links = {{0, 1, {1}}};
@@ -211,8 +211,8 @@ BOOST_AUTO_TEST_CASE(a_singular_matrix_is_refused_so_that_a_smaller_step_is_trie
 }
 
 BOOST_AUTO_TEST_CASE(pivots_near_zero_are_made_up_for_by_refinement_or_refused) {
-  // M - K = [[d, -1], [-1, d]] is well conditioned, but its first pivot is d, by which rounding is
-  // divided: without another look a solution is wrong by eps/d.
+  // M - K = [[d, -1], [-1, d]] is well conditioned, but its first pivot is d, which rounding is
+  // divided by. A solution without refinement is wrong by eps/d.
   const auto system = make_mass_spring(two_masses());
   SymmetricMatrix k = system->stiffness_pattern();
   int solved = 0;
@@ -261,8 +261,9 @@ BOOST_AUTO_TEST_CASE(with_older_factors_newton_takes_more_rounds_to_the_same_sol
             x += solver.solve(b - a * x);
             if (round == 0) first = distance(x, solution);
           }
-          // What one round leaves is far from rounding, what 60 leave is not: with both gammas'
-          // ratio of 1.2 a round leaves at most 1 - 1/1.44 = 0.31 and a little for K.
+          // The residual is far from rounding after one round and at rounding after 60. The ratio
+          // of both gammas is 1.2, so that a round leaves at most 1 - 1/1.44 = 0.31 and a little
+          // for K.
           BOOST_TEST(first > 1e-3 * solution.norm());
           BOOST_TEST(distance(x, solution) < 1e-11 * solution.norm());
         }

@@ -61,9 +61,9 @@ State by_fehlberg(const Case& c) {
   return {c.end.t, Eigen::Map<Vec>(y.data(), n), Eigen::Map<Vec>(y.data() + n, n)};
 }
 
-// How many steps are tried, one number after the other. The first order needs the most steps to be
-// where its higher terms (h w / 2 of it) do not matter. Multistep methods need more than those
-// that they begin with; their errors soon are so small that halvings would leave too few.
+// The numbers of steps that are tried, one after the other. Order 1 needs the most steps, until its
+// higher terms (h w / 2 of it) do not matter. Multistep methods need more steps than they begin
+// with; their errors soon are so small that halvings would leave too few.
 std::vector<int> step_counts(const Method& method) {
   const bool is_multistep = method.name.starts_with("symmetric");
   std::vector<int> list;
@@ -97,7 +97,7 @@ Orders observed_orders(const Method& method, const Case& c) {
   return {slope(tail(h), tail(q)), slope(tail(h), tail(v))};
 }
 
-// At high orders few halvings fit between where higher terms matter and rounding.
+// Few halvings fit between higher terms and rounding at high orders.
 bool is_of_order(int p, const Orders& observed) {
   const double slack = p > 4 ? 0.25 : 0.1;
   return std::abs(observed.q - p) <= slack && std::abs(observed.v - p) <= slack;

@@ -23,8 +23,8 @@ Counts counts_of(const Method& method, const Options& options) {
   return r.summary.counts;
 }
 
-// What holds of the orders of any run up to `max_order`: steps begin at order 1 and go up by one at
-// a time, so that they can go down no more often than they went up.
+// Conditions on the orders of any run up to `max_order`. Steps begin at order 1 and go up by one at
+// a time, so that they cannot go down more often than up.
 bool are_sound(const Counts& c, int max_order) {
   return c.order_sum >= c.steps && c.order_sum <= max_order * c.steps && c.order_reductions >= 0 &&
          c.order_reductions < c.steps / 2 && (max_order > 1 || c.order_reductions == 0);

@@ -18,8 +18,8 @@ struct Hammock {
   std::unique_ptr<System> system = make_mass_spring(problem.network);
 };
 
-// What has to hold of any run: a time and a state that are numbers, the time told twice the same
-// and not beyond the end, the end reached exactly where that is said, and words where it is not.
+// Conditions on any run: time and state are finite, both reported times are equal and not beyond
+// the end, the end is reached exactly if the outcome says so, and else there is a message.
 bool is_sound(const Run& r, double t_end) {
   const bool reached = r.summary.outcome == Outcome::reached_end;
   return is_finite(r.state) && r.state.t == r.summary.t_reached && r.state.t <= t_end &&
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(a_step_that_rounding_swallows_is_refused) {
 }
 
 BOOST_AUTO_TEST_CASE(a_step_that_rounding_just_does_not_swallow_is_taken) {
-  // At t = 1e9 times are 1.2e-7 apart.
+  // Times are 1.2e-7 apart at t = 1e9.
   const Hammock h;
   for (const Method& method : methods_of(Knob::step_size)) {
     BOOST_TEST_CONTEXT(method.name) {
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(a_run_stopped_on_its_way_ends_there) {
       BOOST_TEST(is_sound(r, 1));
       BOOST_TEST(r.state.t == 0.5);
       const State there = run(method, *h.system, h.problem.initial, 0.5, options).state;
-      // A method that steps on 0.5 only where that is its end does so within some tolerances.
+      // A method that steps on 0.5 only if that is its end agrees within some tolerances.
       BOOST_TEST(distance(r.state, there) <=
                  (method.is(Trait::interpolates) ? 10 * options.rtol : 0));
     }

@@ -31,8 +31,8 @@ const State& reference() {
 Options fine(const Method& method) {
   return options_of(method, method.order == 1 ? 1e-4 : 1e-3, 1e-8);
 }
-// Vibrations of 17 rad/s and 0.05 m: of order 1, errors of (h w) w t / 2, of order 2 of (h w)^2 w
-// t / 12 of them.
+// Vibrations of 17 rad/s and 0.05 m give relative errors of (h w) w t / 2 at order 1, and of (h
+// w)^2 w t / 12 at order 2.
 double allowed(const Method& method) { return method.order == 1 ? 2e-2 : 2e-3; }
 
 const std::set<std::string> never_ask_for_stiffness = {
@@ -154,8 +154,8 @@ BOOST_AUTO_TEST_CASE(with_its_bonds_named_stiff_all_methods_run_that_take_forces
   });
 }
 
-// Bonds of 0.8 m push so hard that across them -K is negative: as a whole the matrix of a step is
-// indefinite, and a part of K has to do.
+// Bonds of 0.8 m push so hard that -K is negative across them. The matrix of a step with all of K
+// is indefinite, so that only a part of K is used.
 BOOST_AUTO_TEST_CASE(a_compressed_chain_is_stepped_with_a_part_of_k) {
   const ChainWithStiffness chain;
   State compressed = start();

@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(adaptive_methods_take_for_each_part_the_steps_that_it_needs
       BOOST_TEST(are_alone(whole, together, alone));
       BOOST_TEST(10 * alone[0].summary.counts.steps < alone[1].summary.counts.steps);
 
-      // As one system both take the steps of the fast one: that is what is seen above.
+      // Both take the steps of the fast one as one system, which the test above shows.
       Problem joined = slow.problem();
       joined.network.node_mass = Vec::Constant(2, slow.mass);
       joined.network.anchors.push_back({1, {0, 0, 0}, {fast.stiffness}});

@@ -18,12 +18,12 @@ Options options_for(const Method& method) {
 }
 const Observer early{{start_time + 0.05}, [](const State&) {}};
 
-// To the last bit; but where a method had to go back to an observer's time, an adaptive one, which
-// chooses its steps by where it began and where it stops, as well as its tolerance of 1e-6 lets it,
-// and one whose iterations start from what the last steps were, as well as the tolerances of these
-// let it in 100 steps. A method that interpolates does so to the end of the others, on which it
-// steps alone. BDF2, the alphas and methods that go on by other numbers than q and v start anew
-// where they go back to.
+// Checks that two states are equal to the last bit. There are exceptions if a method had to go back
+// to an observer's time:
+// - An adaptive method chooses its steps by its start and end, and agrees to its tolerance of 1e-6.
+// - A method whose iterations start from the last steps agrees to their tolerances in 100 steps.
+// - A method that interpolates does so at the end of the others, where it alone ends a step.
+// - BDF2, the alphas and methods with more state than q and v start again at the earlier time.
 void check_same(const Method& method, const State& a, const State& b, bool to_the_bit) {
   BOOST_TEST(a.t == b.t);
   const bool remembers =
@@ -37,8 +37,8 @@ void check_same(const Method& method, const State& a, const State& b, bool to_th
   }
 }
 
-// Runs `bad` among others, at each place, without and with an observer that looks in before: all
-// end at the time that it reaches alone, and each where it is alone at that time.
+// Runs `bad` among other parts, at each place, with and without an observer that looks in before.
+// All must end at the time that `bad` reaches alone, each in its own state at that time.
 void check_failure(const Method& method, const Part& bad, Outcome outcome) {
   const std::vector<Part> good = parts_for(method);
   const Options options = options_for(method);
@@ -82,7 +82,7 @@ Part string(double quarter_period) {
 BOOST_AUTO_TEST_CASE(a_part_that_diverges_ends_the_run_of_all_at_its_last_step) {
   for (const Method& method : methods_of(Knob::step_size)) {
     if (method.is(Trait::implicit)) continue;
-    // In steps of 1/100 s; explicit Euler has no limit and grows fourfold a step at h w = 4. The
+    // Steps are 1/100 s; explicit Euler has no limit and grows fourfold a step at h w = 4. The
     // splitting of order 6 is stable in places far beyond its limit, but nowhere above h w = 9.4.
     // Multistep methods compute their first steps together, which are not to diverge already.
     const double beyond = method.name == "blanes_moan6" ? 3.2 : 2;

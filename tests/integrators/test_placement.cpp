@@ -110,9 +110,9 @@ Scene disturbed(Scene scene, double size) {
 
 constexpr double nudge = 1e-9;
 
-// How far apart roundings may bring two runs: a deviation of the start by a nudge brings them
-// `by_nudge` apart, and each of the steps, by chance this way or that, deviates by some eps of
-// coordinates of up to 20 m.
+// The allowed distance of two runs by rounding. A deviation of the start by a nudge gives the
+// distance `by_nudge`. Each step deviates by some eps of coordinates of up to 20 m, with random
+// sign.
 Apart tolerance(const Case& c, const Apart& by_nudge) {
   const double eps = std::numeric_limits<double>::epsilon();
   const double roundings = std::sqrt(c.t_end / c.h) * 20 * eps / nudge;

@@ -187,9 +187,9 @@ BOOST_AUTO_TEST_CASE(one_step_keeps_the_symplectic_form_exactly_where_the_regist
     if (method.name.starts_with("symmetric")) continue;
     BOOST_TEST_CONTEXT(method.name) {
       const double defect = symplectic_defect(method);
-      // Differences of step s = 1e-4 err by s^2 |third derivative|, about 1e-8; a method that is
-      // not symplectic misses by some (h w)^(order + 1) with h w = 1 here, of higher order by a
-      // thousandth of that.
+      // Differences with steps s = 1e-4 have errors of s^2 |third derivative|, about 1e-8. The
+      // defect of a method that is not symplectic is some (h w)^(order + 1), with h w = 1 here, or
+      // a thousandth of that at higher orders.
       if (method.is(Trait::symplectic)) {
         BOOST_TEST(defect < 1e-6);
       } else {

@@ -11,9 +11,8 @@ namespace {
 
 constexpr double omega = 10, h = 0.02, middle = 0.31;
 
-// A mass of 1 kg on a spring that must not be compressed, of rest length 1 m and drawn out by
-// 0.05 m by a load: x = 1.05 - a cos(w (t - middle)), whose lowest point is in the middle of a
-// step.
+// A mass of 1 kg on a spring that must not be compressed, of rest length 1 m and stretched by 0.05
+// m by a load. x = 1.05 - a cos(w (t - middle)) has its lowest point in the middle of a step.
 Problem swing(double amplitude) {
   constexpr double k = omega * omega;
   Problem p{{.dimension = 1, .node_mass = Vec::Ones(1)}, {}};
@@ -60,8 +59,8 @@ std::vector<Method> accepting_massless() {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(compression_between_two_steps_is_seen_and_its_time_told) {
-  // Between steps it is shorter than at rest by a quarter of (h w)^2/8 of 0.05 m, and at their ends
-  // longer by about as much: an error of order 4, (h w)^4, is far below that.
+  // The spring is shorter than at rest between steps, by a quarter of (h w)^2/8 of 0.05 m, and
+  // longer by about as much at their ends. An error of order 4, (h w)^4, is far below that.
   const double excess = h * h * omega * omega / 16;
   const Problem p = swing(0.05 * (1 + excess));
   const auto system = make_mass_spring(p.network);
@@ -114,7 +113,7 @@ BOOST_AUTO_TEST_CASE(who_keeps_a_massless_node_notices_that_its_place_is_no_long
         BOOST_TEST(before.summary.message == "");
       }
     }
-    // In one dimension nothing can fold.
+    // Nothing can fold in one dimension.
     const Problem p = thrown(1);
     const auto system = make_mass_spring(p.network);
     const Run r = run(method, *system, p.initial, 0.2, options_of(method, 1e-3, 1e-6));

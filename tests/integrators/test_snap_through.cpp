@@ -2,9 +2,9 @@
 
 #include "tests/integrators/runs.hpp"
 
-// A massless node on a shallow truss, pulled down by a mass on a soft spring. There is a lowest
-// place of the mass up to which the node's balance can be followed: beyond it the only one is below
-// the pins, as stable as the one that was lost.
+// A massless node on a shallow truss, pulled down by a mass on a soft spring. The node's balance
+// can be followed down to a lowest place of the mass. The only balance beyond it is below the pins,
+// as stable as the lost one.
 BOOST_AUTO_TEST_SUITE(snap_through)
 
 using namespace qddot;

@@ -41,9 +41,9 @@ BOOST_AUTO_TEST_CASE(every_method_ends_in_the_same_state_with_every_solver) {
   }
 }
 
-// A column of unit masses in 2D, compressed to a third and bent a little to both sides: in these
-// steps M - h^2 K is indefinite, which conjugate gradients see in a solve. Minimisations keep less
-// of the compression; a formula that takes K as it is says why it cannot go on.
+// A column of unit masses in 2D, compressed to a third and slightly bent to both sides. M - h^2 K
+// is indefinite in these steps, which conjugate gradients see in a solve. Minimisations keep less
+// of the compression; a formula with the full K reports why it cannot go on.
 BOOST_AUTO_TEST_CASE(compression_is_softened_or_reported_with_conjugate_gradients) {
   constexpr int masses = 5;
   Problem p{{.dimension = 2, .node_mass = Vec::Ones(masses)}, {}};

@@ -18,7 +18,7 @@ void lose_it(MutableVec f) { f[0] = NAN; }
 
 Options options_for(const Method& method) { return options_of(method, 0.01, 1e-6); }
 
-// A split hammock of which one half's forces are spoiled from one of them on.
+// A split hammock; the forces of one half are spoiled from one of them on.
 struct Spoiled {
   Spoiled(bool in_stiff, int first_bad, Spoil spoil) {
     (in_stiff ? relay.stiff : relay.soft)->after_force = [this, first_bad, spoil](const ConstVec&,

@@ -132,7 +132,8 @@ BOOST_AUTO_TEST_CASE(steps_are_held_to_the_limit_of_the_soft_springs) {
   const System& system = scene.system();
   const State& start = scene.initial();
   const double until = 0.1;
-  // Seven steps a period of the frame's fastest mode, hundreds of those that move: exact to 1e-12.
+  // Seven steps a period of the frame's fastest mode, and hundreds a period of moving modes: exact
+  // to 1e-12.
   const Vec end = run(method_named("kahan_li8"), system, start, until, {.step_size = 1e-5}).state.q;
   const double motion = distance(end, start.q);
   const double soft_bound = frequency_bound(*split_of(system)->soft, start.q);

@@ -22,8 +22,8 @@ const std::vector<Named> all = {{"position_verlet", registered::position_verlet_
                                 {"blanes_moan6", registered::blanes_moan6_splitting()},
                                 {"kahan_li8", registered::kahan_li8_splitting()}};
 
-// The Nystrom method that a splitting is: a stage where each kick is, at the time c_i of the drifts
-// before, with a_ij = y_j (c_i - c_j), b_i = y_i (1 - c_i) and b'_i = y_i.
+// A splitting as a Nystrom method. Each kick is a stage at the time c_i of the drifts before it,
+// with a_ij = y_j (c_i - c_j), b_i = y_i (1 - c_i) and b'_i = y_i.
 NystromPair as_nystrom(const Splitting& splitting) {
   const auto& [order, kicks, drifts] = splitting;
   const std::size_t drifts_before = drifts.size() > kicks.size() ? 1 : 0;
@@ -40,7 +40,7 @@ NystromPair as_nystrom(const Splitting& splitting) {
   return method;
 }
 
-// By how much each order's conditions are missed, from order 1 on.
+// The defects of the conditions of each order, from order 1 on.
 std::vector<double> defects(const Splitting& splitting, int highest_order) {
   const NystromPair method = as_nystrom(splitting);
   const NystromTrees trees(method, highest_order);

@@ -44,8 +44,8 @@ struct Invariant {
   }
 };
 
-// Kick then drift keeps v^2 - h w^2 x v + w^2 x^2, kick drift kick v^2 + w^2 (1 - h^2 w^2/4) x^2:
-// both positive definite, so that the motion is bounded, exactly where h w < 2.
+// Kick then drift conserves v^2 - h w^2 x v + w^2 x^2, and kick drift kick v^2 + w^2 (1 - h^2
+// w^2/4) x^2. Both are positive definite, and the motion is bounded, exactly if h w < 2.
 std::vector<Invariant> invariants(double h) {
   return {{"symplectic_euler", -h * w * w, w * w}, {"verlet", 0, w * w * (1 - h * h * w * w / 4)}};
 }
@@ -122,7 +122,7 @@ Vec change_of_momenta(const Method& method) {
 
 BOOST_AUTO_TEST_CASE(explicit_euler_grows_by_its_factor_at_every_step_size) {
   for (const double hw : {0.01, 0.3, 1.0, 3.0}) {
-    // 50 steps round 50 times, of which the root divides by 50.
+    // 50 steps round 50 times; the root divides that by 50.
     BOOST_TEST(std::abs(growth_a_step("explicit_euler", hw, 50) / std::hypot(1, hw) - 1) < 1e-15);
   }
 }
@@ -226,8 +226,8 @@ BOOST_AUTO_TEST_CASE(methods_that_are_not_reversible_do_not_return) {
 BOOST_AUTO_TEST_CASE(every_fixed_step_method_keeps_the_momentum_of_free_masses) {
   for (const Method& method : methods_of(Knob::step_size)) {
     BOOST_TEST_CONTEXT(method.name) {
-      // The forces of a spring cancel to the last bit; 1000 steps round p of 10 kg m/s, and the
-      // linear solves of implicit methods round a few times more.
+      // The forces of a spring cancel to the last bit. 1000 steps round p of 10 kg m/s; the linear
+      // solves of implicit methods round a few times more.
       BOOST_TEST(change_of_momenta(method).head<3>().norm() < 1e-11);
     }
   }

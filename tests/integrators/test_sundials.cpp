@@ -15,11 +15,10 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// The tolerance holds for the estimated error of each step in the root mean square over q and v.
-// Over the two to three periods of these motions the largest error of any entry comes to between
-// 0.1 and 25 times as much with ARKODE (60 times where order 3 at 1e-7 takes most steps of all),
-// and to up to 1100 times with multistep methods, whose order rises and falls. A Newton iteration
-// that stops too early shows as 1e4 and more.
+// The tolerance is for the estimated error of each step in the root mean square over q and v. These
+// motions last two to three periods. The largest error of any entry is 0.1 to 25 tolerances with
+// ARKODE (60 with order 3 at 1e-7, which takes the most steps). It is up to 1100 with multistep
+// methods, whose order rises and falls. A Newton iteration that stops too early gives 1e4 and more.
 double largest_factor(const Method& method) {
   return method.name.starts_with("arkode") ? 100 : 2000;
 }
@@ -103,8 +102,8 @@ BOOST_AUTO_TEST_CASE(the_steps_of_arkode_show_the_order_of_its_table) {
   const State near = exact(1), far = exact(6);
   for (const Method& method : methods_of(Family::sundials, Knob::rtol)) {
     if (!method.name.starts_with("arkode")) continue;  // the order varies
-    // ARKODE leaves a step as it is until it can be longer by half, so that some ten steps, which
-    // are what the highest orders take in a second, do not show the order.
+    // ARKODE keeps a step size until it can be longer by half. The highest orders take some ten
+    // steps in a second, too few to show the order.
     const bool is_high = method.order > 5;
     const double rtol = method.order == 2 ? 1e-4 : is_high ? 1e-8 : 1e-7;
     const double order = order_by_tolerance(method, *system, p.initial, is_high ? far : near, rtol);
@@ -134,10 +133,10 @@ BOOST_AUTO_TEST_CASE(a_coarser_tolerance_costs_no_more_steps_however_stiff_the_s
 BOOST_AUTO_TEST_CASE(our_counts_and_those_of_sundials_fit_together) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(p.network);
-  // Besides one force for each Newton iteration ARKODE takes one at an explicit stage, which begins
-  // the tables of order 3 and 5, and at the end of a step that is no stage, that of order 2; it
-  // takes none at the solutions of implicit stages, and IDA none at all. We count forces and
-  // stiffnesses, SUNDIALS steps, iterations and factorisations.
+  // ARKODE evaluates one force for each Newton iteration. It evaluates one more at an explicit
+  // stage, which begins the tables of order 3 and 5, and at the end of a step that is no stage
+  // (order 2). It evaluates none at the solutions of implicit stages, and IDA none besides
+  // iterations. We count forces and stiffnesses, SUNDIALS steps, iterations and factorisations.
   const std::map<std::string, std::int64_t> forces_a_step = {{"arkode_dirk2", 1},
                                                              {"arkode_dirk3", 1},
                                                              {"arkode_dirk4", 0},

@@ -15,7 +15,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// From the 40th force or the third stiffness on, all of them fail.
+// All forces fail from the 40th on, and all stiffnesses from the third on.
 void break_forces(Relay& relay) {
   relay.after_force = [calls = 0](const ConstVec&, MutableVec) mutable {
     if (++calls >= 40) throw std::runtime_error("the spring broke");
@@ -103,8 +103,8 @@ BOOST_AUTO_TEST_CASE(a_force_that_becomes_no_number_ends_the_run_at_the_last_acc
       // The end of a step is a sum of rates, differences of solutions, and its last stage a
       // solution: the same but for rounding.
       BOOST_TEST(r.state.q[0] > 0.2 - 1e-14);
-      // Accepted states are where the method goes by itself, to 1000 times the tolerance (see the
-      // suite `sundials`), which with a constant step is that of Newton's iteration.
+      // Accepted states agree with the method's own motion to 1000 times the tolerance (see the
+      // suite `sundials`). The tolerance at a constant step is that of Newton's iteration.
       const State whole = run(method, *system, p.initial, r.state.t, options_for(method)).state;
       BOOST_TEST(distance(r.state, whole) < (method.knob == Knob::rtol ? 1e-3 : 1e-7));
     }

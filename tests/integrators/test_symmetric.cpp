@@ -26,7 +26,7 @@ Rational power(Rational x, int exponent) {
   return result;
 }
 
-// By how much q = t^p, with h = 1 and t = 0 in the middle, misses the formula.
+// The defect of q = t^p in the formula, with h = 1 and t = 0 in the middle.
 Rational defect(const SymmetricFormula& formula, int p) {
   const auto rho = whole(formula.rho, formula.rho_denominator),
              beta = whole(formula.beta, formula.beta_denominator);
@@ -142,8 +142,8 @@ BOOST_AUTO_TEST_CASE(velocities_are_exact_for_polynomials) {
   }
 }
 
-// On an oscillator a position is a combination of the powers of the recurrence's roots: a product
-// of all factors (E - z) makes zero of it.
+// A position of an oscillator is a combination of the powers of the recurrence's roots: the product
+// of all factors (E - z) makes it zero.
 BOOST_AUTO_TEST_CASE(roots_are_those_of_the_recurrence_of_a_run) {
   const auto system = make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);
   const State start{0, Vec::Constant(1, 0.3), Vec::Constant(1, 0.7)};
@@ -180,8 +180,8 @@ BOOST_AUTO_TEST_CASE(a_step_costs_one_force_after_those_of_the_start) {
     };
     const int k = formula.steps;
     BOOST_TEST(forces(2 * k) - forces(k) == k);
-    // One where the run begins, a sweep has one for each of the k - 1 steps, and the step after
-    // them begins with the last; its own is for the velocity where it ends.
+    // Forces: one at the start, k - 1 in each sweep, one for each of its steps. The step after them
+    // begins with the last force; its own force is for the velocity at its end.
     BOOST_TEST(forces(k) == 1 + k / 2 * (k - 1) + 1);
   }
 }

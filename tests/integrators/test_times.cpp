@@ -186,8 +186,8 @@ BOOST_AUTO_TEST_CASE(one_step_methods_run_in_two_halves_as_in_one) {
         integrator->advance(state, 0.5);
         integrator->advance(state, 1);
         const State whole = run(method_named(method), *system, p.initial, 1, options).state;
-        // A constant K is assembled anew where the second half starts, and rounds otherwise there;
-        // implicit Euler has other factors then, and leaves another 1e-13 of each step to them.
+        // A constant K is assembled again at the start of the second half, and rounds differently
+        // there. Implicit Euler has other factors then, which change each step by 1e-13.
         const bool is_solved = system->stiffness_is_constant() || method == "implicit_euler"s;
         BOOST_TEST(distance(state, whole) <= (is_solved ? 1e-11 : 0));
       }

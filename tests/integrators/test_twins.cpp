@@ -17,10 +17,10 @@ std::vector<std::string> pairs() {
   return names;
 }
 
-// Solves that round otherwise by some 1e-15 change error estimates of 1e-3 and less of it by 1e-12
-// in a hundred stages, and these the lengths of steps: up to 6e-12 of the end is seen. ARKODE's
-// rates are differences of solutions over a part of a step besides, of which its methods of high
-// order at coarse tolerances make 1.1e-9.
+// Solves that round differently, by some 1e-15, change error estimates of 1e-3 or less by 1e-12 in
+// a hundred stages. Estimates change the lengths of steps: the end changes by up to 6e-12. ARKODE's
+// rates are also differences of solutions over a part of a step. They change the end by 1.1e-9 in
+// its methods of high order at coarse tolerances.
 constexpr double by_rounding = 1e-10, by_coarse_rates = 1e-8;
 
 }  // namespace

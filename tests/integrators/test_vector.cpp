@@ -47,8 +47,8 @@ struct Vectors {
 constexpr int count = 8;
 using Operation = std::function<void(Vectors&)>;
 
-// The largest difference that an operation makes between our vectors and SUNDIALS' own, in
-// roundings of the sum of the sizes of all terms, for vectors of length 2n.
+// The largest difference of an operation on our vectors and on SUNDIALS' own, of length 2n, in
+// roundings of the sum of the sizes of all terms.
 double roundings(Index n, const Operation& ours, const Operation& theirs) {
   Vectors a(make_vector, n, count), b(make_stock_vector, n, count);
   Vec size = Vec::Zero(2 * n);

@@ -81,8 +81,8 @@ BOOST_AUTO_TEST_CASE(a_walk_has_its_size_and_no_slope) {
     size += fit.walk / seeds;
     told += fit.colour == Colour::oscillates || fit.colour == Colour::turns;
   }
-  // More than 9 of 60 intervals of 95 % miss once in 500 times; one size is known to 9 %, of which
-  // their mean has an eighth.
+  // More than 9 of 60 intervals of 95 % miss once in 500 times. One size has an error of 9 %, their
+  // mean an eighth of that.
   BOOST_TEST(holds >= seeds - 9);
   BOOST_TEST(size == 1, boost::test_tools::tolerance(0.05));
   // Once in a hundred times; more than 4 of 60 once in 2000 times.
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(coloured_noise_is_told_from_a_walk_if_it_forgets_soon) {
     excluded += slow.memory <= 16;
   }
   BOOST_TEST(soon > 0.8 * seeds);
-  // At most 5 % of them look like a wave or come back often by chance.
+  // Up to 5 % of them look like a wave or return often by chance.
   BOOST_TEST(late >= 0.8 * seeds);
   BOOST_TEST(excluded >= 0.8 * seeds);
 }

@@ -53,7 +53,7 @@ BOOST_AUTO_TEST_CASE(a_horizon_after_the_end_is_extrapolated) {
 }
 
 BOOST_AUTO_TEST_CASE(an_oscillation_on_it_does_not_matter) {
-  // The largest so far follows the crests, of which there are some in the later half.
+  // The largest so far follows the crests; there are some in the second half.
   const auto difference = [](double t) {
     return rounding * std::exp(20 * t) * (1 + 0.9 * std::sin(60 * t));
   };

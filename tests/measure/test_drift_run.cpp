@@ -15,11 +15,10 @@ using namespace qddot::measure;
 
 namespace {
 
-// Verlet in its positions' form, the square of the step in the positions longer by so many
-// thousandths:
+// Verlet's method for positions, with h^2 larger by d = `thousandths`/1000 in the positions:
 //   q_{n+1} = q_n + h v_n + (1 + d) h^2/2 a_n,   v_{n+1} = v_n + h/2 (a_n + a_{n+1}).
-// On q'' = -w^2 q a step's matrix has the determinant 1 - d h^2 w^2/2, so that energy falls by that
-// factor; with d = 0 it is the method itself.
+// The matrix of a step on q'' = -w^2 q has the determinant 1 - d h^2 w^2/2, so that energy falls by
+// that factor. d = 0 is the method itself.
 template <int thousandths>
 class LeaningVerlet final : public FixedStep {
  public:
@@ -93,7 +92,7 @@ BOOST_AUTO_TEST_CASE(one_coefficient_off_by_a_thousandth_is_caught) {
   const DriftRun wrong = orbit.of(leaning_verlet<1>(), h, h, until);
   BOOST_TEST(wrong.energy.drift.high < 0);
   BOOST_TEST(verdict_name(wrong.energy.verdict) != "bounded");
-  // On the oscillator by what the determinant says.
+  // The damping on the oscillator follows from the determinant.
   const Study oscillator("oscillator");
   const double z = 100 * h * h;
   const DriftRun damped = oscillator.of(leaning_verlet<1>(), h, h, 2000);

@@ -176,8 +176,9 @@ BOOST_AUTO_TEST_CASE(a_random_walk_is_no_drift_and_its_size_is_found) {
   }
   BOOST_TEST(misses <= most_misses);
   BOOST_TEST(seen > 0.9 * seeds);
-  // One size is known to 1/sqrt(2 (64 - 2)), their mean to a tenth of that, 0.9 %; and since there
-  // is never less noise than none beside a walk, it is taken for a few percent too small.
+  // One size has a relative error of 1/sqrt(2 (64 - 2)), their mean a tenth of that, 0.9 %. The
+  // fitted noise beside a walk cannot be negative, so that the walk comes out a few percent too
+  // small.
   BOOST_TEST(size > 0.94e-16);
   BOOST_TEST(size < 1.03e-16);
 }

@@ -43,7 +43,7 @@ std::vector<Rung> coarse_ladder(const Runs& runs, int order, double start) {
   return ladder;
 }
 
-// With all rungs that are lacking.
+// The ladder with all missing rungs.
 std::vector<Rung> refined(std::vector<Rung> ladder, const Runs& runs) {
   while (const auto steps = lacking_rung(ladder)) {
     const auto finer =
@@ -69,7 +69,7 @@ bool is_tight(double coarse, double fine) {
   return coarse >= near_enough * fine || fine - coarse == 1;
 }
 
-// The fewest steps of a rung that leave that error; none where there is no such.
+// The fewest steps of a rung with at most that error; none if there is no such rung.
 double fewest(const std::vector<Rung>& ladder, double error) {
   for (const Rung& rung : ladder) {
     if (rung.error <= error) return rung.steps;
@@ -96,8 +96,8 @@ BOOST_AUTO_TEST_CASE(a_limit_anywhere_is_found_from_both_sides) {
   }
 }
 
-// What a front is worse by than the method: at most the ratio of two rungs, 1.04 r^(1/8) at r times
-// the steps of the limit, which rung itself is off by 1/0.98. Whole steps add one.
+// A front needs more steps than the method by at most the ratio of two rungs, 1.04 r^(1/8) at r
+// times the steps of the limit. The rung at the limit is within 1/0.98. Whole steps add one.
 BOOST_AUTO_TEST_CASE(the_front_is_hardly_worse_than_the_method) {
   for (const int order : {1, 2, 4, 8}) {
     for (const double limit : {60.3, 777.7, 4321.0}) {
@@ -122,10 +122,10 @@ BOOST_AUTO_TEST_CASE(negative_control_without_more_rungs_a_front_is_worse) {
   BOOST_TEST(fewest(ladder, runs(778)) > 1.3 * 778);
 }
 
-// Halving a ratio of 2 down to 1/0.98 takes 6 runs. Of ratios 1.04 r^(1/8), r = 1 ... 8, there are
-// 8 log(1 + log(8) / (8 log(1.04))) = 16.3, and at most one more for each of the rungs that are
-// there. All together they take a fifth of the steps of a ladder that goes on to 1000 times as
-// many; a quarter is for roundings.
+// Halving a ratio of 2 down to 1/0.98 takes 6 runs. There are 8 log(1 + log(8) / (8 log(1.04))) =
+// 16.3 ratios 1.04 r^(1/8), r = 1 ... 8, and at most one more for each existing rung. All together
+// take a fifth of the steps of a ladder up to 1000 times as many; the limit of a quarter allows for
+// roundings.
 BOOST_AUTO_TEST_CASE(few_runs_are_enough_and_most_of_them_short) {
   for (const int order : {2, 4, 8}) {
     for (double limit = 20; limit < 5000; limit *= 1.31) {
@@ -216,8 +216,8 @@ struct Small {
 
 }  // namespace
 
-// The truth is a scan of every number of steps: the largest step is that from which on all smaller
-// ones hold.
+// Every number of steps is tried for comparison: all steps smaller than the largest stable one are
+// stable.
 BOOST_AUTO_TEST_CASE(verlets_coarsest_good_rung_is_next_to_the_largest_stable_step) {
   const Method& verlet = *find_method("verlet");
   for (unsigned seed = 0; seed < 24; ++seed) {
@@ -240,10 +240,10 @@ BOOST_AUTO_TEST_CASE(verlets_coarsest_good_rung_is_next_to_the_largest_stable_st
     BOOST_TEST(least <= rungs[top].steps, "seed " << seed << ": " << rungs[top].steps
                                                   << " steps are good, but not so many as "
                                                   << least - 1);
-    // From below, h = T/N: the rung's is at least 0.98 of the largest that holds, or the next one.
+    // h = T/N of the rung is at least 0.98 of the largest stable step, or the next one below it.
     BOOST_TEST((rungs[top].steps <= least / near_enough || rungs[top].steps - least <= 1),
                "seed " << seed << ": " << rungs[top].steps << " steps, but " << least << " hold");
-    // From above: the next coarser one is as near, and fails.
+    // The next coarser rung is as near, and fails.
     BOOST_TEST(small.error(rungs[top - 1].steps) >= 1);
     BOOST_TEST(is_tight(rungs[top - 1].steps, rungs[top].steps), "seed " << seed);
   }

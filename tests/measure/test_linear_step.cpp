@@ -63,7 +63,7 @@ bool declares_its_limit(const Method& method) {
   return std::abs(measured / declared - 1) < 1e-10;
 }
 
-// The roots of bdf2 on y' = i w y, 3 z^2 - 4 z + 1 = 2 i x z^2 with x = h w, and of its conjugate.
+// bdf2 on y' = i w y has roots with 3 z^2 - 4 z + 1 = 2 i x z^2, x = h w, and their conjugates.
 double bdf2_radius(double x) {
   const Complex a(3, -2 * x), root = std::sqrt(16. - 4. * a);
   return std::max(std::abs((4. + root) / (2. * a)), std::abs((4. - root) / (2. * a)));
@@ -78,7 +78,7 @@ BOOST_AUTO_TEST_CASE(roots_are_those_of_the_method_s_rational_function) {
         const Complex expected = rational.r({0, x});
         const LinearStep found = step_of(rational.method, x);
         BOOST_TEST_REQUIRE(found.roots.size() == 2u);
-        // Rounding of a step, of which it cancels up to 1 + x of its digits.
+        // Rounding of a step, enlarged by up to 1 + x by cancellation.
         const double tolerance = 1e-14 * (1 + x) * std::max(1.0, std::abs(expected));
         BOOST_TEST(std::abs(found.spectral_radius() - std::abs(expected)) < tolerance);
         BOOST_TEST(std::abs(std::abs(std::arg(found.roots[0])) - std::abs(std::arg(expected))) <
@@ -95,8 +95,8 @@ BOOST_AUTO_TEST_CASE(roots_of_methods_with_memory_are_all_found) {
     // Hankel matrices of condition 100 or so, and rounding of five steps.
     BOOST_TEST(std::abs(found.spectral_radius() - bdf2_radius(x)) < 1e-10);
   }
-  // Chung and Hulbert: the roots of an infinitely fast vibration are -rho twice and, of the
-  // acceleration, the same; at no step at all its third is (2 rho - 1)/(rho - 2) = -1/2.
+  // Chung and Hulbert: an infinitely fast vibration has the root -rho three times. A step of zero
+  // has the third root (2 rho - 1)/(rho - 2) = -1/2.
   const LinearStep slow = step_of("generalized_alpha", 0.01);
   BOOST_TEST_REQUIRE(slow.roots.size() == 3u);
   BOOST_TEST(std::abs(slow.roots[2] - (-0.5)) < 1e-4);  // x^2 from the limit, and noise
@@ -125,8 +125,8 @@ BOOST_AUTO_TEST_CASE(damping_ratio_and_period_error_are_those_of_a_damped_vibrat
   const LinearStep made{.h_omega = 1, .roots = {std::exp(exponent), std::exp(std::conj(exponent))}};
   BOOST_TEST(std::abs(made.damping_ratio() - zeta) < 1e-15);
   BOOST_TEST(std::abs(made.period_error() - (1 / exponent.imag() - 1)) < 1e-15);
-  // To leading order: implicit Euler zeta = h w/2, Verlet's period too short by (h w)^2/24. The
-  // cosine's rounding is some 1e-16/x^2 of the period, so that a much smaller x would not do.
+  // Leading orders: zeta = h w/2 with implicit Euler; Verlet's period is too short by (h w)^2/24.
+  // The cosine's rounding is some 1e-16/x^2 of the period, so that a much smaller x would not do.
   const double x = 1e-2;
   BOOST_TEST(std::abs(step_of("implicit_euler", x).damping_ratio() / (x / 2) - 1) < x);
   BOOST_TEST(std::abs(step_of("verlet", x).period_error() / (-x * x / 24) - 1) < x);

@@ -41,7 +41,7 @@ class Still : public FixedStep {
   }
 };
 
-// For a tenth of a second, so that a run is a long one on any machine.
+// A step takes a tenth of a second, so that a run is long on any machine.
 class Slow final : public Still {
  public:
   using Still::Still;

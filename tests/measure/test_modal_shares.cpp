@@ -14,8 +14,8 @@ using namespace qddot::measure;
 
 namespace {
 
-// A 1D row of equal masses on springs of zero rest length between two walls, with velocities in
-// some of its modes sin(j pi i/(N+1)), w_j = 2 sqrt(k/m) sin(j pi/(2 (N+1))), from equilibrium.
+// A 1D row of equal masses on springs of zero rest length between two walls, at equilibrium. It has
+// velocities in some of its modes sin(j pi i/(N+1)), w_j = 2 sqrt(k/m) sin(j pi/(2 (N+1))).
 struct Row {
   int count;
   std::vector<std::pair<int, double>> modes;  // number, amplitude [m/s]
@@ -91,8 +91,8 @@ BOOST_AUTO_TEST_CASE(a_vibration_in_one_mode_stays_there) {
 }
 
 BOOST_AUTO_TEST_CASE(of_a_linear_chain_they_are_those_of_the_start) {
-  // Over whole periods each mode's kinetic energy is half of its energy, which is all kinetic at
-  // the start and stays in it; over some hundred periods but for 1/(2 w T) and the looks' chance.
+  // The mean kinetic energy of a mode over whole periods is half of its energy, which is all
+  // kinetic at the start. Some hundred periods give errors of 1/(2 w T) and of chance in the looks.
   const Row row{12, {{1, 0.3}, {4, 0.2}, {9, 0.1}}};
   const ReducedScene scene = row.scene();
   const ModalShares shares = shares_of(scene);

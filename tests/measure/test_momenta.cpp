@@ -16,7 +16,7 @@ namespace {
 
 constexpr double speed = 1;
 
-// By how much an accurate run to `until` changes what its scene keeps.
+// The change of the scene's conserved momenta in an accurate run to `until`.
 double change_of_run(const Scene& scene, double until) {
   const ReducedScene reduced(scene, Reductions::only({Reduction::pins}));
   const auto integrator =

@@ -12,9 +12,8 @@ using measure::OwnFrequencies;
 
 namespace {
 
-// Two masses on a line, each on a spring of rest length 0 of its own and joined by a weak one, so
-// that they are one part: vibrations of nearly `slow` and `fast` [rad/s], of amplitudes 1 and
-// `share`.
+// Two masses on a line, each on its own spring of rest length 0. A weak spring joins them to one
+// part. They vibrate with nearly `slow` and `fast` [rad/s], with amplitudes 1 and `share`.
 Scene two_vibrations(double slow, double fast, double share) {
   Scene scene{.name = "two", .dimension = 1};
   scene.nodes.resize(3);
@@ -45,8 +44,8 @@ BOOST_AUTO_TEST_CASE(a_single_vibration_has_its_own_frequency_at_all_orders) {
   scene.nodes.pop_back();
   scene.springs.resize(1);
   const OwnFrequencies own = of(scene, 17, 3);
-  // The largest of few samples of sines and cosines is off by some percent, which a p-th root makes
-  // less of; differences over h w = 1/2 by 1 %.
+  // The largest of few samples of sines and cosines has an error of some percent, reduced by the
+  // p-th root. Differences over h w = 1/2 have an error of 1 %.
   for (int p = 2; p <= 10; p += 2) BOOST_TEST(std::abs(own.at(p) / 3 - 1) < 0.15, p);
   // |q'| over the largest |q - q(0)|, which is twice the amplitude: w / (2 sqrt 2).
   BOOST_TEST(std::abs(own.speed / (3 / std::sqrt(8)) - 1) < 0.15);
@@ -62,7 +61,8 @@ BOOST_AUTO_TEST_CASE(rounding_is_no_vibration) {
 }
 
 BOOST_AUTO_TEST_CASE(a_fast_vibration_of_small_amplitude_shows_at_high_orders) {
-  // At order p it counts by share w^(p+1): from p on at which share (fast/slow)^(p+1) is above 1.
+  // It counts by share w^(p+1) at order p: from the p on at which share (fast/slow)^(p+1) is above
+  // 1.
   const double slow = 1, fast = 20, share = 1e-6;
   const OwnFrequencies own = of(two_vibrations(slow, fast, share), 9, fast);
   BOOST_TEST(std::abs(own.at(2) / slow - 1) < 0.2);

@@ -18,15 +18,15 @@ using namespace qddot::measure;
 
 namespace {
 
-// For a reference: more than any of these takes, also on a slow machine.
+// The time limit of a reference: more than any of these takes, also on a slow machine.
 constexpr double seconds = 100;
-// By what factor a certified bound may be missed; and what it is at best.
+// The factor by which an error may exceed its certified bound; and the best bound.
 constexpr double slack = 10;
 constexpr double tight = 1e-12;
 
-// A 1D row of equal masses on equal springs of zero rest length between two walls, displaced by
-// two of its modes: x_i(t) = i L/(N+1) + sum_j a_j sin(j pi i/(N+1)) cos(w_j t + b_j),
-// w_j = 2 sqrt(k/m) sin(j pi / (2 (N+1))).
+// A 1D row of equal masses on equal springs of zero rest length between two walls, displaced by two
+// of its modes. x_i(t) = i L/(N+1) + sum_j a_j sin(j pi i/(N+1)) cos(w_j t + b_j), with w_j = 2
+// sqrt(k/m) sin(j pi / (2 (N+1))).
 struct Row {
   int count = 12;
   long double stiffness = 500, mass = 0.5L;
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(a_nonlinear_motion_ends_where_a_third_method_sees_it) {
       BOOST_TEST((third->advance(state, 0.5).outcome == Outcome::reached_end));
       return errors_between(scene, state, made.end, made.energy, made.scales);
     };
-    // Local errors of 1e-12 add up over the steps, of which there are some hundreds.
+    // Local errors of 1e-12 add up over some hundreds of steps.
     const Errors fine = error_at(1e-12), coarse = error_at(1e-9);
     BOOST_TEST(fine.position < 5e-10, name);
     BOOST_TEST(fine.velocity < 5e-10, name);
@@ -268,8 +268,8 @@ BOOST_AUTO_TEST_CASE(refinement_goes_on_while_steps_are_too_coarse_for_its_order
 }
 
 BOOST_AUTO_TEST_CASE(a_motion_in_exact_symmetry_is_known_and_known_to_be_alone) {
-  // Masses m on springs that push with F over the length l grow to the side, the fastest by
-  // (2 sin(5 pi/12)) sqrt(F/(l m)) = 66/s: one rounding is a hundredth after half a second.
+  // Masses m on springs that push with F over the length l move sideways exponentially, the fastest
+  // at (2 sin(5 pi/12)) sqrt(F/(l m)) = 66/s. One rounding becomes a hundredth after half a second.
   const Scene strut = compressed_strut();
   const ReducedScene scene(strut);
   const Reference early = make_reference(scene, 0.2, seconds, &strut),
@@ -364,7 +364,7 @@ BOOST_AUTO_TEST_CASE(where_time_is_up_the_nearest_two_say_how_far_they_differ) {
 }
 
 BOOST_AUTO_TEST_CASE(an_end_too_late_is_refused_with_what_it_would_take) {
-  // w = 10 rad/s: 5e10 steps at the least, of which a core takes some millions a second.
+  // w = 10 rad/s needs at least 5e10 steps; a core takes some millions a second.
   const ReducedScene scene(load_scene("pendulum"));
   for (const double until : {1e9, 1e300}) {
     const auto start = std::chrono::steady_clock::now();

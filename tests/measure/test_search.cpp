@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(steps_that_meet_a_resonance_are_made_somewhat_shorter) {
   const advice_study::Case c = advice_study::drawn_case(8000385);
   const ReducedScene model(c.scene);
   std::vector<Trial> tried;
-  // On a busy machine, the first of them may take all the time there is.
+  // The first of them may take all the time on a busy machine.
   for (int attempt = 0; attempt < 20 && tried.size() < 2; ++attempt) {
     Search search(model, c.until, AccuracyOf::positions, seconds);
     BOOST_TEST_REQUIRE(search.survey(c.accuracy));
@@ -125,7 +125,8 @@ BOOST_AUTO_TEST_CASE(the_finer_of_two_runs_is_within_their_distance) {
       BOOST_TEST_REQUIRE(bound.has_value());
       const double error = error_of(*trial, search, reference);
       BOOST_TEST(error <= bound->error, name);
-      // Not much wider: twice their distance, of which the order leaves 0.7 of the coarse error.
+      // The bound is not much larger: twice their distance, which is at least 0.7 of the coarse
+      // error.
       BOOST_TEST(bound->error <= 8 * error, name);
       BOOST_TEST(bound->by_coarser == (trial == &fine), name);
     }
@@ -159,7 +160,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_is_hardly_finer_bounds_the_other_where_its_order
 }
 
 BOOST_AUTO_TEST_CASE(what_is_far_within_the_accuracy_is_checked_by_what_is_hardly_finer) {
-  // At its limit, Verlet's method is 10^4 times as accurate here as is asked for.
+  // Verlet's method at its limit is 10^4 times as accurate here as asked for.
   Finding on(8000395);
   BOOST_TEST(on.bound->error <= on.drawn.accuracy);
   BOOST_TEST((on.bound->by->method == on.found->method));
@@ -358,8 +359,8 @@ BOOST_AUTO_TEST_CASE(an_implicit_method_that_diverges_gets_more_steps) {
   const advice_study::Case c = advice_study::drawn_case(4000205);
   const ReducedScene model(c.scene);
   bool has_diverged = false, has_more = false;
-  // On a busy machine, a search may take steps for dearer than they are and more of them for no
-  // gain; another one times them anew.
+  // A search on a busy machine may overestimate the time of steps, so that more of them gain
+  // nothing. Another search times them again.
   for (int attempt = 0; attempt < 20 && !has_more; ++attempt) {
     Search search(model, c.until, AccuracyOf::positions, seconds);
     BOOST_TEST_REQUIRE(search.survey(c.accuracy));

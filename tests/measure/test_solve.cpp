@@ -99,9 +99,9 @@ BOOST_AUTO_TEST_CASE(what_it_claims_holds_on_drawn_scenes) {
 }
 
 BOOST_AUTO_TEST_CASE(a_vibration_that_long_steps_leave_standing_is_not_missed) {
-  // A mass on a slow nonlinear spring, and on it by another a mass on a stiff one that begins a
-  // twentieth out of place and vibrates by that, by more than the accuracy. Implicit steps far
-  // longer than its period hold it where it is, or opposite.
+  // A mass on a slow nonlinear spring, and another mass on it by a stiff spring. The second one
+  // starts a twentieth out of place and vibrates by that, which is more than the accuracy. Implicit
+  // steps far longer than its period keep it in place, or put it opposite.
   Scene scene{.name = "stiff and slow", .dimension = 1};
   scene.nodes.resize(3);
   scene.nodes[0].pinned = true;
@@ -129,7 +129,7 @@ BOOST_AUTO_TEST_CASE(its_run_is_the_run_of_that_method_and_knob) {
   BOOST_TEST_REQUIRE((answer.method->knob == Knob::step_size));
   Simulation run(scene, *answer.method, {.step_size = answer.value});
   run.advance(0.1);
-  // To the last bit: looks between steps change none of fixed size.
+  // States are equal to the last bit: looks between steps change no fixed steps.
   BOOST_TEST((run.state().q == answer.end.q));
 }
 
@@ -165,7 +165,7 @@ BOOST_AUTO_TEST_CASE(below_rounding_nothing_is_claimed) {
   // What is left is rounding, far below what one looks for.
   BOOST_TEST(answer.error_estimate > 1e-14);
   BOOST_TEST(answer.error_estimate < 1e-6);
-  BOOST_TEST(contains(answer.why, {"the best that is known"}));
+  BOOST_TEST(contains(answer.why, {"the smallest known error bound is"}));
 }
 
 BOOST_AUTO_TEST_CASE(the_path_and_the_energy_are_within_what_was_asked_for) {
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(the_path_and_the_energy_are_within_what_was_asked_for) {
   for (const AccuracyOf of : {AccuracyOf::path, AccuracyOf::energy}) {
     const Answer answer = measure::solve(model, until, {.accuracy = accuracy, .of = of});
     BOOST_TEST_REQUIRE(answer.is_reached);
-    // At three times as many times as it looked at, on a run that is much finer.
+    // The path is checked at three times as many times as it was looked at, by a much finer run.
     Observer each;
     const auto seen = [&](const Method& method, double h) {
       std::vector<State> path;

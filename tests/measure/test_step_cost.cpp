@@ -12,7 +12,7 @@ BOOST_AUTO_TEST_SUITE(step_cost)
 using namespace qddot;
 using namespace qddot::measure;
 
-// A cloth in a frame of named stiff springs, of which the frame alone is solved for.
+// A cloth in a frame of named stiff springs; the steps solve for the frame alone.
 BOOST_AUTO_TEST_CASE(linearly_implicit_steps_cost_what_they_solve_for) {
   Scene scene = drawn("framed_cloth", {{"nodes", 30}});
   const ReducedScene framed(scene);

@@ -162,8 +162,8 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_it_goes_down_by_the_energy_error) {
 }
 
 BOOST_AUTO_TEST_CASE(steps_held_to_a_stability_limit_do_not_end_it) {
-  // A slow vibration of two masses that hold together by a spring 1e6 times stiffer: steps that let
-  // this one not grow are far finer than a coarse tolerance asks for.
+  // A slow vibration of two masses joined by a spring 1e6 times stiffer. Steps that are stable for
+  // this spring are far finer than a coarse tolerance needs.
   Scene scene{.name = "held", .dimension = 1};
   scene.nodes = {
       {.pinned = true}, {.position = {1, 0, 0}, .mass = 1}, {.position = {2, 0, 0}, .mass = 1}};
@@ -186,8 +186,8 @@ BOOST_AUTO_TEST_CASE(steps_held_to_a_stability_limit_do_not_end_it) {
   BOOST_TEST(points.back().errors.position < 1e-4 * points[0].errors.position);
 }
 
-// What is linear in the stiff spring alone runs away where steps are too long for the soft one: the
-// next rung below is as near to that as for explicit methods.
+// A method that is implicit only in the stiff spring blows up if steps are too long for the soft
+// one. The next smaller step is as near to that limit as for explicit methods.
 BOOST_AUTO_TEST_CASE(implicit_steps_that_run_away_are_taken_closer_too) {
   Scene scene{.name = "held", .dimension = 1, .stiff_above = 1e3};
   scene.nodes = {

@@ -47,15 +47,15 @@ BOOST_AUTO_TEST_CASE(explicit_eulers_energy_error_is_largest_at_the_end) {
 }
 
 BOOST_AUTO_TEST_CASE(verlets_energy_error_is_its_oscillation_though_the_end_is_good_by_luck) {
-  // From rest Verlet keeps w^2 q^2 + v^2/(1 - s), s = (h w/2)^2, so that E goes from E(0) to
-  // (1 - s) E(0) and back twice a period. After whole periods the end is at a return.
+  // Verlet's method conserves w^2 q^2 + v^2/(1 - s), s = (h w/2)^2. So E goes from E(0) to (1 - s)
+  // E(0) and back twice a period, from rest. It is E(0) again after whole periods.
   const double until = 6 * M_PI / omega;
   const Watched run = oscillator(until);
   for (const int steps : {60, 130, 1000}) {
     const double h = until / steps, s = std::pow(h * omega / 2, 2);
     const Point point = run.point("verlet", h);
-    // A hundred looks at twelve oscillations come nearer to a crest than an eighth of one:
-    // cos^2 of a phase off by at most 6 pi/100 * (1 + 1/2).
+    // A hundred looks at twelve oscillations come nearer to a crest than an eighth of one: cos^2 of
+    // a phase error of at most 6 pi/100 * (1 + 1/2).
     BOOST_TEST(point.path.energy <= s * (1 + 1e-3));
     BOOST_TEST(point.path.energy >= s * 0.9);
     BOOST_TEST(point.errors.energy < 0.1 * s);

@@ -15,16 +15,16 @@ struct ImageSample {
 
 constexpr int image_nodes = 6;
 
-// Whether coordinate d of a node is none of those that stay zero.
+// Whether coordinate d of a node does not stay zero.
 inline bool is_unknown(const Network& network, int node, int d) {
   return network.zero_coordinates.empty() ||
          !(network.zero_coordinates[static_cast<std::size_t>(node)] >> d & 1);
 }
 
-// Six nodes in a row with springs of all kinds between any two of them: links and images in both
-// directions and several times, images of a node itself, node 2 joined to everything; gravity and
-// loads. Each spring starts at `stretch` times its rest length and is at least 0.5 m long. With
-// `on_planes`, some coordinates stay zero, all of node 4.
+// Six nodes in a row with springs of all kinds between any two of them, gravity and loads. There
+// are links and images in both directions and several times, and images of a node itself; node 2 is
+// joined to all. Each spring starts at `stretch` times its rest length and is at least 0.5 m long.
+// `on_planes`: whether some coordinates stay zero, all those of node 4 among them.
 inline ImageSample random_images(std::mt19937& random, int dimension, double stretch,
                                  bool on_planes) {
   const auto uniform = [&](double low, double high) {
@@ -96,7 +96,8 @@ inline ImageSample random_images(std::mt19937& random, int dimension, double str
   return s;
 }
 
-// In each dimension, all springs stretched or all compressed, without planes and with.
+// Calls check(sample) in each dimension, with all springs stretched or compressed, with and without
+// planes.
 template <class Check>
 void for_random_images(const Check& check) {
   std::mt19937 random(11);

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-// All images of the nodes as nodes of their own, image s of node i being number 2^D i + s where
-// bit d of s says that coordinate d is turned; and x_full = P q. Mass, load and each spring are
-// spread over as many images: P'M_full P is M, P'f_full is f, and V_full is V.
+// All images of the nodes as nodes of their own, with x_full = P q. Image s of node i has the
+// number 2^D i + s; bit d of s says that coordinate d is reversed. Mass, load and each spring are
+// divided among as many images: P'M_full P is M, P'f_full is f, and V_full is V.
 struct Whole {
   explicit Whole(const Network& half)
       : images(1 << half.dimension),
@@ -79,7 +79,7 @@ struct Difference {
   double v, mass, f, k, acceleration;  // relative to the largest entry
 };
 
-// For the network with image links from `whole`, which holds all images.
+// Differences of the network with image links to `whole`, which has all images.
 Difference difference(const ImageSample& s, const Whole& whole) {
   const auto system = make_mass_spring(s.network), full = make_mass_spring(whole.network);
   const Eigen::MatrixXd& p = whole.p;

@@ -34,7 +34,7 @@ class WithStiffness : public Plain {
   SymmetricMatrix pattern_;
 };
 
-// With one capability more; where it says a place, that is at q = 1.
+// The system with one more capability; a place that it reports is at q = 1.
 class WithSplitStiffness final : public WithStiffness, public SplitStiffness {
  public:
   void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override { stiffness(q, k); }

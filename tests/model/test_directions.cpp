@@ -15,7 +15,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-// Each kind of spring on `count` nodes, some of which stay at zero; all lengths are off by `strain`
+// Each kind of spring on `count` nodes; some coordinates stay zero. All lengths deviate by `strain`
 // at the state `q`.
 struct Line {
   Network network;

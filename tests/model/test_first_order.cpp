@@ -130,8 +130,8 @@ BOOST_AUTO_TEST_CASE(with_minus_one_and_c_it_is_the_matrix_of_the_implicit_form)
     const auto system = make_mass_spring(p.network);
     const Index n = system->size();
     const double c = 40;
-    // F(y, y') = (q' - v, M v' - f(q)) along y = y0 + u, y' = c u: its derivative by u at u = 0 is
-    // dF/dy + c dF/dy'.
+    // Let F(y, y') = (q' - v, M v' - f(q)) with y = y0 + u and y' = c u. Its derivative by u at u =
+    // 0 is dF/dy + c dF/dy'.
     const Vec start = stacked(p.initial.q, p.initial.v);
     const auto residual = [&](const Vec& u) {
       const Vec y = start + u, rate = c * u;

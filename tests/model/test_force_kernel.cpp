@@ -123,8 +123,8 @@ BOOST_AUTO_TEST_CASE(it_is_the_plain_sum_on_grids_in_any_order_of_their_nodes) {
   }
 }
 
-// An energy is rounded in proportion to each spring's, of which it has a few operations, or to
-// eps l^2 k where that is less; a mean force as a force, of twice as many operations.
+// The rounding of an energy is a few roundings of each spring's energy, or eps l^2 k if that is
+// less. That of a mean force is that of a force with twice as many operations.
 BOOST_AUTO_TEST_CASE(energies_and_mean_forces_are_the_plain_sums_as_well) {
   const auto check = [](const Network& network, const Vec& q) {
     const auto plain = make_mass_spring(network, Forces::spring_by_spring),
@@ -194,7 +194,7 @@ BOOST_AUTO_TEST_CASE(it_is_the_same_to_the_bit_with_any_number_of_threads) {
   omp_set_num_threads(before);
 }
 
-// What slices hold, read back row by row, is what they were made of.
+// Slices, read back row by row, have the neighbours that they were made of.
 BOOST_AUTO_TEST_CASE(slices_hold_every_neighbour_once) {
   const Network network = grid(2, 13, shuffled(13 * 13)).network;
   auto neighbours = neighbours_in(network);
@@ -231,8 +231,8 @@ BOOST_AUTO_TEST_CASE(slices_hold_every_neighbour_once) {
   }
 }
 
-// A grid's slots are of one shift but for the ends of its lines; without an order in its nodes they
-// gather, and rows sorted by their number of springs leave hardly any slot half empty.
+// A grid's slots have one shift, except at the ends of its lines. If its nodes have no order, slots
+// gather; rows sorted by their number of springs leave hardly any slot half empty.
 BOOST_AUTO_TEST_CASE(slots_of_a_grid_are_of_one_shift_and_no_slot_is_wasted) {
   constexpr int side = 64;
   for (const bool is_grid : {true, false}) {

@@ -70,8 +70,8 @@ BOOST_AUTO_TEST_CASE(a_spring_in_tension_at_both_ends_of_a_step_may_not_be_so_be
 }
 
 BOOST_AUTO_TEST_CASE(a_turning_spring_is_as_long_as_it_is) {
-  // A quarter of a circle of radius 1.05 in one step: the cubic with h v = r pi/2 at both ends errs
-  // by 1 % of the radius.
+  // A quarter of a circle of radius 1.05 in one step: the cubic with h v = r pi/2 at both ends has
+  // an error of 1 % of the radius.
   const double r = 1.05, v = r * M_PI / 2;
   BOOST_TEST(
       !offered<Validity>(*tether()).end_of_validity(state(0, r, 0, 0, v), state(1, 0, r, -v, 0)));
@@ -82,8 +82,8 @@ BOOST_AUTO_TEST_CASE(a_turning_spring_is_as_long_as_it_is) {
 }
 
 BOOST_AUTO_TEST_CASE(speeds_along_a_stiff_spring_take_it_no_farther_than_it_can_swing) {
-  // w = 1000 rad/s: at 1 m/s it swings by 1e-3 m, which is less than the 1e-2 m that it is drawn
-  // out by; the plain cubic over a step of 1 s would go down by 0.25 m.
+  // It swings at w = 1000 rad/s and 1 m/s by 1e-3 m, which is less than its stretch of 1e-2 m. The
+  // plain cubic over a step of 1 s would go down by 0.25 m.
   const State from = state(0, 1.01, 0, -1, 0), to = state(1, 1.01, 0, 1, 0);
   BOOST_TEST(!offered<Validity>(*tether(1e6)).end_of_validity(from, to));
   BOOST_TEST(offered<Validity>(*tether(1)).end_of_validity(from, to).has_value());

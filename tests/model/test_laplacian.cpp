@@ -56,8 +56,8 @@ double smallest_eigenvalue(const Eigen::MatrixXd& a) {
 }
 double largest_eigenvalue(const Eigen::MatrixXd& a) { return -smallest_eigenvalue(-a); }
 
-// A dozen stiffnesses of up to 200 N/m, or 800 across a mirror, add up to each entry; eigenvalues
-// of up to 5000 N/m err by as much again.
+// Each entry is a sum of a dozen stiffnesses of up to 200 N/m, or 800 across a mirror. Eigenvalues
+// of up to 5000 N/m have errors of the same size.
 constexpr double rounding = 100 * eps * 5000;
 
 Vec beside(const Vec& q, std::mt19937& random) {

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-// Balances the truncation h^4 |g^(5)| / 30 with the rounding eps |g| / h for what random_network
-// gives: springs of 0.4 to 7 m, whose fifth derivatives are at most some 1e3 times V and f.
+// Balances the truncation h^4 |g^(5)| / 30 with the rounding eps |g| / h in random_network. Its
+// springs of 0.4 to 7 m have fifth derivatives of at most some 1e3 times V and f.
 constexpr double step = 1e-3;
 
 // Relative error of differences with that step: 1e-12 * 1e3 / 30 from truncation, ten eps / 1e-3
@@ -154,8 +154,8 @@ BOOST_AUTO_TEST_CASE(rotation_keeps_the_potential_and_turns_the_force) {
     const auto turned = [&](const Vec& x) -> Vec {
       return (turn * x.reshaped(dimension, x.size() / dimension)).reshaped();
     };
-    // Lengths near 1 m keep 16 digits; k of 200 and c of 50 at strains of 3 m turn that into at
-    // most 1e4 eps of energy and force.
+    // Lengths near 1 m have 16 digits. k of 200 and c of 50 at strains of 3 m make that at most 1e4
+    // eps of energy and force.
     BOOST_TEST(std::abs(system->potential(turned(p.initial.q)) - system->potential(p.initial.q)) <=
                1e4 * eps);
     BOOST_TEST(distance(force_at(*system, turned(p.initial.q)),

@@ -48,8 +48,8 @@ class Arguments {
     t_.push_back(t);
   }
 
-  // How many of the roots and quotients differ in a bit from the processor's own, of which the
-  // kernels know none. False in `is_there` where the version in use does not estimate.
+  // The number of roots and quotients that differ in a bit from the processor's own. `is_there` is
+  // false if the version in use makes no estimates.
   Index differences(Roots roots, bool& is_there) {
     while (a_.size() % slice_rows) add(1, 1);
     const auto n = std::ssize(a_);
@@ -88,8 +88,8 @@ Bits inverse(Bits odd) {
   return x;
 }
 
-// The odd m in (0, 2^(bits - 1)) whose square is d mod 2^bits, d = 1 mod 8; the other three roots
-// are the complements of it and of these to 2^(bits - 1). Bit by bit from the lowest.
+// The odd m in (0, 2^(bits - 1)) whose square is d mod 2^bits, for d = 1 mod 8, found bit by bit
+// from the lowest. The other three roots are the complements of it and of these to 2^(bits - 1).
 Bits root_mod(Bits d, int bits) {
   Bits m = 1;
   for (int i = 3; i < bits; ++i) {
@@ -142,9 +142,9 @@ BOOST_AUTO_TEST_CASE(so_have_those_next_to_powers_of_two) {
   check(arguments);
 }
 
-// The numbers a whose roots are nearest to the middle of two numbers, m = M 2^-53 with M odd:
-// a - m^2 = d 2^-106, so M^2 = -d mod 2^54 (a in [1, 2)) or mod 2^55 (a in [2, 4)). Any other d
-// than these is too large to be missed by a rounding error below 7 2^-106 sqrt(a).
+// The numbers a whose roots are nearest to the middle of two numbers, m = M 2^-53 with M odd. a -
+// m^2 = d 2^-106 gives M^2 = -d mod 2^54 (a in [1, 2)) or mod 2^55 (a in [2, 4)). Any other d is so
+// large that a rounding error below 7 2^-106 sqrt(a) does no harm.
 BOOST_AUTO_TEST_CASE(so_have_all_roots_that_are_hard_to_round) {
   Arguments arguments;
   Index found = 0;
@@ -171,9 +171,9 @@ BOOST_AUTO_TEST_CASE(so_have_all_roots_that_are_hard_to_round) {
   check(arguments);
 }
 
-// Quotients t/l next to the middle of two numbers: with l = L 2^-52 and M of 54 bits and odd,
-// t 2^54 - M L = k, k odd. The last number below 2 is the hardest to divide by, for its inverse is
-// the hardest to round; so are numbers whose inverse is near the middle of two, M L = 2^106 - k.
+// Quotients t/l next to the middle of two numbers. l = L 2^-52, M has 54 bits and is odd, and t
+// 2^54 - M L = k, k odd. The last number below 2 is the hardest divisor: its inverse is the hardest
+// to round. Other hard ones have an inverse near the middle of two numbers, M L = 2^106 - k.
 BOOST_AUTO_TEST_CASE(so_have_quotients_that_are_hard_to_round) {
   std::vector<Bits> numbers = {0x1fffffffffffff, 0x1ffffff8000001, 0x1e20adbc4078a2,
                                0x1c36899addce3c, 0x15555555555554, 0x1ffb8a8b628dbc,
@@ -198,9 +198,9 @@ BOOST_AUTO_TEST_CASE(so_have_quotients_that_are_hard_to_round) {
   check(arguments);
 }
 
-// What estimates do not reach is the processor's own again: lengths whose squares are denormal,
-// overflow, or lie on either side of the window's ends, and laws beyond theirs. Where products are
-// fused, they are so in the kernels.
+// The processor's own operations are used beyond the range of estimates. These are lengths whose
+// squares are denormal, overflow, or lie at the ends of the window, and laws beyond theirs.
+// Products are fused here if they are in the kernels.
 BOOST_AUTO_TEST_CASE(forces_of_springs_of_any_length_are_those_of_the_plain_law) {
   const bool fuses = levels()[static_cast<std::size_t>(level())] != "v2";
   for (const double quartic : {0.0, 3.0, 1e-250}) {

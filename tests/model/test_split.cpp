@@ -69,8 +69,8 @@ bool same_pattern(const System& a, const System& b) {
          std::equal(p.innerIndexPtr(), p.innerIndexPtr() + p.nonZeros(), r.innerIndexPtr());
 }
 
-// Whether f, K and V of the two are those of the whole but for the rounding of some 60 springs of
-// up to 1e5 J, N and N/m, summed in another order.
+// Whether f, K and V of the two add up to those of the whole. The tolerance is the rounding of some
+// 60 springs of up to 1e5 J, N and N/m, summed in another order.
 bool adds_up(const System& whole, const System& stiff, const System& soft, const Vec& q) {
   constexpr double rounding = 60 * eps * 1e5;
   const Eigen::MatrixXd k = dense(stiffness_at(stiff, q)) + dense(stiffness_at(soft, q));

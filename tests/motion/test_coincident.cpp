@@ -278,7 +278,7 @@ BOOST_AUTO_TEST_CASE(whatever_coincides_moves_as_drawn) {
 
 BOOST_AUTO_TEST_CASE(twins_that_nothing_tells_apart_are_swapped_by_mirrors_that_commute) {
   // Two nodes at each corner of a rectangle, each on springs to both of either side: any of two may
-  // be the image. In one place but for rounding, so that no order decides.
+  // be the image. They are in one place up to rounding, so that no order decides.
   std::mt19937 random(5);
   std::uniform_real_distribution<double> rounding_of(-4 * eps, 4 * eps);
   for (int draw = 0; draw < 20; ++draw) {
@@ -302,8 +302,8 @@ BOOST_AUTO_TEST_CASE(twins_that_nothing_tells_apart_are_swapped_by_mirrors_that_
 
 BOOST_AUTO_TEST_CASE(a_ring_that_winds_twice_has_one_mirror) {
   // Node i at corner i mod 4, springs from i to i + 1 mod 8. The images under one mirror are 1 - i
-  // or 5 - i, under the other 3 - i or 7 - i: one after the other they are i - 2 or i + 2, and
-  // i + 2 or i - 2 in the other order.
+  // or 5 - i, under the other 3 - i or 7 - i. Both mirrors in turn give i - 2 or i + 2; the other
+  // order gives i + 2 or i - 2.
   Scene scene{.dimension = 2};
   const std::vector<std::pair<double, double>> corners = {{1, 2}, {-1, 2}, {-1, -2}, {1, -2}};
   for (std::size_t i = 0; i < 8; ++i) {

@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(the_motion_about_the_centre_of_mass_and_the_fall_are_the_dr
     BOOST_TEST(std::abs(reduced.potential(a) - drawn.potential(b)) < 1e-8);
     BOOST_TEST(std::abs(reduced.energy(a) - reduced.energy(reduced.initial())) < 1e-12);
   }
-  // In one piece with a node in free flight, without any other reduction, likewise.
+  // The same holds beside a node in free flight, without any other reduction.
   Scene two = scene;
   two.nodes.push_back({.position = {5, 5, 5}, .velocity = {-1, 0, 0}, .mass = 2});
   const ReducedScene alone(two, Reductions::only({Reduction::falling}));
@@ -149,7 +149,7 @@ BOOST_AUTO_TEST_CASE(errors_are_measured_beside_the_fall) {
   BOOST_TEST(scales.displacement < 2);
   BOOST_TEST(scales.speed < 1);
   BOOST_TEST(scales.kinetic < 0.5);
-  // Beside it a part that rests in its fall is no measure, and has no error.
+  // Another part that rests in its fall is no scale for errors, and has no error.
   Scene two = trembling();
   const Scene other = tetrahedron();
   for (const Spring& spring : other.springs)

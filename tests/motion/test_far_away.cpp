@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(the_reduced_system_is_bit_for_bit_that_of_the_scene_at_home
     const Eigen::Vector3d by = scene.dimension == 3   ? shift
                                : scene.dimension == 2 ? Eigen::Vector3d(shift.x(), shift.y(), 0)
                                                       : Eigen::Vector3d(shift.x(), 0, 0);
-    // At home means: from the first free node, as there.
+    // `here` is relative to the first free node, as `there` is.
     const Scene there = moved_by(scene, by).there;
     Scene here = there;
     std::size_t first = 0;

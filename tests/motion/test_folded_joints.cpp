@@ -1,5 +1,5 @@
-// Massless joints on a line that were drawn beyond the ends of their springs: which of their places
-// of rest they go to, and that it is the one in which the reduced scene has them.
+// Massless joints on a line that are drawn beyond the ends of their springs. The tests check which
+// of their places of rest they go to, and that the reduced scene has the same.
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/integrators/registry.hpp"

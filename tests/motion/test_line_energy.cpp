@@ -55,8 +55,8 @@ BOOST_AUTO_TEST_CASE(a_strain_of_1e_8_has_all_digits_of_its_energy) {
         const ReducedScene reduced(scene);
         BOOST_TEST(reduced.parts().front().is_straightened());
         const auto v = static_cast<double>(potential_in_full(scene, scene.nodes));
-        // Differences of neighbours lose no digit (Sterbenz), but mirrors put one half where
-        // the other is: a tolerance of 64 eps of up to 30 m beside the strain.
+        // Differences of neighbours lose no digit (Sterbenz). Mirrors place one half by the other,
+        // with a tolerance of 64 eps of up to 30 m beside the strain.
         const bool is_mirrored = reduced.parts().front().mirrors().count > 0;
         const double relative = is_mirrored ? 1e3 * eps * nodes / strain : 100 * eps;
         BOOST_TEST(std::abs(reduced.potential(reduced.initial()) - v) <= relative * v,

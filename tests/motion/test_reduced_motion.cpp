@@ -24,7 +24,7 @@ std::vector<Node> end_of(const Scene& scene, const Reductions& reductions, doubl
   return reduced.expand(state);
 }
 
-// By how much the ends differ, relative to the farthest that a node has come.
+// The difference of the ends, relative to the largest displacement of a node.
 double difference(const Scene& scene, const Reductions& one, const Reductions& other, double until,
                   double h, const char* method = "kahan_li8") {
   const auto a = end_of(scene, one, until, h, method);

@@ -60,7 +60,7 @@ double stiff_potential_by_hand(const Scene& scene, const std::vector<Node>& node
   return v;
 }
 
-// Whether V, f and K of the stiff and the soft springs are together those of the whole, but for the
+// Whether V, f and K of the stiff and the soft springs add up to those of the whole, within the
 // rounding of some 30 springs at a node.
 bool adds_up(const ReducedScene& reduced, const Vec& q) {
   bool good = true;
@@ -178,12 +178,12 @@ BOOST_AUTO_TEST_CASE(a_frame_stays_stiff_through_its_mirror) {
   BOOST_TEST(v > 0);
   BOOST_TEST(std::abs(stiff_of(half, start.q).v - v) < 1e3 * eps * v);
   // Every spring is stretched along one direction or held up across it: K's trace at rest is k for
-  // each free end. 20 border springs, of which 5 on the pins' side.
+  // each free end. There are 20 border springs, 5 of them on the pins' side.
   BOOST_TEST(stiff_of(all, all.initial().q).half_trace == 1e7 * (20 - 2),
              boost::test_tools::tolerance(1e-9));
   // Blocks of 6 entries for the diagonal, and of 9 for each border spring between free nodes.
   BOOST_TEST(stiff_of(all, all.initial().q).pattern == 34 * 6 + 16 * 9);
-  // In half of it: 17 nodes, 8 springs between them; those across the mirror are a node's own.
+  // Half of it has 17 nodes and 8 springs between them; springs across the mirror are a node's own.
   BOOST_TEST(stiff_of(half, half.initial().q).pattern == 17 * 6 + 7 * 9);
 }
 

@@ -100,7 +100,7 @@ def check_full_disk(place):
 
 
 def limit(most):
-    """With SIGXFSZ ignored, writes beyond it fail as those on a full disk do."""
+    """Limits the size of files; as SIGXFSZ is ignored, writes beyond it fail as on a full disk."""
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
 

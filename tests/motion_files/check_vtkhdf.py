@@ -187,7 +187,7 @@ def check_many_frames(place):
 
 
 def large_scene(n):
-    """A net of n x n nodes, no two of which move alike, so that no two strains are the same."""
+    """A net of n x n nodes that all move differently, so that no two strains are equal."""
     velocities = np.random.default_rng(1).uniform(-0.1, 0.1, (n * n, 3)).tolist()
     nodes = [
         f"{{position = [{k // n}.0, {k % n}.0, 0.0], velocity = {velocity}, mass = 1.0}}"

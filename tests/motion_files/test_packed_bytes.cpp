@@ -15,7 +15,7 @@ using namespace qddot::motion_files;
 
 namespace {
 
-// By zlib, which is what HDF5 reads with.
+// Unpacks by zlib, as HDF5 does.
 Bytes inflated(const Bytes& packed, std::size_t size) {
   Bytes bytes(size + 1);  // one more, so that a longer stream is seen
   uLongf count = bytes.size();

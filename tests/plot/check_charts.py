@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Whether work-precision charts of hand-made tables say what they should: which methods have their
-names, what the key and the strip of failures say, and that --all shows every method."""
+"""Checks work-precision charts of hand-made tables: the names of methods, the key, the strip of
+failures, and that --all shows every method."""
 
 import json
 import os
@@ -102,7 +102,7 @@ class Charts(HandMade):
         _, low = self.chart()
         texts, high = self.chart("--all")
         for i in range(21):
-            # On its line and before its row of the strip.
+            # The name is on its line and before its row of the strip.
             self.assertEqual(texts.count(f"slower{i:02}"), 2)
         self.assertEqual(texts.count("diverged at h ≥ 0.1"), 25)
         # More than 24 lines are a crowd.

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Whether each study's script draws what a small study wrote: every picture is there, has ink on it
-and names the methods, and the same numbers give the same picture."""
+"""Checks that each study's script draws the results of a small study: every picture exists, is not
+empty and names the methods. The same numbers must give the same picture."""
 
 import argparse
 import csv

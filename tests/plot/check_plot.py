@@ -210,7 +210,7 @@ class Emphasis(unittest.TestCase):
         self.assertEqual(named, {"fast"})
         fast = strokes["fast"]
         self.assertEqual((fast.color, fast.alpha, fast.label_alpha), (style.WARM[0], 1, 1))
-        # On white, the contrast of what is pale is small.
+        # The contrast of pale lines on white is small.
         self.assertGreater(min(style.to_rgb(strokes["m3"].color)), 0.7)
         self.assertLess(strokes["m3"].line["linewidth"], fast.line["linewidth"])
 

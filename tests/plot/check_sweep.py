@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Whether the picture of a sweep says what its hand-made tables do: the fastest methods with their
-times and margins, where they change, what is left out, and nothing over anything else."""
+"""Checks that the picture of a sweep agrees with its hand-made tables: the fastest methods with
+their times and margins, where they change, and what is left out. Nothing may overlap."""
 
 import csv
 import json

@@ -50,7 +50,7 @@ class Started {
     }
   }
 
-  // Sends it a signal, if any, and waits for its end. To be called once.
+  // Sends it a signal, if any, and waits for its end. Call it once.
   Exit end(int signal = 0) {
     int status = 0;
     if (child_ > 0 && signal != 0) kill(child_, signal);
@@ -93,8 +93,8 @@ inline std::string exit_in_words(const Exit& run, const std::vector<std::string>
   return fmt::format("{}gives {}: {}", text, run.status, run.err);
 }
 
-// Checks that a program refuses its arguments, in one line with the fragments and status 2, and
-// leaves nothing behind; words that start with OUT are taken as in an empty folder.
+// Checks that a program refuses its arguments with status 2 and one line that contains the
+// fragments, and leaves nothing behind. Words that start with OUT are paths in an empty folder.
 inline void check_refused(const std::string& program, std::vector<std::string> words,
                           const std::vector<std::string>& fragments) {
   const Folder folder;

@@ -119,8 +119,8 @@ inline const std::multiset<std::vector<std::string>>& points_of_one_process() {
   return all;
 }
 
-// Merges the sweep of small_study, of which nothing may be missing and whose points have to be
-// those of one process.
+// Merges the sweep of small_study. Nothing may be missing, and its points must be those of one
+// process.
 inline void check_as_one_process(const Sweep& sweep) {
   const Exit merged = sweep.merge();
   BOOST_TEST(merged.status == 0, merged.err);

@@ -17,8 +17,8 @@ using namespace qddot::bench;
 
 namespace {
 
-// Two masses 1 m apart in space, one of them pinned, on a spring of zero rest length under
-// gravity: x'' = -w^2 (x - a) + g, an ellipse about a + g/w^2, w = 10/s.
+// Two masses 1 m apart in space, one of them pinned, on a spring of zero rest length under gravity.
+// The motion x'' = -w^2 (x - a) + g is an ellipse about a + g/w^2, w = 10/s.
 constexpr double w = 10, until = 0.5;
 
 Scene ellipse() {
@@ -51,7 +51,8 @@ struct Given {
 };
 
 // Global errors of adaptive methods are the tolerance times a factor that grows with the length of
-// the run, here of less than a period; 1000 is far above any, and far below what is wrong.
+// the run, here less than a period. A factor of 1000 is far above all, and far below a wrong
+// motion.
 BOOST_FIXTURE_TEST_CASE(adaptive_peers_reach_the_exact_end, Given) {
   constexpr double rtol = 1e-8;
   std::vector<std::unique_ptr<Peer>> peers;
@@ -69,8 +70,8 @@ BOOST_FIXTURE_TEST_CASE(adaptive_peers_reach_the_exact_end, Given) {
   }
 }
 
-// McLachlan's method has order 4: a step half as long leaves a sixteenth, within a quarter at
-// h w = 0.1, where the next term is some h w smaller.
+// McLachlan's method has order 4: half a step leaves a sixteenth of the error. The tolerance is a
+// quarter at h w = 0.1, where the next term is some h w smaller.
 BOOST_FIXTURE_TEST_CASE(mclachlan_converges_with_order_4, Given) {
   const auto peer = odeint_mclachlan();
   const double coarse = distance(*peer, ForceKind::plain, 0.01);
@@ -78,8 +79,8 @@ BOOST_FIXTURE_TEST_CASE(mclachlan_converges_with_order_4, Given) {
   BOOST_TEST(coarse / fine == 16, boost::test_tools::tolerance(0.25));
 }
 
-// Bullet's links are of order 1, and exact in the strain where the rest length is zero; at 2e-4 s
-// floats, 3 m from the origin, still leave less than that.
+// Bullet's links are of order 1, and exact in the strain if the rest length is zero. Floats, 3 m
+// from the origin, still have a smaller error at 2e-4 s.
 BOOST_FIXTURE_TEST_CASE(bullet_converges_with_order_1, Given) {
   const auto peer = bullet();
   if (!peer) return;
@@ -88,8 +89,8 @@ BOOST_FIXTURE_TEST_CASE(bullet_converges_with_order_1, Given) {
   BOOST_TEST(coarse / fine == 4, boost::test_tools::tolerance(0.25));
 }
 
-// Along a spring of 1 m stretched by a hundredth of that, x = 1 + 0.01 cos(w t); Bullet's own law
-// of the spring differs by the strain, a hundredth, and steps of h w = 0.01 by as much.
+// A spring of 1 m stretched by a hundredth moves as x = 1 + 0.01 cos(w t). Bullet's law of the
+// spring differs by the strain, a hundredth, and steps of h w = 0.01 by as much.
 BOOST_AUTO_TEST_CASE(bullet_keeps_rest_lengths) {
   const auto peer = bullet();
   if (!peer) return;

@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(each_run_is_chosen_once_and_says_what_it_shows) {
   BOOST_TEST(why(4) == "fastest at 1e-3");
   BOOST_TEST(why(6) == "fastest at 1e-4");
   BOOST_TEST(why(8) == "fastest of SUNDIALS from 1e-1 to 1e-2, coarsest run");
-  // At 1e-5 it is the fastest of all as well, where nobody else gets.
+  // It is the fastest of all at 1e-5 too, which no other method reaches.
   BOOST_TEST(why(9) == "fastest at 1e-5, fastest of SUNDIALS from 1e-3 to 1e-5");
   BOOST_TEST(why(5) == "coarsest run");
   BOOST_TEST(why(0) == "diverged");

@@ -158,8 +158,8 @@ BOOST_AUTO_TEST_CASE(explicit_steps_are_as_many_as_the_root_of_the_ratio_and_imp
     }
     return least;
   };
-  // sqrt(1e4) = 100 times the steps at most; somewhat fewer, as at ratio 1 all springs of a node
-  // count and at 1e4 the frame's alone, and by the step sizes' factors of two.
+  // There are up to sqrt(1e4) = 100 times the steps. They are fewer, since all springs of a node
+  // count at ratio 1 and only the frame's at 1e4, and since step sizes differ by factors of two.
   const double grown = least_steps("verlet", 1e4, 0.1) / least_steps("verlet", 1, 0.1);
   BOOST_TEST((grown > 20 && grown < 200), grown);
   BOOST_TEST(least_steps("ida", 1e4, 0.1) / least_steps("ida", 1, 0.1) < 20);
@@ -228,7 +228,7 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
   check_refused(joined(good, {"--methods", "leapfrog"}), {"--methods", "leapfrog", "allowed"});
   check_refused(joined(good, {"--methods", "ida,ida"}), {"--methods", "ida", "twice"});
   check_refused(joined(good, {"--methods", "exact"}), {"exact", "allowed"});
-  // At ratio 1 no spring is stiff.
+  // No spring is stiff at ratio 1.
   check_refused(joined(good, {"--methods", "arkode_imex3"}), {"arkode_imex3", "stiff"});
   check_refused(joined(good, {"--scene", "cloth"}), {"--scene"});
   check_refused({"--ratios", "1"}, {"--out", "missing"});

@@ -29,9 +29,9 @@ BOOST_AUTO_TEST_CASE(a_step_above_the_limit_is_named_with_what_holds) {
       {"--scene", "oscillator", "--method", "verlet", "--step-size", "0.25", "--until", "100"});
   BOOST_TEST(complains(result, 3, "simulate",
                        {"it failed in step", "h w_max is 2.5 at the start", "verlet's limit of 2",
-                        "what holds, tried: h = "}),
+                        "stable when tried: h = "}),
              result.err);
-  const double h = number_behind(result.err, "what holds, tried: h = ");
+  const double h = number_behind(result.err, "stable when tried: h = ");
   BOOST_TEST(h == 0.125);  // half of it; and it does hold, as another method does at this h:
   BOOST_TEST(simulate({"--scene", "oscillator", "--method", "verlet", "--step-size",
                        fmt::format("{}", h), "--until", "100"})
@@ -117,8 +117,8 @@ BOOST_AUTO_TEST_CASE(explicit_euler_is_told_apart_since_no_step_holds) {
 }
 
 BOOST_AUTO_TEST_CASE(a_spring_that_stiffens_as_it_stretches_crosses_the_limit_on_the_way) {
-  // From rest length at 3 m/s to the stretch s where c/4 s^4 is nearly 9/2: w^2 = 100 + 3 c s^2
-  // goes from 10^2 to 66^2, so that h w_max = 0.4 at the start and 2.6 at the most.
+  // The motion goes from rest length at 3 m/s to the stretch s where c/4 s^4 is nearly 9/2. w^2 =
+  // 100 + 3 c s^2 grows from 10^2 to 66^2, so that h w_max = 0.4 at the start and 2.6 at most.
   const Folder folder;
   const std::string scene = folder.write(
       "stiffening.toml",
@@ -135,9 +135,9 @@ BOOST_AUTO_TEST_CASE(a_spring_that_stiffens_as_it_stretches_crosses_the_limit_on
 BOOST_AUTO_TEST_CASE(newton_that_fails_names_a_step_at_which_it_does_not) {
   const Exit result =
       simulate({"--scene", "pendulum", "--method", "discrete_gradient", "--step-size", "0.5"});
-  BOOST_TEST(complains(result, 3, "simulate", {"it failed in step 2", "what holds, tried: h = "}),
+  BOOST_TEST(complains(result, 3, "simulate", {"it failed in step 2", "stable when tried: h = "}),
              result.err);
-  const double h = number_behind(result.err, "what holds, tried: h = ");
+  const double h = number_behind(result.err, "stable when tried: h = ");
   BOOST_TEST(simulate({"--scene", "pendulum", "--method", "discrete_gradient", "--step-size",
                        fmt::format("{}", h)})
                  .status == 0);

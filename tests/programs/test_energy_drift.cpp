@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(each_run_has_its_path_and_its_verdict) {
     of = run;
     last = t;
     const double error = (energy - start) / scale;
-    // The energy is what the error came from, up to rounding.
+    // The error follows from the energy, up to rounding.
     BOOST_TEST(std::abs(drift.value(i, "relative_error") - error) <= 1e-14 * (1 + std::abs(error)));
   }
   // m v^2/2 + k (r - l0)^2/2.

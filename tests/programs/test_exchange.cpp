@@ -14,8 +14,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// The chain for 60 s, in which I_1 falls to half: a method that gets it right, one that is too slow
-// at steps far above its accuracy, one that is unstable there, one that damps.
+// The chain for 60 s, in which I_1 falls to half, by four methods. One is right, one is too slow at
+// steps far above its accuracy, one is unstable there, and one damps.
 struct Short {
   Folder folder{};
   Exit result = run("exchange", {"--scene", "fpu", "--until", "60", "--methods",
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(each_method_has_its_verdict) {
   BOOST_TEST(value("implicit_midpoint", 2.25, "misfit") < 0.1);
   for (const double h_omega : {0.1, 2.25})
     BOOST_TEST(verdict("implicit_euler", h_omega) == "damps: nothing left");
-  // In the exact motion the sum changes by 0.06 for moments, H not at all.
+  // The exact motion changes the sum by 0.06 for moments, and H not at all.
   BOOST_TEST(value("reference", 0.1, "sum_deviation") < 0.07);
   BOOST_TEST(value("verlet", 0.1, "sum_deviation") < 0.08);
   BOOST_TEST(value("reference", 0.1, "energy_error") < 1e-9);
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(methods_that_choose_their_steps_are_left_out_with_a_sentenc
                 {"rodas4, cvode_bdf", "fixed step"});
 }
 
-// Two chains side by side, of which the second is softer and has no energy, so that it stays.
+// Two chains side by side. The second is softer and has no energy, so that it rests.
 BOOST_AUTO_TEST_CASE(springs_of_several_parts_are_followed_and_the_fastest_part_sets_w) {
   const Folder folder;
   const std::string scene =

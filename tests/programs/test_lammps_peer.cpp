@@ -29,9 +29,9 @@ boost::test_tools::assertion_result lammps_is_there(boost::unit_test::test_unit_
   return result;
 }
 
-// Nodes at random near the corners of a grid, two of them pinned, of three masses; springs of
-// random stiffness between random pairs, stretched or compressed by up to a tenth, some beside each
-// other and some between the pinned ones; some have rest length zero.
+// A scene with random nodes near the corners of a grid, two of them pinned, of three masses.
+// Springs of random stiffness join random pairs, some twice and some of the pinned ones. They are
+// stretched or compressed by up to a tenth; some have rest length zero.
 Scene random_scene(int dimension, int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   const auto number = [&](double low, double high) {
@@ -112,7 +112,7 @@ BOOST_FIXTURE_TEST_CASE(out_of_time_it_says_so, Given,
   BOOST_TEST(run.seconds > 0);
 }
 
-// At h w = 20 each step multiplies the motion by 400, until doubles overflow.
+// Each step at h w = 20 multiplies the motion by 400, until doubles overflow.
 BOOST_FIXTURE_TEST_CASE(a_motion_that_explodes_is_not_finite, Given,
                         *boost::unit_test::precondition(lammps_is_there)) {
   Scene linear{.name = "linear", .until = until};

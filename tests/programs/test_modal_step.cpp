@@ -32,7 +32,7 @@ BOOST_AUTO_TEST_CASE(modes_are_those_of_the_scene_and_spread_over_the_spectrum) 
   const System& system = hanging_chain().system();
   const Vec& q = hanging_chain().initial().q;
   const auto all = sampled_modes(system, q, 1000), some = sampled_modes(system, q, 5);
-  BOOST_TEST(all.size() == 18u);  // 6 nodes in space, all of which vibrate
+  BOOST_TEST(all.size() == 18u);  // 6 nodes in space; all vibrate
   BOOST_TEST(some.size() == 5u);
   BOOST_TEST(some.front().rank == 1);
   BOOST_TEST(some.back().rank == 18);

@@ -107,8 +107,8 @@ BOOST_AUTO_TEST_CASE(energies_are_those_of_the_chart) {
     const double drift =
         std::abs(k.energy.value(own.back(), "total") - k.energy.value(own.front(), "total"));
     const double error = k.points.value(point, "error_energy");
-    // SUNDIALS' method lands on the frames, and so takes other steps than on the chart; of the
-    // others energies are sums of a few terms of size `kinetic`, each rounded.
+    // SUNDIALS' method ends steps at the frames, and so takes other steps than on the chart. The
+    // energies of the other methods are sums of a few terms of size `kinetic`, each rounded.
     if (k.motions.text(row, "method") == "ida") continue;
     BOOST_TEST(std::abs(drift / kinetic - error) <= 1e-13 + 1e-9 * error);
   }

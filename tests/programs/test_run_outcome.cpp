@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(linearly_implicit_steps_fail_where_a_strut_makes_their_matr
   BOOST_TEST(at(0.5).energy_max < 10);
   BOOST_TEST(at(1.0).outcome == "indefinite_matrix");
   BOOST_TEST(at(1.0).energy_max > 1e4);
-  // Beyond h rate = 2 its map damps what pushes to the side, 1/(1 - h rate) a step: it stands still
+  // Its map damps the sideways motion beyond h rate = 2, by 1/(1 - h rate) a step. It stands still
   // on top, which is bounded and wrong.
   BOOST_TEST(at(5).outcome == "bounded");
   BOOST_TEST(std::abs(at(5).energy_end - 1) < 1e-3);

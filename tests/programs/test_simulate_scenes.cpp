@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(where_all_is_pinned_nothing_moves_and_every_method_is_done)
 }
 
 BOOST_AUTO_TEST_CASE(a_massless_node_is_for_methods_that_accept_it) {
-  // A quartic spring is none of those that two in series can be one of.
+  // Two springs in series cannot be replaced by one if one of them is quartic.
   for (const Method& method : methods()) {
     const Folder folder;
     const std::string scene = folder.write("s.toml", quartic_massless);
@@ -236,7 +236,7 @@ BOOST_AUTO_TEST_CASE(a_tolerance_beyond_rounding_is_refused) {
 }
 
 BOOST_AUTO_TEST_CASE(after_millions_of_steps_samples_still_land_on_steps) {
-  // At t/h = 13 million, rounding of t alone is some 1e-9 of a step.
+  // The rounding of t alone is some 1e-9 of a step at t/h = 13 million.
   const Folder folder;
   const Words options = {"--scene", "oscillator", "--step-size", "5e-6", "--until", "66"};
   Words words = {"--method", "verlet", "--final", folder / "alone.csv"};

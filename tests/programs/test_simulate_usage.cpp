@@ -14,8 +14,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// A good command line of which each test spoils a part: options and their values. All outputs are
-// asked for, so that any that is left behind shows. Values that end in .csv or .pc2 stand in the
+// A good command line, as options and their values; each test spoils a part of it. All outputs are
+// asked for, so that any file left behind is found. Values that end in .csv or .pc2 are in the
 // folder.
 std::map<std::string, Words> good_options() {
   return {{"--scene", {"oscillator"}}, {"--method", {"verlet"}}, {"--step-size", {"0.01"}},

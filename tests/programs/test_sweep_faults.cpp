@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_CASE(by_work_times_are_counts_times_costs_on_this_machine) {
     BOOST_TEST(points.value(row, "time_s") == work, boost::test_tools::tolerance(1e-15));
   }
   BOOST_TEST(contains(read_all(sweep.out + "/sweep.json"), {"\"times\": \"work\""}));
-  // Errors and counts are what was measured, and costs are not measured twice.
+  // Errors and counts stay those that were measured, and costs are not measured twice.
   BOOST_TEST((untimed_points(sweep.out + "/points.csv") == points_of_one_process()));
   const std::string kept = read_all(sweep.out + "/chain/costs.json");
   sweep.merge({"--by", "work", "--no-pictures"});
@@ -211,7 +211,7 @@ BOOST_AUTO_TEST_CASE(a_damaged_file_is_measured_anew) {
 BOOST_AUTO_TEST_CASE(a_full_disk_is_said_and_nothing_is_half_written) {
   const Sweep sweep;
   sweep.go("references");
-  // Files may grow to 1 kB, but for that of what is said.
+  // Files may grow to 1 kB, except for the one with messages.
   const int status = std::system(
       fmt::format("bash -c '(ulimit -f 1; exec {}/sweep run {} --stage points) 2>&1 >/dev/null | "
                   "cat >{}; exit ${{PIPESTATUS[0]}}'",
@@ -272,8 +272,8 @@ BOOST_AUTO_TEST_CASE(bad_words_are_refused_in_one_sentence) {
     BOOST_TEST(complains(end, 2, "sweep", fragments), exit_in_words(end, words));
   };
   const std::string& s = sweep.out;
-  refused({}, {"what to do is missing"});
-  refused({"sweep", s}, {"sweep is nothing that sweep does"});
+  refused({}, {"the action is missing"});
+  refused({"sweep", s}, {"sweep is no action of sweep"});
   refused({"run"}, {"the sweep's folder is missing"});
   refused({"run", s}, {"--stage is missing"});
   refused({"run", s, "--stage", "point"}, {"--stage point is not one"});

@@ -30,7 +30,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst;
 }
 
-// By how much q = t^p, with h = 1 and t = 0 in the middle, misses the formula, over the sum of all
+// The defect of q = t^p in the formula, with h = 1 and t = 0 in the middle, over the sum of all
 // terms' sizes.
 double relative_defect(const Coefficients& formula, int p) {
   const int middle = formula.steps() / 2;
@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(roots_stay_on_the_circle_up_to_the_limit_and_leave_it_there
   }
 }
 
-// In x = 1 - cos(theta) symmetric4 has 3 x - 4 x^2 = h^2 w^2 (3/2 - 9/4 x).
+// symmetric4 gives 3 x - 4 x^2 = h^2 w^2 (3/2 - 9/4 x) in x = 1 - cos(theta).
 BOOST_AUTO_TEST_CASE(angles_are_those_of_a_quadratic_equation_for_four_steps) {
   const Coefficients formula = coefficients_of(registered::symmetric4_formula());
   for (const double hw : {0.1, 0.4, 1.2, 1.8}) {

@@ -35,7 +35,7 @@ BOOST_AUTO_TEST_CASE(verdicts_are_seldom_wrong_and_intervals_hold_what_is_true) 
     if (confusion.text(i, "judgement") == "right") right[confusion.text(i, "kind")] += count;
   }
   for (const auto& [kind, count] : counts) BOOST_TEST(count == 3, kind);
-  // At most one in twenty is wrong: of a hundred more than 11 once in 250 times.
+  // One in twenty may be wrong: more than 11 of a hundred are, once in 250 times.
   BOOST_TEST(all > 100);
   BOOST_TEST(judged["wrong"] <= 11);
   // Each of these is told nearly always.

@@ -145,7 +145,7 @@ class Threads(unittest.TestCase):
         thread.start()
         for _ in range(100):
             time.sleep(1e-4)
-        # With the GIL held, nothing above would have run before the five seconds were over.
+        # Nothing above would have run in the five seconds if the GIL were held.
         self.assertTrue(thread.is_alive())
         thread.join()
         self.assertEqual(solution[0].outcome, "over_budget")

@@ -1,4 +1,5 @@
-"""Nothing is left over from many solves. With a number: that many of each, for the full test."""
+"""Checks that many solves leak nothing. An argument is the number of solves of each kind, for the
+full test."""
 
 import gc
 import sys

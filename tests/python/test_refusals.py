@@ -1,5 +1,5 @@
-"""What cannot be asked for is refused in one sentence that says what is allowed; and what may be
-asked for is what it says."""
+"""Checks that wrong arguments are refused in one sentence that says what is allowed, and that
+allowed ones have their meaning."""
 
 import os
 import tempfile

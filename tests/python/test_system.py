@@ -29,8 +29,8 @@ class OwnForces(unittest.TestCase):
                 b = qddot.solve(chain.system(), method.name, until=SECONDS, q0=q0, v0=v0, **knob)
                 self.assertEqual(b.outcome, "reached_end")
                 difference = np.max(np.abs(a.end.q[1:-1] - b.end.q))
-                # Adaptive methods may take other steps where an error test is that near; and
-                # linear_midpoint asks springs for their material stiffness, which no System says.
+                # Adaptive methods may take other steps if an error test is very close.
+                # linear_midpoint needs the material stiffness of springs, which no System has.
                 is_other = method.knob == "rtol" or method.name == "linear_midpoint"
                 self.assertLess(difference, 1e-6 if is_other else 1e-10)
                 self.assertLess(abs(a.energy.total[-1] - b.energy.total[-1]), 1e-6)
@@ -186,7 +186,8 @@ class OwnForces(unittest.TestCase):
         ).or_raise()
         self.assertTrue(np.array_equal(kept.indices, before))
 
-        # By differences, good to some 1e-10 of the largest entries; its pattern by nodes or unknowns.
+        # K by differences is right to some 1e-10 of the largest entries; its pattern is by nodes or
+        # unknowns.
         nodes = scipy.sparse.diags([1, 1, 1], [-1, 0, 1], (6, 6))
         unknowns = np.kron(nodes.toarray(), np.ones((2, 2)))
         pairs = np.argwhere(unknowns)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Whether the page's answers are those of the study itself: of front.csv and of the table that it
-prints; and what they say of margins, doubts and accuracies that nothing reached. The programs are in
+"""Checks that the page's answers are those of the study: of front.csv and of the printed table.
+Also checks their words on margins, doubts and accuracies that nothing reached. The programs are in
 the folder QDDOT_BIN."""
 
 import csv
@@ -117,7 +117,9 @@ class Sentences(unittest.TestCase):
 
     def test_one_note_tells_what_to_do_near_a_limit(self):
         near = self.answer(a_run(error=2e-12), margins={(2, "verlet", 1e-3): 0.029})
-        self.assertRegex(near["warning"], "^2.9 % below its limit of stability; error known to ")
+        self.assertRegex(
+            near["warning"], "^2.9 % below its limit of stability; error known only to "
+        )
         far = self.answer(a_run(error=2e-12))
         self.assertIsNone(answers.answers_note([far, self.answer()]))
         note = answers.answers_note([far, near, near])
@@ -125,7 +127,7 @@ class Sentences(unittest.TestCase):
 
     def test_an_error_near_what_is_certified_is_doubted(self):
         found = self.answer(a_run(error=2e-12))
-        self.assertIn("known to within 1.0e-12 alone", found["warning"])
+        self.assertIn("known only to within 1.0e-12", found["warning"])
 
 
 class Studies(unittest.TestCase):
@@ -185,7 +187,7 @@ class Studies(unittest.TestCase):
                 self.assertEqual(line[10:31].strip(), run.method)
                 self.assertEqual(line[31:48].strip(), printed_knob(run))
                 doubt = line[57] == "?"
-                self.assertEqual(doubt, "known to within" in (answer["warning"] or ""))
+                self.assertEqual(doubt, "known only to within" in (answer["warning"] or ""))
                 self.check_rival(line, runs, answer)
             warned = [a for a in found if "limit of stability" in (a["warning"] or "")]
             for answer in warned:

@@ -345,7 +345,7 @@ class Broken(Folder):
             # Another packer writes all of its page between this one's writing and renaming.
             if others:
                 report.write_whole(path, others.pop())
-            # Elsewhere may be another disk, from which nothing is renamed in one go.
+            # Another folder may be on another disk: files there cannot be renamed in one call.
             self.assertTrue(Path(source).is_relative_to(self.folder))
             replace(source, target)
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Reads what kernels define and which operations they consist of.
+"""Checks the symbols and the operations of kernels.
 
-They must not define what another translation unit may define as well (an inline function, an
-instance of a template): the linker keeps any one copy, and that of a kernel may need a processor
-that others run without. Those of the levels v3 and v4 must multiply and add in one operation.
-Call: check_kernels.py NM OBJDUMP OBJECT...
+Kernels must not define symbols that another translation unit may define too (an inline function, an
+instance of a template). The linker keeps any one copy, and that of a kernel may need a newer
+processor. Kernels of the levels v3 and v4 must multiply and add in one operation. Call:
+check_kernels.py NM OBJDUMP OBJECT...
 """
 
 import subprocess

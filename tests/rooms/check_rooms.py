@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Holds the house to its plan: which room may include which, read off every #include.
+"""Checks from every #include that folders (rooms) include only the rooms that the plan allows.
 
-A room is a folder; the table below is the plan, each room with those that it may see beside itself
-and whatever those may see. Call: check_rooms.py ROOT [--arrows], the latter printing what is seen.
+The table below is the plan: each room with the rooms that it may include, beside itself and all
+that those may include. Call: check_rooms.py ROOT [--arrows]; --arrows prints the includes.
 """
 
 import re

@@ -8,7 +8,7 @@
 namespace qddot {
 inline namespace tests {
 
-// Two nodes and a spring, of which each test spoils a part.
+// Two nodes and a spring; each test spoils a part.
 inline const std::string two_links =
     "name = 'two links'\n"
     "dimension = 2\n"

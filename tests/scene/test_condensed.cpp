@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(velocities_of_joints_are_the_derivatives_of_their_positions
 BOOST_AUTO_TEST_CASE(series_hold_in_tension_only) {
   BOOST_TEST(ReducedScene(two_in_series(0.9 * (1 + 1e-9))).massless_nodes().empty());
   BOOST_TEST(ReducedScene(two_in_series(0.9)).massless_nodes().empty());
-  // In compression they fold up: the node stays, and is named.
+  // They fold up in compression: the node stays, and is named.
   const ReducedScene compressed(two_in_series(0.9 * (1 - 1e-9)));
   BOOST_TEST((compressed.massless_nodes() == std::vector<std::size_t>{1}));
 

@@ -61,8 +61,8 @@ BOOST_AUTO_TEST_CASE(a_strut_that_may_buckle_out_of_its_line_is_told_so) {
   BOOST_TEST(e.unstable == 6);
   BOOST_TEST(e.unstable_left_out == 6);
   BOOST_TEST(e.fastest == 2u);
-  // Across, K = -(tau/l) L with the chain's L, the largest eigenvalue of which is
-  // 4 sin^2(3 pi / 8): growth^2 = |tau| / l times that.
+  // Across, K = -(tau/l) L with the chain's L, whose largest eigenvalue is 4 sin^2(3 pi / 8).
+  // growth^2 is |tau| / l times that.
   const double tension = 100 * (0.5 - 0.5 / 0.9);
   const double growth = std::sqrt(-tension / 0.5 * 4 * std::pow(std::sin(3 * M_PI / 8), 2));
   BOOST_TEST(e.growth == growth, boost::test_tools::tolerance(1e-6));

@@ -14,9 +14,9 @@ using namespace qddot;
 
 namespace {
 
-// Displacements q_i = x_i - 10 i of up to 1 m from positions of up to 70 m are right to some
-// 70 eps = 2e-14, and energies of 1 J, of stiff springs too, whose elongations of 1/w cost
-// k 1/w 2e-14 = w/2 2e-14 J, to less than this for w up to 100.
+// Displacements q_i = x_i - 10 i of up to 1 m, from positions of up to 70 m, have errors of some 70
+// eps = 2e-14. Energies of 1 J have errors of less than this tolerance for w up to 100, also of
+// stiff springs: their elongations of 1/w give k 1/w 2e-14 = w/2 2e-14 J.
 constexpr double tolerance = 1e-12;
 
 // q_1, q_2, ..., of the free nodes.
@@ -83,12 +83,12 @@ BOOST_AUTO_TEST_CASE(it_starts_with_all_vibration_in_the_first_stiff_spring) {
       Vec expected = Vec::Zero(static_cast<Index>(m));
       expected[0] = 1;
       BOOST_TEST(distance(energies, expected) < tolerance);
-      // Kinetic 1; 1/2 in the stiff spring; ((1 - 1/w)^4 + (1 + 1/w)^4)/4 in the soft ones beside
-      // it, of which the right one joins two walls' neighbours or, if m = 1, a wall.
+      // The kinetic energy is 1. The stiff spring has 1/2, the soft ones beside it have ((1 -
+      // 1/w)^4 + (1 + 1/w)^4)/4. The right one joins two walls' neighbours or, if m = 1, a wall.
       BOOST_TEST(std::abs(reduced.kinetic(reduced.initial()) - 1) < tolerance);
       const double h = 2 + 3 / (w * w) + 1 / (2 * std::pow(w, 4));
       BOOST_TEST(std::abs(reduced.energy(reduced.initial()) - h) < tolerance);
-      // In scaled coordinates.
+      // q and p are scaled coordinates.
       const auto q = [&](std::size_t i) { return scene.nodes[i].position.x() - 10. * double(i); };
       const auto p = [&](std::size_t i) { return scene.nodes[i].velocity.x(); };
       const double root = std::sqrt(2);
@@ -143,7 +143,7 @@ BOOST_AUTO_TEST_CASE(reductions_leave_nothing_out_but_the_walls) {
   }
 }
 
-// By energy, at the largest energy there is, that of w = 1.
+// The check is by energy, at the largest one, that of w = 1.
 BOOST_AUTO_TEST_CASE(no_spring_ever_turns_over) {
   const Scene scene = draw("fpu", {{"frequency", 1}});
   const ReducedScene reduced(scene);

@@ -24,8 +24,9 @@ std::string refusal(const std::string& text) {
   return refusal_of([&] { gmsh(text); });
 }
 
-// A triangle beside a quadrangle, nodes numbered with gaps and in no order, with sections that are
-// passed over and an element of each kind of edge-less and bounding part.
+// A triangle beside a quadrangle, with nodes numbered with gaps and in no order. The file has
+// sections that are ignored, and an element of each kind of part without edges and of boundary
+// parts.
 const std::string old_format =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
     "$PhysicalNames\n1\n2 7 \"a $Nodes # b\"\n$EndPhysicalNames\n"
@@ -211,7 +212,7 @@ BOOST_AUTO_TEST_CASE(truncated_files_load_or_are_refused) {
     for (std::size_t length = 0; length <= good.size(); ++length)
       loaded += refusal(good.substr(0, length)).empty();
     BOOST_TEST(loaded > 0u);
-    // Between the end of one section and the end of the next there is none to load.
+    // A file cut between the ends of two sections cannot be loaded.
     BOOST_TEST(loaded < good.size() / 4);
   }
 }

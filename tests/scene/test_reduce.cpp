@@ -18,8 +18,8 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-// A scene in which five of twelve nodes are pinned, with a velocity all the same, and springs join
-// nodes at will: free ones, pinned ones, one of each in either order.
+// A scene of twelve nodes. Five are pinned, though with a velocity. Springs join random nodes: free
+// ones, pinned ones, one of each in either order.
 Scene random_scene(std::mt19937& random, int dimension) {
   const auto uniform = [&](double low, double high) {
     return std::uniform_real_distribution(low, high)(random);

@@ -1,5 +1,5 @@
-// A reduced system is that of the scene's own energies, written in its unknowns: T and V of all
-// nodes and springs at expand(q, v), and f and K the derivatives of that V. Whatever was reduced.
+// A reduced system has the scene's own energies, written in its unknowns, with any reductions. T
+// and V are those of all nodes and springs at expand(q, v); f and K are derivatives of that V.
 #include <boost/test/unit_test.hpp>
 
 #include "tests/measure.hpp"
@@ -131,8 +131,8 @@ BOOST_AUTO_TEST_CASE(energies_are_those_of_all_nodes_and_springs) {
         state.t = 0.3;
         const auto nodes = reduced.expand(state);
         const double v = potential_by_hand(scene, nodes), t = kinetic_by_hand(nodes);
-        // Tens of springs of up to 1e6 N/m stretched by 0.1 m, each rounded a few times, and
-        // rest lengths known to eps of the place, k l eps.
+        // Tens of springs of up to 1e6 N/m are stretched by 0.1 m, each rounded a few times. Rest
+        // lengths are known to eps of the place, k l eps.
         BOOST_TEST(std::abs(reduced.potential(state) - v) < 1e-13 * (std::abs(v) + 1e5), name);
         BOOST_TEST(std::abs(reduced.kinetic(state) - t) < 100 * eps * (t + 1), name);
         BOOST_TEST(std::abs(reduced.energy(state) - t - v) < 1e-13 * (t + std::abs(v) + 1e5), name);

@@ -43,7 +43,7 @@ BOOST_AUTO_TEST_CASE(of_two_masses_it_is_their_energy_along_the_spring_but_for_t
       BOOST_TEST(std::abs(energy - (stretch_energy + 0.5 * 1.2 * 4)) < 10 * tolerance);
     }
   }
-  // In the frame of the centre of mass, all of the kinetic energy.
+  // All of the kinetic energy counts in the frame of the centre of mass.
   const double v1 = -3, v2 = 2;  // 2 v1 + 3 v2 = 0
   const double kinetic = 0.5 * 2 * v1 * v1 + 0.5 * 3 * v2 * v2;
   BOOST_TEST(std::abs(energy_of(pair_of(v1 * n, v2 * n)) - (stretch_energy + kinetic)) <

@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(a_mirror_is_found_wherever_it_lies_and_however_nodes_are_nu
     std::iota(order.begin(), order.end(), 0u);
     std::ranges::shuffle(order, random);
     scene = renumbered(scene, order);
-    // 36 nodes of which 2 are pinned, none on the mirror.
+    // There are 36 nodes; 2 are pinned, none is on the mirror.
     BOOST_TEST(ReducedScene(scene).system().size() == 3 * 17);
   }
 }

@@ -89,9 +89,9 @@ Advice advice_for(const Search& search, double accuracy) {
     }
   }
   if (!advice.take) {
-    advice.why = search.most_accurate()    ? "no method is expected to come so far"
+    advice.why = search.most_accurate()    ? "no method is expected to reach this accuracy"
                  : search.trials().empty() ? "no run was made"
-                                           : fmt::format("no run came to the end: {}",
+                                           : fmt::format("no run reached the end: {}",
                                                          search.trials().back().summary.message);
     return advice;
   }
@@ -190,7 +190,8 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
     throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
   if (model.system().size() == 0) return of_nothing(model, until, accuracies);
   if (!model.system().has_stiffness())
-    throw std::invalid_argument("advise: the system has no stiffness, which says how fast it is");
+    throw std::invalid_argument(
+        "advise: the system has no stiffness K, which its frequencies follow from");
   Search search(model, until, of, infinity);
   Advices all{.horizon = infinity};
   if (search.survey(std::ranges::min(accuracies))) {

@@ -12,20 +12,19 @@ namespace qddot::measure {
 // What to take for one accuracy.
 struct Advice {
   double accuracy = 0;
-  // The run to take; nothing where none is expected to come so far, and `why` says what stands
-  // against it.
+  // The run to take. Empty if no run is expected to reach the accuracy; `why` then says the reason.
   std::optional<Candidate> take{};
   std::string why{};
   bool is_seen = false;  // the error is not expected but was seen, in a run and its check
   // The fastest of the other methods, and the fastest of each family, where known.
   std::optional<Candidate> runner_up{}, own_explicit{}, own_implicit{}, sundials{};
 
-  // How many times as long the runner-up takes; infinite where there is none. 1 where it may be a
-  // little faster, but was not seen to be so accurate.
+  // The runner-up's time over that of the run to take; infinite without a runner-up. It is 1 if the
+  // runner-up may be a little faster but was not seen to be accurate enough.
   double margin() const;
 };
 
-// What a scene asks of a method, and which one to take.
+// The advice for a scene, and the properties of its motion that decide it.
 struct Advices {
   std::vector<Advice> for_each{};  // accuracy, in the order in which they were asked for
   // The largest frequency [rad/s] at the start and over the motion; the motion's own one for
@@ -33,16 +32,16 @@ struct Advices {
   double w_start = 0, w_motion = 0, own_frequency = 0;
   // Verlet's largest stable step over the motion [s]; infinite where nothing vibrates.
   double largest_stable_step = 0;
-  // How fast two nearby runs part [1/s], and from when on [s] they have nothing in common; zero and
-  // infinite where that was not seen.
+  // The rate [1/s] at which two nearby runs part, and the time [s] from which they have nothing in
+  // common. Zero and infinite if no such parting was seen.
   double lyapunov = 0, horizon = 0;
   int runs = 0;
   double seconds = 0;  // that it took
 };
 
-// Says which method comes to each of the accuracies, of the positions at `until` [s] or as `of`
-// says, in the least time. Makes no more runs than that asks for: at most half a second, or up to
-// about twice the run that is advised. Throws as solve() does.
+// Finds the method that reaches each accuracy in the least time. An accuracy is a relative error:
+// of the positions at `until` [s], or as `of` says. The runs made for this take at most half a
+// second together, or up to about twice the run that is advised. Throws as solve() does.
 Advices advise(const ReducedScene& model, double until, const std::vector<double>& accuracies,
                AccuracyOf of = AccuracyOf::positions);
 Advices advise(const Scene& scene, double until, const std::vector<double>& accuracies,

@@ -27,7 +27,7 @@ constexpr double seconds_of_eigenproblem = 1.3e-9;
 constexpr double largest_exact = 2000;  // as method `exact` has it
 // A correction above this says that errors grow exponentially.
 constexpr double grows = 30;
-// From a run that was seen nothing follows for much finer and coarser ones.
+// A run tells nothing about much finer and coarser ones.
 constexpr double farthest = 100;
 
 bool is_told_by_frequency(const Method& method) {
@@ -86,8 +86,9 @@ double Forecast::sensitivity(const Method& method) const {
   if (by_order_.empty()) return sensitivity_;
   const auto orders_apart = [&](const auto& known) { return std::abs(known.first - method.order); };
   const auto nearest = std::ranges::min_element(by_order_, {}, orders_apart);
-  // Corrections of orders 2 and 4 apart go together, those of orders 2 and 10 no more: the slopes
-  // of their logarithms are 0.7 and 0 over the training cases. All orders feel how errors grow.
+  // Corrections of orders that differ by 2 or 4 are correlated, those of orders 2 and 10 are not:
+  // the slopes of their logarithms are 0.7 and 0 over the training cases. A growth of errors
+  // affects all orders.
   constexpr double unrelated = 8;
   const double related =
       nearest->second > grows ? 1 : std::max(0.0, 1 - orders_apart(*nearest) / unrelated);
@@ -166,7 +167,7 @@ std::optional<Candidate> Forecast::from_seen(const Method& method, double error)
   const double finer = std::pow(seen.error / error, 1 / power_of_error(method));
   if (!(finer < farthest && finer > 1 / farthest)) return {};
   double value = seen.value / finer;
-  // Between what held and what did not, the middle.
+  // The middle between a step that held and one that failed.
   const auto failed = failed_.find(&method);
   if (failed != failed_.end() && failed->second > seen.value)
     value = std::min(value, std::sqrt(failed->second * seen.value));
@@ -207,7 +208,7 @@ void Forecast::learn_error(const Trial& trial, double error) {
   const Method& method = *trial.method;
   if (method.order == 0 || error == 0) return;
   if (!is_told_by_frequency(method)) {
-    // An error that large is that of steps that are too long, which no order makes small.
+    // Errors this large come from steps that are too long; no order makes them small.
     constexpr double too_long = 0.1;
     if (error < too_long || method.knob == Knob::rtol) {
       seen_[&method] = {trial.value, error, trial.seconds};

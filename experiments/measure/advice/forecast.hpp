@@ -11,7 +11,7 @@
 
 namespace qddot::measure {
 
-// A run that might be made: what it is expected to miss by and to take.
+// A run that might be made, with its expected error and time.
 struct Candidate {
   const Method* method = nullptr;
   double value = 0;    // of the knob: h [s] or rtol
@@ -19,65 +19,65 @@ struct Candidate {
   double seconds = 0;  // expected
 };
 
-// The power of the knob that the error goes with.
+// The power p of the knob to which the error is proportional.
 double power_of_error(const Method& method);
 
-// Methods that take stiff forces apart have steps within their steps, which finer steps refine no
-// further: two runs may agree to less than this, and both be off by as much.
+// Two runs of a method that splits off stiff forces may agree to less than this and both be wrong
+// by as much. Such methods have inner steps, which finer outer steps do not refine.
 constexpr double least_of_split = 3e-8;
 
-// What the method `exact` takes on the model [s], about; infinite where it does not run it.
+// The approximate time [s] of the method `exact` on the model; infinite if it cannot run it.
 double seconds_of_exact(const ReducedScene& model);
 
-// Says of runs that were not made what they will miss by and take, from what is known of a motion:
+// Forecasts the error and the time of runs that were not made:
 //   error = sensitivity * frequency_error(method, h w_p),   seconds = steps * seconds of a step,
-// with w_p the motion's own frequency of the method's order p. The sensitivity is at first that of
-// a motion in which errors add up, |q'| t / |q - q(0)|; with each run whose error was seen, it is
-// corrected for that method, for others of its order, and of the orders next to it. Nothing is
-// expected of methods that choose their steps, or take stiff forces apart, before one run was seen;
-// from there on the error goes as h^order or as rtol.
+// where w_p is the motion's own frequency for order p (see OwnFrequencies). The sensitivity is
+// first the one of a motion in which errors add up, |q'| t / |q - q(0)|. Each run with a known
+// error corrects the sensitivity of its method, of other methods of that order, and of the next
+// orders. Methods that choose their steps or split off stiff forces have no forecast before one run
+// of them. After it, their error is taken as proportional to h^order or to rtol.
 class Forecast {
  public:
-  // Borrows the stage. `w_motion`: the largest frequency over the motion [rad/s], zero where
-  // nothing vibrates. `step_seconds`: of Verlet's method.
+  // Borrows the stage. `w_motion`: the largest frequency over the motion [rad/s], zero if nothing
+  // vibrates. `step_seconds`: time of one step of Verlet's method [s].
   Forecast(const Stage& stage, const OwnFrequencies& own, double w_motion, double step_seconds);
 
-  // `value`: of the knob, h [s] or rtol. The error is what the method leaves out (truncation) and
-  // what rounding adds with each step; infinite where nothing is known.
+  // Expected error and time [s] of a run. `value`: of the knob, h [s] or rtol. The error is the sum
+  // of the truncation error and of the rounding of all steps; infinite if nothing is known.
   double error(const Method& method, double value) const;
   double truncation(const Method& method, double value) const;
   double rounding(const Method& method, double value) const;
   double seconds(const Method& method, double value) const;
-  // By what factor the ratio of the errors of two methods may be another than is expected, one of
-  // `doubts`: none for two runs of one method, little where runs of both were seen.
+  // The factor by which the ratio of two methods' errors may differ from the forecast, one of
+  // `doubts`. It is 1 for two runs of one method, 1.5 if errors of both were learned, else 4.
   static constexpr std::array doubts = {1.0, 1.5, 4.0};
   double doubt(const Method& one, const Method& other) const;
-  // The runs that are expected to come to that error, one a method, the fastest first; of all
-  // methods or of the explicit ones of fixed steps.
+  // The runs that are expected to reach that error, one for each method, the fastest first. Methods
+  // are all, or only the explicit ones of fixed steps.
   std::vector<Candidate> candidates(double error, bool explicit_steps = false) const;
-  // The same, to an error of its own for each method.
+  // The same, with an error given for each method.
   std::vector<Candidate> candidates(const std::function<double(const Method&)>& error,
                                     bool explicit_steps = false) const;
 
-  // Takes in what a better run says of the motion's own frequencies, and forgets the errors that
-  // were seen: they are to be learned anew.
+  // Replaces the motion's own frequencies by those of a better run, and forgets the errors seen so
+  // far.
   void learn_frequencies(const OwnFrequencies& own);
-  // Whether the error of a run of the method, or of an explicit one of its order, was seen.
+  // Whether an error was seen of the method, or of an explicit method of the same order.
   bool has_learned(const Method& method) const;
-  // Whether the error of a run of the method itself was seen.
+  // Whether an error was seen of the method itself.
   bool has_seen(const Method& method) const;
-  // Takes in that a run missed by so much, and what it took.
+  // Corrects the forecast by the error or the time of a run.
   void learn_error(const Trial& trial, double error);
   void learn_seconds(const Trial& trial);
-  // Takes in that a run of fixed steps did not hold: none of the method is expected to that is as
-  // coarse.
+  // Notes that a run of fixed steps failed: runs of the method as coarse or coarser are expected to
+  // fail too.
   void learn_failure(const Trial& trial);
 
   double w_motion() const { return w_motion_; }
   const OwnFrequencies& own() const { return own_; }
 
  private:
-  // A run of a method that only runs tell something of.
+  // A run of a method that has no forecast without one.
   struct Seen {
     double value, error, seconds;
   };
@@ -90,11 +90,11 @@ class Forecast {
   const Stage& stage_;
   OwnFrequencies own_;
   double w_motion_, step_seconds_, sensitivity_;
-  std::map<const Method*, double> by_method_;  // error that was seen, over the expected one
-  std::map<int, double> by_order_;             // of the last explicit method of that order
+  std::map<const Method*, double> by_method_;  // error seen over error expected
+  std::map<int, double> by_order_;             // the same, last explicit method of the order
   std::map<const Method*, Seen> seen_;
   std::map<const Method*, double> seconds_a_step_;  // as timed [s]
-  std::map<const Method*, double> failed_;          // the least step that did not hold [s]
+  std::map<const Method*, double> failed_;          // the smallest step that failed [s]
 };
 
 }  // namespace qddot::measure

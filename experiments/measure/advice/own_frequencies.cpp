@@ -40,8 +40,8 @@ int add_bursts(const ReducedScene& model, const std::vector<State>& path, double
   return taken;
 }
 
-// k-th differences of rounded positions have variances of C(2k, k) times the positions'. From where
-// the squares of differences are no larger than that, they go on falling as those before did.
+// k-th differences of rounded positions have variances of C(2k, k) times the positions'. Once the
+// squares of differences are no larger than that, they are continued by the former ratio.
 void leave_out_rounding(std::array<double, OwnFrequencies::highest_order + 2>& squares,
                         double largest_q) {
   constexpr double largest_of_many = 4;  // of a normal distribution, in its deviations
@@ -66,7 +66,7 @@ double OwnFrequencies::at(int order) const {
 
 OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<State>& path,
                                double w_max, int bursts) {
-  // A motion that begins where forces hardly change may come to where they do, and bursts fail.
+  // Forces may change little at the start of a motion but much later, so that bursts fail.
   constexpr int most_attempts = 8;
   constexpr double shorter = 4;
   std::array<double, OwnFrequencies::highest_order + 2> squares{};  // of the k-th differences

@@ -31,8 +31,8 @@ struct SeenError {
   double error;
 };
 
-// Steps of implicit methods may be far too long, and then say nothing of those that are not: even
-// where they are good by chance, which a finer run shows that misses by more.
+// Whether a run of an implicit method tells anything about finer ones. Its steps may be far too
+// long, and good only by chance: a finer run with a larger error shows that.
 bool is_telling(const SeenError& one, const std::vector<SeenError>& all, double lost) {
   const Method& method = *one.trial->method;
   if (!method.is(Trait::implicit)) return true;
@@ -140,7 +140,7 @@ bool Search::was_tried(const Candidate& candidate) const {
 // promise much: what a step of theirs takes is known badly before.
 std::optional<Candidate> Search::fresh(double accuracy) const {
   constexpr double much = 0.2;
-  // To aim lower takes error^(1/order) more steps: methods of high order do for little.
+  // A smaller error takes error^(-1/order) more steps, which is little for methods of high order.
   constexpr double lower_by_order = 0.95;
   const auto all = forecast_->candidates([&](const Method& method) {
     return accuracy * std::pow(lower_by_order, std::max(0, method.order - 2));

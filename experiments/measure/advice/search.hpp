@@ -11,97 +11,93 @@
 
 namespace qddot::measure {
 
-// What the error of a run is at most, and the run that says so; nullptr where none has to.
+// An upper bound of a run's error, and the run that gives it; nullptr if no other run is needed.
 struct Bound {
   double error = 0;
   const Trial* by = nullptr;
-  bool by_coarser = false;  // a run of the same method that is less accurate
+  bool by_coarser = false;  // by a less accurate run of the same method
 };
 
-// Looks for the run that comes to an accuracy in the least time, and for a bound of its error.
+// Searches for the run that reaches an accuracy in the least time, and for a bound of its error.
 //
-//  1. A first run by Verlet's method near its limit, seen on its way, and short bursts from there
-//     say what the motion's own frequencies are, how w_max changes, and what a force takes. Where K
-//     is constant and all modes are found sooner than that, there is nothing to search.
-//  2. A Forecast names the run that comes to half of the accuracy in the least time. It is made,
-//     unless one that was made already is expected to be good enough.
-//  3. Another checks it. Where errors are small and time matters, this is a coarser run of the same
-//     method, as such errors fall as the order says. Else it is one that is expected to miss by
-//     less than half of that: their distance is the error of the first but for that of the second,
-//     which is itself within it where both are of one method. Where that is expected to be far
-//     within the accuracy, a run that is hardly finer will do. All runs teach the forecast. Where
-//     no bound is within the accuracy, 2. again, from what is known now.
-// Where the first run would take a thousand times what a few implicit steps do, or stiff springs
-// are named, a method that need not resolve them is refined before, until its runs agree: in a
-// small part of the first run's time, or it is left. Systems with massless nodes have no Verlet
-// steps: IDA is refined.
+//  1. The first run is one of Verlet's method near its stability limit. Short bursts start from its
+//     states. They give the motion's own frequencies, the change of w_max and the time of a force.
+//     There is no search if K is constant and all modes are found in less time than that.
+//  2. A Forecast names the run that reaches half of the accuracy in the least time. That run is
+//     made, unless an earlier run is expected to be good enough.
+//  3. Another run checks it. If errors are small and time matters, the check is a coarser run of
+//     the same method, since such errors fall as the order says. Else the check is a run with less
+//     than half the expected error. The distance of the two is the error of the first, up to the
+//     error of the second; with two runs of one method that error is within the distance too. If
+//     the first error is expected to be far below the accuracy, a slightly finer run is enough.
+//     Every run corrects the forecast. If no bound is within the accuracy, step 2 follows again.
+// Some methods need not resolve stiff springs. One of them is tried first if stiff springs are
+// named, or if the first run would take a thousand times as long as a few implicit steps. It is
+// refined until its runs agree, for a small part of the first run's time; then it is given up.
+// Verlet's method cannot step systems with massless nodes: IDA is refined there.
 class Search {
  public:
-  // Borrows the model, which must have unknowns and K. `seconds`: after which nothing more is
-  // begun.
+  // Borrows the model, which must have unknowns and K. No run begins after `seconds`.
   Search(const ReducedScene& model, double until, AccuracyOf of, double seconds);
 
-  // The first run and what it tells, for an accuracy that find() is going to be asked for. False
-  // where it did not come to the end; trials() says why.
+  // Makes the first run and its bursts, for an accuracy that find() will be asked for. Returns
+  // false if the run did not reach the end; trials() says why.
   bool survey(double accuracy);
-  // Refines until a run is known to be within `accuracy`; nullptr where none came there.
+  // Makes runs until one is known to be within `accuracy`; nullptr if none is.
   const Trial* find(double accuracy);
-  // Makes runs that may be faster than `answer` to the accuracy, for as long as that is worth and
-  // so many seconds at most; returns the fastest one that is known to be so accurate.
+  // Makes runs that may reach the accuracy faster than `answer`, while that is worth its time and
+  // for `seconds` at most. Returns the fastest run that is known to reach it.
   const Trial* race(const Trial* answer, double accuracy, double seconds);
 
-  // Makes that run, unless it was made, for so many seconds at most.
+  // Makes that run unless it was made before, for `seconds` at most.
   void try_once(const Candidate& candidate, double seconds);
 
-  // A bound of the trial's error, from how far it is from those that are more accurate or else from
-  // a coarser one; nothing where there is none of these.
+  // A bound of the trial's error: from its distance to more accurate trials, else to a coarser one.
+  // Empty if there is neither.
   std::optional<Bound> bound(const Trial& trial) const;
   bool is_known(const Trial& trial, double accuracy) const;  // to be within the accuracy
-  // What is known of the trial's error, or else expected.
+  // The bound of the trial's error, or the expected error if there is none.
   double error(const Trial& trial) const;
-  // The most accurate of the trials that bound the error of this one; nullptr where there is none.
+  // The most accurate trial that bounds the error of this one; nullptr if there is none.
   const Trial* checker(const Trial& trial) const;
-  // The coarser trial of the same method that bounds it else: an order that shows leaves the finer
-  // of two runs within their distance. nullptr where there is none.
+  // The coarser trial of the same method that bounds it otherwise, or nullptr. If errors fall by
+  // the method's order, the error of the finer run is less than the distance of the two.
   const Trial* coarser(const Trial& trial) const;
-  // The trial that is expected to be the most accurate, of all or of those that were seen on their
-  // way, in at most so many seconds; nullptr where none came to the end.
+  // The trial with the least expected error, or nullptr if none reached the end. Trials are all, or
+  // only those that were also seen before the end; none took more than `longest` [s].
   const Trial* most_accurate(bool seen_on_its_way = false,
                              double longest = std::numeric_limits<double>::infinity()) const;
 
-  // Measures the motion by that trial (see Stage).
+  // Takes what errors are divided by from that trial (see Stage).
   void measure_by(const Trial& trial);
-  // How far two of trials() that came to the end are apart (see Stage), compared once.
+  // The distance of two of trials() that reached the end (see Stage); computed once.
   double distance(const Trial& one, const Trial& other) const;
 
   const Stage& stage() const { return stage_; }
-  // After survey(); nothing where all was clear without.
+  // Set by survey(); empty if no forecast was needed.
   const std::optional<Forecast>& forecast() const { return forecast_; }
   const std::deque<Trial>& trials() const { return trials_; }
   double w_start() const { return w_start_; }
   double seconds_left() const;
-  // After so many seconds without an answer, more hardly helps: chaos and rounding are not refined
-  // away.
+  // The time [s] after which more runs hardly help: refinement removes neither chaos nor rounding.
   double seconds_worth_trying() const;
-  // Begins nothing more after so many seconds in all.
+  // No run begins after so many seconds in all.
   void stop_after(double seconds) { limit_ = seconds; }
 
  private:
-  // Fraction of an accuracy that an earlier run may be expected to miss by and be taken for good
-  // enough.
+  // An earlier run is good enough if its expected error is at most this fraction of the accuracy.
   static constexpr double good_enough = 0.6;
   // How many times as accurate a run must be to check another.
   static constexpr double checks = 2.1;
-  // Two runs that are so far apart have nothing to do with each other.
+  // Two runs at this distance or more have nothing in common.
   static constexpr double lost = 0.1;
-  // Steps that implicit methods begin with: what is not to be accurate may be a motion of some
-  // steps.
+  // Steps of the first run of implicit methods; a coarse accuracy may need only some steps.
   static double few_steps(double accuracy) { return accuracy > 1e-3 ? 2 : 8; }
-  // Steps that a run of Verlet's method takes at its limit, by the bound of w_max at the start; at
-  // least 1.
+  // Steps of a run of Verlet's method at its stability limit, by the bound of w_max at the start;
+  // at least 1.
   double steps_of_verlet() const;
 
-  // Nothing keeps its energy better than what hardly moves, as too long implicit steps may.
+  // Too long implicit steps may hardly move, which keeps the energy well.
   bool may_be_implicit() const { return of_ != AccuracyOf::energy; }
   std::optional<Bound> bound_by_order(const Trial& trial) const;
   std::optional<Bound> bound_by_checked(const Trial& best) const;
@@ -145,9 +141,9 @@ class Search {
   std::optional<Forecast> forecast_;
   std::deque<Trial> trials_;
   mutable std::map<std::pair<const Trial*, const Trial*>, double> distances_;  // as measured now
-  mutable std::map<const Trial*, double> truncations_;  // as the forecast has them now
-  const Trial* surveyed_by_ = nullptr;                  // the run that bursts went along
-  const Trial* measured_by_ = nullptr;  // the motion, by a run that is expected to miss by
+  mutable std::map<const Trial*, double> truncations_;  // by the present forecast
+  const Trial* surveyed_by_ = nullptr;                  // the run whose states bursts began at
+  const Trial* measured_by_ = nullptr;                  // gave the scales; its expected error:
   double measured_within_ = std::numeric_limits<double>::infinity();
 };
 

@@ -9,26 +9,26 @@
 namespace qddot::measure {
 namespace {
 
-// The error is at most so many times the distance from a check, which may be less accurate than is
+// The error is at most so many times the distance to a check, which may be less accurate than
 // expected.
 constexpr double margin = 1.4;
-// The finer of two runs of one method is off by at most so many times their distance where its
-// order shows: 19 of 20 training runs were.
+// The error of the finer of two runs of one method is at most so many times their distance, if
+// errors fall by the order: 19 of 20 training runs were within it.
 constexpr double margin_of_finer = 1.2;
-// The same where the error falls as the order says, of what that makes of their distance: 19 of 20
-// training pairs were, one of which was eight times as accurate. The order does not know all of an
-// error: a run that it makes much more accurate keeps a part.
+// The same factor for the error that the order predicts from their distance: 19 of 20 training
+// pairs were within it, and one was eight times as accurate. The order does not predict all of an
+// error: even a much finer run keeps the part `least_left`.
 constexpr double margin_of_order = 1.6, least_left = 0.1;
-// Where one run is hardly finer than the other, the order has to be what it should be. That is
-// believed to this factor.
+// If one run is slightly finer than the other, the bound relies on the order of the method. The
+// order is trusted up to this factor.
 constexpr double margin_of_hardly_finer = 4;
-// What is hardly finer misses by so much of what the other does, at most.
+// A slightly finer run has at most this fraction of the other's error.
 constexpr double hardly_finer = 0.7;
 
 }  // namespace
 
-// What rounding leaves of a run. A motion that is computed mode by mode has w_max^2 to its last
-// digit, so that a slower frequency w is off by w_max^2 / (2 w) of that, for a time t.
+// The rounding error of a run. A motion computed mode by mode has w_max^2 to its last digit. So a
+// slower frequency w is wrong by w_max^2 / (2 w) roundings, for a time t.
 double Search::rounding(const Trial& trial) const {
   if (trial.method->order > 0) {
     const double steps = forecast_ ? forecast_->rounding(*trial.method, trial.value) : 0;
@@ -47,13 +47,13 @@ double Search::expected(const Trial& trial) const {
   return truncation(trial) + forecast_->rounding(*trial.method, trial.value);
 }
 
-// What is expected of implicit steps that leave vibrations unresolved may be nothing like what they
-// do: until an error of the method was seen, no other method's runs are judged by its own.
+// Implicit steps that leave vibrations unresolved may behave quite unlike the forecast. Before an
+// error of such a method was seen, its runs judge no run of another method.
 bool Search::is_vague(const Trial& trial) const {
   return forecast_ && trial.method->is(Trait::implicit) && !forecast_->has_learned(*trial.method);
 }
 
-// What the error of `other` is of that of `trial`, at most, but for rounding.
+// An upper bound of the error of `other` over the error of `trial`, without rounding.
 double Search::ratio(const Trial& other, const Trial& trial) const {
   if (other.method->order == 0) return 0;
   if (other.method != trial.method && (!forecast_ || is_vague(other)))
@@ -107,7 +107,8 @@ std::optional<Bound> Search::bound(const Trial& trial) const {
   return own && own->error <= by_best ? own : Bound{by_best, best};
 }
 
-// A run misses by less than those that it checks, and so by less than how far it is from them.
+// The error of a run is less than the errors of the runs that it checks, and so less than its
+// distance to them.
 std::optional<Bound> Search::bound_by_checked(const Trial& best) const {
   std::optional<Bound> least;
   for (const Trial& other : trials_) {
@@ -121,7 +122,7 @@ std::optional<Bound> Search::bound_by_checked(const Trial& best) const {
   return least;
 }
 
-// From how much more, or less, accurate other runs are expected to be.
+// A bound from the expected errors of other, more or less accurate runs.
 std::optional<Bound> Search::bound_by_order(const Trial& trial) const {
   if (!trial.reached_end()) return {};
   if (of_ == AccuracyOf::energy)
@@ -185,8 +186,8 @@ double Search::likely_distance(const Trial& trial, const Trial& better) const {
   return std::max(gap, std::sqrt(gap * std::min(expected(trial), 1.0)));
 }
 
-// Whether `finer` is a run of the same method whose order makes it so much more accurate that it
-// is off by less than how far they are apart.
+// Whether `finer` is a run of the same method with so much smaller steps that, by its order, its
+// error is less than the distance of the two.
 bool Search::is_refined_by(const Trial& coarser, const Trial& finer) const {
   const Method& method = *finer.method;
   return coarser.method == &method && method.knob == Knob::step_size &&

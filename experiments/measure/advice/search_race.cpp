@@ -24,8 +24,8 @@ double seconds_of_race(const Trial& answer) {
 
 }  // namespace
 
-// The steps that an implicit method should need that has missed the accuracy or diverged, or one
-// where it was not tried, so long as that takes less than so many seconds; nothing else.
+// More steps of an implicit method that has missed the accuracy or diverged: as many as it should
+// need, or one if it was not tried. Empty if that takes `seconds` or more.
 std::optional<Candidate> Search::more_steps(const Method& method, double accuracy,
                                             double seconds) const {
   constexpr double fewest = 1.2, most = 6, infinite = std::numeric_limits<double>::infinity();
@@ -38,7 +38,7 @@ std::optional<Candidate> Search::more_steps(const Method& method, double accurac
     const double times = std::pow(missed / (good_enough * accuracy), 1.0 / method.order);
     const double made = std::round(stage_.until() / trial.value);
     steps = std::max(steps, std::ceil(std::clamp(times, fewest, most) * made));
-    // What is lost does not say how far.
+    // A lost run does not tell how many steps would do.
     if (missed < lost) enough = std::max(enough, times * made);
   }
   const double h = stage_.until() / std::max(steps, enough);
@@ -46,10 +46,10 @@ std::optional<Candidate> Search::more_steps(const Method& method, double accurac
   return Candidate{&method, stage_.until() / steps, 0, forecast_->seconds(method, h)};
 }
 
-// A run of which nothing is known yet and that may be faster than the answer: of adaptive methods
-// of high order for few unknowns, of those that take stiff forces apart where some are named, and
-// of implicit ones. What adaptive ones and the first steps of implicit ones take is known badly
-// before: they are tried where much time is left.
+// An unknown run that may be faster than the answer: by an adaptive method of high order for few
+// unknowns, by one that splits off stiff forces if some are named, or by an implicit one. The time
+// of adaptive methods and of the first implicit steps is hard to forecast: they are tried if much
+// time is left.
 std::optional<Candidate> Search::unknown(const Trial& answer, double accuracy, double left) const {
   constexpr Index few = 60;
   constexpr double part_of_answer = 0.5, much = 2;
@@ -82,8 +82,8 @@ std::optional<Candidate> Search::unknown(const Trial& answer, double accuracy, d
   return {};
 }
 
-// The fastest run that is expected to come to the accuracy in less than so many seconds, and was
-// not made; by an explicit method or by one of all.
+// The fastest run, not made yet, that is expected to reach the accuracy in less than `seconds`.
+// Methods are the explicit ones alone, or all.
 std::optional<Candidate> Search::promised(double accuracy, double seconds, bool explicitly) const {
   for (const Candidate& c : forecast_->candidates(good_enough * accuracy)) {
     if (c.seconds > seconds) break;
@@ -94,8 +94,8 @@ std::optional<Candidate> Search::promised(double accuracy, double seconds, bool 
   return {};
 }
 
-// A run of an explicit method of which nothing was seen, in less than so many seconds: what is
-// expected of it may be a factor of `unsure` too much.
+// A run of an explicit method without a run so far, in less than `seconds`. Its expected error may
+// be too large by a factor of `unsure`.
 std::optional<Candidate> Search::unseen(double accuracy, double seconds) const {
   constexpr double unsure = 30;
   for (const Candidate& c : forecast_->candidates(unsure * good_enough * accuracy, true)) {

@@ -37,7 +37,7 @@ double frequency_at_start(const ReducedScene& model, double until, double bound)
   return std::min(bound, from_below * frequency_at_least(system, q));
 }
 
-// By what factor w_max grows over the path, as its bound does.
+// The factor by which w_max grows over the path, from the growth of its bound.
 double growth_of_frequency(const ReducedScene& model, const std::vector<State>& path, double bound,
                            double steps) {
   if (model.system().stiffness_is_constant() || bound == 0) return 1;
@@ -132,11 +132,11 @@ void Search::survey_again() {
   learn();
 }
 
-// Doubles the number of steps until the error of all but the finest run is known to be at most the
-// accuracy, which that of the finest is then as well: it falls as the order says. Ends early where
-// it does not, where that would take more seconds, or the run itself longer. An undamped step that
-// does not resolve a vibration turns it by half a turn: with odd and even numbers of steps in turn,
-// runs that agree have missed none.
+// Doubles the number of steps until the error of the last but one run is known to be at most the
+// accuracy. So is the error of the finest run, as errors fall by the order. Ends early if they do
+// not, or if the next run would exceed `seconds` in all or `longest` by itself. An undamped step
+// that does not resolve a vibration turns it by half a turn. Numbers of steps are odd and even by
+// turns, so that runs that agree have missed no vibration.
 bool Search::refine(const Method& method, double steps, double accuracy, double seconds,
                     double longest) {
   const double fall = std::pow(2, method.order), end = seconds_since(begin_) + seconds;

@@ -38,8 +38,8 @@ EstimateKind kind_of(const Search& search, const Trial& trial, AccuracyOf of) {
   return bound && bound->by_coarser ? EstimateKind::refined : EstimateKind::compared;
 }
 
-// The run of which the least error is known, and a bound of that: or else, of two runs that should
-// miss by about as much, twice how far they are apart.
+// The run with the least known error, and a bound of that error. The bound is twice the distance of
+// two runs, if these should have about the same error.
 std::pair<const Trial*, double> nearest(const Search& search, AccuracyOf of) {
   const Trial* best = search.most_accurate();
   double least = std::numeric_limits<double>::infinity();
@@ -61,7 +61,7 @@ std::pair<const Trial*, double> nearest(const Search& search, AccuracyOf of) {
   return {best, least};
 }
 
-// The last time up to which the two most accurate runs agree to the accuracy.
+// The last time until which the two most accurate runs agree to the accuracy.
 double agreed_until(const Search& search, const Trial& one, double accuracy) {
   const Trial* other = nullptr;
   for (const Trial& trial : search.trials()) {
@@ -85,7 +85,7 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
     const Trial* last = search.trials().empty() ? nullptr : &search.trials().back();
     if (last) fill(answer, search, *last, search.stage().model());
     answer.why =
-        last ? fmt::format("no run came to the end; {} at {:g}: {}", last->method->name,
+        last ? fmt::format("no run reached the end; {} at {:g}: {}", last->method->name,
                            last->value, stopped_by.empty() ? last->summary.message : stopped_by)
              : stopped_by;
     return;
@@ -95,7 +95,7 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
   answer.error_estimate_kind =
       std::isfinite(least) ? kind_of(search, *best, wanted.of) : EstimateKind::none;
   const std::string reached = std::isfinite(least)
-                                  ? fmt::format("the best that is known is {:.1e}", least)
+                                  ? fmt::format("the smallest known error bound is {:.1e}", least)
                                   : "no error is known";
   if (!stopped_by.empty()) {
     answer.why = fmt::format("{}; {}", stopped_by, reached);
@@ -112,7 +112,7 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
   }
   const double agreed = agreed_until(search, *best, wanted.accuracy);
   const std::string instead =
-      agreed > 0 ? fmt::format("; to t = {:.3g} s it can be had", agreed) : "";
+      agreed > 0 ? fmt::format("; up to t = {:.3g} s it can be reached", agreed) : "";
   if (answer.horizon <= until) {
     // Two runs that are lost may come near each other by chance.
     answer.error_estimate = std::numeric_limits<double>::infinity();
@@ -122,11 +122,11 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
         "factor of e in {}){}; ask for an earlier end, or for --accuracy-of energy",
         answer.horizon, duration_in_words(1 / answer.lyapunov), instead);
   } else if (answer.lyapunov > 0) {
-    answer.why =
-        fmt::format("the motion is chaotic: its rounding has grown beyond that by t = {:g} s; {}{}",
-                    until, reached, instead);
+    answer.why = fmt::format(
+        "the motion is chaotic: rounding has grown beyond the accuracy by t = {:g} s; {}{}", until,
+        reached, instead);
   } else {
-    answer.why = fmt::format("no method is known to come so far; {}{}", reached, instead);
+    answer.why = fmt::format("no method is known to reach this accuracy; {}{}", reached, instead);
   }
 }
 
@@ -169,10 +169,10 @@ const char* name(EstimateKind kind) {
 
 void require_accuracy(double accuracy) {
   if (accuracy >= least_accuracy && accuracy < 1) return;
-  throw std::invalid_argument(fmt::format(
-      "accuracy = {:g} is not allowed; it is a relative error, from 1e-14, where rounding decides, "
-      "to below 1, where nothing is known",
-      accuracy));
+  throw std::invalid_argument(
+      fmt::format("accuracy = {:g} is not allowed; it is a relative error from 1e-14 (rounding) to "
+                  "below 1 (as large as the motion)",
+                  accuracy));
 }
 
 Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
@@ -182,7 +182,8 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
     throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
   if (model.system().size() == 0) return of_nothing(model, until);
   if (!model.system().has_stiffness())
-    throw std::invalid_argument("solve: the system has no stiffness, which says how fast it is");
+    throw std::invalid_argument(
+        "solve: the system has no stiffness K, which its frequencies follow from");
   Search search(model, until, wanted.of, wanted.seconds);
   Answer answer;
   const Trial* found = nullptr;

@@ -9,65 +9,65 @@
 
 namespace qddot::measure {
 
-// What somebody asks of a motion.
+// The accuracy that is asked for.
 struct Wanted {
   double accuracy = 1e-3;  // relative, from least_accuracy to below 1
   AccuracyOf of = AccuracyOf::positions;
-  // After so many seconds no further run is begun, and the one at hand is stopped.
+  // After so many seconds no further run begins, and the present one is stopped.
   double seconds = std::numeric_limits<double>::infinity();
 };
 
-// Below that rounding decides.
+// Rounding is larger than errors below this.
 constexpr double least_accuracy = 1e-14;
-// Throws std::invalid_argument, naming what makes sense, for an accuracy that nobody can have.
+// Throws std::invalid_argument, which names the allowed range, for an accuracy outside of it.
 void require_accuracy(double accuracy);
 
 // How an error estimate was made.
 enum class EstimateKind {
   compared,   // with a more accurate run, of another step size or formula
-  refined,    // with a coarser run of the same method, whose order leaves the finer within that
+  refined,    // with a coarser run of the same method; errors fall by its order
   conserved,  // the energy's own error, which needs no other run
-  rounding,   // of a motion that is computed mode by mode, and has no other error
+  rounding,   // of a motion computed mode by mode, which has no other error
   none,       // no run came to the end
 };
 const char* name(EstimateKind kind);
 
-// Where the seconds of an answer went: into the run that is the answer, the one that checks it, and
-// everything else, which is what finding them took.
+// Wall time of an answer [s]: `run` for the answer itself, `check` for the run that checks it, and
+// `pilots` for all other runs and work.
 struct AnswerSeconds {
   double pilots = 0, run = 0, check = 0;
 
   double total() const { return pilots + run + check; }
 };
 
-// A motion and how far it can be trusted.
+// A motion with a bound of its error.
 struct Answer {
   bool is_reached = false;  // whether the error estimate is at most the accuracy
-  std::string why{};        // a sentence where it is not: why, and what can be had instead
+  std::string why{};        // if not reached: the reason and what is possible instead
   const Method* method = nullptr;
   double value = 0;  // of the knob: h [s] or rtol
-  // A bound of the error in the sense that was asked for; infinite where none is known.
+  // A bound of the error that Wanted::of names; infinite if none is known.
   double error_estimate = std::numeric_limits<double>::infinity();
   EstimateKind error_estimate_kind = EstimateKind::none;
-  // What chose the method: "modes", "forecast", "refinement" or, by IDA's, "tolerance".
+  // What chose the method: "modes", "forecast", "refinement" or (for IDA) "tolerance".
   std::string advised_by{};
-  // From which time on [s] a motion that starts one rounding away is another one, and how fast they
-  // part [1/s]; infinite and zero where this was not seen.
+  // The time [s] from which two motions that start one rounding apart are different, and the rate
+  // [1/s] at which they part. Infinite and zero if this was not seen.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
   Summary summary{};          // of the run
-  State end{};                // where it came to, as the model has it
-  std::vector<Node> nodes{};  // all nodes of the scene there
-  int runs = 0;               // that were made in all
+  State end{};                // the state it reached, in the model's unknowns
+  std::vector<Node> nodes{};  // all nodes of the scene in that state
+  int runs = 0;               // made in all
   AnswerSeconds seconds{};
 };
 
-// Finds the motion up to the time `until` [s] to the accuracy, by the method and knob that take the
-// least time for it, as far as that can be told for less than the run itself takes; and bounds its
-// error by another run (see search.hpp). What cannot be had is said: beyond the horizon of a
-// chaotic motion, below its rounding, where no method gets there. Throws std::invalid_argument for
-// an accuracy or a time that makes no sense, or a system without K.
+// Computes the motion up to the time `until` [s] to the accuracy, with a bound of its error from
+// another run (see search.hpp). It uses the method and knob that take the least time, as far as the
+// search for them takes less time than the run itself. Answer::why says if the accuracy cannot be
+// reached: beyond the horizon of a chaotic motion, below its rounding, or by no method. Throws
+// std::invalid_argument for an accuracy or a time out of range, or a system without K.
 Answer solve(const ReducedScene& model, double until, const Wanted& wanted);
-// The same for a scene, with all of its reductions; throws InvalidInput where it is wrong.
+// The same for a scene, with all of its reductions; throws InvalidInput if the scene is wrong.
 Answer solve(const Scene& scene, double until, const Wanted& wanted);
 Answer solve(const Scene& scene, double until, double accuracy);
 

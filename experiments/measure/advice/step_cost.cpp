@@ -76,8 +76,8 @@ double usual_step_cost(const Method& method, const System& system) {
 
 double steps_to_begin(const Method& method, const System& system) {
   constexpr Index small = 300;  // where it takes no time
-  // A run of one step takes so many steps more on scenes of 500 to 10^4 unknowns: 1 to 11 by
-  // linear_midpoint, which solves once a step, 4 to 260 by those with Newton's iterations.
+  // The additional time of a run of one step, in steps, on scenes of 500 to 10^4 unknowns: 1 to 11
+  // by linear_midpoint, which solves once a step, 4 to 260 by methods with Newton's iterations.
   constexpr double linear = 5, newton = 40;
   if (!method.is(Trait::implicit) || unknowns_solved_for(method, system) <= small) return 0;
   return is_linearly_implicit(method) ? linear : newton;

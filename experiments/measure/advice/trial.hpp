@@ -7,8 +7,8 @@
 
 namespace qddot::measure {
 
-// What the accuracy of a run is judged by: the relative error of positions at its end, the largest
-// on the way, or the largest error of the energy on the way over the largest kinetic energy.
+// The error that an accuracy bounds: of the positions at the end, of the positions at any time, or
+// of the energy at any time over the largest kinetic energy.
 enum class AccuracyOf { positions, path, energy };
 
 // A whole run of a method, seen at the times of its stage.
@@ -17,43 +17,42 @@ struct Trial {
   double value = 0;  // of its knob: h [s] or rtol
   Summary summary{};
   double seconds = 0;  // wall time of the run
-  // At the times, the end last, as far as it came; or the end alone.
+  // States at the times that the run reached, the end last; or the end alone.
   std::vector<State> path{};
 
   double energy_gap = 0;   // largest |E - E(0)| at these times [J]
-  bool is_gamble = false;  // made in the hope of chance: no other run is judged by it
+  bool is_gamble = false;  // may be right by chance; checks no other run
 
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
 };
 
-// One motion, which trials are runs of: a model up to a time, seen at `looks` equal parts of that.
-// Where positions at the end are all that is asked for, implicit methods of fixed steps are seen
-// there alone: each look between two steps would be one more step, of another length.
+// The motion that trials compute: a model up to a time, seen at the ends of `looks` equal parts of
+// that time. Implicit methods of fixed steps are seen at the end alone if only positions there are
+// asked for. Each look between two steps would add a step of another length.
 class Stage {
  public:
   // Borrows the model.
   Stage(const ReducedScene& model, double until, AccuracyOf of, int looks);
 
-  // Runs the method to the end, for so many seconds at most.
+  // Runs the method to the end, for `seconds` at most.
   Trial run(const Method& method, double value, double seconds) const;
   // The same from another start.
   Trial run_from(const State& start, const Method& method, double value, double seconds) const;
-  // Runs a trial that came to the end in less than a millisecond again: its time is the least of
-  // several.
+  // Repeats a trial that reached the end in less than a millisecond; its time becomes the least of
+  // several runs.
   void time_again(Trial& trial) const;
 
-  // Measures the motion by that trial, which came to the end: what errors are divided by from now
-  // on. None are known before.
+  // Takes the scales of errors from that trial, which reached the end. There are no errors before.
   void measure_by(const Trial& trial);
 
-  // How far two trials that came to the end are apart, relative to the motion: at the end or, where
-  // the path is asked for, at any of the times.
+  // The distance of two trials that reached the end, relative to the motion. It is the one at the
+  // end, or the largest at any of the times if the path is asked for.
   double distance(const Trial& one, const Trial& other) const;
-  // The same at each of the times; nothing where one of them was seen at the end alone.
+  // The distance at each of the times; empty if one of the two was seen at the end alone.
   std::vector<double> distances(const Trial& one, const Trial& other) const;
 
-  // The largest error of the energy at the times of a trial that came to the end, where the energy
-  // is asked for.
+  // The largest relative error of the energy at the times of a trial that reached the end, if the
+  // energy is asked for.
   double energy_error(const Trial& trial) const;
 
   const ReducedScene& model() const { return model_; }

@@ -7,8 +7,8 @@
 
 namespace qddot::measure {
 
-// How the trial's run parts from the same run of a start that is one rounding away, which is made
-// for that; nothing where that does not come to the end in so many seconds.
+// Repeats the trial from a start that is one rounding away, for `seconds` at most, and measures how
+// the two part. Empty if the repetition does not reach the end.
 std::optional<Divergence> parting_of_twins(const Stage& stage, const Trial& trial, double seconds);
 
 }  // namespace qddot::measure

@@ -50,7 +50,7 @@ Eigen::MatrixXd running_means(const EnergyCourse& course, double window, double 
 
 // The root mean square of I_j(t) - R_j(a t).
 double misfit(const Eigen::MatrixXd& means, const Eigen::MatrixXd& other, double a) {
-  // By R's time where the course is the faster, so that neither leaves its range.
+  // The sum is over R's time if the course is the faster one, so that neither leaves its range.
   const double s = std::max(a, 1.0);
   double sum = 0;
   for (Index i = 0; i < points; ++i) {

@@ -12,24 +12,24 @@ struct EnergyCourse {
   std::vector<Vec> energies{};  // [J] of all springs, at each time
 };
 
-// How the energies of a course I_j(t) go from spring to spring, beside another course R_j(t). Both
-// are taken as running means, so that vibrations within a window do not count.
+// Compares how energy goes from spring to spring in a course I_j(t) and in another course R_j(t), j
+// the spring. Both are running means, which leave out vibrations within a window.
 struct ExchangeComparison {
-  // The largest |I_j(t) - R_j(t)| over springs and times, in parts of sum R_j(0).
+  // The largest |I_j(t) - R_j(t)| over springs and times, over sum R_j(0).
   double distance = 0;
-  // With both in parts of their own sum's mean over time: the `tempo` a from 1/64 to 4 for which
-  // I_j(t) is nearest to R_j(a t), and the root mean square of what is left of their difference
-  // then, small where the one course is the other, played faster or slower. Compared are t up to
-  // the end T, or T/a if that is less.
+  // `tempo` is the a from 1/64 to 4 for which I_j(t) is nearest to R_j(a t); `misfit` is the root
+  // mean square of their difference for that a. Both courses are divided by the time mean of their
+  // own sum first. A small misfit says that one course is the other, played faster or slower.
+  // Compared are all t up to the end T, or up to T/a if that is less.
   double tempo = 1, misfit = 0;
-  // sum I_j in parts of sum R_j(0): at the start, at the end, and the mean over time.
+  // sum I_j over sum R_j(0): at the start, at the end, and the mean over time.
   double first = 1, last = 1, level = 1;
-  // The largest change of an I_j since its start, in parts of `level`.
+  // The largest change of an I_j since its start, over `level`.
   double exchanged = 0;
 };
 
-// Means are over `window` [s], at the ends of the time over what there is of it. Both courses start
-// at t = 0; what one has after the end of the other does not count. At least two times each.
+// Running means are over `window` [s], cut off at both ends of the time. Both courses start at t =
+// 0, and times after the end of the shorter one do not count. Each has at least two times.
 ExchangeComparison compare(const EnergyCourse& course, const EnergyCourse& other, double window);
 
 }  // namespace qddot::measure

@@ -13,7 +13,7 @@ constexpr double tempo_tolerance = 1.1, most_misfit = 0.1, most_change = 0.1, mo
 // Parts of the sum that are an exchange and that are none.
 constexpr double some_exchange = 0.1, no_exchange = 0.02;
 
-// By how much a tempo is not 1: "14 % too slowly", "2.3 times too fast".
+// The deviation of a tempo from 1: "14 % too slowly", "2.3 times too fast".
 std::string off_by(double tempo) {
   const char* where = tempo > 1 ? "too fast" : "too slowly";
   const double factor = std::max(tempo, 1 / tempo);

@@ -46,8 +46,8 @@ Excitation excitation_of(Scene start, ReducedScene scene, double until, const st
   const auto stiff_above = excitation.start.stiff_above;
   if (!(excitation.omega > 0)) {
     throw InvalidInput(fmt::format(
-        "{}: stiff_above: {}; allowed are finite numbers above 0 in N/m that some spring between "
-        "free nodes has more stiffness than, since it is such springs whose energy is followed",
+        "{}: stiff_above: {}; allowed are finite numbers above 0 in N/m, less than the stiffness "
+        "of some spring between free nodes: the energy of such springs is followed",
         source,
         stiff_above ? fmt::format("{} leaves no stiff spring that moves", *stiff_above)
                     : "it is missing"));

@@ -15,34 +15,34 @@ namespace qddot::measure {
 struct Excitation {
   Scene start;
   ReducedScene scene;
-  double until = 0, every = 0;  // [s]; the motion is looked at about that often
+  double until = 0, every = 0;  // [s]; `every`: approximate time between looks
   double omega = 0;             // the highest frequency of the stiff springs alone [rad/s]
-  double window = 0;            // [s] of running means: 40 periods, a quarter of `until` at most
+  double window = 0;            // [s], of running means: 40 periods, at most until/4
   double energy = 0, sum = 0;   // H, and the oscillatory energy of all stiff springs, at t = 0 [J]
 };
 
-// Looks at the start of a scene. Throws InvalidInput, in a sentence that starts with `source`,
-// where no stiff spring moves or none has energy.
+// Measures the start of a scene. Throws InvalidInput, in a sentence that starts with `source`, if
+// no stiff spring moves or none has energy.
 Excitation excitation_of(Scene start, ReducedScene scene, double until, const std::string& source);
 
-// A run of one method: the energies of the stiff springs, and by how much the sum and H were off at
-// most, in parts of what they were.
+// A run of one method: the energies of the stiff springs, and the largest relative errors of their
+// sum and of the energy H.
 struct ExchangeRun {
   EnergyCourse course{};
   Summary summary{};
   double sum_deviation = 0, energy_error = 0;
 };
 
-// Runs the method, for `seconds` at most, and looks at the start and then at `times`, which a run
-// of constant steps is to reach in whole ones. `value`: of its knob.
+// Runs the method for `seconds` at most and looks at the start and at `times` [s]. A run of
+// constant steps must reach these in whole steps. `value`: of the knob, h [s] or rtol.
 ExchangeRun exchange_run(const Excitation& excitation, const Method& method, double value,
                          const std::vector<double>& times, double seconds = 60);
 
-// The multiples of h after 0 that are nearest to those of `every`.
+// The positive multiples of h [s] nearest to the multiples of `every` [s], up to `until` [s].
 std::vector<double> multiples_near(double every, double h, double until);
 
-// The motion that others are compared with: by Kahan and Li's composition of order 8 at h w = 0.1,
-// and how far Dormand and Prince's Nystrom pair 12(10) at rtol = 1e-12 is from it.
+// The reference of an exchange. It is a run of Kahan and Li's composition of order 8 at h w = 0.1,
+// certified by Dormand and Prince's Nystrom pair 12(10) at rtol = 1e-12.
 struct CertifiedCourse {
   static constexpr double h_omega = 0.1;
 
@@ -51,8 +51,8 @@ struct CertifiedCourse {
   double certified = 0;  // the largest |I_j - I_j'| of the two, over the sum at the start
 };
 
-// Makes it; `recall` gives each of the two runs, by its name, or lets it be made. Throws
-// NoReference where one does not come to the end.
+// Makes that reference. `recall` returns each of the two runs by its name, or makes it. Throws
+// NoReference if one does not reach the end.
 using Recall =
     std::function<ExchangeRun(const std::string& name, const std::function<ExchangeRun()>& run)>;
 CertifiedCourse certified_course(const Excitation& excitation, const Recall& recall = {});

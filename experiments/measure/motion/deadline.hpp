@@ -10,8 +10,8 @@
 
 namespace qddot::measure {
 
-// Asks for a stop after a number of seconds, or when the program is to end, from a sleeping thread:
-// the run that is timed only reads a flag. Disarmed when destroyed.
+// Requests a stop after a number of seconds, or when the program is to end. A sleeping thread does
+// that: the run that is timed only reads a flag. Disarmed when destroyed.
 class Deadline {
  public:
   explicit Deadline(double seconds)

@@ -4,7 +4,7 @@
 
 namespace qddot::measure {
 
-// A duration [s] for people, from "5.2 s" to "3.1e+05 years".
+// A duration [s] in words, from "5.2 s" to "3.1e+05 years".
 std::string duration_in_words(double seconds);
 
 }  // namespace qddot::measure

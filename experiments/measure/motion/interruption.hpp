@@ -7,13 +7,13 @@
 
 namespace qddot::measure {
 
-// What asked the process to end its work before that is done.
+// What asked the process to end before its work is done.
 struct Interruption {
-  std::string by;  // SIGINT, SIGTERM or --time-limit, as sidecars name it
-  int status;      // what a program exits with
+  std::string by;  // SIGINT, SIGTERM or --time-limit, as in sidecars
+  int status;      // exit status of the program
 };
 
-// Thrown where work stops for an interruption; says by what.
+// Thrown when work stops for an interruption; names its cause.
 class Interrupted : public std::runtime_error {
  public:
   explicit Interrupted(const Interruption& why)
@@ -23,17 +23,18 @@ class Interrupted : public std::runtime_error {
 
 // Ends all work of this process in order, now and from now on: runs stop after the step at hand.
 void interrupt(const Interruption& why);
-// Requested once interrupt() was called. Runs take it, or a Deadline, which waits for it as well.
+// The token that interrupt() requests a stop of. Runs take it, or that of a Deadline, which waits
+// for it too.
 std::stop_token interruption();
-// Why the work is to end; nothing as long as it may go on.
+// Why the work is to end; empty as long as it may go on.
 std::optional<Interruption> interrupted();
 // Throws Interrupted once the work is to end.
 void stop_if_interrupted();
-// Whether somebody has learned of the interruption by one of these two.
+// Whether one of the last two functions has reported the interruption.
 bool is_interruption_noticed();
 
-// Ends the work of one thread: while this lives, interruption() and interrupted() of the thread
-// that made it are those of `stop`, in the place of the process's.
+// Interrupts one thread: while this lives, interruption() and interrupted() in the thread that made
+// it follow `stop` and no longer the process.
 class OwnInterruption {
  public:
   OwnInterruption(std::stop_token stop, Interruption why);
@@ -47,7 +48,7 @@ class OwnInterruption {
  private:
   std::stop_token stop_;
   Interruption why_;
-  OwnInterruption* outer_;  // which this one stands before; may be none
+  OwnInterruption* outer_;  // the one that this one replaces; may be none
 };
 
 }  // namespace qddot::measure

@@ -9,7 +9,7 @@
 namespace qddot::measure {
 
 std::optional<ModalShares> ModalShares::at_equilibrium(const ReducedScene& scene) try {
-  // In the directions of the motion alone: it has no kinetic energy in others.
+  // Only directions of the motion count: it has no kinetic energy in others.
   const Equilibrium rest = equilibrium_of(scene);
   if (rest.outcome != Equilibrium::Outcome::reached) return {};
   const Index count = std::min(most_modes, finite_modes(scene.system()));

@@ -7,21 +7,22 @@
 
 namespace qddot::measure {
 
-// How the kinetic energy of a motion is divided among the natural modes at equilibrium, -K x_j =
-// w_j^2 M x_j with x_i'Mx_j = delta_ij:
-//   T_j = 1/2 (x_j'M v)^2,   T = sum_j T_j whatever the amplitude,
-// while potential energies 1/2 w_j^2 (x_j'M (q - q_eq))^2 would take the turning of a cloth for
-// stretching. The lowest modes each by itself, all others as one.
+// The shares of the natural modes in the kinetic energy T of a motion. The modes x_j are those at
+// equilibrium, -K x_j = w_j^2 M x_j with x_i'Mx_j = delta_ij:
+//   T_j = 1/2 (x_j'M v)^2,   T = sum_j T_j at any amplitude.
+// Potential energies 1/2 w_j^2 (x_j'M (q - q_eq))^2 are not used: they would take the rotation of a
+// cloth for stretching. The lowest modes count each by itself, all others as one.
 class ModalShares {
  public:
   static constexpr Index most_modes = 32;
 
-  // Nothing where no equilibrium is reached from the start.
+  // Empty if no equilibrium is reached from the start.
   static std::optional<ModalShares> at_equilibrium(const ReducedScene& scene);
 
-  // T_j [J], the last one that of all modes above; at most most_modes + 1 entries.
+  // T_j [J]; the last entry is the sum over all higher modes. There are up to most_modes + 1
+  // entries.
   Vec kinetic(const Vec& v) const;
-  // The mean T_j over the states of the later half of the path (by time), divided by their sum.
+  // The mean T_j over the states of the second half of the path (by time), divided by their sum.
   Vec mean(const std::vector<State>& path) const;
 
  private:

@@ -7,11 +7,11 @@
 
 namespace qddot::measure {
 
-// The momenta that a scene's motion keeps, whatever its springs do:
-//   nothing pinned:     P(t) - m g t, the linear momentum, m the whole mass, and the angular one L
-//                       about the centre of mass;
-//   one point pinned:   L about it, along g where there is gravity (pins that are on one line along
-//                       g, or on any line where there is no gravity, keep L along that line);
+// The momenta that are conserved in a scene's motion, whatever its springs do:
+//   nothing pinned:     the linear momentum, as P(t) - m g t with m the total mass, and the angular
+//                       momentum L about the centre of mass;
+//   one point pinned:   L about that point; with gravity g, the component of L along g alone;
+//   pins on one line:   L along the line, if it is parallel to g or there is no gravity;
 //   else:               none.
 class Momenta {
  public:
@@ -21,16 +21,16 @@ class Momenta {
   bool has_angular() const { return !angular_axes_.empty(); }
   bool any_kept() const { return has_linear() || has_angular(); }
 
-  // What is kept at time t [s], in components: [kg m/s] and [kg m^2/s].
+  // The components of the conserved momenta at time t [s], in [kg m/s] and [kg m^2/s].
   Vec linear(const std::vector<Node>& nodes, double t) const;
   Vec angular(const std::vector<Node>& nodes) const;
 
-  // What they are small or large by: the sum of the magnitudes of all nodes' own.
+  // The sizes that changes are compared with: the sum of the magnitudes of all nodes' momenta.
   double linear_size(const std::vector<Node>& nodes) const;
   double angular_size(const std::vector<Node>& nodes) const;
 
-  // By how much `now`, at time t [s], differs from `start` in these: P over (whole mass x `speed`
-  // [m/s]), L over (that x the scene's extent), the larger of both.
+  // The relative change of the conserved momenta from `start` to `now`, at time t [s]. P is divided
+  // by (total mass x `speed` [m/s]), L by (that x the scene's extent); the larger of both.
   double change(const std::vector<Node>& start, const std::vector<Node>& now, double t,
                 double speed) const;
 

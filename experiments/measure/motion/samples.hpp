@@ -4,8 +4,8 @@
 
 namespace qddot::measure {
 
-// The times 0, every, 2 every, ... up to and including `until` [s] (a multiple that rounding puts
-// beside `until` is `until`); empty if every = 0. Throws InvalidInput for more than 1e8 of them.
+// The times 0, every, 2 every, ... up to and including `until` [s]. A multiple that differs from
+// `until` by rounding is `until`. Empty if every = 0. Throws InvalidInput for more than 1e8 times.
 std::vector<double> samples(double every, double until);
 
 // The times after 0 of all lists, ascending, each once.

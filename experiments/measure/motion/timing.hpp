@@ -7,7 +7,7 @@
 
 namespace qddot::measure {
 
-// Wall time [s] since then.
+// Wall time [s] since `start`.
 inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -20,8 +20,8 @@ double seconds_of(const Work& work) {
   return seconds_since(start);
 }
 
-// The least wall time of one call of work() [s], from passes of a millisecond or more that take
-// `seconds` together: what it takes when nothing else disturbs it.
+// The least wall time of one call of work() [s]: its time when nothing disturbs it. Found from
+// passes of a millisecond or more, which take `seconds` together.
 template <class Work>
 double least_seconds(double seconds, const Work& work) {
   constexpr double pass_length = 1e-3;
@@ -37,7 +37,7 @@ double least_seconds(double seconds, const Work& work) {
   return least;
 }
 
-// The median of one value or more; the mean of the middle two of an even number.
+// The median of at least one value; for an even number, the mean of the middle two.
 inline double median(std::vector<double> values) {
   std::ranges::sort(values);
   const std::size_t half = values.size() / 2;

@@ -5,12 +5,12 @@
 
 namespace qddot::measure {
 
-// The options with the sizes that absolute tolerances are measured by: of positions, the largest
-// extent L [m] of the scene as it starts; of velocities, the larger of the fastest node's (beside
-// what falls in closed form) and of
-// sqrt(a L) [m/s], a the largest acceleration at the start, or w L with w^2 = a/L: what the start
-// can bring a node to across the scene (under gravity alone, sqrt(g L)). L is 1 m for a scene
-// without extent, the speed L/s for one that rests in balance.
+// Sets the sizes of positions and velocities that absolute tolerances are relative to. The size of
+// positions is the largest extent L [m] of the scene at its start. The size of velocities [m/s] is
+// the larger of two speeds. One is that of the fastest node, without motion in closed form. The
+// other is sqrt(a L), with a the largest acceleration at the start; it is w L for w^2 = a/L. The
+// second is the speed that a node can gain across the scene (under gravity alone, sqrt(g L)). L is
+// 1 m for a scene without extent; the speed is L/s for a scene at rest in balance.
 Options with_tolerance_scales(Options options, const ReducedScene& scene);
 
 }  // namespace qddot::measure

@@ -14,15 +14,14 @@ struct Mode {
   Vec shape;     // x, x'Mx = 1 (x in kg^-1/2)
 };
 
-// Up to `count` of the modes that vibrate about q, ascending, the lowest and the highest among
-// them: of a system of up to 1500 unknowns spread evenly over the logarithm of the frequency, of a
-// larger one both ends. Modes with w below 1e-6 of the largest are left out: a run that follows the
-// fastest does not see them move.
+// Up to `count` of the modes that vibrate about q, in ascending order, the lowest and the highest
+// among them. Systems of up to 1500 unknowns give modes spread evenly over the logarithm of the
+// frequency; larger ones give both ends of the spectrum. Modes with w below 1e-6 w_max are left
+// out: they do not move in a run that follows the fastest one.
 std::vector<Mode> sampled_modes(const System& system, const Vec& q, int count);
 
-// The largest rate [1/s] at which a motion leaves q, where compressed springs push to the side:
-// the root of the largest eigenvalue of M^-1 K(q), or zero where that is not positive whatever
-// rounding does.
+// The largest rate [1/s] at which a motion leaves q, where compressed springs push sideways: the
+// square root of the largest eigenvalue of M^-1 K(q). Zero if rounding may have made it positive.
 double buckling_rate(const System& system, const Vec& q);
 
 }  // namespace qddot::measure

@@ -69,8 +69,9 @@ Reference agreed_reference(const ReducedScene& scene, double until, double neede
   const auto by_ida = [&](int level, double limit) {
     return ida(scene, until, tolerance(level), limit);
   };
-  // Verlet begins, and says what the others may take: they have 17 and 13 forces a step, Fehlberg's
-  // no longer than three of Verlet's; of an implicit method that can only be guessed.
+  // Verlet begins, and its time gives that of the others: they evaluate 17 and 13 forces a step,
+  // and steps of Fehlberg's pair are no longer than three of Verlet's. The time of an implicit
+  // method is a guess.
   Way verlet{true, 0, 2, explicitly("verlet", 1)};
   const auto begin = std::chrono::steady_clock::now();
   verlet.finest = verlet.solve(verlet.level++, seconds);

@@ -4,23 +4,24 @@
 
 namespace qddot::measure {
 
-// Position errors so large tell two motions apart.
+// Two motions are apart if their position error is this or more.
 constexpr double apart = 1e-2;
-// Two motions that were one rounding apart and have parted by more than this factor have done so
-// exponentially: regular ones part in proportion to time, by some thousands over their runs.
+// Two motions that start one rounding apart part exponentially if their difference grows by more
+// than this factor. The difference of regular motions grows in proportion to time, by some
+// thousands over a run.
 constexpr double exponential_growth = 1e6;
 
-// How two motions part that start next to each other.
+// How two motions that start close to each other part.
 struct Divergence {
   double horizon;   // t [s] from which on they are `apart`; infinite for regular motions
-  double lyapunov;  // [1/s], at which their difference has grown; zero for regular motions
+  double lyapunov;  // growth rate of their difference [1/s]; zero for regular motions
 };
 
-// From the differences (position errors) at the times [s], ascending; the first one is the start's,
-// above 0. The exponent is the slope, by least squares, of ln(largest difference so far) over the
-// later half of the time in which that is below a tenth of `apart`; above, it no longer grows
-// freely. Where they part exponentially but are not apart at the last time, the horizon is where
-// that slope leads.
+// Computes it from `differences` (position errors) at ascending `times` [s]; the first one is that
+// of the start, above 0. The exponent is the least-squares slope of ln(largest difference so far).
+// It is fitted over the second half of the time in which that difference is below `apart`/10;
+// above, it no longer grows freely. If the motions part exponentially but are not apart at the last
+// time, the horizon is extrapolated by that slope.
 Divergence divergence(const std::vector<double>& times, const std::vector<double>& differences);
 
 }  // namespace qddot::measure

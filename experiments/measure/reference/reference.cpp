@@ -20,9 +20,9 @@ namespace {
 
 constexpr Index largest_modal_size = 2000;  // a dense eigenproblem of a few seconds
 
-// Throws NoReference where there is no such step, and where so many steps of order 8, timed on a
-// few, take twice as long as they may [s]; `expect` is told where making the reference is likely to
-// take all its time.
+// Throws NoReference if there is no such step, or if `steps` steps of order 8 would take more than
+// twice `seconds`; that is timed on a few steps. Calls `expect` if the reference is likely to take
+// all its time.
 void require_affordable(const ReducedScene& scene, double until, double steps, double seconds,
                         const Expect& expect) {
   constexpr double tried = 16, refinements = 8;

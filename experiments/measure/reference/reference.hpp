@@ -11,78 +11,79 @@
 
 namespace qddot::measure {
 
-// What a push of one rounding does to a motion that stays in a plane, on a line or its own mirror
-// image, and was computed there: all nodes pushed to all sides that were drawn.
+// The effect of a push by one rounding on a motion that was computed in a plane, on a line or with
+// mirror symmetry. The push moves all drawn nodes in all drawn dimensions.
 struct OutOfSymmetry {
   double effect = 0;  // on the end, as a position error
-  // From which time on [s] the pushed motion and the symmetric one are `apart`, found or
-  // extrapolated, and how fast they part [1/s]; infinite and zero where they do not.
+  // The time [s], found or extrapolated, from which the pushed and the symmetric motion are
+  // `apart`, and the rate [1/s] of their parting. Infinite and zero if they do not part.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
 };
 
-// The motion that errors are measured against, at time `until`, and how far it can be trusted:
-// `certified` bounds its error, in the units of Errors (see joined in reference_ways.hpp; the
-// program fuzz_references shows how often that holds). No error below that means anything.
+// The motion that errors are measured against, at its end, with a bound of its own error.
+// `certified` is that bound, in the units of Errors (see joined in reference_ways.hpp); errors
+// below it mean nothing. The program fuzz_references shows how often the bound holds.
 struct Reference {
   State end;
   double energy = 0;  // E(0) [J], which the exact motion keeps
   Scales scales;
   Errors certified;
-  // What one rounding of the start (a random displacement of up to 2^-52 of the scene's extent)
-  // does to the positions at the end, as a position error; and by what factor it has grown. What
-  // grows exponentially is chaotic.
+  // The effect of one rounding of the start on the positions at the end, as a position error, and
+  // the factor by which it has grown. The rounding is a random displacement of up to 2^-52 of the
+  // scene's extent. A motion is chaotic if the effect grows exponentially.
   double rounding_effect = 0, perturbation_growth = 0;
-  // From which time on [s] that motion and the reference are `apart`, found or, after the end,
-  // extrapolated; and how fast they part [1/s]. Infinite and zero for regular motions.
+  // The time [s] from which the displaced motion and the reference are `apart`, extrapolated if it
+  // is after the end, and the rate [1/s] at which they part. Infinite and zero for regular motions.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
-  // What a push does to a motion that symmetry reduced; missing where none did, or where finding
-  // out took too long.
+  // The effect of a push on a motion that was reduced by symmetry. Empty if it was not, or if
+  // finding the effect took too long.
   bool is_reduced_by_symmetry = false;
   std::optional<OutOfSymmetry> out_of_symmetry{};
-  // Beyond the horizon, what part of the kinetic energy is in each mode (see ModalShares), and by
-  // how much that of another motion with nearly the same start differs by chance; empty where it
-  // was not measured.
+  // The share of the kinetic energy in each mode (see ModalShares), if the end is beyond the
+  // horizon; empty if not measured. The floor is the difference by chance to another motion with
+  // nearly the same start.
   Vec modal_shares{};
   double modal_shares_floor = 0;
-  std::string made_by;  // the two ways, with their options
-  double seconds = 0;   // what it took
+  std::string made_by;  // the two methods, with their options
+  double seconds = 0;   // time to make it [s]
 
-  // Whether the motion at the end exists in exact symmetry alone: computed there it is known, but
-  // any push out of it has parted the nodes long before (in less than 0.8 of the motion's own
-  // horizon). Errors against it are those of computing the symmetric motion, which is what all
-  // methods do on the same reduced system, so that they still compare.
+  // Whether the motion at the end exists in exact symmetry alone. Any push out of symmetry has then
+  // moved the nodes apart before the end, in less than 0.8 of the motion's own horizon. The
+  // symmetric motion itself is known. All methods compute it on the same reduced system, so that
+  // their errors still compare.
   bool is_only_symmetric() const {
     return out_of_symmetry && out_of_symmetry->horizon <= end.t &&
            out_of_symmetry->horizon < 0.8 * horizon;
   }
-  // Whether the end is so late that nobody knows the positions: their errors mean nothing.
+  // Whether the end is beyond the horizon: the positions are unknown and their errors mean nothing.
   bool is_beyond_horizon() const { return end.t >= horizon; }
   bool is_chaotic() const { return perturbation_growth > exponential_growth; }
 };
 
-// Is told how long [s] a reference is likely to take, where that is long.
+// Called with the time [s] that a reference is likely to take, if that is long.
 using Expect = std::function<void(double seconds)>;
 
-// Makes the reference of a scene without massless nodes, in about `seconds` at most. The two ways:
+// Makes the reference of a scene without massless nodes, in about `seconds` at most, by two
+// methods:
 //   linear motion (constant K):  modal, exact  -  Kahan and Li's order-8 composition;
 //   else:  Kahan and Li's composition (symplectic, fixed step)  -  Fehlberg's 7(8) pair of
 //          Boost.odeint (adaptive).
-// Each is refined until only rounding changes it any more, or time is up. Where `start` is given,
-// of which `scene` is the reduction, and its dimension or a mirror was reduced, another run of all
-// that was drawn shows what a push does to it, in at most as long again. Throws NoReference if
-// either way never reaches the end.
+// Each is refined until only rounding changes the result, or until time is up. `start` is the scene
+// that `scene` is the reduction of. If it is given and its dimension or a mirror was reduced, a run
+// of all drawn nodes measures the effect of a push, in up to `seconds` more. Throws NoReference if
+// either method never reaches the end.
 Reference make_reference(const ReducedScene& scene, double until, double seconds,
                          const Scene* start = nullptr, const Expect& expect = {});
 
-// Makes a reference that is good to the position error `needed` and no better than that takes, in
-// some `seconds` at most: where springs are so stiff that methods of high order would resolve their
-// vibrations for hours. Ways of two kinds are refined by turns, the cheapest next,
+// Makes a reference with a position error of at most `needed`, and no better than necessary, in
+// about `seconds` at most. It is for springs so stiff that methods of high order would take hours
+// to resolve their vibrations. Methods of two kinds are refined by turns, the cheapest next:
 //   explicit and symplectic, with steps that resolve every vibration:  Verlet, Kahan-Li;
 //   by error control, explicit and implicit:  Fehlberg's 7(8) pair, IDA;
-// until one of either kind agree to half of it, or time is up: `certified` is then twice the
-// difference of the nearest two. Two of one kind prove nothing: implicit methods may agree on
-// having damped what vibrates. Rounding is not measured. Throws NoReference if a kind never reaches
-// the end.
+// They end when one of each kind agree to needed/2, or when time is up; `certified` is twice the
+// difference of the nearest two. Agreement within one kind proves nothing: implicit methods may
+// agree in damping the same vibrations. Rounding is not measured. Throws NoReference if no method
+// of a kind reaches the end.
 Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds);
 
 }  // namespace qddot::measure

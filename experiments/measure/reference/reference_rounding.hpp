@@ -4,27 +4,28 @@
 
 namespace qddot::measure {
 
-// The start with each unknown moved at random: positions by up to `part` of what their part of the
-// scene measures from the origin or moves, velocities by up to `part` of its speed. With the
-// machine's epsilon, that is one rounding.
+// The start with each unknown changed at random. Positions change by up to `part` times the largest
+// coordinate or displacement of their part of the scene, velocities by up to `part` times its
+// speed. The machine's epsilon as `part` makes that one rounding.
 State displaced_start(const ReducedScene& scene, const Scales& scales, double part);
 
-// A composition and the same from a start that is one rounding away and until one rounding later,
-// and so what that does to the end.
+// Repeats a composition from a start that is one rounding away and to an end time one rounding
+// later, and measures the effect on the end.
 class RoundingRun {
  public:
-  // In `seconds` at most; there is no effect to tell where that is not enough.
+  // Takes `seconds` at most; if they are not enough, reached_end() is false and there is no effect.
   RoundingRun(const ReducedScene& scene, const Solution& composed, double until, double seconds);
 
   bool reached_end() const { return moved_.has_value(); }
   double knob() const { return knob_; }
-  // On the end; of the energy, what the rounding of the start and of its own sum does to E(0).
+  // The effect on the end. That of the energy is the effect on E(0) of rounding the start and of
+  // rounding its own sum.
   const Errors& effect() const { return effect_; }
-  // Whether a change of the end by this much [worse of position and velocity] may be rounding
-  // alone: each of N steps adds one, by chance to either side, which grow as sqrt(N); ten times
-  // that.
+  // Whether a change of the end by this much [larger of position and velocity error] may be
+  // rounding alone. The roundings of N steps, each of random sign, add up to sqrt(N) of one; the
+  // limit is ten times that.
   bool explains(double change) const;
-  // Writes the horizon and what else is known of the parting of the two.
+  // Writes the horizon, the exponent and the growth of the difference into the reference.
   void tell(Reference& reference) const;
 
  private:
@@ -38,17 +39,17 @@ class RoundingRun {
   double growth_ = 0;
 };
 
-// What the composition's path, computed with the reductions of `scene`, has become in the same
-// motion of all nodes of `start`, pushed by a rounding to all sides. Nothing where that takes
-// longer than `seconds`.
+// Compares the composition's path, computed with the reductions of `scene`, with the motion of all
+// nodes of `start` after a push by one rounding in all dimensions. Empty if that takes longer than
+// `seconds`.
 std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const ReducedScene& scene,
                                              const Solution& composed, double until,
                                              double seconds);
 
-// Beyond the horizon, how the energy is divided: repeats the composition from a start that is
-// known to half as many digits. As differences grow exponentially, that is apart in half the time:
-// during all of the later half of a run beyond the horizon, in which the two have nothing in common
-// but what every such motion has.
+// Measures the modal shares of a motion beyond the horizon, and how much they differ by chance.
+// Repeats the composition from a start that agrees to half as many digits. Differences grow
+// exponentially, so the two are apart after half the time. So the second half of the run has only
+// those properties in common that every such motion has.
 void measure_shares(Reference& reference, const ReducedScene& scene, const Solution& composed,
                     double until, double seconds);
 

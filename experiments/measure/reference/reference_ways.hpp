@@ -10,42 +10,42 @@
 
 namespace qddot::measure {
 
-// The end of a motion computed in one way.
+// The end of a motion computed by one method.
 struct Solution {
   State end{};
   Scales scales{};
   double knob = 0;
   std::string made_by{};
-  std::vector<State> path{};  // on the way, at some of the samples, the end included
-  Errors change{};            // how much refining it may still move the end; zero if not refined
+  std::vector<State> path{};  // at some of the samples, the end included
+  Errors change{};            // how far refinement may still change the end; zero if not refined
 };
 
-// The motion from `initial` by a method with these options. Its scales are those seen at the ends
-// of `samples` equal parts of the time, or of some of them where they are more than a million;
-// about a hundred of these are its path. Nothing where it does not reach the end in so many
-// seconds.
+// The motion from `initial` by a method with these options. Its scales are those at the ends of
+// `samples` equal parts of the time, or at some of these if there are more than a million. About a
+// hundred of them make its path. Empty if it does not reach the end in `seconds`.
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
                                  const Options& options, const State& initial, double until,
                                  std::int64_t samples, double seconds);
 
-// By Kahan and Li's composition of order 8 with steps of h [s], its scales seen at each.
+// The motion by Kahan and Li's composition of order 8 with steps of h [s], with scales from each
+// step.
 std::optional<Solution> composition(const ReducedScene& scene, const State& initial, double until,
                                     double h, double seconds);
 
-// Fehlberg 7(8) in the variables (q - q0) / displacement and v / speed, all of order one; each part
-// of the scene with scales and steps of its own.
+// The motion by Fehlberg 7(8), in the variables (q - q0) / displacement and v / speed, which are of
+// order one. Each part of the scene has its own scales and steps.
 std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double tolerance,
                                  const Scales& scales, double seconds);
 
 // The reference whose end is that of `one`, certified by `other`.
 //
-// What is certified is twice the largest of: how far the two differ, the last change of each under
-// refinement, and `rounding_effect`, what a rounding of the start does to the end. Where truncation
-// is left, each change is larger than the error that follows it, and the difference sees the error
-// of both. Where only rounding is left, these are distances of the one end from others that err as
-// much by chance: its error is above twice all of them only if the others err by nearly as much to
-// the same side, all of them within half of its own. What both have in common, the rounding of the
-// scene's own numbers, is what that stands for.
+// The certified error is twice the largest of three: the difference of the two, the last change of
+// each under refinement, and `rounding_effect` (of a rounding of the start on the end). If
+// truncation errors are left, each change is larger than the error after it, and the difference
+// contains the errors of both. If only rounding errors are left, all three are distances between
+// ends with independent errors of one size. The error of `one` exceeds twice each of them only if
+// all the others have nearly the same error in the same direction, within half of its size. The
+// rounding of the scene's own numbers is common to both; `rounding_effect` stands for it.
 Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other,
                  const Errors& rounding_effect = {});
 

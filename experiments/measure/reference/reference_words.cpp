@@ -43,7 +43,8 @@ std::string symmetry_in_words(const Reference& reference) {
         reference.out_of_symmetry->horizon, reference.out_of_symmetry->lyapunov);
   }
   if (reference.is_reduced_by_symmetry && !reference.out_of_symmetry) {
-    return "What a push out of the motion's symmetry does was not found out: it takes too long.";
+    return "The effect of a push out of the motion's symmetry is unknown: it takes too long to "
+           "compute.";
   }
   return "";
 }

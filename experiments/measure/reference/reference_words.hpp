@@ -6,11 +6,11 @@
 
 namespace qddot::measure {
 
-// What errors against the reference are divided by, with the numbers; a sentence.
+// The scales that errors against the reference are divided by, with their values, in a sentence.
 std::string what_divides(const Reference& reference);
 
-// That the motion exists in exact symmetry alone and what a push does to it, or that this took too
-// long to find out; empty where nothing is to be said.
+// A sentence that says whether the motion exists in exact symmetry alone and what a push does to
+// it, or that finding out took too long. Empty otherwise.
 std::string symmetry_in_words(const Reference& reference);
 
 }  // namespace qddot::measure

@@ -12,22 +12,23 @@ namespace qddot::measure {
 constexpr int most_refinements = 20;
 constexpr int most_lost_levels = 3;
 
-// Refines a way of solving until rounding is all that is left: the changes no longer shrink, and
-// `is_rounding(finest, change)` says that they need not. Changes that do not shrink before are
-// those of steps too coarse for the expansion of the error in their powers, and of a chaotic
-// motion they may be as large as the motion for some levels; refinement goes on, until time is up.
-// `solve(level)` returns nothing where it did not reach the end. Throws NoReference if none does.
+// Refines a solution until only rounding is left: the changes no longer shrink, and
+// `is_rounding(finest, change)` says that they need not. Changes may fail to shrink before that, if
+// steps are too coarse for the error to fall by an order. They may be as large as the motion for
+// some levels, if it is chaotic. Refinement then goes on until time is up. `solve(level)` returns
+// an empty value if it did not reach the end. Throws NoReference if no level does.
 //
-// `change` of the result bounds the change that is still to come: where rounding ends it, the
-// larger of the last two; where time does, the last one times min(1, 2 r), r the ratio of the last
-// two, as changes that shrink by r <= 1/2 each time add up to r / (1 - r) <= 2 r of the last.
+// `change` of the result bounds the change that further refinement would make. If rounding ends the
+// refinement, it is the larger of the last two changes. If time ends it, it is the last change
+// times min(1, 2 r), with r the ratio of the last two. The reason: changes that shrink by r <= 1/2
+// each time add up to r / (1 - r) <= 2 r of the last.
 template <class Solve, class IsRounding>
 Solution refined(const ReducedScene& scene, double seconds, const Solve& solve,
                  const IsRounding& is_rounding) {
   const auto start = std::chrono::steady_clock::now();
   std::optional<Solution> best;
   Errors last;                                              // change
-  double before = std::numeric_limits<double>::infinity();  // the worse of the last change
+  double before = std::numeric_limits<double>::infinity();  // the larger of the last change
   double share = 1;
   for (int level = 0; level < most_refinements; ++level) {
     const auto begin = std::chrono::steady_clock::now();

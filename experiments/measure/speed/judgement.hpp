@@ -4,26 +4,26 @@
 
 namespace qddot::measure {
 
-// How many times farther than chance puts it a run's energy may be from the reference's modes.
+// A run's modal shares may differ from the reference's by this many times the difference by chance.
 constexpr double most_of_chance = 10;
 
-// What the accuracy of a run is judged by: the error of the positions at its end or, where that is
-// beyond the horizon and they are known to nobody, the largest error of the energy on the way. As
-// nothing keeps its energy better than what does not move, that is infinite for a run whose energy
-// is in other modes than the reference's.
+// The error that decides a run's accuracy: that of the positions at its end. If the end is beyond
+// the horizon, positions are unknown; then it is the largest error of the energy during the run. A
+// run that hardly moves keeps its energy well. So the error is infinite if the run's energy is in
+// other modes than the reference's.
 double judged_error(const Point& point, const Reference& reference);
 
-// The least that such an error can be told from zero.
+// The certified error of the reference, of the same kind; smaller errors cannot be told from zero.
 double certified(const Reference& reference);
 
-// What is known of an error e that was measured against a reference which itself is off by up to c:
-// it is at least e - c, or 0, and at most e + c.
+// The bounds of a true error. If the error e was measured against a reference with an error of up
+// to c, they are max(e - c, 0) and e + c.
 struct Known {
   double at_least = 0, at_most = 0;
 };
 Known known(double error, double certified);
 
-// Whether what is not known of an error is a tenth of it or more.
+// Whether the uncertainty of an error is a tenth of it or more.
 bool is_uncertain(double error, double certified);
 
 // "position" or "energy".

@@ -6,15 +6,15 @@
 namespace qddot::measure {
 namespace {
 
-// Neighbours of a ladder divide the error by 4 where it falls as the order says, or by 6 where an
-// order of 8 meets ten rungs to the decade. Several times that is no order any more.
+// The error falls by 4 from rung to rung if it follows the order, or by 6 with an order of 8 and
+// ten rungs a decade. A fall of several times that is not due to an order.
 constexpr double steepest_fall = 40;
-// At so many times the steps of the limit a ladder is left as it is. A run that comes to its end
-// beyond a limit by luck is nearer than that: at twice the limit what grows does so by more than 10
-// in a step.
+// The ladder is not refined beyond so many times the steps of the limit. A run with steps above the
+// limit that reaches its end by chance is nearer than that: at twice the limit, vibrations grow by
+// more than 10 in a step.
 constexpr double farthest = 8;
-// The cheapest step for some accuracy is missed by at most the ratio of two rungs: by a few percent
-// at the limit, by an eighth at half of it and by a third at an eighth.
+// The ladder misses the cheapest step for an accuracy by at most the ratio of two rungs. That is a
+// few percent at the limit, an eighth at half of it and a third at an eighth of it.
 constexpr double closest_ratio = 1.04, widening = 0.125;
 
 // The first of the fewest rungs that leave no ratio between the two larger than `allowed`.

@@ -4,9 +4,9 @@
 
 namespace qddot::measure {
 
-// Passes that do one thing as fast as a core can, by the vectors that the springs' kernels use.
+// Loops that reach one limit of a core each, with the vector instructions of the springs' kernels.
 struct LimitKernels {
-  // Multiplies and adds from register to register; returns how many operations that were.
+  // Multiplies and adds from register to register; returns the number of operations.
   double (*multiply_and_add)(int rounds);
   // a = b + s c of n numbers each.
   void (*triad)(const double* b, const double* c, double s, double* a, std::ptrdiff_t n);

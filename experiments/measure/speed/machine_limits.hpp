@@ -2,16 +2,16 @@
 
 namespace qddot::measure {
 
-// How fast one core moves memory [bytes/s] in the triad a = b + s c (McCalpin, STREAM), over arrays
-// that take `bytes` together and are counted once each: the fastest of the passes of `seconds`.
+// Memory bandwidth of one core [bytes/s] in the triad a = b + s c (McCalpin, STREAM). The three
+// arrays take `bytes` together and count once each. The fastest of all passes in `seconds`.
 double triad_bandwidth(double bytes, double seconds);
 
-// How fast one core multiplies and adds [operations/s], from register to register with the widest
-// vectors that the kernels use: the fastest of the passes of `seconds`.
+// Multiplications and additions of one core [operations/s], from register to register with the
+// widest vectors that the kernels use. The fastest of all passes in `seconds`.
 double peak_flops(double seconds);
 
-// How fast one core reads `bytes` that lie in a row again and again [bytes/s]: from the cache that
-// holds them, else from memory. Zero where there are none.
+// The rate [bytes/s] at which one core reads `bytes` contiguous bytes repeatedly: from the cache
+// that holds them, else from memory. Zero if `bytes` is zero.
 double reading_rate(double bytes, double seconds);
 
 }  // namespace qddot::measure

@@ -23,7 +23,7 @@ struct Point {
   double energy_growth = 1;  // as in Summary
 };
 
-// How long a point may take, how often it is timed, and how it is run.
+// Limits and settings of the measurement of a point.
 struct Effort {
   using Take = std::function<Point()>;
 
@@ -31,7 +31,7 @@ struct Effort {
   int repeats = 5;    // timed runs; at least one; fewer where they would take half of that together
   Options options{};  // beside the knob
   const Watch* watch = nullptr;  // if any, sees one more run, untimed
-  // If any, gives a point that may be known already, or takes it.
+  // If set, returns the point if it is known already, else calls `take`.
   std::function<Point(const Method&, double value, const Take& take)> recall{};
 };
 
@@ -39,10 +39,9 @@ struct Effort {
 Options options_for(const Method& method, double value, const ReducedScene& scene,
                     Options options = {});
 
-// The point of that value as the effort recalls it, or else takes it: runs the method once untimed,
-// which a run of 0.1 s need not be, and then up to `repeats` times; a
-// repeat that fails makes the point a failure. Runs too short for the clock are timed in batches.
-// Single thread.
+// Returns the point as Effort::recall has it, or measures it: runs the method once untimed, and
+// then up to `repeats` times. A first run of 0.1 s or more counts as timed. A repeat that fails
+// makes the point a failure. Runs too short for the clock are timed in batches. Single thread.
 Point measure_point(const Method& method, double value, const ReducedScene& scene, double until,
                     const Reference& reference, const Effort& effort);
 

@@ -12,7 +12,7 @@
 namespace qddot::measure {
 namespace {
 
-// To either side; errors meet rounding long before.
+// Points to either side; errors reach rounding long before.
 constexpr int most_points = 60;
 
 // Values of the knob, finer with the number. Number 0 of a step size is h w = 4 for explicit
@@ -87,8 +87,8 @@ bool has_limit(const Method& method, const std::vector<Point>& points) {
          std::ranges::find(points, Outcome::diverged, &Point::outcome) != points.end();
 }
 
-// The points that a ladder of step sizes may be refined between: down to the first that is enough,
-// or to where time is up.
+// The rungs of a ladder of step sizes that may be refined: from the coarsest to the first that is
+// enough, or to the first that is over budget.
 std::vector<Rung> rungs(const std::vector<Point>& points, double until, const Reference& reference,
                         const std::function<bool(const Point&)>& is_enough) {
   std::vector<Rung> ladder;

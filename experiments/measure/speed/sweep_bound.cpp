@@ -12,32 +12,32 @@ namespace {
 
 // A first run at least so long [s] is a sample; shorter ones are timed in batches of `batch` [s].
 constexpr double sample_from = 0.1, batch = 1e-4;
-// What is watched ends at some of its steps to be looked at, no more than a quarter of them. What
-// it takes to look shows in how much longer points take than their runs say.
+// A watched run is looked at after some of its steps, a quarter of them at most. The time of the
+// looks themselves is part of `slower_`.
 constexpr double watched = 1.25;
-// Threads that wait for the end of their time, and the journal [s].
+// Time of the threads for time limits, and of the journal [s].
 constexpr double around = 1e-3;
-// A point that is expected to take so much of the limit shows what else there is, and not what
-// disturbs it; a run of so many steps, what one takes.
+// A point that takes this fraction of the limit or more shows the overhead and not a disturbance. A
+// run of so many steps shows the time of one.
 constexpr double long_enough = 0.5;
 constexpr int many_steps = 100;
-// From 0.1 to 1e-15, a power of ten apart.
+// 0.1 to 1e-15, a power of ten apart.
 constexpr int most_tolerances = 15;
-// To both sides of the first.
+// Rungs to both sides of the first.
 constexpr int most_rungs = 121;
-// Newton's iterations become fewer with shorter steps, and save so much at most.
+// Shorter steps need fewer Newton iterations, which saves at most this factor.
 constexpr double saved_at_most = 10;
-// So many coarse runs over the budget are forgiven to implicit steps.
+// So many coarse runs of an implicit method may be over budget before its sweep ends.
 constexpr int forgiven = 3;
-// A ladder lacks up to 42 rungs near its limit where errors fall as the order says, 35 from order 3
-// on, and some more where runs beyond it come to their end by luck; all of at most eight times the
-// steps of the limit.
+// A ladder is refined by up to 42 rungs near its limit, or 35 from order 3 on, if errors fall by
+// the order. Some more follow if runs beyond the limit reach their end by chance. All have at most
+// eight times the steps of the limit.
 constexpr int most_lacking = 50, most_lacking_of_high_order = 40, high_order = 3;
 constexpr double refined_up_to = 8;
-// What a step does beside its forces differs from method to method, and w_max rises on the way: it
-// is that of the start which is known.
+// The work of a step beside its forces differs between methods. w_max may rise during a run; only
+// that of the start is known.
 constexpr double dearer_step = 2, stiffer_on_the_way = 2;
-// Implicit steps that resolve w_max as explicit ones do, at h w = 1, do not run away.
+// Implicit methods with steps as short as explicit ones, at h w = 1, do not blow up.
 constexpr double limit_of_implicit = 1;
 
 // Whether all forces are taken at each step: multirate methods resolve w_max of the soft ones.
@@ -45,8 +45,8 @@ bool is_plainly_explicit(const Method& method) {
   return !method.is(Trait::implicit) && !method.asks(Need::split_forces);
 }
 
-// How many forces explicit steps take each, those of their start among them; zero where one mass on
-// a spring does not show it.
+// Forces per step of an explicit method, those of its start included; zero if the method cannot run
+// a mass on a spring.
 double forces_a_step(const Method& method) {
   constexpr int steps = 64;
   static const ReducedScene oscillator(load_scene("oscillator"));
@@ -121,8 +121,8 @@ double SweepBound::whole(const Method& method) const {
   const double limit = effort_.seconds;
   if (method.order == 0) return point(limit);
   if (method.knob == Knob::rtol) return most_tolerances * point(limit);
-  // The finest run that ends within the limit may take all of it, and those before it less, as they
-  // take fewer steps; the one after it is stopped, or not begun.
+  // The finest run that ends within the limit may take all of it. The runs before it take less,
+  // since they have fewer steps; the one after it is stopped or never started.
   const bool implicit = method.is(Trait::implicit);
   const double rung = std::pow(4.0, -1.0 / method.order);
   double sum = (limit + setup_) * (implicit ? 1 + forgiven : 1);

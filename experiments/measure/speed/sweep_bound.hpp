@@ -6,23 +6,23 @@
 
 namespace qddot::measure {
 
-// The most wall time [s] that a point takes in all whose run takes `run` [s], set-up left out: what
-// measure_point does with it under these limits.
+// An upper bound of the wall time [s] of a point whose run takes `run` [s], without set-up: the
+// time of all its runs in measure_point.
 double point_seconds_at_most(double run, const Effort& effort);
 
-// The most wall time that sweeps take (see sweep.hpp), by what limits them: the knob's values,
-// Effort::seconds, and that a run of fixed steps takes time in proportion to their number, by which
-// sweep itself gives up runs. Borrows the scene.
+// Upper bounds of the wall time of sweeps (see sweep.hpp). They follow from the values of the knob,
+// from Effort::seconds and from the numbers of steps. The time of a run of fixed steps is
+// proportional to its steps, which sweep() itself relies on to give up runs. Borrows the scene.
 class SweepBound {
  public:
   SweepBound(const ReducedScene& scene, double until, const Effort& effort);
 
-  // Learns from a point of any method, which took so many seconds in all, what a force and a set-up
-  // take here, and how much longer points take than their runs say.
+  // Learns from a point of any method that took `seconds` in all. It learns the times of a force
+  // and of a set-up, and how much longer points take than their runs suggest.
   void learn(const Point& point, double seconds);
-  // The most seconds that the whole sweep of the method takes.
+  // An upper bound of the time of the whole sweep of the method [s].
   double whole(const Method& method) const;
-  // The most that is left of it after so many points, which took `spent` [s].
+  // The same for the rest of it [s], after `points` points that took `spent` [s].
   double left(const Method& method, int points, double spent) const;
 
  private:
@@ -34,11 +34,11 @@ class SweepBound {
   double until_;
   Effort effort_;
   double setup_ = 0;   // the longest so far [s]
-  double slower_ = 1;  // the largest such factor so far
+  double slower_ = 1;  // largest time of a point over the expected one
   double w_ = 0;       // no less than w_max at the start [rad/s]
   double force_ = 0;   // the longest of explicit steps so far [s], with its share of the step
   double step_ = 0;    // the longest of other fixed steps so far [s]
-  mutable std::map<const Method*, double> forces_;  // that explicit steps take each
+  mutable std::map<const Method*, double> forces_;  // forces of an explicit step
 };
 
 }  // namespace qddot::measure

@@ -10,27 +10,27 @@
 
 namespace qddot::measure {
 
-// What is seen of a run on its way; no number where it was not looked at or means nothing.
+// Errors at times during a run; NaN if not measured or without meaning.
 struct PathErrors {
-  // The largest |E - E(0)| at any of the times, over the motion's largest kinetic energy: at one
-  // time alone it may be small by luck, as energy errors oscillate.
+  // The largest |E - E(0)| at any of the times, over the motion's largest kinetic energy. Energy
+  // errors oscillate, so the error at one time may be small by chance.
   double energy = std::numeric_limits<double>::quiet_NaN();
-  // The largest change of what momenta are kept (see Momenta).
+  // The largest relative change of the conserved momenta (see Momenta).
   double momentum = std::numeric_limits<double>::quiet_NaN();
   // Beyond the horizon: the total variation between the run's ModalShares and the reference's.
   double modal_shares = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Looks at runs on their way, at about a hundred times up to `until`. Borrows all it is given.
+// Measures runs at about a hundred times up to `until` [s]. Borrows all its arguments.
 class Watch {
  public:
   static constexpr double most_looks = 100;
 
   Watch(const Scene& start, const ReducedScene& scene, double until, const Reference& reference);
 
-  // One more run of a method that has taken so many `steps`. Steps of a fixed size stay what they
-  // are: it is looked at after whole ones. Adaptive ones have to end on the times, which are
-  // therefore no more than a quarter of the steps. Stops after so many `seconds`.
+  // Runs a method, which took `steps` steps before, once more and measures the run. Fixed steps
+  // keep their size: looks are between whole steps. Adaptive steps have to end at the looks, so
+  // that there are at most steps/4 of these. Stops after `seconds`.
   PathErrors see(const Method& method, const Options& options, std::int64_t steps,
                  double seconds) const;
 

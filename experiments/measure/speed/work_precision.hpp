@@ -7,24 +7,25 @@
 
 namespace qddot::measure {
 
-// Speed against accuracy: what every method takes and misses by, from coarse to fine.
+// Speed against accuracy: the times and errors of every method, from coarse to fine.
 struct WorkPrecision {
   Reference reference;        // what errors are measured against
-  std::vector<Point> points;  // of each method over the values of its knob (see sweep)
+  std::vector<Point> points;  // of each method over its knob's values (see sweep)
 
   // The fastest point at each accuracy 1e-1 ... 1e-9; rows point into `points`.
   std::vector<FrontRow> front() const { return fastest_at_each_accuracy(points, reference); }
 };
 
 // Measures the methods on the model up to the time `until` [s], against a reference that takes
-// some `reference_seconds`; all methods that can run it where none are given. `report` sees each
-// point as it comes. Throws NoReference where none can be made, std::invalid_argument for a model
-// with massless unknowns or without unknowns, and for a method that cannot run it.
+// about `reference_seconds`. Without `methods` it measures all that can run the model. `report` is
+// called with each point. Throws NoReference if no reference can be made. Throws
+// std::invalid_argument for a model with massless unknowns or without unknowns, and for a method
+// that cannot run it.
 WorkPrecision work_precision(const ReducedScene& model, double until,
                              std::vector<const Method*> methods = {}, const Effort& effort = {},
                              double reference_seconds = 10,
                              const std::function<void(const Point&)>& report = {});
-// The same against a reference at hand, up to its end.
+// The same up to the end of a given reference.
 WorkPrecision work_precision(const ReducedScene& model, Reference reference,
                              std::vector<const Method*> methods = {}, const Effort& effort = {},
                              const std::function<void(const Point&)>& report = {});

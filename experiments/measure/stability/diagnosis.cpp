@@ -24,12 +24,13 @@ namespace {
 // Looks at the energy in a run; step sizes from h/2 to h/4096 that are tried for one that holds.
 constexpr int most_looks_back = 32, most_halvings = 12;
 constexpr std::size_t most_named = 3;
-// A motion is still what it was while its energy has changed by less than this part of the largest
+// A motion counts as unchanged while its energy has changed by less than this part of the largest
 // kinetic energy so far.
 constexpr double same = 0.5;
-// What a growth of the energy is told from; and beyond this its size says nothing any more.
+// A growth of the energy is reported from the first factor on; beyond the second its size means
+// nothing.
 constexpr double largest_growth = 10, countless = 1e6;
-// No motion that a scene means is as fast [m/s].
+// No intended motion is as fast [m/s].
 constexpr double largest_speed = 1e15;
 // Implicit methods are not tried in scenes so large that their factors take seconds, and gigabytes.
 constexpr Index most_factorized = 100000;
@@ -61,7 +62,7 @@ class EnergyWatch {
   bool see(const State& state) {
     const double kinetic = scene_.system().kinetic(state.v);  // a fall would hide what is gained
     const double change = std::abs(scene_.energy(state) - start_);
-    // A kinetic energy that was gained is no measure.
+    // Kinetic energy that the error has added is not counted.
     if (is_same_ && change <= same * std::max(largest_, kinetic - change)) {
       largest_ = std::max(largest_, kinetic - change);
     } else if (change > 0) {
@@ -77,8 +78,9 @@ class EnergyWatch {
   bool is_same_ = true;
 };
 
-// Where the run was last known to be what it should, and the fastest vibration until then, or what
-// it is at least; how fast compressed springs push to the side, or zero where that is not searched.
+// The last time [s] at which the run had the right energy, and the largest frequency until then
+// [rad/s], or a lower bound of it. `buckling` is the rate [1/s] at which compressed springs push
+// sideways, or zero if it was not computed.
 struct Before {
   double t = 0, omega = 0, t_of_omega = 0, buckling = 0;
 };
@@ -140,7 +142,7 @@ std::string crossed(const Method& method, double h, const Before& before, bool i
       h * before.omega);
 }
 
-// Whether a run reaches the end with its energy not grown; nothing where time is up.
+// Whether a run reaches the end without a growth of its energy; empty if time is up.
 std::optional<bool> holds(const Method& method, const Options& options, const ReducedScene& scene,
                           double until, double seconds) {
   if (seconds <= 0) return {};
@@ -159,7 +161,7 @@ std::optional<bool> holds(const Method& method, const Options& options, const Re
   return summary.outcome == Outcome::reached_end && largest - energy <= same * (energy - lowest);
 }
 
-// That forces of the start itself bring nodes to speeds that no scene means; empty where not.
+// Half a sentence if the forces of the start accelerate nodes to absurd speeds; empty if not.
 std::string extreme_start(const ReducedScene& scene) {
   const Vec& mass = scene.system().mass();
   Vec f(mass.size());
@@ -252,7 +254,7 @@ std::string diagnosis(const Method& method, const Options& options, const Reduce
   }
   if (!others.empty()) remedies.push_back(fmt::format("at this h {}", fmt::join(others, ", ")));
   if (!remedies.empty()) {
-    words += fmt::format("; what holds, tried: {}", fmt::join(remedies, ", or "));
+    words += fmt::format("; stable when tried: {}", fmt::join(remedies, ", or "));
   }
   return words;
 }

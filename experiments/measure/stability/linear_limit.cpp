@@ -12,7 +12,7 @@ namespace {
 
 constexpr int points = 400;  // of four decades
 constexpr double growth_rounding = 1e-12;
-// Where two roots only touch, rounding parts them by its own root.
+// If two roots only touch, rounding separates them by the square root of a rounding.
 constexpr double parted = 1e-6;
 
 double growth(const Method& method, double h_omega) {
@@ -35,7 +35,7 @@ double grid(int i) {
   return least_h_omega * std::pow(largest_h_omega / least_h_omega, 1. * i / points);
 }
 
-// The h w between a and c where the roots come nearest to parting.
+// The h w between a and c at which the roots come nearest to separating.
 double nearest_to_parting(const Method& method, double a, double c) {
   const auto f = [&](double h_omega) { return -half_trace(method, h_omega); };
   return boost::math::tools::brent_find_minima(f, a, c, std::numeric_limits<double>::digits / 2)
@@ -50,8 +50,8 @@ double bisected(const Method& method, double stable, double unstable) {
   return stable;
 }
 
-// Whether what is found at the limit is no threshold: a little above it the growth is still no more
-// than rounding, as of a power of h w.
+// Whether the limit is no threshold: the growth a little above it is still no more than rounding,
+// as that of a power of h w.
 bool fades_out(const Method& method, double limit) {
   return growth(method, (1 + 1e-5) * limit) < 2 * growth_rounding;
 }

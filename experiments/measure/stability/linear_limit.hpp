@@ -4,15 +4,15 @@
 
 namespace qddot::measure {
 
-// Where h w is looked for.
+// The range of h w that is searched.
 constexpr double least_h_omega = 0.01, largest_h_omega = 100;
 
-// The largest h w up to which the method, as it is, does not let q'' = -w^2 q grow: the spectral
-// radius of its step is at most 1 + 1e-12, which is rounding. Found on a grid of 100 to the decade
-// and, between its points, where the two roots meet at 1 or -1, since gaps of instability open
-// there and may be narrow; then by bisection, to 1e-12 of it. Zero where growth fades towards h = 0
-// as a power of h w does, or is there from the least h w on; infinite where nothing grows up to the
-// largest.
+// The stability limit of the implemented method: the largest h w up to which q'' = -w^2 q does not
+// grow. The spectral radius of a step is then at most 1 + 1e-12 (rounding). The limit is searched
+// on a grid of 100 points a decade. It is also searched between grid points where the two roots
+// meet at 1 or -1, since narrow gaps of instability open there. Bisection refines it to a relative
+// 1e-12. Zero if growth fades towards h = 0 as a power of h w, or begins at the least h w. Infinite
+// if nothing grows up to the largest h w.
 double measured_limit(const Method& method);
 
 }  // namespace qddot::measure

@@ -17,26 +17,27 @@
 namespace qddot::measure {
 namespace {
 
-// Ratios of the variances of a walk in a block and of noise: from `least_ratio`/n^2, where a walk
-// adds a third to the variance of the slope, to a walk alone. Ratios of those of an oscillation and
-// of noise: up to an oscillation whose period is known far better than to a block.
+// The ratios of a walk's variance in a block to that of the noise. The least one is
+// `least_ratio`/n^2, which adds a third to the variance of the slope; the largest one is a walk
+// alone. The shares are the same ratios for an oscillation; the largest one gives its period far
+// better than to a block.
 constexpr double least_ratio = 4, most_ratio = 1e4, ratio_step = 2;
 constexpr double least_share = 1.0 / 16, most_share = 1e8, share_step = 4, sharp_step = 16;
-// 2 ln of the ratio of likelihoods that chance exceeds once in a hundred times, the variance of the
-// walk being at the edge of what is possible (Self and Liang, J. American Statistical Association
-// 82 (1987) 605-610).
+// 2 ln of the ratio of likelihoods that chance exceeds once in a hundred times. The variance of the
+// walk, zero, is at the edge of its range (Self and Liang, J. American Statistical Association 82
+// (1987) 605-610).
 constexpr double certain_walk = 5.4;
-// What chance exceeds once in twenty times, the variance of noise beside a walk being at that edge:
-// below that a walk is taken to be alone. A part of it would else go to noise, which cannot be
-// negative, and the walk and the interval of the slope come out too small.
+// The same once in twenty times, for the variance of noise beside a walk: below it, there is taken
+// to be no noise. Else a part of the walk would go to the noise, whose variance cannot be negative,
+// and the walk and the interval of the slope would be too small.
 constexpr double likely_noise = 2.7;
-// Likewise of the likeliest coloured noise and of the likeliest wave to a walk, where a walk is
-// true: by simulation (the program `verdicts` prints how often it happens).
+// The same for the likeliest coloured noise and the likeliest wave over a walk, if the walk is
+// true. Found by simulation (the program `verdicts` prints how often it happens).
 constexpr double certain_noise = 7, certain_wave = 12;
-// An oscillation is known to come back where so many of its periods have been seen.
+// An oscillation surely returns if so many of its periods have been seen.
 constexpr double least_periods = 1.25;
-// And where 95 % of chance end, of one number that is fitted (chi-squared). More of memories, which
-// are said of those alone that are not told from walks: by simulation.
+// The 95 % quantile of chi-squared for one fitted number. The one for memories is larger, because
+// they are reported only for noise that cannot be told from a walk; found by simulation.
 constexpr double chance = 3.84, memory_chance = 9;
 // Periods that are looked at for slow sines, over the length of the series.
 constexpr double slowest_period = 33, slow_step = 1.03;
@@ -100,8 +101,8 @@ class Series {
     return sharpest;
   }
 
-  // [blocks] The shortest period, from that of the whole series on, of a sine that explains the
-  // means by itself, without a slope, as well as `profile`; infinite if there is none.
+  // [blocks] The shortest period, from the length of the series on, of a sine without a slope that
+  // explains the means as well as `profile`; infinite if there is none.
   double shortest_slow_period(double profile) const {
     const auto n = static_cast<double>(size());
     double least = std::numeric_limits<double>::infinity(), best = n;
@@ -126,9 +127,9 @@ class Series {
   }
 
  private:
-  // The sum of squares that least squares on `count` functions of the place leave. The functions
-  // are made orthogonal one after the other, twice, which is enough (Parlett, The Symmetric
-  // Eigenvalue Problem, 6.9); one that depends on those before it is left out.
+  // The sum of squares left by least squares on `count` functions of the place. The functions are
+  // made orthogonal one after the other, twice, which is enough (Parlett, The Symmetric Eigenvalue
+  // Problem, 6.9). A function that depends on those before it is left out.
   template <class Row>
   double squares_beside(int count, const Row& row) const {
     Eigen::MatrixXd columns(size(), count);

@@ -12,38 +12,39 @@ struct Interval {
   bool excludes_zero() const { return !holds(0); }
 };
 
-// Which process beside a line and independent noise explains the means.
+// The process that explains the means, beside a line and independent noise.
 enum class Colour {
   none,        // none is needed
-  oscillates,  // surely a stationary one: coloured noise, or a wave that was seen more than once
-  turns,       // surely a wave, but little more than a period of it has been seen, or less
-  undecided,   // a random walk, or coloured noise that cannot be told from one
+  oscillates,  // surely stationary: coloured noise, or a wave seen for more than a period
+  turns,       // surely a wave, but seen for little more than one period or less
+  undecided,   // a random walk, or coloured noise that cannot be told from a walk
 };
 
-// What the means y_1 ... y_n over blocks of equal length say of the model
+// The fit of a model to means y_1 ... y_n over blocks of equal length:
 //   y_j = a + b j + x_j + n_j,
-// n_j independent noise and x a random walk or a stationary oscillation (coloured noise, or a wave
-// that may forget its phase). See block_covariance.hpp, and Durbin and Koopman, Time Series
+// n_j is independent noise. x is a random walk or a stationary oscillation: coloured noise, or a
+// wave that may forget its phase. See block_covariance.hpp, and Durbin and Koopman, Time Series
 // Analysis by State Space Methods, 2.1 and 3.2. The interval of the slope b allows for x: it is
-// narrow where the series only scatters or surely comes back, and wide where it may wander.
+// narrow if the series only scatters or surely returns, and wide if it may wander.
 struct BlockFit {
-  Interval slope{};  // b, a block
+  Interval slope{};  // b, per block
   double level = 0;  // a + b (n + 1)/2
   Colour colour = Colour::none;
-  double walk = 0;    // standard deviation that x gains in a block, if it is a walk
-  double noise = 0;   // and of n_j
-  double period = 0;  // [blocks] of a wave, 0 where there is none
-  double memory = 0;  // [blocks] coloured noise that forgets faster is excluded (95 %)
-  // [blocks] Where the slope excludes zero: a sine of this period or a longer one, without a slope,
-  // could be taken for that (95 %); at least n, infinite where none could.
+  double walk = 0;    // standard deviation that x gains per block, if it is a walk
+  double noise = 0;   // standard deviation of n_j
+  double period = 0;  // [blocks] of a wave, 0 if there is none
+  double memory = 0;  // [blocks] shorter memories of coloured noise are excluded (95 %)
+  // [blocks] If the slope excludes zero: the least period of a sine, without a slope, that could
+  // look like this slope (95 %). It is n or more; infinite if no sine could.
   double slow_period = 0;
-  // 2 ln of ratios of likelihoods: of a walk to noise alone, of coloured noise and a wave to a
-  // walk.
+  // 2 ln of ratios of likelihoods: a walk over noise alone, coloured noise over a walk, a wave over
+  // a walk.
   double walk_evidence = 0, noise_evidence = 0, wave_evidence = 0;
 };
 
-// By generalised least squares and restricted likelihood. The slope is averaged over the
-// processes x that the colour leaves and their ratios to noise, by their likelihood. n >= 4.
+// Fits the model to y_1 ... y_n, n >= 4, by generalised least squares and restricted likelihood.
+// The slope is the average, weighted by likelihood, over the processes x that the colour allows and
+// over their ratios to noise.
 BlockFit fit_blocks(const Vec& y);
 
 }  // namespace qddot::measure

@@ -8,15 +8,15 @@
 
 namespace qddot::measure {
 
-// A relative error of something that should stay, at time t [s], of a sample that stands for
-// `weight` (of any unit) of the run.
+// The relative error of an invariant at time t [s]. The sample stands for the part `weight` of the
+// run, in any unit.
 struct Sample {
   double t = 0, error = 0, weight = 1;
 };
 
-// Means over blocks of equal duration, none of them empty, from `begin` on.
+// Means over blocks of equal duration from the time `begin` on; no block is empty.
 struct Blocks {
-  Vec means;                     // empty where there are too few samples
+  Vec means;                     // empty if there are too few samples
   double begin = 0, length = 0;  // [s]
 
   Index count() const { return means.size(); }
@@ -27,7 +27,7 @@ struct Blocks {
 };
 
 constexpr Index most_blocks = 64, least_blocks = 4;
-// For each block at least so many samples, of which the mean is taken, unless there are too few.
+// Each block has at least so many samples, unless there are too few.
 constexpr std::ptrdiff_t samples_a_block = 4;
 
 // The means of value(sample) over as many blocks as the samples allow, at most `most_blocks`.
@@ -52,7 +52,7 @@ Blocks in_blocks(std::span<const Sample> samples, double begin, const Value& val
   return {};
 }
 
-// How far the means over eighths of the blocks differ: what moves slowly, with little of the noise.
+// The range of the means over eighths of the blocks: slow changes, with little noise.
 inline double slow_range(const Blocks& blocks) {
   constexpr Index parts = 8;
   const Index n = blocks.count();

@@ -9,18 +9,18 @@
 
 namespace qddot::measure {
 
-// How the invariants of a run are looked at.
+// How the invariants of a run are measured.
 struct DriftPlan {
   double step_size = 0,
-         until = 0;     // [s]; adaptive methods are looked at at multiples of it as well
-  double seconds = 10;  // that the run may take
+         until = 0;     // [s]; adaptive methods too are measured at multiples of step_size
+  double seconds = 10;  // limit of the run's wall time [s]
 };
 
 struct DriftPoint {
   double t = 0, energy = 0, error = 0;  // [s], [J], relative
 };
 
-// One method's run, and what became of the scene's invariants in it.
+// A run of one method, and the trends of the scene's invariants in it.
 struct DriftRun {
   const Method* method = nullptr;
   double value = 0;  // of its knob
@@ -28,21 +28,21 @@ struct DriftRun {
   double seconds = 0;
   TrendScales scales{};
   Trend energy{};
-  // The trend of the component that changed most, where there is one that should stay.
+  // The trend of the momentum component that changed most; empty if none is conserved.
   std::optional<Trend> linear{}, angular{};
   std::vector<DriftPoint> path{};  // from t = 0 on, some in each octave and some at equal distances
 };
 
-// Runs the method on the scene. Energy errors are (E(t) - E(0)) / scales.kinetic, those of momenta
-// relative to scales.linear and angular.
+// Runs the method on the scene. Energy errors are (E(t) - E(0)) / scales.kinetic; errors of momenta
+// are divided by scales.linear and scales.angular.
 DriftRun run_drift(const Method& method, const Options& options, const ReducedScene& scene,
                    const Momenta& momenta, const MotionScales& scales, const DriftPlan& plan);
 
-// The verdict on its energy: unknown where the run ended before half of `until`, unless it blew up
-// or nearly all of its energy was gone.
+// The verdict on the run's energy. It is `unknown` if the run ended before until/2 [s], unless it
+// blew up or nearly all of its energy was lost.
 Verdict verdict_at(const DriftRun& run, double until);
 
-// The same in words, with how far it came and what became of the energy until then.
+// The same in words. If the run ended early, it says when, and the energy's trend until then.
 std::string verdict(const DriftRun& run, double until);
 
 }  // namespace qddot::measure

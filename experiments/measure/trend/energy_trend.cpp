@@ -10,37 +10,39 @@
 namespace qddot::measure {
 namespace {
 
-// Fewer means cannot say whether they wander, or how far they may.
+// Fewer means do not show whether they wander, or how far they may.
 constexpr Index told_blocks = 16;
-// The last part of a run that first does something else says what it comes to, so much more surely.
-// In a run that is one line through noise the last part says nearly three times less, in a walk
-// nearly the same.
+// The trend of the last part of a run replaces that of the whole if its uncertainty is smaller by
+// this factor: the run did something else before. If the run is one line through noise, the last
+// part is nearly three times less certain; if it is a walk, nearly as certain.
 constexpr double much_surer = 0.25;
-// What is called a drift, or its end, is no part of a sine of up to so many runs' length.
+// A drift, or its end, must not look like part of a sine with a period of up to so many runs'
+// lengths.
 constexpr double slow_runs = 2;
-// Such a sine moves in any last part of the run by more than so much of its range, if the part is
-// taken as means over its eighths: about its crest by 1 - cos(7/8 pi/4) of its amplitude in half of
-// the run, by 1 - cos(7/8 pi/8) in a quarter of it.
+// Such a sine moves by more than `range` times its range in any last part of the run, in means over
+// eighths of the part. About its crest it moves by 1 - cos(7/8 pi/4) of its amplitude in half of
+// the run, and by 1 - cos(7/8 pi/8) in a quarter of it.
 struct LastPart {
   double begin, range;
 };
-// And a faster one as much as before, and not by so much less.
+// A faster sine moves as much as before, and not by this factor less.
 constexpr double quieter = 0.5;
 constexpr LastPart last_parts[] = {{0.5, 0.11}, {0.75, 0.029}};
-// A walk or slow wave is seen beneath an oscillation that is ten times as large, and then said to
-// be there; the verdict follows the oscillation.
+// A walk or slow wave can be seen beneath an oscillation ten times as large. It is then mentioned;
+// the verdict follows the oscillation.
 constexpr double beneath = 0.1;
 // An oscillation widens if it grows by so much of its mean size.
 constexpr double widening_part = 0.1;
-// Coloured noise is told from a walk by a run of so many memories, nearly always; a wave from a
-// drift by two of its periods; and a run is worth to be made again if it is so much longer.
+// A run of so many memories nearly always tells coloured noise from a walk, and a run of two
+// periods tells a wave from a drift. A new run should be longer by the last factor.
 constexpr double memories_needed = 60, periods_needed = 2, longer = 4;
-// Less than this part of the excess energy lost or won is called a drift.
+// A loss or gain of less than this part of the excess energy is called a drift.
 constexpr double exponential_part = 0.1;
-// A loss is fitted until so much of the excess is left: then the slow modes remain. Less than
-// `tiny` is not told from nothing, and what comes back to half was no loss.
+// A loss is fitted until so much of the excess is left: only slow modes remain then. Less than
+// `tiny` counts as nothing, and an excess that returns to half was no loss.
 constexpr double nearly_gone = 0.1, tiny = 1e-3, half_back = 0.5;
-// And a blow-up from here on, where what grows is far more than what was there, up to here.
+// A blow-up is fitted between these two, where the growing energy is far larger than the energy
+// before.
 constexpr double growing = 100, grown = 1e8;
 // Roundings of the energy that one evaluation of it and one step may make: sums over many springs.
 constexpr double roundings_of_energy = 100, roundings_of_step = 10;
@@ -169,8 +171,9 @@ class Excess {
   const TrendScales& scales_;
 };
 
-// Whether that is no more than rounding makes of energies in a run: what oscillates, and what walks
-// with the root of the steps or, where all roundings go one way, drifts with their number.
+// Whether the trend is no more than rounding of energies in a run. Rounding oscillates, walks with
+// the square root of the number of steps or, if all roundings have one sign, drifts with that
+// number.
 bool is_rounding(const Trend& trend, double largest_mean, double steps, const TrendScales& s) {
   const double walked = (roundings_of_energy + roundings_of_step * std::sqrt(steps)) * s.rounding;
   if (trend.oscillation > walked) return false;

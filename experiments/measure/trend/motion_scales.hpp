@@ -5,22 +5,22 @@
 
 namespace qddot::measure {
 
-// What errors of invariants are measured against on a scene, the same for every method.
+// The scales for errors of invariants on a scene, the same for every method.
 struct MotionScales {
   double energy = 0;     // E(0) [J]
-  double kinetic = 1;    // the largest kinetic energy [J]; where nothing moves |E(0)|, else 1 J
+  double kinetic = 1;    // largest kinetic energy [J]; if nothing moves |E(0)|, else 1 J
   double excess = 1;     // E(0) - V at the equilibrium downhill from the start, over `kinetic`; 1
                          // where there is none
-  double frequency = 0;  // sqrt(<q'' M q''> / <q' M q'>) [rad/s]: where the kinetic energy is
+  double frequency = 0;  // sqrt(<q'' M q''> / <q' M q'>) [rad/s]: the kinetic energy's frequency
   double rounding = 0;   // 2^-52 of the largest T + |V|, over `kinetic`
   double linear = 1, angular = 1;  // the nodes' largest momenta, see Momenta
 };
 
-// The largest finite natural frequency [rad/s] where the motion starts.
+// The largest finite natural frequency [rad/s] at the start of the motion.
 double fastest_frequency(const ReducedScene& scene);
 
-// From a run of 20 000 steps at h w_max = 1/2, or to `until` [s] if that is earlier, by Blanes
-// and Moan's method of order 4; by IDA where nodes are massless.
+// Measures the scales in a run of 20 000 steps at h w_max = 1/2, or to `until` [s] if that is
+// earlier. The method is Blanes and Moan's of order 4, or IDA if nodes are massless.
 MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, double until);
 
 }  // namespace qddot::measure

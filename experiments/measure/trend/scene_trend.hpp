@@ -5,9 +5,10 @@
 
 namespace qddot::measure {
 
-// Where a scene's energy and momenta go when the method runs it for `until` [s], for `seconds` at
-// most. It is looked at at some thousands of multiples of options.step_size; of adaptive methods
-// too, for which until/1e5 is taken where none is given. Throws as Simulation does.
+// Runs the method on the scene to the time `until` [s], for `seconds` of wall time at most, and
+// returns the trends of its energy and momenta. Samples are some thousands of multiples of
+// options.step_size, also for adaptive methods, whose default is until/1e5. Throws as Simulation
+// does.
 DriftRun energy_trend(const Scene& scene, const Method& method, const Options& options,
                       double until, double seconds = 60);
 

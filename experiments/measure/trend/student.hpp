@@ -2,8 +2,8 @@
 
 namespace qddot::measure {
 
-// Half the width of the interval that holds 95 % of Student's t with `freedom` > 0 degrees of
-// freedom: its 97.5 % quantile.
+// The 97.5 % quantile of Student's t with `freedom` > 0 degrees of freedom, which is half the width
+// of its 95 % interval.
 double student_half_width(double freedom);
 
 }  // namespace qddot::measure

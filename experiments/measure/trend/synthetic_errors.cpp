@@ -133,8 +133,8 @@ std::vector<SyntheticKind> synthetic_kinds() {
   wander.walk = size;
   kinds.push_back(wander);
   kinds.push_back({"walk under oscillation", sum(walk(size), widening(1, 1)), {}, 0.});
-  // Noise of the samples is 0.09 of its size in a block's mean, so that the first drift can hardly
-  // be seen and may be called bounded: the interval holds it.
+  // The noise in a block's mean is 0.09 of that in the samples. So the first drift can hardly be
+  // seen and may be called bounded: the interval contains it.
   kinds.push_back({"small drift over noise",
                    sum(line(0.1 * size), noisy),
                    {Verdict::drifts, Verdict::bounded},

@@ -36,7 +36,8 @@ double sum(const double* x, std::ptrdiff_t n) {
     unroll<8>([&]<int c>() __attribute__((always_inline)) { sums[c] += load(x + i + c * lanes); });
   }
   double total = 0;
-  // By number: a deduced type, as of a range's elements, forgets that Lanes may lie anywhere.
+  // Indices are used because a deduced type, as of a range's elements, loses the attribute that
+  // Lanes may be unaligned.
   for (int c = 0; c < 8; ++c) {
     for (int t = 0; t < lanes; ++t) total += sums[c][t];
   }

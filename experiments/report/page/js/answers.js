@@ -106,7 +106,7 @@
 
   /** Writes the head and the table. */
   qddotReport.drawAnswers = () => {
-    // Among the tabs of a browser the scene's name alone would not tell what it is.
+    // The scene's name alone would not say what it is among the tabs of a browser.
     document.title = `${report.title} – qddot report`;
     const runs = points.method.length;
     const span = report.until === null ? "" : ` over ${words.exact(report.until)} s of motion`;

@@ -99,8 +99,8 @@
     return { unpacked, bounds };
   }
 
-  // The errors of the chart are those of the end; a run that blows up shows most while it still is
-  // in the view, where it is about as far off as the scene moves.
+  // Errors of the chart are those at the end. A run that blows up shows most while it is still in
+  // the view: while its error is about as large as the motion.
   function openingTime(run, until) {
     if (run.outcome === "reached_end" || !run.distances) return until;
     const far = run.distances.findIndex((code) => code >= FAR);

@@ -74,7 +74,7 @@
       sun.position.set(-0.4, -0.7, 1);
       scene.add(new THREE.AmbientLight(0xffffff, 1.9), sun);
     }
-    // On faces springs are darker than these, so that the weave is seen.
+    // Springs are darker than the faces below them, so that the weave is visible.
     const shade = faces.length ? 0x777777 : 0xffffff;
     if (springs.length && springs.length <= 2 * FEW_SPRINGS) {
       parts.push(

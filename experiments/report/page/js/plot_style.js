@@ -18,7 +18,7 @@
   // Triangles look smaller than squares of the same size, and matplotlib's are larger too.
   const SIZES = { o: 7, s: 6.5, "^": 8.5, v: 8.5, D: 7, P: 8, X: 7.5 };
   const MOST_TICKS = 12;
-  // In px: drawings that are narrower spare words.
+  // Width in px below which drawings have fewer words.
   const NARROW = 560;
   const FONT = {
     family: "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif",

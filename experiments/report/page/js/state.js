@@ -1,6 +1,5 @@
-// What the reader chose: the run, the kind of error and the ordinate. It stands in the address
-// after "#", so that a link leads to a run and the way back to the run before; what is no such
-// choice there is passed over.
+// The reader's choice of the run, the kind of error and the ordinate. It is in the address after
+// "#", so that a link leads to a run, and "back" to the run before. Other text there is ignored.
 "use strict";
 {
   const { report, runsOf, isDrawn } = qddotReport;
