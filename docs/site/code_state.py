@@ -9,23 +9,26 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+STRING = r'"(?:\\.|[^"\\\n])*"'
 TOKENS = re.compile(
-    r"""(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<string>"(?:\\.|[^"\\\n])*")|(?P<rest>.)""", re.S
+    rf"(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<strings>{STRING}(?:\s*{STRING})*)|(?P<rest>.)", re.S
 )
 
 
 def without_words(source):
-    """The text of a C++ file without comments, white space and sentences."""
+    """The text of a C++ file without comments, sentences, and white space that separates no words. A
+    sentence may stand in several strings."""
 
     def kept(token):
         if token["comment"]:
             return " "
-        if token["string"] and " " in token["string"]:
-            return '""'
+        if token["strings"]:
+            said = re.sub(r'"\s*"', "", token["strings"])
+            return '""' if " " in said else said
         return token[0]
 
-    text = re.sub(r"\s+", " ", TOKENS.sub(kept, source))
-    return re.sub(r'""( "")+', '""', text)  # a sentence in several strings is one
+    text = re.sub(r"\s*([^\w\s])\s*", r"\1", TOKENS.sub(kept, source))
+    return re.sub(r"\s+", " ", text)
 
 
 def folder_hash(folder):
