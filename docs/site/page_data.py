@@ -18,6 +18,7 @@ sys.path.append(str(ROOT / "experiments/plot"))
 import measurements  # noqa: E402 (the pictures' own reader of work_precision's tables)
 
 DATA = ROOT / "docs/data"
+NOTHING = "–"  # where a table has no number
 
 
 class BadPage(Exception):
@@ -25,8 +26,12 @@ class BadPage(Exception):
 
 
 def seconds(value):
-    """A time in two digits and a fitting unit: 0.98 ms, 12 µs, 3.4 s, 2 min 10 s."""
+    """A time in two digits and a fitting unit: 0.98 ms, 12 µs, 3.4 s, 2 min 10 s; – for an empty cell."""
+    if value == "":
+        return NOTHING
     value = float(value)
+    if not math.isfinite(value):
+        return NOTHING
     if value >= 99.5:
         whole = round(value)
         return f"{whole // 60} min {whole % 60} s" if whole % 60 else f"{whole // 60} min"
@@ -37,10 +42,11 @@ def seconds(value):
 
 
 def figures(value, digits=2):
-    """A number in that many digits, no exponent between 1e-3 and 1e7, thousands apart: 0.98, 12,300."""
-    value = float(value)
+    """A number in that many digits, no exponent between 1e-3 and 1e7, thousands apart: 0.98, 12,300; – for
+    an empty cell."""
+    value = float(value) if value != "" else math.nan
     if not math.isfinite(value):
-        return "∞" if value > 0 else "–"
+        return "∞" if value > 0 else NOTHING
     if value == 0:
         return "0"
     if not 1e-3 <= abs(value) < 1e7:
@@ -148,11 +154,11 @@ class Fastest:
 
     @property
     def method(self):
-        return self.run.method if self.run else "–"
+        return self.run.method if self.run else NOTHING
 
     @property
     def time(self):
-        return seconds(self.run.time) if self.run else "–"
+        return seconds(self.run.time) if self.run else NOTHING
 
     @property
     def seconds(self):
@@ -160,12 +166,12 @@ class Fastest:
 
     @property
     def error(self):
-        return small(self.run.error) if self.run else "–"
+        return small(self.run.error) if self.run else NOTHING
 
     @property
     def value(self):
         """The step size in s, or the relative tolerance."""
-        return small(self.run.value) if self.run else "–"
+        return small(self.run.value) if self.run else NOTHING
 
     def __bool__(self):
         return self.run is not None
@@ -195,13 +201,18 @@ def fastest(study, accuracy, of=None, but=()):
 
 def ratio(slow, fast):
     """How many times as long the first of two fastest runs takes; a dash where one is missing."""
-    return times(slow.seconds / fast.seconds) if slow and fast else "–"
+    return times(slow.seconds / fast.seconds) if slow and fast else NOTHING
 
 
 def text(study, file):
     """What a program printed."""
     record(study)
     return (DATA / study / file).read_text(encoding="utf-8").rstrip("\n")
+
+
+def facts(study, file):
+    """The content of a JSON file of a study."""
+    return json.loads(text(study, file))
 
 
 def sample(path, begin=None, end=None):
@@ -246,7 +257,7 @@ def version():
 
 
 FUNCTIONS = {
-    "accuracy": accuracy, "crossing": crossing, "version": version, "command": command, "fastest": fastest, "figures": figures, "made": made,
+    "accuracy": accuracy, "crossing": crossing, "facts": facts, "version": version, "command": command, "fastest": fastest, "figures": figures, "made": made,
     "percent": percent, "processor": processor, "ratio": ratio, "record": record, "row": row,
     "rows": rows, "runs": runs, "sample": sample, "seconds": seconds, "small": small, "text": text,
     "times": times,

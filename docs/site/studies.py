@@ -12,7 +12,6 @@ where it was ended.
 """
 
 import argparse
-import csv
 import datetime
 import functools
 import json
@@ -28,6 +27,7 @@ from pathlib import Path
 
 import code_state
 from code_state import ROOT
+from kept_files import keep
 from processor import processor
 
 DATA, PICTURES, RESULTS = ROOT / "docs/data", ROOT / "docs/pictures", ROOT / "results/studies"
@@ -100,7 +100,7 @@ def call_of(study, command):
         return ["/usr/bin/python3", "-B", first, *rest]
     call = [str(BIN / first), *rest]
     if not study.text and first != "sweep":
-        call += ["--out", str(study.folder)]
+        call += ["--out", os.path.relpath(study.folder, ROOT)]
         if takes_resume(first):
             call.append("--resume")
     return call
@@ -122,32 +122,6 @@ def run(study, command):
     return done.stdout
 
 
-def rounded(cell):
-    """A number of a table in the six digits that pages can need; anything else as it is."""
-    try:
-        return f"{float(cell):.6g}"
-    except ValueError:
-        return cell
-
-
-def keep(file, folder, name=None, columns=None):
-    """Copies a result, whole or not at all; a table with these columns, or all, in six digits."""
-    folder.mkdir(parents=True, exist_ok=True)
-    target = folder / (name or file.name)
-    part = target.with_name(target.name + ".part")
-    if file.suffix == ".csv":
-        with open(file, newline="", encoding="utf-8") as source:
-            rows = list(csv.DictReader(source))
-        with open(part, "w", encoding="utf-8") as copy:
-            names = columns or list(rows[0])
-            writer = csv.writer(copy, lineterminator="\n")
-            writer.writerow(names)
-            writer.writerows([rounded(row[name]) for name in names] for row in rows)
-    else:
-        shutil.copyfile(file, part)
-    os.replace(part, target)
-
-
 def make(study, again):
     """Measures a study and keeps its tables, pictures and record."""
     if again:
@@ -161,7 +135,7 @@ def make(study, again):
         (study.folder / study.text).write_text(printed, encoding="utf-8")
     if study.draws:
         for program in study.programs:
-            run(study, f"experiments/{program}/{program}.py {study.folder.relative_to(ROOT)}")
+            run(study, f"experiments/{program}/{program}.py {os.path.relpath(study.folder, ROOT)}")
     for pattern in study.tables:
         for table in sorted(study.folder.glob(pattern)):
             keep(table, DATA / study.name, columns=study.columns.get(table.name))

@@ -51,10 +51,10 @@ struct CertifiedCourse {
   double certified = 0;  // the largest |I_j - I_j'| of the two, over the sum at the start
 };
 
-// Makes that reference. `recall` returns each of the two runs by its name, or makes it. Throws
-// NoReference if one does not reach the end.
+// Returns a run by its name: one that is kept, or else the one that `run` makes.
 using Recall =
     std::function<ExchangeRun(const std::string& name, const std::function<ExchangeRun()>& run)>;
+// Makes that reference of two runs. Throws NoReference if one does not reach the end.
 CertifiedCourse certified_course(const Excitation& excitation, const Recall& recall = {});
 
 }  // namespace qddot::measure

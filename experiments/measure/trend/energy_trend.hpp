@@ -17,6 +17,7 @@ struct TrendScales {
   double step = 0;       // the mean length of a step [s]
 };
 
+// A trend in one word.
 enum class Verdict {
   bounded,     // no drift; an oscillation about one level that surely returns
   round_off,   // nothing but rounding: a random walk, sqrt(t) (Brouwer's law), or less; or a drift
