@@ -60,6 +60,7 @@ def small(value, digits=2):
     """A number with its power of ten: 9.1e-7, 1e-4."""
     mantissa, exponent = f"{float(value):.{digits - 1}e}".split("e")
     mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
+    mantissa = mantissa.replace("-", "−")
     return f"{mantissa}e{int(exponent)}"
 
 

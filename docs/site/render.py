@@ -14,6 +14,7 @@ import jinja2
 
 import method_pages
 import page_data
+from energy_words import energy_in_words
 from code_state import ROOT
 
 PAGES = ROOT / "docs/pages"
@@ -29,7 +30,11 @@ def environment():
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.globals.update(page_data.FUNCTIONS, methods=method_pages.all_methods)
+    made.globals.update(
+        page_data.FUNCTIONS,
+        methods=method_pages.all_methods,
+        energy_in_words=energy_in_words,
+    )
     made.filters.update(page_data.FUNCTIONS)
     return made
 
@@ -71,6 +76,8 @@ class NotMeasured:
     def __call__(self, *_, **__):
         return self
 
+    __truediv__ = __rtruediv__ = __mul__ = __rmul__ = __call__
+
     def __iter__(self):
         return iter(())
 
@@ -87,7 +94,7 @@ def drafted(call):
     def tried(*words, **named):
         try:
             return call(*words, **named)
-        except page_data.BadPage as error:
+        except (page_data.BadPage, KeyError) as error:
             print(f"draft: {error}", file=sys.stderr)
             return NotMeasured()
 
@@ -96,7 +103,8 @@ def drafted(call):
 
 def draft(name):
     """One page of a template; of method.md that of the method NAME."""
-    calls = {key: drafted(call) for key, call in page_data.FUNCTIONS.items()}
+    functions = {**page_data.FUNCTIONS, "energy_in_words": energy_in_words}
+    calls = {key: drafted(call) for key, call in functions.items()}
     jinja = environment()
     jinja.globals.update(calls)
     jinja.filters.update(calls)
