@@ -5,6 +5,7 @@
     ./run studies --again cloth    anew, whatever there is
     ./run studies --list           what there is, and how long each took
     ./run studies --check          which are older than the code; status 1 where one is
+    ./run studies --draw           the pictures alone, of what lies in results/studies
     ./run studies --quick          those that say what programs print, where that has changed
 
 docs/studies.toml lists them. Each runs in results/studies/NAME. A study that was interrupted goes on
@@ -122,6 +123,15 @@ def run(study, command):
     return done.stdout
 
 
+def draw(study):
+    """Draws the results of a study and keeps the pictures."""
+    if study.draws:
+        for program in study.programs:
+            run(study, f"experiments/{program}/{program}.py {os.path.relpath(study.folder, ROOT)}")
+    for drawn, name in study.pictures.items():
+        keep(study.folder / f"{drawn}.png", PICTURES, f"{name}.png")
+
+
 def make(study, again):
     """Measures a study and keeps its tables, pictures and record."""
     if again:
@@ -133,17 +143,13 @@ def make(study, again):
     seconds = time.time() - start
     if study.text:
         (study.folder / study.text).write_text(printed, encoding="utf-8")
-    if study.draws:
-        for program in study.programs:
-            run(study, f"experiments/{program}/{program}.py {os.path.relpath(study.folder, ROOT)}")
+    draw(study)
     for pattern in study.tables:
         for table in sorted(study.folder.glob(pattern)):
             keep(table, DATA / study.name, columns=study.columns.get(table.name))
     if study.text:
         (DATA / study.name).mkdir(parents=True, exist_ok=True)
         shutil.copyfile(study.folder / study.text, DATA / study.name / study.text)
-    for drawn, name in study.pictures.items():
-        keep(study.folder / f"{drawn}.png", PICTURES, f"{name}.png")
     record = {
         "commands": study.commands,
         "code": code,
@@ -200,6 +206,7 @@ def main():
     parser.add_argument("names", nargs="*", help="studies of docs/studies.toml (default: all)")
     parser.add_argument("--again", action="store_true", help="measure anew what is measured")
     parser.add_argument("--list", action="store_true", help="say what there is")
+    parser.add_argument("--draw", action="store_true", help="only draw the pictures anew")
     parser.add_argument("--quick", action="store_true", help="only what takes no time")
     parser.add_argument("--check", action="store_true", help="say what is older than the code")
     arguments = parser.parse_args()
@@ -215,6 +222,11 @@ def main():
         return 0
     if arguments.check:
         return 0 if check(chosen) else 1
+    if arguments.draw:
+        for study in chosen.values():
+            if study.pictures and study.folder.exists():
+                draw(study)
+        return 0
     for position, study in enumerate(chosen.values(), 1):
         if study.is_fresh() and not arguments.again:
             continue

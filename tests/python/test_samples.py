@@ -13,8 +13,6 @@ import unittest
 import warnings
 from pathlib import Path
 
-import numpy as np
-
 import qddot
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,9 +32,9 @@ class Samples(unittest.TestCase):
         qddot.scenes.cloth(nodes=5).save("cloth.toml")
         os.environ["MPLBACKEND"] = "Agg"
 
-    def run_all(self, codes, **names):
+    def run_all(self, codes):
         self.assertTrue(codes)
-        names["__name__"] = "sample"
+        names = {"__name__": "sample"}
         with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()) as out:
             warnings.simplefilter("ignore")
             with contextlib.redirect_stderr(io.StringIO()):
@@ -50,9 +48,7 @@ class Samples(unittest.TestCase):
         self.assertEqual(names["sol"].q.shape, (61, 900, 3))
 
     def test_page(self):
-        nodes = np.column_stack((np.arange(30) * 0.1, np.zeros(30), np.zeros(30)))
-        springs = [(i, i + 1) for i in range(29)]
-        names, _ = self.run_all(blocks_of("docs/python.md"), X=nodes, E=springs)
+        names, _ = self.run_all(blocks_of("docs/python.md"))
         self.assertEqual(names["sol"].q.shape, (61, 30, 3))
         self.assertLess(names["sure"].error_estimate, 1e-4)
         self.assertLess(names["chart"].best(1e-4).error_position, 1e-4)
