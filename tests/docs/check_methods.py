@@ -1,0 +1,73 @@
+"""The pages of methods: a new method gets one by itself, and one that says too little is refused."""
+
+import sys
+import unittest
+from pathlib import Path
+from unittest import mock
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "docs/site"))
+import method_formula  # noqa: E402
+import method_pages  # noqa: E402
+import page_data  # noqa: E402
+import render  # noqa: E402
+
+FORMULA = "// A new method:\n//   q' = q + h v\n// It has order 1.\n\nMethod newest() {\n}\n"
+
+
+def page_of(entry):
+    """The page of a method that no study has measured."""
+    method = method_pages.Method(entry["name"], entry)
+    return render.environment().get_template("method.md").render(method=method)
+
+
+class New(unittest.TestCase):
+    def setUp(self):
+        verlet = page_data.row("methods", "methods.csv", name="verlet")
+        self.entry = {**verlet, "name": "newest", "summary": "the newest method"}
+
+    def with_source(self, text):
+        files = {"integrators/methods/newest.cpp": text} if text else {}
+        sources = {**method_formula.sources(), **files}
+        return mock.patch.object(method_formula, "sources", lambda: sources)
+
+    def test_it_gets_a_page(self):
+        with self.with_source(FORMULA):
+            page = page_of(self.entry)
+        self.assertIn("# `newest`", page)
+        self.assertIn("The newest method", page)
+        self.assertIn("```text\nq' = q + h v\n```", page)
+        self.assertIn("It is not measured yet.", page)
+        self.assertIn("../../integrators/methods/newest.cpp", page)
+
+    def test_without_a_file_it_is_refused(self):
+        with self.with_source(""), self.assertRaisesRegex(page_data.BadPage, "no file defines it"):
+            page_of(self.entry)
+
+    def test_without_a_formula_it_is_refused(self):
+        without = FORMULA.replace("//   q'", "// q'")
+        with self.with_source(without), self.assertRaisesRegex(page_data.BadPage, "no formula"):
+            page_of(self.entry)
+
+    def test_without_a_source_it_is_refused(self):
+        self.entry["source"] = ""
+        with self.with_source(FORMULA), self.assertRaises(page_data.BadPage):
+            page_of(self.entry)
+
+
+class Formula(unittest.TestCase):
+    def test_each_method_has_one(self):
+        for method in method_pages.all_methods():
+            with self.subTest(method=method.name):
+                self.assertIn("```text\n", method.formula)
+
+    def test_a_comment_becomes_markdown(self):
+        lines = [" One_two of `a_b`:", "   x = y * z", "     + w", " and < three.", "", " Four."]
+        self.assertEqual(
+            "One\\_two of `a_b`:\n\n```text\nx = y * z\n  + w\n```\n\nand \\< three.\n\nFour.",
+            method_formula.as_markdown(lines),
+        )
+
+
+if __name__ == "__main__":
+    unittest.main()
