@@ -44,6 +44,8 @@ def folders_of(program):
     """The folders whose code decides what a program measures: the model, the integrators, what
     measures, and the program's own."""
     wanted = ["src", "integrators", "experiments/measure", f"experiments/{program}"]
+    if program.startswith("fuzz_"):
+        wanted.append("tests/independent")
     return sorted(
         {
             file.parent.relative_to(ROOT).as_posix()
@@ -59,13 +61,8 @@ def state_of(programs):
     return {folder: folder_hash(folder) for folder in sorted(folders)}
 
 
-def changed(recorded):
-    """The folders that are not as a study recorded them: changed, new, or gone."""
-    programs = {
-        folder.split("/")[1]
-        for folder in recorded
-        if folder.startswith("experiments/") and not folder.startswith("experiments/measure")
-    }
+def changed(recorded, programs):
+    """The folders of these programs that are not as a study recorded them: changed, new, or gone."""
     now = state_of(programs)
     names = sorted(set(now) | set(recorded))
     return [name for name in names if now.get(name) != recorded.get(name)]

@@ -76,7 +76,7 @@ class Study:
         return bool(
             record
             and record["commands"] == self.commands
-            and not code_state.changed(record["code"])
+            and not code_state.changed(record["code"], self.programs)
         )
 
 
@@ -194,7 +194,7 @@ def check(studies):
         elif record["commands"] != study.commands:
             print(f"{study.name}: measured by another command: {'; '.join(record['commands'])}")
         else:
-            folders = code_state.changed(record["code"])
+            folders = code_state.changed(record["code"], study.programs)
             print(f"{study.name}: older than {', '.join(folders)}")
     return good
 

@@ -43,12 +43,14 @@ class CodeState(unittest.TestCase):
 
     def test_a_change_is_named_by_its_folder(self):
         state = code_state.state_of(["crossover"])
-        self.assertEqual([], code_state.changed(state))
+        self.assertEqual([], code_state.changed(state, ["crossover"]))
         for folder in ("src/model", "integrators/methods", "experiments/crossover"):
             self.assertIn(folder, state)
-            self.assertEqual([folder], code_state.changed({**state, folder: "another"}))
+            self.assertEqual(
+                [folder], code_state.changed({**state, folder: "another"}, ["crossover"])
+            )
         gone = {**state, "src/gone": "1"}
-        self.assertEqual(["src/gone"], code_state.changed(gone))
+        self.assertEqual(["src/gone"], code_state.changed(gone, ["crossover"]))
         self.assertFalse([name for name in state if name.startswith("experiments/bench")])
 
 
