@@ -7,6 +7,7 @@ import functools
 import itertools
 from dataclasses import dataclass
 
+import chart_data
 import page_data
 
 CHARTS = ("cloth", "chain", "framed_cloth", "pendulum", "lattice", "fpu", "stiff_frame")
@@ -24,7 +25,7 @@ def is_measured(study):
 def runs_of(chart):
     """All runs of a chart by method."""
     runs = {}
-    for run in page_data.runs(chart) if is_measured(chart) else ():
+    for run in chart_data.runs(chart) if is_measured(chart) else ():
         runs.setdefault(run.method, []).append(run)
     return runs
 

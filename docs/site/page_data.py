@@ -9,13 +9,8 @@ import functools
 import json
 import math
 import re
-import sys
-from dataclasses import dataclass
 
 from code_state import ROOT
-
-sys.path.append(str(ROOT / "experiments/plot"))
-import measurements  # noqa: E402 (the pictures' own reader of work_precision's tables)
 
 DATA = ROOT / "docs/data"
 NOTHING = "–"  # where a table has no number
@@ -147,64 +142,6 @@ def row(study, table, **where):
     return found[0]
 
 
-@dataclass(frozen=True)
-class Fastest:
-    """The fastest run to an accuracy, or none (then all is a dash)."""
-
-    run: measurements.Run | None
-
-    @property
-    def method(self):
-        return self.run.method if self.run else NOTHING
-
-    @property
-    def time(self):
-        return seconds(self.run.time) if self.run else NOTHING
-
-    @property
-    def seconds(self):
-        return self.run.time if self.run else math.nan
-
-    @property
-    def error(self):
-        return small(self.run.error) if self.run else NOTHING
-
-    @property
-    def value(self):
-        """The step size in s, or the relative tolerance."""
-        return small(self.run.value) if self.run else NOTHING
-
-    def __bool__(self):
-        return self.run is not None
-
-
-@functools.cache
-def runs(study):
-    """All runs of a chart."""
-    record(study)
-    return tuple(measurements.read_runs(str(DATA / study / "points.csv")))
-
-
-def fastest(study, accuracy, of=None, but=()):
-    """The fastest run whose error is at most the accuracy. of: a family ("sundials",
-    "hand-written"), a method's name, or a list of names; but: names to leave out."""
-    names = [of] if isinstance(of, str) else of
-    found = [
-        run
-        for run in runs(study)
-        if (names is None or run.family in names or run.method in names)
-        and run.method not in but
-        and not run.failure
-        and run.bound <= accuracy
-    ]
-    return Fastest(min(found, key=lambda run: run.time) if found else None)
-
-
-def ratio(slow, fast):
-    """How many times as long the first of two fastest runs takes; a dash where one is missing."""
-    return times(slow.seconds / fast.seconds) if slow and fast else NOTHING
-
-
 def text(study, file):
     """What a program printed."""
     record(study)
@@ -231,35 +168,15 @@ def sample(path, begin=None, end=None):
     return "\n".join(lines[first:last]).strip("\n")
 
 
-def crossing(study, accuracy, fast="implicit", slow="explicit"):
-    """The stiffness ratio from which on the fastest method of one kind takes less time than that of
-    the other, on a line between the measured ratios in logarithms; nan where it never does."""
-    at = {}
-    for cell in rows(study, "kinds.csv", accuracy=accuracy):
-        seconds_of = float(cell["time_s"] or "inf") if cell["method"] else math.inf
-        at.setdefault(float(cell["stiffness_ratio"]), {})[cell["kind"]] = seconds_of
-    ahead = [(r, math.log(t[slow]) - math.log(t[fast])) for r, t in sorted(at.items())]
-    behind = [i for i, (_, lead) in enumerate(ahead) if not lead > 0]
-    last = max(behind, default=-1)
-    if last + 1 >= len(ahead):
-        return math.nan
-    if last < 0:
-        return ahead[0][0]
-    (low, lead_low), (high, lead_high) = ahead[last : last + 2]
-    if not math.isfinite(lead_low) or not math.isfinite(lead_high):
-        return high
-    share = lead_low / (lead_low - lead_high)
-    return low * (high / low) ** share
-
-
 def version():
     """The project's version, as CMake has it."""
     return re.search(r"VERSION ([\d.]+)", sample("CMakeLists.txt", "project(qddot"))[1]
 
 
 FUNCTIONS = {
-    "accuracy": accuracy, "crossing": crossing, "facts": facts, "version": version, "command": command, "fastest": fastest, "figures": figures, "made": made,
-    "percent": percent, "processor": processor, "ratio": ratio, "record": record, "row": row,
-    "rows": rows, "runs": runs, "sample": sample, "seconds": seconds, "small": small, "text": text,
-    "times": times,
+    call.__name__: call
+    for call in (
+        accuracy, command, facts, figures, made, percent, processor, record, row, rows, sample,
+        seconds, small, text, times, version,
+    )
 }  # fmt: skip

@@ -12,12 +12,15 @@ import sys
 
 import jinja2
 
+import chart_data
 import method_pages
 import page_data
 from energy_words import energy_in_words
 from code_state import ROOT
 
 PAGES = ROOT / "docs/pages"
+# What a template can call.
+CALLS = {**page_data.FUNCTIONS, **chart_data.FUNCTIONS, "energy_in_words": energy_in_words}
 NOTICE = "<!-- Made by ./run docs from {source}. Change that file, not this one. -->\n\n"
 
 
@@ -31,11 +34,10 @@ def environment():
         keep_trailing_newline=True,
     )
     made.globals.update(
-        page_data.FUNCTIONS,
+        CALLS,
         methods=method_pages.all_methods,
-        energy_in_words=energy_in_words,
     )
-    made.filters.update(page_data.FUNCTIONS)
+    made.filters.update(CALLS)
     return made
 
 
@@ -103,8 +105,7 @@ def drafted(call):
 
 def draft(name):
     """One page of a template; of method.md that of the method NAME."""
-    functions = {**page_data.FUNCTIONS, "energy_in_words": energy_in_words}
-    calls = {key: drafted(call) for key, call in functions.items()}
+    calls = {name: drafted(call) for name, call in CALLS.items()}
     jinja = environment()
     jinja.globals.update(calls)
     jinja.filters.update(calls)

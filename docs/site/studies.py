@@ -14,113 +14,18 @@ where it was ended.
 
 import argparse
 import datetime
-import functools
 import json
 import os
-import shlex
 import shutil
-import subprocess
 import sys
 import time
-import tomllib
-from dataclasses import dataclass, field
-from pathlib import Path
 
 import code_state
+import entries
 from code_state import ROOT
+from entries import read_studies, run
 from kept_files import keep
 from processor import processor
-
-DATA, PICTURES, RESULTS = ROOT / "docs/data", ROOT / "docs/pictures", ROOT / "results/studies"
-BIN = Path(os.environ.get("QDDOT_BIN", ROOT / "build/bin"))
-PYTHON_PATH = ("experiments/plot", "experiments/sweep", "build/python")
-
-
-@dataclass
-class Study:
-    """One entry of docs/studies.toml."""
-
-    name: str
-    commands: list  # what to run, in order
-    tables: list = field(default_factory=list)  # patterns of its files that pages read
-    pictures: dict = field(default_factory=dict)  # the name in docs/pictures of a drawn one
-    text: str = ""  # the file that takes what the commands print; such commands take no --out
-    draws: bool = False  # whether experiments/PROGRAM/PROGRAM.py is to draw
-    needs: list = field(default_factory=list)  # studies whose results a script reads
-    columns: dict = field(default_factory=dict)  # of a large table, those that pages read
-    quick: bool = False  # whether it takes no time, so that it is looked at each time
-
-    @property
-    def folder(self):
-        return RESULTS / self.name
-
-    @property
-    def programs(self):
-        """The programs whose code the study depends on; of a script its folder's."""
-        words = [shlex.split(command)[0] for command in self.commands]
-        return sorted({Path(word).parts[1] if "/" in word else word for word in words})
-
-    @property
-    def record(self):
-        """What docs/data keeps of how the study was made; None where it never was."""
-        file = DATA / self.name / "study.json"
-        return json.loads(file.read_text()) if file.exists() else None
-
-    def is_fresh(self):
-        """Whether the study was made by these commands and by the code as it is. A quick one is where
-        its commands still print what is kept."""
-        record = self.record
-        if record and self.quick and all((BIN / program).exists() for program in self.programs):
-            printed = "".join(run(self, command) for command in self.commands)
-            return printed == (DATA / self.name / self.text).read_text(encoding="utf-8")
-        return bool(
-            record
-            and record["commands"] == self.commands
-            and not code_state.changed(record["code"], self.programs)
-        )
-
-
-def read_studies():
-    """All studies by name, in the order of docs/studies.toml."""
-    with open(ROOT / "docs/studies.toml", "rb") as file:
-        entries = tomllib.load(file)
-    return {name: Study(name, **entry) for name, entry in entries.items()}
-
-
-@functools.cache
-def takes_resume(program):
-    """Whether a program can go on with an interrupted study."""
-    shown = subprocess.run([BIN / program, "--help"], capture_output=True, text=True, check=True)
-    return "--resume" in shown.stdout
-
-
-def call_of(study, command):
-    """The words to run: a program of build/bin, or a Python script of the project."""
-    first, *rest = shlex.split(command)
-    if first.endswith(".py"):
-        return ["/usr/bin/python3", "-B", first, *rest]
-    call = [str(BIN / first), *rest]
-    if not study.text and first != "sweep":
-        call += ["--out", os.path.relpath(study.folder, ROOT)]
-        if takes_resume(first):
-            call.append("--resume")
-    return call
-
-
-def run(study, command):
-    """Runs one command of a study from the project's root; returns what it printed. Ends the process
-    where it fails. Status 3 is none of that: some runs fell short, which the tables say."""
-    environment = dict(os.environ, LC_ALL="C", OPENBLAS_NUM_THREADS="1")
-    environment["PYTHONPATH"] = ":".join(str(ROOT / path) for path in PYTHON_PATH)
-    environment.setdefault("OMP_NUM_THREADS", "1")
-    call = call_of(study, command)
-    done = subprocess.run(
-        call, cwd=ROOT, env=environment, text=True, stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT if study.text else None, check=False,
-    )  # fmt: skip
-    if done.returncode not in (0, 3):
-        sys.exit(f"studies: {study.name}: status {done.returncode} of {shlex.join(call)}")
-    return done.stdout
 
 
 def draw(study):
@@ -129,35 +34,56 @@ def draw(study):
         for program in study.programs:
             run(study, f"experiments/{program}/{program}.py {os.path.relpath(study.folder, ROOT)}")
     for drawn, name in study.pictures.items():
-        keep(study.folder / f"{drawn}.png", PICTURES, f"{name}.png")
+        keep(study.folder / f"{drawn}.png", entries.PICTURES, f"{name}.png")
+
+
+def begin(study, again):
+    """Clears the folder of the study unless an interrupted run by the same sources left it; returns the
+    seconds that this took so far. A program goes on with a journal of its own sources alone."""
+    file = study.folder / "begun.json"
+    sources = code_state.source_hash()
+    begun = json.loads(file.read_text()) if file.exists() else {}
+    if again or begun.get("sources") != sources or begun.get("commands") != study.commands:
+        shutil.rmtree(study.folder, ignore_errors=True)
+        begun = {"sources": sources, "commands": study.commands, "seconds": 0}
+    study.folder.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(begun))
+    return begun["seconds"]
+
+
+def measure(study, again):
+    """Runs the commands of a study; returns what they printed and the seconds that they took, those
+    of runs that were interrupted included."""
+    before = begin(study, again)
+    start = time.time()
+    try:
+        printed = "".join(run(study, command) for command in study.commands)
+    finally:
+        seconds = before + time.time() - start
+        file = study.folder / "begun.json"
+        file.write_text(json.dumps({**json.loads(file.read_text()), "seconds": seconds}))
+    return printed, seconds
 
 
 def make(study, again):
     """Measures a study and keeps its tables, pictures and record."""
-    if again:
-        shutil.rmtree(study.folder, ignore_errors=True)
-    study.folder.mkdir(parents=True, exist_ok=True)
-    code = code_state.state_of(study.programs)
-    start = time.time()
-    printed = "".join(run(study, command) for command in study.commands)
-    seconds = time.time() - start
+    for needed in (read_studies()[name] for name in study.needs):
+        if not needed.folder.exists():
+            make(needed, again=False)
+    state = study.state
+    printed, seconds = measure(study, again)
+    data = entries.DATA / study.name
     if study.text:
         (study.folder / study.text).write_text(printed, encoding="utf-8")
+        data.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(study.folder / study.text, data / study.text)
     draw(study)
     for pattern in study.tables:
         for table in sorted(study.folder.glob(pattern)):
-            keep(table, DATA / study.name, columns=study.columns.get(table.name))
-    if study.text:
-        (DATA / study.name).mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(study.folder / study.text, DATA / study.name / study.text)
-    record = {
-        "commands": study.commands,
-        "code": code,
-        "date": datetime.date.today().isoformat(),
-        "seconds": round(seconds, 1),
-        **machine(study),
-    }
-    part = DATA / study.name / "study.json.part"
+            keep(table, data, columns=study.columns.get(table.name))
+    date = datetime.date.today().isoformat()
+    record = {**state, "date": date, "seconds": round(seconds, 1), **machine(study)}
+    part = data / "study.json.part"
     part.parent.mkdir(parents=True, exist_ok=True)
     part.write_text(json.dumps(record, indent=1) + "\n")
     os.replace(part, part.with_suffix(""))
@@ -194,8 +120,12 @@ def check(studies):
         elif record["commands"] != study.commands:
             print(f"{study.name}: measured by another command: {'; '.join(record['commands'])}")
         else:
-            folders = code_state.changed(record["code"], study.programs)
-            print(f"{study.name}: older than {', '.join(folders)}")
+            names = code_state.changed(record["code"], study.programs)
+            needs = record.get("needs", {})
+            names += [
+                name for name, value in study.state["needs"].items() if needs.get(name) != value
+            ]
+            print(f"{study.name}: older than {', '.join(names) or 'what its commands print'}")
     return good
 
 
@@ -236,4 +166,7 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -12,7 +12,9 @@ from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs/site"))
+import chart_data  # noqa: E402
 import code_state  # noqa: E402
+import entries  # noqa: E402
 import page_data  # noqa: E402
 import studies  # noqa: E402
 
@@ -60,46 +62,75 @@ class Studies(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
         for name in ("DATA", "PICTURES", "RESULTS"):
-            patch = mock.patch.object(studies, name, self.folder / name.lower())
+            patch = mock.patch.object(entries, name, self.folder / name.lower())
             patch.start()
             self.addCleanup(patch.stop)
 
     def test_a_study_is_kept_whole_and_made_once(self):
-        study = studies.Study(
+        study = entries.Study(
             "small",
             ["convergence --scene oscillator --until 0.5 --methods verlet,rk4"],
             tables=["order.csv"],
         )
         self.assertIsNone(study.record)
         studies.make(study, again=False)
-        with open(studies.DATA / "small/order.csv", newline="", encoding="utf-8") as file:
+        with open(entries.DATA / "small/order.csv", newline="", encoding="utf-8") as file:
             self.assertEqual({"verlet", "rk4"}, {row["method"] for row in csv.DictReader(file)})
         self.assertEqual(["convergence"], study.programs)
         self.assertTrue(study.is_fresh())
         self.assertEqual(study.commands, study.record["commands"])
-        self.assertFalse(list(studies.DATA.rglob("*.part")))
+        self.assertFalse(list(entries.DATA.rglob("*.part")))
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             self.assertTrue(studies.check({"small": study}))
             record = {**study.record, "code": {**study.record["code"], "src/model": "another"}}
-            (studies.DATA / "small/study.json").write_text(json.dumps(record))
+            (entries.DATA / "small/study.json").write_text(json.dumps(record))
             self.assertFalse(studies.check({"small": study}))
             study.commands = ["convergence --scene oscillator --until 1"]
             self.assertFalse(studies.check({"small": study}))
         self.assertIn("small: older than src/model\n", said.getvalue())
         self.assertIn("small: measured by another command", said.getvalue())
 
+    def test_an_interrupted_study_goes_on_and_one_of_other_sources_begins_anew(self):
+        study = entries.Study("list", ["simulate --list-methods --csv"], text="m.csv")
+        study.folder.mkdir(parents=True)
+        for sources, goes_on in ((code_state.source_hash(), True), ("others", False)):
+            begun = {"sources": sources, "commands": study.commands, "seconds": 100}
+            (study.folder / "begun.json").write_text(json.dumps(begun))
+            (study.folder / "journal").write_text("a piece")
+            studies.make(study, again=False)
+            self.assertEqual(goes_on, (study.folder / "journal").exists())
+            self.assertEqual(goes_on, study.record["seconds"] >= 100)
+
+    def test_a_study_is_old_where_one_that_it_needs_was_made_again(self):
+        needed = entries.Study("needed", ["simulate --list-scenes --csv"], text="s.csv")
+        study = entries.Study(
+            "list", ["simulate --list-methods --csv"], text="m.csv", needs=["needed"]
+        )
+        with mock.patch.object(studies, "read_studies", lambda: {"needed": needed, "list": study}):
+            studies.make(study, again=False)
+        self.assertIsNotNone(needed.record)
+        studies.make(needed, again=False)
+        studies.make(study, again=False)
+        self.assertTrue(study.is_fresh())
+        record = {**needed.record, "date": "another day"}
+        (entries.DATA / "needed/study.json").write_text(json.dumps(record))
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            self.assertFalse(studies.check({"list": study}))
+        self.assertEqual("list: older than needed\n", said.getvalue())
+
     def test_a_study_that_fails_keeps_nothing(self):
-        study = studies.Study("bad", ["convergence --scene nothing"], tables=["order.csv"])
+        study = entries.Study("bad", ["convergence --scene nothing"], tables=["order.csv"])
         with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()):
             studies.make(study, again=False)
         self.assertIsNone(study.record)
 
     def test_a_quick_one_is_old_where_it_prints_another_text(self):
-        study = studies.Study("list", ["simulate --list-methods --csv"], text="m.csv", quick=True)
+        study = entries.Study("list", ["simulate --list-methods --csv"], text="m.csv", quick=True)
         studies.make(study, again=False)
         self.assertTrue(study.is_fresh())
-        (studies.DATA / "list/m.csv").write_text("name\n")
+        (entries.DATA / "list/m.csv").write_text("name\n")
         self.assertFalse(study.is_fresh())
 
 
@@ -128,13 +159,13 @@ class Words(unittest.TestCase):
                 call()
 
     def test_the_fastest_is_the_fastest(self):
-        runs = [run for run in page_data.runs("cloth") if not run.failure and run.bound <= 1e-4]
-        best = page_data.fastest("cloth", 1e-4)
+        runs = [run for run in chart_data.runs("cloth") if not run.failure and run.bound <= 1e-4]
+        best = chart_data.fastest("cloth", 1e-4)
         self.assertEqual(min(run.time for run in runs), best.seconds)
-        second = page_data.fastest("cloth", 1e-4, but=[best.method])
+        second = chart_data.fastest("cloth", 1e-4, but=[best.method])
         self.assertGreaterEqual(second.seconds, best.seconds)
         self.assertNotEqual(second.method, best.method)
-        self.assertFalse(page_data.fastest("cloth", 1e-4, of=["explicit_euler"]))
+        self.assertFalse(chart_data.fastest("cloth", 1e-4, of=["explicit_euler"]))
 
 
 if __name__ == "__main__":
