@@ -107,8 +107,12 @@ class Studies(unittest.TestCase):
         study = entries.Study(
             "list", ["simulate --list-methods --csv"], text="m.csv", needs=["needed"]
         )
-        with mock.patch.object(studies, "read_studies", lambda: {"needed": needed, "list": study}):
-            studies.make(study, again=False)
+        known = mock.patch.object(
+            studies, "read_studies", lambda: {"needed": needed, "list": study}
+        )
+        known.start()
+        self.addCleanup(known.stop)
+        studies.make(study, again=False)
         self.assertIsNotNone(needed.record)
         studies.make(needed, again=False)
         studies.make(study, again=False)
