@@ -5,7 +5,7 @@ import json
 import os
 import shutil
 
-# Of a sidecar: states of all nodes, and the command with the folders of the machine.
+# Left out of sidecars: states of all nodes, and the command with the folders of the machine.
 UNKEPT = ("q", "v", "modal_shares", "command_line", "key")
 
 
