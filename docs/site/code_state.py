@@ -1,4 +1,4 @@
-"""What a measurement depends on: a hash of the code of each folder that a study runs.
+"""What a measurement depends on: a hash of the code that a study runs, folder by folder.
 
 Comments, white space and sentences (strings with a space in them) are left out, since none of them
 changes a number.
@@ -31,34 +31,69 @@ def without_words(source):
     return re.sub(r"\s+", " ", text)
 
 
-def folder_hash(folder):
-    """The hash of all C++ files of a folder, its name included; not of folders below it."""
-    digest = hashlib.sha256(folder.encode())
-    for file in sorted((ROOT / folder).glob("*.[ch]pp")):
-        digest.update(file.name.encode())
-        digest.update(without_words(file.read_text(encoding="utf-8")).encode())
-    return digest.hexdigest()[:16]
+def path_of(include):
+    """The path from the root of a header as it is included."""
+    room = include.split("/")[1] if include.startswith("qddot/") else ""
+    if room == "measure":
+        return "experiments/" + include.removeprefix("qddot/")
+    return include.removeprefix("qddot/") if room == "integrators" else include
 
 
-def folders_of(program):
-    """The folders whose code decides what a program measures: the model, the integrators, what
-    measures, and the program's own."""
-    wanted = ["src", "integrators", "experiments/measure", f"experiments/{program}"]
+def sources_of(header):
+    """A header with its source, if it has one."""
+    return [file for file in (header, header.with_suffix(".cpp")) if file.exists()]
+
+
+def measuring(files):
+    """The files of experiments/measure that these use, by what they include. A source without a header
+    of its own belongs to its folder."""
+    seen, todo = set(), list(files)
+    while todo:
+        file = todo.pop()
+        if file in seen:
+            continue
+        seen.add(file)
+        for include in re.findall(r'^#include "([^"]+)"', file.read_text(encoding="utf-8"), re.M):
+            path = path_of(include)
+            if path.startswith(("experiments/measure/", "experiments/command/")):
+                todo += sources_of(ROOT / path)
+    found = {file for file in seen if file.is_relative_to(ROOT / "experiments/measure")}
+    alone = (file for folder in {f.parent for f in found} for file in folder.glob("*.cpp"))
+    return found | {file for file in alone if not file.with_suffix(".hpp").exists()}
+
+
+def own_files(program):
+    """The C++ files of a program; of a script those of the module for Python."""
+    folders = [ROOT / "experiments" / program]
     if program.startswith("fuzz_"):
-        wanted.append("tests/independent")
-    return sorted(
-        {
-            file.parent.relative_to(ROOT).as_posix()
-            for name in wanted
-            for file in (ROOT / name).rglob("*.[ch]pp")
+        folders = [ROOT / "tests/independent"]
+    files = {file for folder in folders for file in folder.rglob("*.[ch]pp")}
+    if not files:
+        files = {
+            ROOT / "experiments/measure/qddot.hpp",
+            *(ROOT / "python/extension").glob("*.[ch]pp"),
         }
-    )
+    return files
+
+
+def files_of(program):
+    """The files that decide what a program measures: the model, the integrators, what it uses of
+    experiments/measure, and its own."""
+    shared = {file for room in ("src", "integrators") for file in (ROOT / room).rglob("*.[ch]pp")}
+    own = own_files(program)
+    return shared | own | measuring(own)
 
 
 def state_of(programs):
-    """The hash of each folder that one of the programs depends on."""
-    folders = {folder for program in programs for folder in folders_of(program)}
-    return {folder: folder_hash(folder) for folder in sorted(folders)}
+    """The hash of the files in each folder that one of the programs depends on, by folder."""
+    files = sorted({file for program in programs for file in files_of(program)})
+    digests = {}
+    for file in files:
+        folder = file.parent.relative_to(ROOT).as_posix()
+        digest = digests.setdefault(folder, hashlib.sha256(folder.encode()))
+        digest.update(file.name.encode())
+        digest.update(without_words(file.read_text(encoding="utf-8")).encode())
+    return {folder: digest.hexdigest()[:16] for folder, digest in sorted(digests.items())}
 
 
 def changed(recorded, programs):

@@ -1,8 +1,10 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/measure/stability/diagnosis.hpp"
 #include "qddot/measure/stability/linear_limit.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
+#include "qddot/scene/scene_file.hpp"
 #include "tests/integrators/faulty_verlet.hpp"
 
 BOOST_AUTO_TEST_SUITE(linear_step)
@@ -168,6 +170,18 @@ BOOST_AUTO_TEST_CASE(a_wrong_or_missing_limit_is_found) {
     BOOST_TEST(!declares_its_limit(method));
   }
   BOOST_TEST(!declares_its_limit(heun()));  // which says that it is Verlet's
+}
+
+BOOST_AUTO_TEST_CASE(a_diagnosis_finds_the_limit_that_an_explicit_method_does_not_declare) {
+  Method method = method_named("verlet");
+  method.stability_limit.reset();
+  const ReducedScene scene(load_scene("oscillator"));  // w = 10 rad/s
+  const Options options{.step_size = 0.25};
+  State state = scene.initial();
+  const Summary summary = make_integrator(method, scene.system(), options)->advance(state, 100);
+  BOOST_REQUIRE(!(summary.outcome == Outcome::reached_end));
+  const std::string why = diagnosis(method, options, scene, 100, summary, 1);
+  BOOST_TEST(why.find("above verlet's limit of 2/w_max = 0.2 s") != why.npos, why);
 }
 
 BOOST_AUTO_TEST_CASE(limits_hold_from_both_sides) {

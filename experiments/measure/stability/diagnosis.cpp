@@ -16,6 +16,7 @@
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/motion/vibrating_modes.hpp"
+#include "qddot/measure/stability/linear_limit.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
 
 namespace qddot::measure {
@@ -110,17 +111,28 @@ Before before_failure(const Method& method, const Options& options, const Reduce
   return before;
 }
 
+// The largest stable h w, found by running the method if it is explicit and declares none.
+double stable_h_omega(const Method& method) {
+  const bool is_known =
+      method.stability_limit || method.is(Trait::implicit) || !has_linear_step(method);
+  return is_known ? linear_limit(method) : measured_limit(method);
+}
+
+// The rate [1/s] at which a step lets a vibration of that w grow, in words; empty if it overflows.
+std::string growth_in_words(const Method& method, double h, double omega) {
+  const double rate = std::log(linear_step(method, h * omega).spectral_radius()) / h;
+  return std::isfinite(rate) ? fmt::format(", here by up to {:.3g}/s", rate) : "";
+}
+
 std::string crossed(const Method& method, double h, const Before& before, bool is_known,
                     Outcome outcome) {
-  const double limit = linear_limit(method);
+  const double limit = stable_h_omega(method);
   const auto when = [](double t) {
     return t == 0 ? std::string("at the start") : fmt::format("at t = {:.3g} s", t);
   };
   if (limit == 0) {
-    return fmt::format(
-        "{} gains energy at every h, vibrations of w by the rate h w^2/2, here up "
-        "to {:.3g}/s",
-        method.name, h * before.omega * before.omega / 2);
+    return fmt::format("{} lets vibrations grow at every h{}", method.name,
+                       growth_in_words(method, h, before.omega));
   }
   if (h * before.omega > limit) {
     return fmt::format(
