@@ -87,6 +87,7 @@ def make(study, again):
     part.parent.mkdir(parents=True, exist_ok=True)
     part.write_text(json.dumps(record, indent=1) + "\n")
     os.replace(part, part.with_suffix(""))
+    (study.folder / "begun.json").unlink()
 
 
 def machine(study):

@@ -80,6 +80,7 @@ class Studies(unittest.TestCase):
         self.assertTrue(study.is_fresh())
         self.assertEqual(study.commands, study.record["commands"])
         self.assertFalse(list(entries.DATA.rglob("*.part")))
+        self.assertFalse((study.folder / "begun.json").exists())
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             self.assertTrue(studies.check({"small": study}))
