@@ -73,12 +73,14 @@ def ratio(slow, fast):
 
 def crossing(study, accuracy, fast="implicit", slow="explicit"):
     """The stiffness ratio from which on the fastest method of one kind takes less time than that of
-    the other, on a line between the measured ratios in logarithms; nan where it never does."""
+    the other, on a line between the measured ratios in logarithms; nan where it never does. Ratios
+    at which neither reaches the accuracy say nothing."""
     at = {}
     for cell in rows(study, "kinds.csv", accuracy=accuracy):
         seconds_of = float(cell["time_s"] or "inf") if cell["method"] else math.inf
         at.setdefault(float(cell["stiffness_ratio"]), {})[cell["kind"]] = seconds_of
-    ahead = [(r, math.log(t[slow]) - math.log(t[fast])) for r, t in sorted(at.items())]
+    known = [(r, t) for r, t in sorted(at.items()) if min(t[slow], t[fast]) < math.inf]
+    ahead = [(r, math.log(t[slow]) - math.log(t[fast])) for r, t in known]
     behind = [i for i, (_, lead) in enumerate(ahead) if not lead > 0]
     last = max(behind, default=-1)
     if last + 1 >= len(ahead):

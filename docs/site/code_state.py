@@ -47,16 +47,16 @@ def sources_of(header):
 def measuring(files):
     """The files of experiments/measure that these use, by what they include. A source without a header
     of its own belongs to its folder."""
-    seen, todo = set(), list(files)
-    while todo:
-        file = todo.pop()
+    seen, waiting = set(), list(files)
+    while waiting:
+        file = waiting.pop()
         if file in seen:
             continue
         seen.add(file)
         for include in re.findall(r'^#include "([^"]+)"', file.read_text(encoding="utf-8"), re.M):
             path = path_of(include)
             if path.startswith(("experiments/measure/", "experiments/command/")):
-                todo += sources_of(ROOT / path)
+                waiting += sources_of(ROOT / path)
     found = {file for file in seen if file.is_relative_to(ROOT / "experiments/measure")}
     alone = (file for folder in {f.parent for f in found} for file in folder.glob("*.cpp"))
     return found | {file for file in alone if not file.with_suffix(".hpp").exists()}

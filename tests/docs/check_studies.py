@@ -4,6 +4,7 @@ import contextlib
 import csv
 import io
 import json
+import math
 import sys
 import tempfile
 import unittest
@@ -162,6 +163,30 @@ class Words(unittest.TestCase):
         ):
             with self.assertRaises(page_data.BadPage):
                 call()
+
+    def crossing_of(self, times):
+        """The crossing of kinds with these times by ratio, explicit and implicit; None: not reached."""
+        cells = [
+            {"stiffness_ratio": ratio, "kind": kind, "method": time and "m", "time_s": time or ""}
+            for ratio, pair in times.items()
+            for kind, time in zip(("explicit", "implicit"), pair)
+        ]
+        with mock.patch.object(chart_data, "rows", lambda *_, **__: cells):
+            return chart_data.crossing("made", 1e-3)
+
+    def test_a_crossing_lies_where_both_take_as_long(self):
+        # Explicit time grows as the root of the ratio, implicit time stays: they meet at 900.
+        times = {10.0**n: (10 ** (n / 2), 30) for n in range(7)}
+        self.assertAlmostEqual(900, self.crossing_of(times), places=6)
+        self.assertEqual(1, self.crossing_of({1: (2, 1), 10: (3, 1)}))
+        self.assertTrue(math.isnan(self.crossing_of({1: (1, 2), 10: (1, 2)})))
+        # Beyond a ratio that explicit methods do not reach, implicit ones are ahead; where neither
+        # does, nothing is known.
+        self.assertEqual(10, self.crossing_of({1: (1, 2), 10: (None, 2), 100: (None, None)}))
+        # An advantage that is lost again is none.
+        self.assertAlmostEqual(
+            math.sqrt(1e5), self.crossing_of({1: (2, 1), 10: (2, 1), 100: (1, 2), 1000: (2, 1)}), 6
+        )
 
     def test_the_fastest_is_the_fastest(self):
         runs = [run for run in chart_data.runs("cloth") if not run.failure and run.bound <= 1e-4]
