@@ -53,9 +53,12 @@ nlohmann::json build() {
   return {{"code", code_hash()}, {"compiler", build_info::compiler}, {"flags", build_info::flags}};
 }
 
+std::string_view roots() {
+  return kernels::names_of_roots()[static_cast<std::size_t>(kernels::roots())];
+}
+
 nlohmann::json machine() {
   return {{"kernels", kernels::levels()[static_cast<std::size_t>(kernels::level())]},
-          {"roots", kernels::names_of_roots()[static_cast<std::size_t>(kernels::roots())]},
           {"cpu", processor()},
           {"libraries",
            {{"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
@@ -74,6 +77,7 @@ nlohmann::json provenance(const std::vector<std::string>& command_line) {
                            {"source_hash", build_info::source_hash},
                            {"compiler", build_info::compiler},
                            {"flags", build_info::flags},
+                           {"roots", roots()},
                            {"date", date_now()}};
   origin.update(machine());
   return origin;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,7 +12,7 @@
 namespace qddot::command {
 
 // The record of how a result was made: command line, version of the code, compiler and flags, the
-// kernels' level, processor, libraries, date (UTC).
+// kernels' level and roots, processor, libraries, date (UTC).
 nlohmann::json provenance(const std::vector<std::string>& command_line);
 
 // The same with the scene and its content hash.
@@ -23,8 +24,11 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
                           const Scene& start, const ReducedScene& reduced);
 
 // The properties of the machine that decide the times and the rounding of runs: processor ("cpu"),
-// level of the kernels, roots, libraries.
+// level of the kernels, libraries.
 nlohmann::json machine();
+// The name of the roots that this process uses. Each process times them anew and all give the same
+// bits, so they are recorded but belong to no key.
+std::string_view roots();
 // The properties of the build, equal on all machines of a study: hash of the sources ("code"),
 // compiler and flags.
 nlohmann::json build();

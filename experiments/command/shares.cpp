@@ -48,7 +48,11 @@ std::string whole_mark(const std::string& share) { return "whole " + share; }
 
 nlohmann::json whole_record(const nlohmann::json& failure) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - process_began;
-  return {{"host", host()}, {"date", date_now()}, {"seconds", took.count()}, {"failure", failure}};
+  return {{"host", host()},
+          {"date", date_now()},
+          {"seconds", took.count()},
+          {"roots", roots()},
+          {"failure", failure}};
 }
 
 }  // namespace qddot::command

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -52,6 +53,15 @@ std::optional<int> status_of(const std::vector<std::string>& tables, const nlohm
     status = json.value("exit_status", 0);
   }
   return status;
+}
+
+// The names of the roots by which shares were measured.
+std::set<std::string> roots_of(const std::map<std::string, nlohmann::json>& pieces) {
+  std::set<std::string> names;
+  for (const auto& [name, piece] : pieces) {
+    if (name.starts_with(whole_mark(""))) names.insert(piece.value("roots", "unknown"));
+  }
+  return names;
 }
 
 }  // namespace
@@ -202,6 +212,7 @@ void Study::complete(CsvFile& table, nlohmann::json origin, int status) {
   origin["interrupted"] = why_ ? nlohmann::json(why_->by) : nullptr;
   if (is_kept_) {
     origin.update(key_.at("machine"));
+    origin["roots"] = fmt::format("{}", fmt::join(roots_of(kept_), ", "));
     std::erase(origin.at("command_line").get_ref<nlohmann::json::array_t&>(), "--kept");
   }
   table.complete(origin);

@@ -1,3 +1,5 @@
+#include "qddot/model/kernels/roots.hpp"
+#include "qddot/model/kernels/spring_kernels.hpp"
 #include "tests/programs/sweeps.hpp"
 
 BOOST_AUTO_TEST_SUITE(sweep_faults)
@@ -22,6 +24,23 @@ std::set<std::string> column(const Table& table, const std::string& name) {
   std::set<std::string> values;
   for (std::size_t row = 0; row < table.rows.size(); ++row) values.insert(table.text(row, name));
   return values;
+}
+
+// Roots that this processor has beside its own; its own where it has no others.
+std::string other_roots() {
+  std::string_view last;
+  for (int i = 0; i < kernels::kinds_of_roots; ++i) {
+    if (kernels::spring_kernels(3, static_cast<kernels::Roots>(i)))
+      last = kernels::names_of_roots()[i];
+  }
+  return std::string(last);
+}
+
+// Does the work while processes are told to take these roots.
+void with_roots(const std::string& roots, const std::function<void()>& work) {
+  setenv("QDDOT_ROOTS", roots.c_str(), 1);
+  work();
+  unsetenv("QDDOT_ROOTS");
 }
 
 }  // namespace
@@ -86,6 +105,40 @@ BOOST_AUTO_TEST_CASE(by_work_times_are_counts_times_costs_on_this_machine) {
   const std::string kept = read_all(sweep.out + "/chain/costs.json");
   sweep.merge({"--by", "work", "--no-pictures"});
   BOOST_TEST(read_all(sweep.out + "/chain/costs.json") == kept);
+}
+
+// Each process chooses the fastest roots by a measurement of its own, so two may differ.
+BOOST_AUTO_TEST_CASE(processes_with_unlike_roots_measure_one_study) {
+  const std::string other = other_roots();
+  const Sweep sweep;
+  with_roots("processor", [&] { BOOST_TEST(sweep.go("references").status == 0); });
+  with_roots(other, [&] {
+    const Exit first = sweep.go("points", {"--shard", "1/2"});
+    BOOST_TEST(first.status == 0, first.err);
+  });
+  with_roots("processor", [&] {
+    const auto before = sweep.measured();
+    const Exit rest = sweep.go("points", {"--again"});  // nothing is of another machine
+    BOOST_TEST(rest.status == 0, rest.err);
+    const auto after = sweep.measured();
+    for (const auto& [name, bytes] : before) BOOST_TEST((after.at(name) == bytes));
+  });
+  check_as_one_process(sweep);
+  std::string used;
+  for (const std::string& name : std::set<std::string>{"processor", other})
+    used += (used.empty() ? "" : ", ") + name;
+  const auto sidecar = nlohmann::json::parse(read_all(sweep.out + "/chain/points.json"));
+  BOOST_TEST(sidecar.at("roots") == used);
+}
+
+BOOST_AUTO_TEST_CASE(a_study_that_is_complete_is_so_with_other_roots) {
+  const Folder folder;
+  const auto resume = [&] {
+    return run("convergence", {"--scene", "pendulum", "--until", "0.05", "--methods", "verlet",
+                               "--out", folder.path(), "--resume"});
+  };
+  with_roots(other_roots(), [&] { BOOST_TEST(resume().status == 0); });
+  with_roots("processor", [&] { BOOST_TEST(contains(resume().err, {"nothing is missing"})); });
 }
 
 BOOST_AUTO_TEST_CASE(a_task_that_other_code_measured_does_not_count) {
