@@ -55,7 +55,7 @@ def file_named(env, docname, target):
 
 
 def link_files(app, doctree):
-    """Makes links to files that are no pages, as ../src/model/system.hpp, lead there: below the
+    """Makes links to files that are no pages, as ../src/qddot/model/system.hpp, lead there: below the
     config value `source_url`, or where that is empty in the tree that the site lies in. A link to
     what does not exist is left to MyST, which warns of it."""
     docname = app.env.docname

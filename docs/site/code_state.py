@@ -33,10 +33,7 @@ def without_words(source):
 
 def path_of(include):
     """The path from the root of a header as it is included."""
-    room = include.split("/")[1] if include.startswith("qddot/") else ""
-    if room == "measure":
-        return "experiments/" + include.removeprefix("qddot/")
-    return include.removeprefix("qddot/") if room == "integrators" else include
+    return "src/" + include if include.startswith("qddot/") else include
 
 
 def sources_of(header):
@@ -45,7 +42,7 @@ def sources_of(header):
 
 
 def measuring(files):
-    """The files of experiments/measure that these use, by what they include. A source without a header
+    """The files of src/qddot/measure that these use, by what they include. A source without a header
     of its own belongs to its folder."""
     seen, waiting = set(), list(files)
     while waiting:
@@ -55,9 +52,9 @@ def measuring(files):
         seen.add(file)
         for include in re.findall(r'^#include "([^"]+)"', file.read_text(encoding="utf-8"), re.M):
             path = path_of(include)
-            if path.startswith(("experiments/measure/", "experiments/command/")):
+            if path.startswith(("src/qddot/measure/", "experiments/command/")):
                 waiting += sources_of(ROOT / path)
-    found = {file for file in seen if file.is_relative_to(ROOT / "experiments/measure")}
+    found = {file for file in seen if file.is_relative_to(ROOT / "src/qddot/measure")}
     alone = (file for folder in {f.parent for f in found} for file in folder.glob("*.cpp"))
     return found | {file for file in alone if not file.with_suffix(".hpp").exists()}
 
@@ -70,7 +67,7 @@ def own_files(program):
     files = {file for folder in folders for file in folder.rglob("*.[ch]pp")}
     if not files:
         files = {
-            ROOT / "experiments/measure/qddot.hpp",
+            ROOT / "src/qddot/qddot.hpp",
             *(ROOT / "python/extension").glob("*.[ch]pp"),
         }
     return files
@@ -78,7 +75,7 @@ def own_files(program):
 
 def files_of(program):
     """The files that decide what a program measures: the model, the integrators, what it uses of
-    experiments/measure, and its own."""
+    src/qddot/measure, and its own."""
     shared = {file for room in ("src", "integrators") for file in (ROOT / room).rglob("*.[ch]pp")}
     own = own_files(program)
     return shared | own | measuring(own)

@@ -5,8 +5,8 @@
 
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
-#include "qddot/integrators/sundials/support.hpp"
-#include "qddot/integrators/sundials/vector.hpp"
+#include "integrators/sundials/support.hpp"
+#include "integrators/sundials/vector.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 
 namespace qddot::bench {

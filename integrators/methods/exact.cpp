@@ -55,7 +55,7 @@ class Exact final : public FixedStep {
 Method exact() {
   return {.name = "exact",
           .summary = "the exact motion mode by mode, at every step size; where K is constant",
-          .source = "superposition of modes, derived in src/analysis/linear_motion.hpp",
+          .source = "superposition of modes, derived in src/qddot/analysis/linear_motion.hpp",
           .order = 0,
           .traits = {Trait::symplectic},
           .needs = {Need::stiffness, Need::constant_stiffness},

@@ -1,4 +1,4 @@
-#include "qddot/integrators/sundials/arkode.hpp"
+#include "integrators/sundials/arkode.hpp"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 #include <arkode/arkode_arkstep.h>
 
 #include "qddot/integrators/base/renewed_bound.hpp"
-#include "qddot/integrators/sundials/newton_test.hpp"
-#include "qddot/integrators/sundials/stepper.hpp"
+#include "integrators/sundials/newton_test.hpp"
+#include "integrators/sundials/stepper.hpp"
 
 namespace qddot::sundials {
 

@@ -1,4 +1,4 @@
-#include "qddot/integrators/sundials/cause.hpp"
+#include "integrators/sundials/cause.hpp"
 
 namespace qddot::sundials {
 

@@ -11,8 +11,8 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include "qddot/integrators/registry.hpp"
-#include "qddot/integrators/sundials/orders.hpp"
-#include "qddot/integrators/sundials/stepper.hpp"
+#include "integrators/sundials/orders.hpp"
+#include "integrators/sundials/stepper.hpp"
 
 namespace qddot::registered {
 namespace {

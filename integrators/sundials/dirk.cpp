@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
-#include "qddot/integrators/sundials/arkode.hpp"
+#include "integrators/sundials/arkode.hpp"
 
 namespace qddot::registered {
 namespace {

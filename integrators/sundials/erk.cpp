@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
-#include "qddot/integrators/sundials/arkode.hpp"
-#include "qddot/integrators/sundials/imaginary_stability.hpp"
+#include "integrators/sundials/arkode.hpp"
+#include "integrators/sundials/imaginary_stability.hpp"
 
 namespace qddot::registered {
 namespace {

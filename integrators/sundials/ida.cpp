@@ -29,8 +29,8 @@
 #include "qddot/analysis/equilibrium.hpp"
 #include "qddot/analysis/stability.hpp"
 #include "qddot/integrators/registry.hpp"
-#include "qddot/integrators/sundials/orders.hpp"
-#include "qddot/integrators/sundials/stepper.hpp"
+#include "integrators/sundials/orders.hpp"
+#include "integrators/sundials/stepper.hpp"
 #include "qddot/model/constrained_system.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 

@@ -1,4 +1,4 @@
-#include "qddot/integrators/sundials/imaginary_stability.hpp"
+#include "integrators/sundials/imaginary_stability.hpp"
 
 #include <complex>
 #include <vector>

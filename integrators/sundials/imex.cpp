@@ -14,8 +14,8 @@
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
-#include "qddot/integrators/sundials/additive_tables.hpp"
-#include "qddot/integrators/sundials/arkode.hpp"
+#include "integrators/sundials/additive_tables.hpp"
+#include "integrators/sundials/arkode.hpp"
 
 namespace qddot::registered {
 namespace {

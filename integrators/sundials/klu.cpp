@@ -5,8 +5,8 @@
 #include <sunlinsol/sunlinsol_klu.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 
-#include "qddot/integrators/sundials/newton_matrix.hpp"
-#include "qddot/integrators/sundials/vector.hpp"
+#include "integrators/sundials/newton_matrix.hpp"
+#include "integrators/sundials/vector.hpp"
 #include "qddot/model/first_order.hpp"
 
 namespace qddot::sundials {

@@ -17,7 +17,7 @@
 
 #include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/integrators/registry.hpp"
-#include "qddot/integrators/sundials/arkode.hpp"
+#include "integrators/sundials/arkode.hpp"
 
 namespace qddot::registered {
 namespace {

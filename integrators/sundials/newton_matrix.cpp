@@ -1,4 +1,4 @@
-#include "qddot/integrators/sundials/newton_matrix.hpp"
+#include "integrators/sundials/newton_matrix.hpp"
 
 namespace qddot::sundials {
 namespace {

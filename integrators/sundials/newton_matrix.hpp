@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "qddot/integrators/integrator.hpp"
-#include "qddot/integrators/sundials/support.hpp"
+#include "integrators/sundials/support.hpp"
 
 namespace qddot::sundials {
 

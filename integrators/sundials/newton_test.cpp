@@ -1,4 +1,4 @@
-#include "qddot/integrators/sundials/newton_test.hpp"
+#include "integrators/sundials/newton_test.hpp"
 
 #include <sunnonlinsol/sunnonlinsol_newton.h>
 

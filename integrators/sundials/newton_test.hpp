@@ -1,6 +1,6 @@
 #pragma once
 
-#include "qddot/integrators/sundials/support.hpp"
+#include "integrators/sundials/support.hpp"
 
 namespace qddot::sundials {
 

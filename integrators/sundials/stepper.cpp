@@ -1,4 +1,4 @@
-#include "qddot/integrators/sundials/stepper.hpp"
+#include "integrators/sundials/stepper.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,9 +8,9 @@
 #include "qddot/integrators/base/step_times.hpp"
 #include "qddot/integrators/integrator.hpp"
 #include "qddot/integrators/method.hpp"
-#include "qddot/integrators/sundials/cause.hpp"
-#include "qddot/integrators/sundials/newton_matrix.hpp"
-#include "qddot/integrators/sundials/vector.hpp"
+#include "integrators/sundials/cause.hpp"
+#include "integrators/sundials/newton_matrix.hpp"
+#include "integrators/sundials/vector.hpp"
 
 namespace qddot::sundials {
 

@@ -8,7 +8,7 @@
 // factors may belong to another gamma or an older K than the step at hand. Newton's iteration then
 // takes a few more rounds.
 #include "qddot/algebra/effective_mass.hpp"
-#include "qddot/integrators/sundials/newton_matrix.hpp"
+#include "integrators/sundials/newton_matrix.hpp"
 
 namespace qddot::sundials {
 namespace {

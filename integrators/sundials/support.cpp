@@ -1,4 +1,4 @@
-#include "qddot/integrators/sundials/support.hpp"
+#include "integrators/sundials/support.hpp"
 
 #include <fmt/format.h>
 

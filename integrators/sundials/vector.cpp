@@ -1,4 +1,4 @@
-#include "qddot/integrators/sundials/vector.hpp"
+#include "integrators/sundials/vector.hpp"
 
 #include <algorithm>
 

@@ -47,7 +47,7 @@ class CodeState(unittest.TestCase):
     def test_a_change_is_named_by_its_folder(self):
         state = code_state.state_of(["crossover"])
         self.assertEqual([], code_state.changed(state, ["crossover"]))
-        for folder in ("src/model", "integrators/methods", "experiments/crossover"):
+        for folder in ("src/qddot/model", "integrators/methods", "experiments/crossover"):
             self.assertIn(folder, state)
             self.assertEqual(
                 [folder], code_state.changed({**state, folder: "another"}, ["crossover"])
@@ -85,12 +85,12 @@ class Studies(unittest.TestCase):
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             self.assertTrue(studies.check({"small": study}))
-            record = {**study.record, "code": {**study.record["code"], "src/model": "another"}}
+            record = {**study.record, "code": {**study.record["code"], "src/qddot/model": "another"}}
             (entries.DATA / "small/study.json").write_text(json.dumps(record))
             self.assertFalse(studies.check({"small": study}))
             study.commands = ["convergence --scene oscillator --until 1"]
             self.assertFalse(studies.check({"small": study}))
-        self.assertIn("small: older than src/model\n", said.getvalue())
+        self.assertIn("small: older than src/qddot/model\n", said.getvalue())
         self.assertIn("small: measured by another command", said.getvalue())
 
     def test_an_interrupted_study_goes_on_and_one_of_other_sources_begins_anew(self):

@@ -2,7 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/sundials/cause.hpp"
+#include "integrators/sundials/cause.hpp"
 #include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(causes)

@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/sundials/arkode.hpp"
-#include "qddot/integrators/sundials/imaginary_stability.hpp"
+#include "integrators/sundials/arkode.hpp"
+#include "integrators/sundials/imaginary_stability.hpp"
 #include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(imaginary_stability)

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/sundials/orders.hpp"
+#include "integrators/sundials/orders.hpp"
 #include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(orders)

@@ -3,8 +3,8 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/analysis/frequency_bound.hpp"
-#include "qddot/integrators/sundials/additive_tables.hpp"
-#include "qddot/integrators/sundials/arkode.hpp"
+#include "integrators/sundials/additive_tables.hpp"
+#include "integrators/sundials/arkode.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/integrators/split_relay.hpp"
 

@@ -9,44 +9,44 @@ import re
 import sys
 from pathlib import Path
 
-MODEL = {"src/model", "src/model/kernels"}
-ALGEBRA = MODEL | {"src/algebra", "src/algebra/multifrontal"}
-ANALYSIS = ALGEBRA | {"src/analysis"}
-SCENE = ANALYSIS | {"src/scene", "src/scene/generators", "src/scene/mesh", "src/scene/reduce"}
-FACE = ANALYSIS | {"integrators"}  # never a scene
-BASE = FACE | {"integrators/base"}
-MOTION = BASE | SCENE | {"experiments/measure/motion"}
-REFERENCE = MOTION | {"experiments/measure/reference"}
-STABILITY = MOTION | {"experiments/measure/stability"}
-SPEED = REFERENCE | STABILITY | {"experiments/measure/speed"}
-ADVICE = SPEED | {"experiments/measure/advice"}
-TREND = SPEED | {"experiments/measure/trend"}
-EXCHANGE = SPEED | {"experiments/measure/exchange"}
+MODEL = {"src/qddot/model", "src/qddot/model/kernels"}
+ALGEBRA = MODEL | {"src/qddot/algebra", "src/qddot/algebra/multifrontal"}
+ANALYSIS = ALGEBRA | {"src/qddot/analysis"}
+SCENE = ANALYSIS | {"src/qddot/scene", "src/qddot/scene/generators", "src/qddot/scene/mesh", "src/qddot/scene/reduce"}
+FACE = ANALYSIS | {"src/qddot/integrators"}  # never a scene
+BASE = FACE | {"src/qddot/integrators/base"}
+MOTION = BASE | SCENE | {"src/qddot/measure/motion"}
+REFERENCE = MOTION | {"src/qddot/measure/reference"}
+STABILITY = MOTION | {"src/qddot/measure/stability"}
+SPEED = REFERENCE | STABILITY | {"src/qddot/measure/speed"}
+ADVICE = SPEED | {"src/qddot/measure/advice"}
+TREND = SPEED | {"src/qddot/measure/trend"}
+EXCHANGE = SPEED | {"src/qddot/measure/exchange"}
 COMMAND = TREND | ADVICE | EXCHANGE | {"experiments/command"}
-VECTORS = "src/model/kernels/vectors"
+VECTORS = "src/qddot/model/kernels/vectors"
 
 MAY_SEE = {
     **{room: MODEL for room in MODEL},
     **{room: ALGEBRA for room in ALGEBRA - MODEL},
     **{room: ANALYSIS for room in ANALYSIS - ALGEBRA},
     **{room: SCENE for room in SCENE - ANALYSIS},
-    "integrators": FACE,
-    "integrators/base": BASE,
+    "src/qddot/integrators": FACE,
+    "src/qddot/integrators/base": BASE,
     "integrators/methods": BASE,
     "integrators/sundials": BASE,
-    "experiments/measure/motion": MOTION,
-    "experiments/measure/reference": REFERENCE,
-    "experiments/measure/stability": STABILITY,
-    "experiments/measure/speed": SPEED,
-    "experiments/measure/trend": TREND,
-    "experiments/measure/advice": ADVICE,
-    "experiments/measure/exchange": EXCHANGE,
+    "src/qddot/measure/motion": MOTION,
+    "src/qddot/measure/reference": REFERENCE,
+    "src/qddot/measure/stability": STABILITY,
+    "src/qddot/measure/speed": SPEED,
+    "src/qddot/measure/trend": TREND,
+    "src/qddot/measure/advice": ADVICE,
+    "src/qddot/measure/exchange": EXCHANGE,
     "experiments/command": COMMAND,
     "python/extension": COMMAND - {"experiments/command"},
     # Compiled for more than one processor: seen by each other only, and see what is plain data.
-    VECTORS: {"src/model/kernels"},
-    "src/algebra/multifrontal/vectors": {VECTORS, "src/algebra/multifrontal"},
-    "experiments/measure/speed/vectors": {VECTORS, "experiments/measure/speed"},
+    VECTORS: {"src/qddot/model/kernels"},
+    "src/qddot/algebra/multifrontal/vectors": {VECTORS, "src/qddot/algebra/multifrontal"},
+    "src/qddot/measure/speed/vectors": {VECTORS, "src/qddot/measure/speed"},
     # Those that write motions.
     "experiments/simulate": COMMAND | {"experiments/motion_files"},
     "experiments/motions": COMMAND | {"experiments/motion_files"},
@@ -61,12 +61,7 @@ INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 
 def path_of(name):
     """The file that an include names, from the root."""
-    if not name.startswith("qddot/"):
-        return name
-    rest = name.removeprefix("qddot/")
-    if rest.startswith("integrators/"):
-        return rest
-    return ("experiments/" if rest.startswith("measure/") else "src/") + rest
+    return "src/" + name if name.startswith("qddot/") else name
 
 
 def may_see(room):
@@ -92,7 +87,7 @@ def check(root):
                     arrows.setdefault((room, seen), []).append(f"{place} -> {target}")
                 if seen not in may_see(room):
                     wrong.append(f"{place} includes {target}: {room} may not see {seen}")
-            is_library = top != "experiments" or room.startswith("experiments/measure")
+            is_library = top != "experiments"
             if is_library and (found := NOT_IN_A_LIBRARY.search(text)):
                 wrong.append(f"{place} has {found[0]}: a library takes data and returns data")
     return arrows, wrong
