@@ -52,7 +52,7 @@ def measuring(files):
         seen.add(file)
         for include in re.findall(r'^#include "([^"]+)"', file.read_text(encoding="utf-8"), re.M):
             path = path_of(include)
-            if path.startswith(("src/qddot/measure/", "experiments/command/")):
+            if path.startswith(("src/qddot/measure/", "experiments/kit/")):
                 waiting += sources_of(ROOT / path)
     found = {file for file in seen if file.is_relative_to(ROOT / "src/qddot/measure")}
     alone = (file for folder in {f.parent for f in found} for file in folder.glob("*.cpp"))

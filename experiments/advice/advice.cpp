@@ -26,17 +26,15 @@
 #include "experiments/advice/case_result.hpp"
 #include "experiments/advice/step_costs.hpp"
 #include "experiments/advice/worth.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/study.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/study.hpp"
 
 namespace qddot::advice_study {
-
-using namespace measure;
 namespace {
 
 constexpr int most_cases = 100000, most_jobs = 256, first_unseen = 11000000, last = 2000000000;
@@ -150,7 +148,7 @@ int advice(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::advice_study;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "advice",
        .summary = "Measures how good answers are that were asked for by their accuracy.",
        .has_threads = true,

@@ -5,12 +5,10 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "experiments/advice/drawn_case.hpp"
-#include "experiments/command/columns.hpp"
+#include "experiments/kit/columns.hpp"
 #include "qddot/measure/advice/solve.hpp"
 
 namespace qddot::advice_study {
-
-using namespace command;
 
 // What an answer was worth on one case.
 struct CaseResult {

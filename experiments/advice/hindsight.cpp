@@ -5,7 +5,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/judgement.hpp"
-#include "qddot/measure/speed/sweep.hpp"
+#include "qddot/measure/speed/ladder_points.hpp"
 
 namespace qddot::advice_study {
 namespace {
@@ -57,7 +57,7 @@ Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
       found.best = point;
       effort.seconds = std::min(effort.seconds, close_race * point.time_min + 1e-4);
     };
-    sweep(*method, scene, until, reference, effort, see, is_enough);
+    measure_ladder(*method, scene, until, reference, effort, see, is_enough);
   }
   std::vector<Point> near;
   for (const Point& point : found.points) {

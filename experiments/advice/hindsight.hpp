@@ -6,8 +6,6 @@
 
 namespace qddot::advice_study {
 
-using namespace measure;
-
 // The fastest run of any method to an accuracy, found by trying them all.
 struct Hindsight {
   std::vector<Point> points;  // all that were taken

@@ -12,8 +12,6 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot::advice_study {
-
-using namespace measure;
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

@@ -21,21 +21,18 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/accuracy_choice.hpp"
-#include "experiments/command/columns.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
+#include "experiments/kit/accuracy_choice.hpp"
+#include "experiments/kit/columns.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "qddot/scene/explain.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::advise_program {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 struct Arguments {
@@ -204,7 +201,7 @@ int answer(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::advise_program;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "advise",
        .summary = "Says which integrator to take for a scene and an accuracy.",
        .has_threads = true},

@@ -3,7 +3,6 @@
 #include "qddot/model/capabilities.hpp"
 
 namespace qddot::bench {
-
 namespace {
 
 constexpr int pinned = -1;

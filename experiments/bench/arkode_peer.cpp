@@ -10,8 +10,6 @@
 #include "qddot/measure/motion/deadline.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 using namespace sundials;

@@ -30,22 +30,19 @@
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/ratio_table.hpp"
 #include "experiments/bench/same_steps.hpp"
-#include "experiments/command/catalogue.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/study.hpp"
+#include "experiments/kit/catalogue.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
-using namespace command;
 
 // What nlohmann::json looks for by this name.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Measured, solver, force, unknowns, knob, value, outcome, error,
@@ -155,7 +152,7 @@ void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
     own.finest_error = accuracies.back() / 30;  // a peer's run may be better than it need be
     for (const std::string& method : a.methods) {
       const auto solver = our_method(method, smallest);
-      sweeps.push_back(sweep(*solver, ForceKind::ours, problem, own, recall, report));
+      sweeps.push_back(measure_ladder(*solver, ForceKind::ours, problem, own, recall, report));
       progress().finish(method + " is done");
       Sweep& last = sweeps.back();
       last.is_ours = true;
@@ -174,7 +171,7 @@ void add_sweeps(Study& study, const std::string& prefix, const Problem& problem,
   const Recall recall = recall_by(study, prefix);
   for (Peer* peer : peers) {
     for (const ForceKind force : peer->forces()) {
-      sweeps.push_back(sweep(*peer, force, problem, theirs, recall, report));
+      sweeps.push_back(measure_ladder(*peer, force, problem, theirs, recall, report));
       progress().finish(peer->name() + " is done");
     }
   }
@@ -293,7 +290,7 @@ int bench(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::bench;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "bench",
        .summary =
            "Measures how many times as long as our methods other solvers take to an accuracy.",

@@ -17,8 +17,6 @@
 #include "qddot/measure/motion/deadline.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 btVector3 bullet_vector(const Eigen::Vector3d& x) {

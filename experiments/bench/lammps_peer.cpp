@@ -16,12 +16,10 @@
 #include "experiments/bench/lammps_input.hpp"
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/springs.hpp"
-#include "experiments/command/shell_word.hpp"
+#include "experiments/kit/shell_word.hpp"
 #include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 // Its start and its reading of the scene [s], beyond what the steps may take.
@@ -87,8 +85,7 @@ Answer ask(const std::string& program, const Scene& scene, const LammpsWork& wor
   const std::string command = fmt::format(
       "cd {} && OMP_NUM_THREADS=1 timeout {:.0f} {} -in script -log none -nocite "
       "</dev/null 2>&1",
-      command::shell_word(folder.path("")), work.limit + lammps_start_limit,
-      command::shell_word(program));
+      kit::shell_word(folder.path("")), work.limit + lammps_start_limit, kit::shell_word(program));
   const auto [text, status] = output_of(command);
   Answer answer;
   answer.was_timed_out = status == timed_out;
@@ -151,7 +148,7 @@ class Lammps final : public Peer {
 }  // namespace
 
 std::string why_no_lammps(const std::string& program) {
-  if (output_of(fmt::format("command -v {}", command::shell_word(program))).second != 0) {
+  if (output_of(fmt::format("command -v {}", kit::shell_word(program))).second != 0) {
     return "LAMMPS is not there: apt-get install lammps";
   }
   Scene scene;

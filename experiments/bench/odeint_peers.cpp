@@ -9,8 +9,6 @@
 #include "qddot/measure/motion/deadline.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 namespace odeint = boost::numeric::odeint;

@@ -7,8 +7,6 @@
 #include "qddot/measure/speed/measurement.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 // A run of one integrator over either system, its end as that of all free nodes.

@@ -6,8 +6,6 @@
 
 namespace qddot::bench {
 
-using namespace measure;
-
 std::vector<double> tolerances(int in_a_decade) {
   std::vector<double> values;
   for (int i = 2 * in_a_decade; i <= 13 * in_a_decade; ++i) {

@@ -10,8 +10,6 @@
 
 namespace qddot::bench {
 
-using namespace measure;
-
 // How runs of a peer ended. The end and the counts mean something only where they reached it.
 struct Run {
   Outcome outcome = Outcome::solver_failed;

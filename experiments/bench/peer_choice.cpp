@@ -7,8 +7,6 @@
 #include "experiments/bench/peers.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 std::vector<std::unique_ptr<Peer>> all_peers(const std::string& force_library, LeftOut& left_out) {

@@ -8,8 +8,6 @@
 
 namespace qddot::bench {
 
-using namespace measure;
-
 // Which peers are missing, and why.
 class LeftOut {
  public:

@@ -4,8 +4,6 @@
 
 namespace qddot::bench {
 
-using namespace measure;
-
 // boost::odeint's Dormand-Prince 5(4) with its step control.
 std::unique_ptr<Peer> odeint_dopri5();
 // boost::odeint's symplectic Runge-Kutta-Nystroem method of order 4 by McLachlan, fixed steps.

@@ -6,14 +6,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/reference_file.hpp"
+#include "experiments/kit/reference_file.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 Reference reference_of(const Scene& drawn, const Scene& start, const ReducedScene& scene,

@@ -7,8 +7,6 @@
 
 namespace qddot::bench {
 
-using namespace measure;
-
 // A scene as a user gives it to a peer: M q'' = f(q) over the coordinates of the free nodes, in the
 // order of the scene, without other reductions.
 struct Problem {

@@ -4,9 +4,6 @@
 #include <limits>
 
 namespace qddot::bench {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 const char* reduced_name(bool smallest) { return smallest ? "all" : "pins"; }

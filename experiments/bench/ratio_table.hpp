@@ -5,13 +5,9 @@
 
 #include "experiments/bench/ratios.hpp"
 #include "experiments/bench/same_steps.hpp"
-#include "experiments/command/csv.hpp"
+#include "experiments/kit/csv.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
-
-using namespace command;
 
 std::vector<std::string> point_columns();
 void point_row(Csv& csv, const std::string& scene, double until, const Sweep& sweep,

@@ -5,8 +5,6 @@
 #include <limits>
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 bool reaches(const Measured& point, double error) {

@@ -8,8 +8,6 @@
 
 namespace qddot::bench {
 
-using namespace measure;
-
 // How many times as long as ours a peer takes to an accuracy.
 struct Ratio {
   double accuracy = 0;

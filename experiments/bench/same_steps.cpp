@@ -8,8 +8,6 @@
 #include "qddot/analysis/frequency_bound.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 std::int64_t springs_of(const Scene& scene) {

@@ -6,8 +6,6 @@
 
 namespace qddot::bench {
 
-using namespace measure;
-
 // A peer and the method of ours that takes the same steps, each over the run at one step size.
 struct SameSteps {
   std::string solver, method;

@@ -5,12 +5,10 @@
 
 #include "experiments/bench/external_program.hpp"
 #include "experiments/bench/peers.hpp"
-#include "experiments/command/shell_word.hpp"
+#include "experiments/kit/shell_word.hpp"
 #include "qddot/scene/scene_writer.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 // Debian's own, which has SciPy; the first one on PATH may be another.
@@ -92,13 +90,12 @@ class SciPy final : public Peer {
     const ScratchFolder folder;
     std::string command =
         fmt::format("timeout {:.0f} {} {} {} {} {:.17g} {:.17g}", 2 * limit + start_limit, python,
-                    command::shell_word(SCIPY_SCRIPT),
-                    command::shell_word(folder.write("problem.json", as_json(problem).dump())),
-                    method_, rtol, limit);
+                    kit::shell_word(SCIPY_SCRIPT),
+                    kit::shell_word(folder.write("problem.json", as_json(problem).dump())), method_,
+                    rtol, limit);
     if (force == ForceKind::ours) {
-      command +=
-          fmt::format(" {} {}", command::shell_word(force_library_),
-                      command::shell_word(folder.write("scene.toml", to_toml(problem.start))));
+      command += fmt::format(" {} {}", kit::shell_word(force_library_),
+                             kit::shell_word(folder.write("scene.toml", to_toml(problem.start))));
     }
     const auto [text, status] = output_of(command + " 2>/dev/null");
     if (status == timed_out) return {.outcome = Outcome::over_budget};

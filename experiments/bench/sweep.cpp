@@ -10,8 +10,6 @@
 #include "qddot/measure/speed/ladder.hpp"
 
 namespace qddot::bench {
-
-using namespace measure;
 namespace {
 
 // A run of so many seconds is long enough to be timed once.
@@ -75,8 +73,8 @@ std::vector<Rung> rungs(const std::vector<Measured>& points, double until, doubl
 
 }  // namespace
 
-Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
-            const Recall& recall, const std::function<void(const Measured&)>& report) {
+Sweep measure_ladder(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
+                     const Recall& recall, const std::function<void(const Measured&)>& report) {
   Sweep all{.is_stock_implicit = peer.is_stock_implicit()};
   double best = std::numeric_limits<double>::infinity();
   int idle = 0;

@@ -8,8 +8,6 @@
 
 namespace qddot::bench {
 
-using namespace measure;
-
 // One measured point: a solver at one value of its knob.
 struct Measured {
   std::string solver, force;
@@ -45,7 +43,7 @@ using Recall =
 // Runs a peer over its values, until its error is small enough or no longer falls, or a run is over
 // budget. Fixed steps, ours and theirs, are denser near their stability limit (see ladder.hpp).
 // `report` is called with each point.
-Sweep sweep(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
-            const Recall& recall, const std::function<void(const Measured&)>& report);
+Sweep measure_ladder(Peer& peer, ForceKind force, const Problem& problem, const Pace& pace,
+                     const Recall& recall, const std::function<void(const Measured&)>& report);
 
 }  // namespace qddot::bench

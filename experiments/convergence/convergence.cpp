@@ -20,17 +20,17 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/point_record.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/reference_file.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/study.hpp"
 #include "experiments/convergence/observed_orders.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/reference_file.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
 #include "qddot/measure/motion/resolved_frequency.hpp"
 #include "qddot/measure/reference/reference_words.hpp"
 #include "qddot/measure/speed/measurement.hpp"
@@ -38,9 +38,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::convergence {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 constexpr int most_halvings = 12;
@@ -210,7 +207,7 @@ int convergence(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::convergence;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "convergence",
        .summary = "Measures the order of convergence of every fixed-step integrator.",
        .has_threads = true,

@@ -37,28 +37,25 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/point_record.hpp"
-#include "experiments/command/point_table.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/reference_file.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/study.hpp"
-#include "experiments/command/sweep_progress.hpp"
 #include "experiments/crossover/pruning.hpp"
 #include "experiments/crossover/stiff_scenes.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/point_table.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/reference_file.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
+#include "experiments/kit/sweep_progress.hpp"
 #include "qddot/measure/motion/interruption.hpp"
-#include "qddot/measure/speed/sweep.hpp"
+#include "qddot/measure/speed/ladder_points.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::crossover {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 constexpr double largest_ratio = 1e9;  // beyond it rounding of stiff forces is felt
@@ -202,7 +199,7 @@ class Sweeps {
       effort.seconds = std::min(effort.seconds, pruning.seconds_of_interest());
       effort.recall = shown.seen(points_of(study, fmt::format("{:.17g} ", one.ratio)));
       std::vector<Point>& own = points[method];
-      sweep(
+      measure_ladder(
           *method, *one.scene, until, *one.reference, effort,
           [&](const Point& point) {
             pruning.take(point);
@@ -378,7 +375,7 @@ int crossover(const CommandLine& line, Arguments a, const std::vector<std::strin
 
 int main(int argc, char** argv) {
   using namespace qddot::crossover;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "crossover",
        .summary = "Measures from which stiffness on an implicit method is the fastest.",
        .has_threads = true,

@@ -7,8 +7,6 @@
 
 namespace qddot::crossover {
 
-using namespace measure;
-
 enum class Kind { explicit_steps, implicit_steps, split };
 constexpr std::array kinds = {Kind::explicit_steps, Kind::implicit_steps, Kind::split};
 

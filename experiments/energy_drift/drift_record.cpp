@@ -1,10 +1,10 @@
 #include "experiments/energy_drift/drift_record.hpp"
 
-#include "experiments/command/summary_record.hpp"
+#include "experiments/kit/summary_record.hpp"
 #include "qddot/integrators/registry.hpp"
 
 // What nlohmann::json looks for in the namespace of these types.
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Interval, value, low, high)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DriftPoint, t, energy, error)
@@ -13,10 +13,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trend, verdict, drift, steady_from, before, l
                                    oscillation, walk, colour, period, memory, slow_period, widening,
                                    needed, rate, damping_ratio, blow_up_time, last_error)
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure
 
 namespace qddot::energy_drift {
-
 namespace {
 
 nlohmann::json record_of(const std::optional<Trend>& trend) {

@@ -6,8 +6,6 @@
 
 namespace qddot::energy_drift {
 
-using namespace measure;
-
 // A run of energy_drift as a journal keeps it, with all that tables and verdicts are made of, and
 // back. drift_run_of throws nlohmann::json::exception for anything else.
 nlohmann::json record_of(const DriftRun& run);

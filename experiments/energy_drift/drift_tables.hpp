@@ -1,13 +1,10 @@
 #pragma once
 
-#include "experiments/command/columns.hpp"
-#include "experiments/command/csv.hpp"
+#include "experiments/kit/columns.hpp"
+#include "experiments/kit/csv.hpp"
 #include "qddot/measure/trend/drift_run.hpp"
 
 namespace qddot::energy_drift {
-
-using namespace measure;
-using namespace command;
 
 // The tables of energy_drift: drift.csv, summary.csv and tolerance.csv.
 

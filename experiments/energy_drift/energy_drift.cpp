@@ -25,19 +25,19 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_options.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/method_options.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/shared_seconds.hpp"
-#include "experiments/command/study.hpp"
 #include "experiments/energy_drift/drift_record.hpp"
 #include "experiments/energy_drift/drift_tables.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/method_options.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/shared_seconds.hpp"
+#include "experiments/kit/study.hpp"
 #include "qddot/algebra/straight_line.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
@@ -45,9 +45,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::energy_drift {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 constexpr double standard_resolution = 0.5;  // h w_max
@@ -337,7 +334,7 @@ int energy_drift(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::energy_drift;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "energy_drift",
        .summary = "Finds out where each integrator's energy goes over a long run of one scene.",
        .has_resume = true,

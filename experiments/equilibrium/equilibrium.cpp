@@ -7,19 +7,17 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/node_table.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/node_table.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::equilibrium {
-
-using namespace command;
 namespace {
 
 struct Arguments {
@@ -81,7 +79,7 @@ int equilibrium(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::equilibrium;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "equilibrium",
        .summary =
            "Finds the stable equilibrium that a scene reaches downhill from where it is drawn.",

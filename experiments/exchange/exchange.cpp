@@ -31,26 +31,23 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_options.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/reference_file.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/study.hpp"
-#include "experiments/command/summary_record.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/reference_file.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
+#include "experiments/kit/summary_record.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/exchange/exchange_words.hpp"
 #include "qddot/measure/exchange/excitation.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::exchange {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 struct Arguments {
@@ -268,7 +265,7 @@ int exchange(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::exchange;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "exchange",
        .summary = "Follows the energy that stiff springs exchange, by method and step size.",
        .has_resume = true},

@@ -11,8 +11,6 @@
 #include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::local_global {
-
-using namespace measure;
 namespace {
 
 std::vector<const Method*> solvers() {

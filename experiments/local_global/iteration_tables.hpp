@@ -5,11 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/csv.hpp"
+#include "experiments/kit/csv.hpp"
 
 namespace qddot::local_global {
-
-using namespace command;
 
 // The tables of local_global but speed.csv, in one folder.
 struct StepTables {

@@ -29,14 +29,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_options.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/pace.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/study.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/pace.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/local_global/iterated_newton.hpp"
 #include "experiments/local_global/iterated_steps.hpp"
 #include "experiments/local_global/iteration_tables.hpp"
@@ -50,9 +50,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::local_global {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 constexpr int standard_nodes = 33;
@@ -380,7 +377,7 @@ int local_global_program(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::local_global;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "local_global",
        .summary =
            "Measures how much iterations gain in a step of implicit Euler, by several solvers.",

@@ -13,8 +13,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::local_global {
-
-using namespace measure;
 namespace {
 
 constexpr double share_of_limit = 0.5;  // h w of the true motion's steps

@@ -13,13 +13,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
@@ -28,8 +28,6 @@
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::modes {
-
-using namespace command;
 namespace {
 
 constexpr int most_modes = 1000;
@@ -188,7 +186,7 @@ int modes(const CommandLine&, const Arguments& a, const std::vector<std::string>
 
 int main(int argc, char** argv) {
   using namespace qddot::modes;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "modes",
        .summary =
            "Finds the natural modes of a scene: frequencies and shapes of its small motions.",

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/csv.hpp"
+#include "experiments/kit/csv.hpp"
 #include "experiments/motion_files/frame.hpp"
 #include "experiments/motion_files/pc2_file.hpp"
 #include "experiments/motion_files/vtkhdf_file.hpp"
@@ -24,7 +24,7 @@ std::vector<std::string> files_of_motion(const std::string& path, const std::str
     throw InvalidInput(fmt::format(
         "{} {}: the ending names no format; allowed are .vtkhdf and .pc2", option, path));
   const std::string stem = path.substr(0, path.size() - ending.size());
-  return {path, stem + (is_pc2(path) ? ".obj" : ".xdmf"), command::sidecar_of(path)};
+  return {path, stem + (is_pc2(path) ? ".obj" : ".xdmf"), kit::sidecar_of(path)};
 }
 
 Fields fields_named(const std::vector<std::string>& names, const std::string& path,

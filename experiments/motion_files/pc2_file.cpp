@@ -10,16 +10,16 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/csv.hpp"
-#include "experiments/command/overwriting.hpp"
-#include "experiments/command/whole_file.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/overwriting.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "experiments/motion_files/frame.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::motion_files {
 namespace {
 
-using command::WholeFile;
+using kit::WholeFile;
 
 constexpr std::size_t most_points = std::numeric_limits<std::int32_t>::max();
 
@@ -50,7 +50,7 @@ std::string obj_text(const Scene& start, const std::vector<Node>& nodes) {
     fmt::format_to(out, "f {} {} {}\n", a + 1, b + 1, c + 1);
   for (const Spring& spring : start.springs)
     fmt::format_to(out, "l {} {}\n", spring.nodes[0] + 1, spring.nodes[1] + 1);
-  return command::signed_text(fmt::to_string(text));
+  return kit::signed_text(fmt::to_string(text));
 }
 
 class Pc2File final : public MotionFile {
@@ -80,7 +80,7 @@ class Pc2File final : public MotionFile {
 
   void complete(const nlohmann::json& origin) override {
     file_.overwrite_beginning(header(points_, frames_));
-    sidecar_.write(command::text_of_sidecar(origin));
+    sidecar_.write(kit::text_of_sidecar(origin));
     for (WholeFile* file : {&file_, &obj_, &sidecar_}) file->complete();
   }
 

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/csv.hpp"
-#include "experiments/command/whole_file.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "experiments/motion_files/cells.hpp"
 #include "experiments/motion_files/frame.hpp"
 #include "experiments/motion_files/hdf5.hpp"
@@ -19,9 +19,9 @@
 namespace qddot::motion_files {
 namespace {
 
-using command::CannotWrite;
-using command::WholeFile;
 using hdf5::Handle;
+using kit::CannotWrite;
+using kit::WholeFile;
 using Numbers = std::vector<std::int64_t>;
 
 constexpr std::size_t kinds = 4;  // of cells: vertices, lines, polygons and strips
@@ -116,7 +116,7 @@ class VtkhdfFile final : public MotionFile {
         handle->close();
     });
     xdmf_.write(xdmf_text(about_, times_));
-    sidecar_.write(command::text_of_sidecar(origin));
+    sidecar_.write(kit::text_of_sidecar(origin));
     for (WholeFile* file : {&file_, &xdmf_, &sidecar_}) file->complete();
   }
 

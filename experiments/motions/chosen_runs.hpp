@@ -7,8 +7,6 @@
 
 namespace qddot::motions {
 
-using namespace measure;
-
 // A run whose motion is worth keeping, and what it shows.
 struct ChosenRun {
   const Point* point = nullptr;

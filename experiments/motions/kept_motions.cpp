@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/overwriting.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/written_table.hpp"
+#include "experiments/kit/overwriting.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/written_table.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/timing.hpp"
@@ -43,7 +43,7 @@ const std::string place = "motions/", unfinished = "motions.part/", ending = ".v
 std::vector<std::string> motions_in(const std::string& table) {
   std::vector<std::string> files;
   try {
-    const command::WrittenTable rows(table, {"file"});
+    const kit::WrittenTable rows(table, {"file"});
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const std::string& file = rows.text(i, "file");
       const bool is_here = file.starts_with(place) && file.rfind('/') + 1 == place.size();
@@ -59,7 +59,7 @@ void move(const std::string& from, const std::string& to) {
   std::error_code error;
   std::filesystem::rename(from, to, error);
   if (error) {
-    throw command::CannotWrite(fmt::format("{}: cannot be written: {}", to, error.message()));
+    throw kit::CannotWrite(fmt::format("{}: cannot be written: {}", to, error.message()));
   }
 }
 
@@ -117,7 +117,7 @@ KeptMotions::KeptMotions(const std::string& folder, const Scene& start, const Re
       energy_(folder + "/motions_energy.csv", {"file", "t", "kinetic", "potential", "total"}),
       origin_(origin) {
   std::filesystem::remove_all(folder_ + "/" + unfinished);
-  command::require_folder(folder_ + "/" + unfinished);
+  kit::require_folder(folder_ + "/" + unfinished);
 }
 
 KeptMotions::~KeptMotions() {
@@ -161,7 +161,7 @@ void KeptMotions::add(const ChosenRun& run, const Options& options, const Refere
 void KeptMotions::finish(const nlohmann::json& origin) {
   table_.complete(origin);
   energy_.complete(origin);
-  command::require_folder(folder_ + "/" + place);
+  kit::require_folder(folder_ + "/" + place);
   for (const std::string& before : earlier_) {
     for (const std::string& file : motion_files::files_of_motion(folder_ + "/" + before, "file")) {
       std::error_code ignored;
@@ -180,7 +180,7 @@ KeptMotions::Written KeptMotions::write(const std::string& name, const std::vect
   const std::string file_name = name + ending, path = folder_ + "/" + unfinished + file_name;
   const std::string own = folder_ + "/" + place + file_name;
   for (const std::string& file : motion_files::files_of_motion(own, "file")) {
-    command::require_replaceable(file, {}, command::sidecar_of(own));
+    kit::require_replaceable(file, {}, kit::sidecar_of(own));
   }
   const bool is_compared = !is_reference && !reference_.empty();
   const auto file = motion_files::open_motion(path, start_, scene_, is_compared);

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/csv.hpp"
+#include "experiments/kit/csv.hpp"
 #include "experiments/motion_files/motion_file.hpp"
 #include "experiments/motions/chosen_runs.hpp"
 #include "experiments/motions/reference_motion.hpp"
@@ -65,7 +65,7 @@ class KeptMotions {
   std::vector<State> reference_;  // none where nobody knows it
   std::vector<std::string> earlier_;
   std::size_t earlier_runs_;
-  command::CsvFile table_, energy_;
+  kit::CsvFile table_, energy_;
   nlohmann::json origin_;
   std::size_t runs_ = 0;
   double bytes_ = 0;

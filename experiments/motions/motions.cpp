@@ -22,16 +22,16 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/accuracy_choice.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/interruptible.hpp"
-#include "experiments/command/measured_points.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/reference_file.hpp"
-#include "experiments/command/scene_choice.hpp"
+#include "experiments/kit/accuracy_choice.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/interruptible.hpp"
+#include "experiments/kit/measured_points.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/reference_file.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "experiments/motion_files/motion_file.hpp"
 #include "experiments/motions/chosen_runs.hpp"
 #include "experiments/motions/kept_motions.hpp"
@@ -42,9 +42,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::motions {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 // Runs, bytes of their motions and seconds that a folder gets unless more runs are asked for.
@@ -172,7 +169,7 @@ int motions(const CommandLine& line, Arguments& a, const std::vector<std::string
 
 int main(int argc, char** argv) {
   using namespace qddot::motions;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "motions",
        .summary = "Keeps the motions of the runs of a work-precision chart, beside the reference.",
        .has_threads = true},

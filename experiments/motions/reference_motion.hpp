@@ -8,8 +8,6 @@
 
 namespace qddot::motions {
 
-using namespace measure;
-
 // The motion that others are compared with, at some times.
 struct ReferenceMotion {
   const Method* method = nullptr;  // the run that makes it, with its

@@ -3,8 +3,6 @@
 #include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::scaling {
-
-using namespace measure;
 namespace {
 
 // A spring's k and l0 are read at each of its ends (see SpringsByNode). An unknown's q and weight

@@ -9,8 +9,6 @@
 
 namespace qddot::scaling {
 
-using namespace measure;
-
 // What one phase of a method takes at one size of a scene: a row of scaling.csv.
 struct PhaseCost {
   std::string scene;

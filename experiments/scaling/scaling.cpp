@@ -29,25 +29,22 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_options.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/memory.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/study.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/memory.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/scaling/phase_table.hpp"
 #include "experiments/scaling/scaling_run.hpp"
 #include "qddot/measure/speed/machine_limits.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::scaling {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 constexpr double gigabyte = 1e9;
@@ -267,7 +264,7 @@ int scaling(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::scaling;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "scaling",
        .summary = "Measures how the cost of a step grows with the number of nodes.",
        .has_threads = true,

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/memory.hpp"
-#include "experiments/command/progress.hpp"
+#include "experiments/kit/memory.hpp"
+#include "experiments/kit/progress.hpp"
 #include "experiments/scaling/step_cost.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/frequency_bound.hpp"
@@ -18,9 +18,6 @@
 #include "qddot/scene/scene_limits.hpp"
 
 namespace qddot::scaling {
-
-using namespace measure;
-using namespace command;
 
 // What nlohmann::json looks for by these names.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PhaseCost, scene, nodes, springs, method, phase, seconds, bytes)

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/command/study.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/scaling/force_rate.hpp"
 #include "experiments/scaling/phase_table.hpp"
 #include "qddot/algebra/solver.hpp"
@@ -11,8 +11,6 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot::scaling {
-
-using namespace command;
 
 // How far a measurement of scaling goes, and how it steps.
 struct ScalingLimits {

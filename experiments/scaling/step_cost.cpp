@@ -6,8 +6,6 @@
 #include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::scaling {
-
-using namespace measure;
 namespace {
 
 // A timed run is at least so long [s], if that takes no more than so many steps: short runs are the

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/accuracy_choice.hpp"
-#include "experiments/command/interruptible.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
+#include "experiments/kit/accuracy_choice.hpp"
+#include "experiments/kit/interruptible.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
 #include "experiments/simulate/outputs.hpp"
 #include "experiments/simulate/written_scene.hpp"
 #include "qddot/measure/advice/solve.hpp"
@@ -19,8 +19,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::simulate {
-
-using namespace measure;
 namespace {
 
 // An interruption waits so long [s] for what was found until then.

@@ -8,12 +8,12 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/accuracy_choice.hpp"
-#include "experiments/command/allowed_options.hpp"
-#include "experiments/command/catalogue.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/method_options.hpp"
-#include "experiments/command/program.hpp"
+#include "experiments/kit/accuracy_choice.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/catalogue.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/method_options.hpp"
+#include "experiments/kit/program.hpp"
 #include "experiments/motion_files/motion_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

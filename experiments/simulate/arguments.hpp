@@ -3,13 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/scene_choice.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::simulate {
-
-using namespace command;
 
 // What simulate takes on its command line.
 struct Arguments {

@@ -4,12 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/node_table.hpp"
+#include "experiments/kit/node_table.hpp"
 #include "qddot/measure/motion/samples.hpp"
 
 namespace qddot::simulate {
-
-using namespace measure;
 
 Outputs::Outputs(const Arguments& a, const Scene& start, const ReducedScene& scene, double until)
     : scene_(scene),

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "experiments/command/csv.hpp"
+#include "experiments/kit/csv.hpp"
 #include "experiments/motion_files/motion_file.hpp"
 #include "experiments/simulate/arguments.hpp"
 #include "experiments/simulate/background_observer.hpp"

@@ -15,16 +15,16 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_options.hpp"
-#include "experiments/command/catalogue.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/interruptible.hpp"
-#include "experiments/command/method_options.hpp"
-#include "experiments/command/pace.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/catalogue.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/interruptible.hpp"
+#include "experiments/kit/method_options.hpp"
+#include "experiments/kit/pace.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "experiments/simulate/answer.hpp"
 #include "experiments/simulate/arguments.hpp"
 #include "experiments/simulate/outputs.hpp"
@@ -38,9 +38,6 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot::simulate {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 // Seconds that may be spent on why a run failed: some twenty times what the run took.
@@ -161,7 +158,7 @@ int simulate(const CommandLine& line, Arguments& a, const std::vector<std::strin
 
 int main(int argc, char** argv) {
   using namespace qddot::simulate;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "simulate", .summary = "Runs one integrator on one scene.", .has_threads = true},
       declare, simulate, argc, argv);
 }

@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "experiments/command/overwriting.hpp"
-#include "experiments/command/whole_file.hpp"
+#include "experiments/kit/overwriting.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/scene/scene_writer.hpp"
 
 namespace qddot::simulate {
@@ -13,16 +13,16 @@ namespace qddot::simulate {
 class WrittenScene {
  public:
   explicit WrittenScene(const std::string& path) {
-    if (!path.empty()) file_ = std::make_unique<command::WholeFile>(path);
+    if (!path.empty()) file_ = std::make_unique<kit::WholeFile>(path);
   }
   void commit(const Scene& scene) {
     if (!file_) return;
-    file_->write(command::signed_text(to_toml(scene)));
+    file_->write(kit::signed_text(to_toml(scene)));
     file_->commit();
   }
 
  private:
-  std::unique_ptr<command::WholeFile> file_;
+  std::unique_ptr<kit::WholeFile> file_;
 };
 
 }  // namespace qddot::simulate

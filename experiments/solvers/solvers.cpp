@@ -21,14 +21,14 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_options.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/study.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/solvers/direct_solvers.hpp"
 #include "experiments/solvers/product_flops.hpp"
 #include "qddot/measure/motion/interruption.hpp"
@@ -37,9 +37,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::solvers {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 struct Arguments {
@@ -226,7 +223,7 @@ int solvers(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::solvers;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "solvers",
        .summary = "Measures direct solvers of M - h^2 K against each other and the machine.",
        .has_threads = true,

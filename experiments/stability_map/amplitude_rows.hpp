@@ -5,13 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "experiments/command/scene_choice.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "qddot/measure/motion/vibrating_modes.hpp"
 
 namespace qddot::stability_map {
-
-using namespace measure;
-using namespace command;
 
 // A scene at one amplitude of its motion, and what linear theory knows of it.
 struct AmplitudeRow {

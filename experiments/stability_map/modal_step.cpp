@@ -12,8 +12,6 @@
 #include "qddot/measure/motion/tolerance_scales.hpp"
 
 namespace qddot::stability_map {
-
-using namespace measure;
 namespace {
 
 // The largest displacement in the fastest mode, as a part of the scene's extent. It is small enough

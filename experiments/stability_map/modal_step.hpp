@@ -7,8 +7,6 @@
 
 namespace qddot::stability_map {
 
-using namespace measure;
-
 // The method's step on one natural mode of a scene at rest, found by exciting the mode. It runs a
 // few steps from small displacements and velocities along the mode, in both directions, and
 // projects the results on it. Differences to linear_step at the same h w come from this scene's

@@ -4,11 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/progress.hpp"
+#include "experiments/kit/progress.hpp"
 
 namespace qddot::stability_map {
-
-using namespace command;
 namespace {
 
 constexpr int modes_excited = 12;

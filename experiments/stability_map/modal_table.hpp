@@ -3,13 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/command/csv.hpp"
-#include "experiments/command/study.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/stability_map/modal_step.hpp"
 
 namespace qddot::stability_map {
-
-using namespace command;
 
 // The columns of modal.csv.
 const std::vector<std::string>& modal_columns();

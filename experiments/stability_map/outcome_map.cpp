@@ -9,14 +9,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/summary_record.hpp"
+#include "experiments/kit/summary_record.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
 
 namespace qddot::stability_map {
-
-using namespace measure;
-using namespace command;
 
 // What nlohmann::json looks for by this name.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunOutcome, outcome, growth_rate, t_reached, energy_end,

@@ -4,13 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "experiments/command/study.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/stability_map/amplitude_rows.hpp"
 #include "experiments/stability_map/run_outcome.hpp"
 
 namespace qddot::stability_map {
-
-using namespace command;
 
 // One run of the map.
 struct Cell {

@@ -16,8 +16,6 @@
 #include "qddot/measure/motion/vibrating_modes.hpp"
 
 namespace qddot::stability_map {
-
-using namespace measure;
 namespace {
 
 // Chosen, not derived, and said in run_outcome.hpp; verdicts depend on them where a run is at the

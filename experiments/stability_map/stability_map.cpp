@@ -26,16 +26,16 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_options.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/shared_seconds.hpp"
-#include "experiments/command/study.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/shared_seconds.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/stability_map/amplitude_rows.hpp"
 #include "experiments/stability_map/chosen_steps.hpp"
 #include "experiments/stability_map/modal_table.hpp"
@@ -47,9 +47,6 @@
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::stability_map {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 constexpr int linear_points = 60;  // a decade
@@ -385,7 +382,7 @@ int stability_map(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::stability_map;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "stability_map",
        .summary = "Measures where each method is stable, and compares with theory.",
        .has_resume = true,

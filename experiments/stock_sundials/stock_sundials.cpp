@@ -19,24 +19,21 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/allowed_options.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/reference_file.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/study.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/reference_file.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::stock_sundials {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 struct Arguments {
@@ -277,7 +274,7 @@ int stock_sundials(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::stock_sundials;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "stock_sundials",
        .summary =
            "Measures what SUNDIALS' implicit methods gain from n x n solves, against stock KLU.",

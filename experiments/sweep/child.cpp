@@ -15,8 +15,8 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/program.hpp"
-#include "experiments/command/shell_word.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/shell_word.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 
 namespace qddot::sweep {
@@ -87,9 +87,9 @@ void wait_for_end(int pipe, pid_t child) {
 std::string shell_line(const Command& command) {
   std::string line;
   for (const auto& [name, value] : command.environment)
-    line += fmt::format("{}={} ", name, command::shell_word(value));
-  line += command::shell_word(command.program);
-  for (const std::string& word : command.arguments) line += " " + command::shell_word(word);
+    line += fmt::format("{}={} ", name, kit::shell_word(value));
+  line += kit::shell_word(command.program);
+  for (const std::string& word : command.arguments) line += " " + kit::shell_word(word);
   return line;
 }
 
@@ -99,7 +99,7 @@ std::string ChildEnd::cause() const {
   std::size_t end = err.find_last_not_of(" \n");
   if (end == err.npos) return fmt::format("it ended with status {}", status);
   const std::size_t start = err.rfind('\n', end);
-  return command::in_one_line(err.substr(start == err.npos ? 0 : start + 1, end - start));
+  return kit::in_one_line(err.substr(start == err.npos ? 0 : start + 1, end - start));
 }
 
 std::string program_path(const std::string& name) {

@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/csv.hpp"
-#include "experiments/command/point_table.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/shares.hpp"
-#include "experiments/command/written_table.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/point_table.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/shares.hpp"
+#include "experiments/kit/written_table.hpp"
 #include "experiments/sweep/machines.hpp"
 #include "experiments/sweep/missing.hpp"
 #include "experiments/sweep/results.hpp"
@@ -23,8 +23,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 namespace {
 
 // The scenes' parts in the order of the plan, made of the complete ones among these tasks.

@@ -4,13 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/csv.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/shares.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/shares.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 namespace {
 
 constexpr std::size_t most_shown = 10;

@@ -6,19 +6,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/command/overwriting.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/shares.hpp"
-#include "experiments/command/text_hash.hpp"
-#include "experiments/command/whole_file.hpp"
+#include "experiments/kit/overwriting.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/shares.hpp"
+#include "experiments/kit/text_hash.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 namespace {
 
 // What --scene takes.

@@ -10,17 +10,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/command/csv.hpp"
-#include "experiments/command/measured_points.hpp"
-#include "experiments/command/reference_file.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/measured_points.hpp"
+#include "experiments/kit/reference_file.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/front.hpp"
 #include "qddot/measure/speed/judgement.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();

@@ -8,8 +8,6 @@
 
 namespace qddot::sweep {
 
-using namespace measure;
-
 // What was measured on one scene by work_precision, in its folder.
 struct SceneResult {
   std::string label;

@@ -5,17 +5,15 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/shares.hpp"
-#include "experiments/command/whole_file.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/shares.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 namespace {
 
 void say_of(const Task& task, const std::string& what) {

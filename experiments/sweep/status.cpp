@@ -7,13 +7,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress_words.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress_words.hpp"
 #include "experiments/sweep/machines.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 namespace {
 
 constexpr std::size_t most_shown = 10;

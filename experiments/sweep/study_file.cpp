@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/command/catalogue.hpp"
+#include "experiments/kit/catalogue.hpp"
 #include "experiments/sweep/scene_entries.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/generators.hpp"
@@ -51,7 +51,7 @@ std::vector<std::string> methods_in(const TomlTable& file, const toml::table& ta
   for (const toml::node& node : *array) {
     const auto* name = node.as_string();
     if (!name || !find_method(name->get()))
-      file.refuse("methods", fmt::format("lists of {}", command::method_names()));
+      file.refuse("methods", fmt::format("lists of {}", kit::method_names()));
     if (std::ranges::find(methods, name->get()) != methods.end())
       file.fail("methods", fmt::format("{} is named twice; allowed is once", name->get()));
     methods.push_back(name->get());

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/program.hpp"
-#include "experiments/command/shell_word.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/shell_word.hpp"
 #include "experiments/sweep/task.hpp"
 
 namespace qddot::sweep {
@@ -34,7 +34,7 @@ std::string absolute(const std::string& folder) {
 
 std::string joined(const std::vector<std::string>& options) {
   std::string text;
-  for (const std::string& word : options) text += " " + command::shell_word(word);
+  for (const std::string& word : options) text += " " + kit::shell_word(word);
   return text;
 }
 
@@ -57,7 +57,7 @@ std::string sbatch(const std::string& folder, const std::string& name, const std
       "{0}=$(sbatch --parsable --job-name=qddot-{0} --ntasks=1 --cpus-per-task=1 "
       "--threads-per-core=1 --requeue --open-mode=append --output={1}{2}{3} --wrap={4}) && echo "
       "\"{0}: job ${0}\"\n",
-      name, command::shell_word(log), own, joined(how.options), command::shell_word(script));
+      name, kit::shell_word(log), own, joined(how.options), kit::shell_word(script));
 }
 
 std::string array_script(const std::string& folder, const std::string& stage, std::size_t count) {
@@ -69,7 +69,7 @@ std::string array_script(const std::string& folder, const std::string& stage, st
 
 std::string slurm_lines(const std::string& folder, const Submission& how) {
   const Division division = division_of(folder, how.shards);
-  command::require_folder(folder + "/log");
+  kit::require_folder(folder + "/log");
   std::string lines, after;
   if (division.references > 0) {
     lines += sbatch(folder, "references", fmt::format(" --array=1-{}", division.references), how,
@@ -88,8 +88,8 @@ std::string parallel_lines(const std::string& folder, const Submission& how) {
   const auto line = [&](const std::string& stage, std::size_t count) {
     return fmt::format("seq {0} | parallel --use-cores-instead-of-threads --line-buffer{1} {2}",
                        count, joined(how.options),
-                       command::shell_word(fmt::format("{} --shard {{}}/{}",
-                                                       shell_line(run_of(folder, stage)), count)));
+                       kit::shell_word(fmt::format("{} --shard {{}}/{}",
+                                                   shell_line(run_of(folder, stage)), count)));
   };
   std::string lines;
   if (division.references > 0) lines += line(references, division.references) + " &&\n";
@@ -98,7 +98,7 @@ std::string parallel_lines(const std::string& folder, const Submission& how) {
 
 int go(const std::string& lines) {
   const int status = std::system(lines.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : command::failed;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : kit::failed;
 }
 
 }  // namespace qddot::sweep

@@ -23,12 +23,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/interruptible.hpp"
-#include "experiments/command/overwriting.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/interruptible.hpp"
+#include "experiments/kit/overwriting.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
 #include "experiments/sweep/merge.hpp"
 #include "experiments/sweep/plan.hpp"
 #include "experiments/sweep/run.hpp"
@@ -38,8 +38,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 namespace {
 
 // A child is given as long as a study waits for a step, and then this process has to say so.
@@ -229,7 +227,7 @@ int main(int argc, char** argv) {
   const Words words = parted(argc, argv);
   std::vector<char*> own;
   for (const std::string& word : words.own) own.push_back(const_cast<char*>(word.c_str()));
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "sweep",
        .summary = "Divides a study of many scenes among processes and merges the results."},
       declare,

@@ -5,15 +5,13 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/journal.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/text_hash.hpp"
-#include "experiments/command/whole_file.hpp"
+#include "experiments/kit/journal.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/text_hash.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 
 // Looked for in the namespace of the type.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Task, id, stage, folder, program, share, arguments, key, varied,

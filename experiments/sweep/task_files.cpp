@@ -10,14 +10,12 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/program.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/shares.hpp"
-#include "experiments/command/whole_file.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/shares.hpp"
+#include "experiments/kit/whole_file.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 namespace {
 
 namespace fs = std::filesystem;

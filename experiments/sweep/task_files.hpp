@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "experiments/command/journal.hpp"
+#include "experiments/kit/journal.hpp"
 #include "experiments/sweep/task.hpp"
 
 namespace qddot::sweep {
 
-using command::Journal;
+using kit::Journal;
 
 // What has become of a task.
 struct TaskState {

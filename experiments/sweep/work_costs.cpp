@@ -4,16 +4,14 @@
 #include <fstream>
 #include <sstream>
 
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/whole_file.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::sweep {
-
-using namespace command;
 
 // Looked for in the namespace of the type.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkCosts, force, stiffness, factorization, solve)

@@ -23,12 +23,12 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
 #include "experiments/symmetric_roots/orbit_swing.hpp"
 #include "experiments/symmetric_roots/recurrence.hpp"
 #include "experiments/symmetric_roots/sampled_cosines.hpp"
@@ -38,9 +38,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::spurious_roots {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 constexpr int least_steps = 4, most_steps = 12;
@@ -208,7 +205,7 @@ int symmetric_roots(const CommandLine&, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::spurious_roots;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "symmetric_roots",
        .summary = "Charts what the spurious roots of symmetric multistep formulas trade."},
       declare, symmetric_roots, argc, argv);

@@ -15,13 +15,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/study.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/study.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/trend/sample_steps.hpp"
@@ -29,9 +29,6 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::verdicts {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 constexpr int most_seeds = 1000000;
@@ -221,7 +218,7 @@ int verdicts(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::verdicts;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "verdicts",
        .summary = "Finds out how often the verdicts of energy_drift are right.",
        .has_resume = true},

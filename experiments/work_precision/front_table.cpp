@@ -5,21 +5,19 @@
 
 #include <fmt/format.h>
 
-#include "experiments/command/accuracy_choice.hpp"
+#include "experiments/kit/accuracy_choice.hpp"
 #include "qddot/measure/reference/reference_words.hpp"
 #include "qddot/measure/speed/judgement.hpp"
 
 namespace qddot::work_precision {
-
-using namespace measure;
-using command::time_in_words;
+using kit::time_in_words;
 namespace {
 
 // A step that is nearer to its limit is warned of.
 constexpr double small_margin = 0.15;
 
 std::string knob_in_words(const Point& point) {
-  return command::knob_in_words(*point.method, point.value);
+  return kit::knob_in_words(*point.method, point.value);
 }
 
 const char* why_empty(const FrontRow& row, const Reference& reference) {

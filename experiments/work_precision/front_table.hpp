@@ -7,8 +7,6 @@
 
 namespace qddot::work_precision {
 
-using namespace measure;
-
 // Prints the rows as a table for people, with a warning of small stability margins.
 void print_front(const std::string& scene, double until, const std::vector<FrontRow>& front,
                  const Reference& reference);

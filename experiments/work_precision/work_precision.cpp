@@ -22,31 +22,28 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/accuracy_choice.hpp"
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/csv.hpp"
-#include "experiments/command/entry.hpp"
-#include "experiments/command/method_options.hpp"
-#include "experiments/command/point_notes.hpp"
-#include "experiments/command/point_record.hpp"
-#include "experiments/command/point_table.hpp"
-#include "experiments/command/program.hpp"
-#include "experiments/command/progress.hpp"
-#include "experiments/command/provenance.hpp"
-#include "experiments/command/reference_file.hpp"
-#include "experiments/command/scene_choice.hpp"
-#include "experiments/command/study.hpp"
-#include "experiments/command/sweep_progress.hpp"
+#include "experiments/kit/accuracy_choice.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/entry.hpp"
+#include "experiments/kit/method_options.hpp"
+#include "experiments/kit/point_notes.hpp"
+#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/point_table.hpp"
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/reference_file.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
+#include "experiments/kit/sweep_progress.hpp"
 #include "experiments/work_precision/front_table.hpp"
 #include "qddot/measure/speed/front.hpp"
 #include "qddot/measure/speed/judgement.hpp"
-#include "qddot/measure/speed/sweep.hpp"
+#include "qddot/measure/speed/ladder_points.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::work_precision {
-
-using namespace measure;
-using namespace command;
 namespace {
 
 struct Arguments {
@@ -165,7 +162,7 @@ int work_precision(const CommandLine& line, const Arguments& a,
     effort.recall = shown.seen(points_of(study));
     for (const Method* method : selected) {
       taken.emplace_back();
-      sweep(
+      measure_ladder(
           *method, scene, until, *reference, effort,
           [&](const Point& point) {
             shown.take(point);
@@ -198,7 +195,7 @@ int work_precision(const CommandLine& line, const Arguments& a,
 
 int main(int argc, char** argv) {
   using namespace qddot::work_precision;
-  return qddot::command::enter<Arguments>(
+  return qddot::kit::enter<Arguments>(
       {.name = "work_precision",
        .summary = "Measures speed against accuracy of every integrator on one scene.",
        .has_threads = true,

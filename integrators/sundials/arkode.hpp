@@ -4,9 +4,9 @@
 
 #include <arkode/arkode_arkstep.h>
 
-#include "qddot/integrators/base/renewed_bound.hpp"
 #include "integrators/sundials/newton_test.hpp"
 #include "integrators/sundials/stepper.hpp"
+#include "qddot/integrators/base/renewed_bound.hpp"
 
 namespace qddot::sundials {
 

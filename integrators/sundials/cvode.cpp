@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include "qddot/integrators/registry.hpp"
 #include "integrators/sundials/orders.hpp"
 #include "integrators/sundials/stepper.hpp"
+#include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
 namespace {

@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
-#include "qddot/integrators/registry.hpp"
 #include "integrators/sundials/arkode.hpp"
+#include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
 namespace {

@@ -8,9 +8,9 @@
 // on vibrations. The error test alone would miss vibrations that grow but are still small.
 #include <fmt/format.h>
 
-#include "qddot/integrators/registry.hpp"
 #include "integrators/sundials/arkode.hpp"
 #include "integrators/sundials/imaginary_stability.hpp"
+#include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
 namespace {

@@ -24,13 +24,13 @@
 #include <fmt/format.h>
 #include <ida/ida.h>
 
+#include "integrators/sundials/orders.hpp"
+#include "integrators/sundials/stepper.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/equilibrium.hpp"
 #include "qddot/analysis/stability.hpp"
 #include "qddot/integrators/registry.hpp"
-#include "integrators/sundials/orders.hpp"
-#include "integrators/sundials/stepper.hpp"
 #include "qddot/model/constrained_system.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 

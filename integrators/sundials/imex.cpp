@@ -13,9 +13,9 @@
 // a growing vibration only when it is as large as the tolerance, and then again and again.
 #include <fmt/format.h>
 
-#include "qddot/integrators/registry.hpp"
 #include "integrators/sundials/additive_tables.hpp"
 #include "integrators/sundials/arkode.hpp"
+#include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
 namespace {

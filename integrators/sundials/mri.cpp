@@ -15,9 +15,9 @@
 #include <arkode/arkode_mristep.h>
 #include <fmt/format.h>
 
+#include "integrators/sundials/arkode.hpp"
 #include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/integrators/registry.hpp"
-#include "integrators/sundials/arkode.hpp"
 
 namespace qddot::registered {
 namespace {

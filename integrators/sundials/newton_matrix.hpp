@@ -4,8 +4,8 @@
 #include <memory>
 #include <utility>
 
-#include "qddot/integrators/integrator.hpp"
 #include "integrators/sundials/support.hpp"
+#include "qddot/integrators/integrator.hpp"
 
 namespace qddot::sundials {
 

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "qddot/integrators/base/step_times.hpp"
-#include "qddot/integrators/integrator.hpp"
-#include "qddot/integrators/method.hpp"
 #include "integrators/sundials/cause.hpp"
 #include "integrators/sundials/newton_matrix.hpp"
 #include "integrators/sundials/vector.hpp"
+#include "qddot/integrators/base/step_times.hpp"
+#include "qddot/integrators/integrator.hpp"
+#include "qddot/integrators/method.hpp"
 
 namespace qddot::sundials {
 

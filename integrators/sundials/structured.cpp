@@ -7,8 +7,8 @@
 // but the first row of an unknown without mass is -b = r. No product with K is needed, so the
 // factors may belong to another gamma or an older K than the step at hand. Newton's iteration then
 // takes a few more rounds.
-#include "qddot/algebra/effective_mass.hpp"
 #include "integrators/sundials/newton_matrix.hpp"
+#include "qddot/algebra/effective_mass.hpp"
 
 namespace qddot::sundials {
 namespace {

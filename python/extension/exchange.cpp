@@ -6,8 +6,6 @@
 
 namespace qddot::python {
 namespace {
-
-using namespace measure;
 using py::arg;
 
 py::array_t<double> energies_of(const EnergyCourse& course) {

@@ -12,8 +12,6 @@
 
 namespace qddot::python {
 namespace {
-
-using namespace measure;
 using py::arg;
 
 HeldReference reference_of(const Model& model, double until, double seconds) {

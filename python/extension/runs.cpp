@@ -10,8 +10,6 @@
 
 namespace qddot::python {
 namespace {
-
-using namespace measure;
 using py::arg;
 
 // Arrays of the caller's that a run fills at the times that it is looked at: positions and

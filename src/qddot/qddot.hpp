@@ -1,7 +1,7 @@
 #pragma once
 
 // All that a program outside the project needs of qddot: scenes, own systems, methods and
-// measurements. Everything is in namespace qddot; measurements are in qddot::measure too.
+// measurements. Everything is in namespace qddot.
 
 #include "qddot/analysis/equilibrium.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
@@ -24,28 +24,3 @@
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_arrays.hpp"
 #include "qddot/scene/scene_file.hpp"
-
-namespace qddot {
-
-using measure::AccuracyOf;
-using measure::Advice;
-using measure::Advices;
-using measure::advise;
-using measure::agreed_reference;
-using measure::Answer;
-using measure::diagnosis;
-using measure::energy_trend;
-using measure::linear_step;
-using measure::make_reference;
-using measure::measured_limit;
-using measure::NoReference;
-using measure::Point;
-using measure::Reference;
-using measure::samples;
-using measure::solve;
-using measure::trend_of;
-using measure::Wanted;
-using measure::work_precision;
-using measure::WorkPrecision;
-
-}  // namespace qddot

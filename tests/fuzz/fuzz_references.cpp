@@ -24,8 +24,6 @@
 #include "tests/independent/random_scene.hpp"
 
 namespace qddot {
-
-using namespace measure;
 namespace {
 
 // Far below what a double resolves, and far above what quadruple precision does.

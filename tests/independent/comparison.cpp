@@ -14,8 +14,6 @@
 
 namespace qddot {
 inline namespace tests {
-
-using namespace measure;
 namespace {
 
 using Plain = PlainMotion<long double>;

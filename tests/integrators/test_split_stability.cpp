@@ -2,9 +2,9 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/analysis/frequency_bound.hpp"
 #include "integrators/sundials/additive_tables.hpp"
 #include "integrators/sundials/arkode.hpp"
+#include "qddot/analysis/frequency_bound.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/integrators/split_relay.hpp"
 

@@ -7,7 +7,6 @@
 BOOST_AUTO_TEST_SUITE(divergence)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

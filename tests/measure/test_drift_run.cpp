@@ -11,7 +11,6 @@
 BOOST_AUTO_TEST_SUITE(drift_run)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

@@ -10,7 +10,6 @@
 BOOST_AUTO_TEST_SUITE(energy_trend)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

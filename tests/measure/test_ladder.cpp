@@ -9,14 +9,13 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/ladder.hpp"
-#include "qddot/measure/speed/sweep.hpp"
+#include "qddot/measure/speed/ladder_points.hpp"
 #include "qddot/model/mass_spring.hpp"
 #include "tests/problems.hpp"
 
 BOOST_AUTO_TEST_SUITE(ladder)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 
@@ -222,7 +221,7 @@ BOOST_AUTO_TEST_CASE(verlets_coarsest_good_rung_is_next_to_the_largest_stable_st
   const Method& verlet = *find_method("verlet");
   for (unsigned seed = 0; seed < 24; ++seed) {
     const Small small(seed);
-    const auto points = sweep(
+    const auto points = measure_ladder(
         verlet, small.scene, Small::until, small.reference, {.seconds = 60, .repeats = 1},
         [](const Point&) {}, [](const Point& point) { return point.errors.position < 1e-5; });
     std::vector<Rung> rungs;

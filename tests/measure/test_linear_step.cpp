@@ -10,7 +10,6 @@
 BOOST_AUTO_TEST_SUITE(linear_step)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

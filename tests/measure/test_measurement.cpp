@@ -11,7 +11,6 @@
 BOOST_AUTO_TEST_SUITE(measurement)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

@@ -10,7 +10,6 @@
 BOOST_AUTO_TEST_SUITE(momenta)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

@@ -14,7 +14,6 @@
 BOOST_AUTO_TEST_SUITE(reference)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

@@ -8,7 +8,6 @@
 BOOST_AUTO_TEST_SUITE(samples)
 
 using namespace qddot;
-using namespace qddot::measure;
 using Times = std::vector<double>;
 
 namespace {

@@ -18,7 +18,6 @@
 BOOST_AUTO_TEST_SUITE(search)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

@@ -13,7 +13,6 @@
 BOOST_AUTO_TEST_SUITE(simulation)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

@@ -16,7 +16,6 @@
 BOOST_AUTO_TEST_SUITE(solve)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

@@ -10,7 +10,6 @@
 BOOST_AUTO_TEST_SUITE(step_cost)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 // A cloth in a frame of named stiff springs; the steps solve for the frame alone.
 BOOST_AUTO_TEST_CASE(linearly_implicit_steps_cost_what_they_solve_for) {

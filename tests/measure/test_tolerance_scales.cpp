@@ -8,7 +8,6 @@
 BOOST_AUTO_TEST_SUITE(tolerance_scales)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

@@ -10,7 +10,6 @@
 BOOST_AUTO_TEST_SUITE(watch)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

@@ -8,7 +8,6 @@
 BOOST_AUTO_TEST_SUITE(falling)
 
 using namespace qddot;
-using namespace qddot::measure;
 
 namespace {
 

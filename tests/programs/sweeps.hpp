@@ -10,7 +10,7 @@
 #include <boost/test/unit_test.hpp>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/journal.hpp"
+#include "experiments/kit/journal.hpp"
 #include "tests/programs/process.hpp"
 
 namespace qddot {
@@ -75,10 +75,10 @@ struct Sweep {
   // Writes a whole task's file anew, changed.
   template <class Change>
   void rewrite(const nlohmann::json& one, const Change& change) const {
-    auto contents = command::Journal::read(whole(one));
+    auto contents = kit::Journal::read(whole(one));
     change(contents);
     std::filesystem::remove(whole(one));
-    command::Journal journal(whole(one), contents.key, false);
+    kit::Journal journal(whole(one), contents.key, false);
     for (const auto& [name, value] : contents.pieces) journal.keep(name, value);
   }
 

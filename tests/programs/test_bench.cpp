@@ -167,7 +167,7 @@ class Limited final : public Peer {
 BOOST_FIXTURE_TEST_CASE(steps_are_closer_near_a_limit_whosever_they_are, Given) {
   Limited peer;
   std::vector<double> reported;
-  const Sweep all = sweep(
+  const Sweep all = measure_ladder(
       peer, ForceKind::ours, problem, {.repeats = 1},
       [](const std::string&, const auto& take) { return take(); },
       [&](const Measured& point) { reported.push_back(point.value); });

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/command/command_line.hpp"
+#include "experiments/kit/command_line.hpp"
 #include "experiments/stability_map/outcome_map.hpp"
 #include "experiments/stability_map/run_outcome.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
@@ -12,7 +12,6 @@
 BOOST_AUTO_TEST_SUITE(run_outcome)
 
 using namespace qddot;
-using namespace qddot::measure;
 using namespace qddot::stability_map;
 
 namespace {

@@ -13,7 +13,6 @@
 BOOST_AUTO_TEST_SUITE(scaling)
 
 using namespace qddot;
-using namespace qddot::measure;
 using namespace qddot::scaling;
 
 namespace {

@@ -6,10 +6,10 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/command/command_line.hpp"
-#include "experiments/command/point_record.hpp"
-#include "experiments/command/study.hpp"
 #include "experiments/energy_drift/drift_record.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/study.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "tests/programs/process.hpp"
@@ -17,7 +17,6 @@
 BOOST_AUTO_TEST_SUITE(study)
 
 using namespace qddot;
-using namespace qddot::command;
 using namespace qddot::energy_drift;
 
 namespace {

@@ -5,7 +5,7 @@
 BOOST_AUTO_TEST_SUITE(sweep_faults)
 
 using namespace qddot;
-using command::Journal;
+using kit::Journal;
 
 namespace {
 

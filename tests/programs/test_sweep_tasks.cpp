@@ -6,7 +6,7 @@
 BOOST_AUTO_TEST_SUITE(sweep_tasks)
 
 using namespace qddot;
-using command::Journal;
+using kit::Journal;
 
 BOOST_AUTO_TEST_CASE(a_plan_has_references_first_and_a_task_for_each_method_of_each_scene) {
   const Sweep sweep;

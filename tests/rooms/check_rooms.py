@@ -22,7 +22,7 @@ SPEED = REFERENCE | STABILITY | {"src/qddot/measure/speed"}
 ADVICE = SPEED | {"src/qddot/measure/advice"}
 TREND = SPEED | {"src/qddot/measure/trend"}
 EXCHANGE = SPEED | {"src/qddot/measure/exchange"}
-COMMAND = TREND | ADVICE | EXCHANGE | {"experiments/command"}
+KIT = TREND | ADVICE | EXCHANGE | {"experiments/kit"}
 VECTORS = "src/qddot/model/kernels/vectors"
 
 MAY_SEE = {
@@ -41,17 +41,17 @@ MAY_SEE = {
     "src/qddot/measure/trend": TREND,
     "src/qddot/measure/advice": ADVICE,
     "src/qddot/measure/exchange": EXCHANGE,
-    "experiments/command": COMMAND,
-    "python/extension": COMMAND - {"experiments/command"},
+    "experiments/kit": KIT,
+    "python/extension": KIT - {"experiments/kit"},
     # Compiled for more than one processor: seen by each other only, and see what is plain data.
     VECTORS: {"src/qddot/model/kernels"},
     "src/qddot/algebra/multifrontal/vectors": {VECTORS, "src/qddot/algebra/multifrontal"},
     "src/qddot/measure/speed/vectors": {VECTORS, "src/qddot/measure/speed"},
     # Those that write motions.
-    "experiments/simulate": COMMAND | {"experiments/motion_files"},
-    "experiments/motions": COMMAND | {"experiments/motion_files"},
+    "experiments/simulate": KIT | {"experiments/motion_files"},
+    "experiments/motions": KIT | {"experiments/motion_files"},
     # A peer is SUNDIALS by itself, whose handles are there.
-    "experiments/bench": COMMAND | {"integrators/sundials"},
+    "experiments/bench": KIT | {"integrators/sundials"},
 }
 # What a library of data in, data out does not know.
 NOT_IN_A_LIBRARY = re.compile(r"#include <(CLI/|nlohmann/)|fmt::print|std::c(out|err)\b|\bprintf\(")
@@ -66,7 +66,7 @@ def path_of(name):
 
 def may_see(room):
     """A question sees the command line and the measurements, and never another question."""
-    return MAY_SEE.get(room, COMMAND) | {room}
+    return MAY_SEE.get(room, KIT) | {room}
 
 
 def check(root):

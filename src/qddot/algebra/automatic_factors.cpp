@@ -7,7 +7,6 @@
 #include "qddot/algebra/symbolic_factorization.hpp"
 
 namespace qddot {
-
 namespace {
 
 // Work is counted in operations of a factorisation. A solve reads an entry of L twice, and an

@@ -4,7 +4,6 @@
 #include <span>
 
 namespace qddot {
-
 namespace {
 
 bool same_column(const SymmetricMatrix& a, int i, int j) {

@@ -11,7 +11,6 @@
 #include <suitesparse/cholmod.h>
 
 namespace qddot {
-
 namespace {
 
 class CholmodFactors : public Factors {

@@ -7,7 +7,6 @@
 #include "qddot/algebra/dense_pairs.hpp"
 
 namespace qddot {
-
 namespace {
 
 constexpr double safe_tolerance = 1e-10;

@@ -6,7 +6,6 @@
 #include "qddot/algebra/multifrontal.hpp"
 
 namespace qddot {
-
 namespace {
 
 std::unique_ptr<Factors> make_factors(Solver solver, const SymmetricMatrix& pattern, Vec diagonal) {

@@ -7,7 +7,6 @@
 #include "qddot/algebra/multifrontal.hpp"
 
 namespace qddot {
-
 namespace {
 
 // The sets of unknowns that entries of L join, directly or through others; each ascending.

@@ -13,7 +13,6 @@
 #include "qddot/algebra/multifrontal/triangular_solves.hpp"
 
 namespace qddot {
-
 namespace {
 
 using namespace multifrontal;

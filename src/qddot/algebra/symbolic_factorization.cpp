@@ -13,7 +13,6 @@
 #include "qddot/algebra/blocks.hpp"
 
 namespace qddot {
-
 namespace {
 
 // The lower triangle of a graph, column by column, and the number of unknowns of each vertex.

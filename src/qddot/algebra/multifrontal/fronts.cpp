@@ -5,7 +5,6 @@
 #include <numeric>
 
 namespace qddot::multifrontal {
-
 namespace {
 
 template <class T>

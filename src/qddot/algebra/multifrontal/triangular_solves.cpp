@@ -5,7 +5,6 @@
 #include "qddot/model/vector_updates.hpp"
 
 namespace qddot::multifrontal {
-
 namespace {
 
 constexpr int quad = FourColumns::ColsAtCompileTime;

@@ -15,7 +15,7 @@
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/settle.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -224,4 +224,4 @@ Advices advise(const Scene& scene, double until, const std::vector<double>& accu
   return advise(ReducedScene(start), until, accuracies, of);
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

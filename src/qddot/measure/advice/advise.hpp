@@ -7,7 +7,7 @@
 #include "qddot/measure/advice/forecast.hpp"
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // What to take for one accuracy.
 struct Advice {
@@ -47,4 +47,4 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
 Advices advise(const Scene& scene, double until, const std::vector<double>& accuracies,
                AccuracyOf of = AccuracyOf::positions);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -10,7 +10,7 @@
 #include "qddot/measure/stability/linear_step.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr double without_end = std::numeric_limits<double>::infinity();
@@ -240,4 +240,4 @@ void Forecast::learn_failure(const Trial& trial) {
   if (!is_new) place->second = std::min(place->second, trial.value);
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

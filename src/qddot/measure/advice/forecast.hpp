@@ -9,7 +9,7 @@
 #include "qddot/measure/advice/own_frequencies.hpp"
 #include "qddot/measure/advice/trial.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // A run that might be made, with its expected error and time.
 struct Candidate {
@@ -97,4 +97,4 @@ class Forecast {
   std::map<const Method*, double> failed_;          // the smallest step that failed [s]
 };
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

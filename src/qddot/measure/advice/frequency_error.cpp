@@ -11,7 +11,7 @@
 
 #include "qddot/measure/stability/linear_step.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -77,4 +77,4 @@ double largest_h_omega(const Method& method, double error) {
   return low;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -2,7 +2,7 @@
 
 #include "qddot/integrators/method.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The relative error of a fixed-step method's frequency for q'' = -w^2 q at h w = `h_omega`:
 //   |log(r) / (i h w) - 1|,
@@ -16,4 +16,4 @@ double frequency_error(const Method& method, double h_omega);
 // The largest h w up to which frequency_error is at most `error`; 0 if there is none.
 double largest_h_omega(const Method& method, double error);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

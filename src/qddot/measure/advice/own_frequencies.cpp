@@ -6,7 +6,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr int burst_steps = OwnFrequencies::highest_order + 2;
@@ -90,4 +90,4 @@ OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<Stat
   return own;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

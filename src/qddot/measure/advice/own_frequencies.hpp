@@ -5,7 +5,7 @@
 
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The frequencies at which a motion itself changes, whatever frequencies its system has. The error
 // of a method of order p comes from derivatives of the motion: a vibration of amplitude a adds a
@@ -30,4 +30,4 @@ struct OwnFrequencies {
 OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<State>& path,
                                double w_max, int bursts);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

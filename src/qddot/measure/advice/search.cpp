@@ -9,7 +9,7 @@
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // Fraction of the accuracy that a run is chosen to miss by, as it is known to a factor of about two
@@ -209,4 +209,4 @@ const Trial* Search::find(double accuracy) {
   }
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

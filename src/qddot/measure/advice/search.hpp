@@ -9,7 +9,7 @@
 
 #include "qddot/measure/advice/forecast.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // An upper bound of a run's error, and the run that gives it; nullptr if no other run is needed.
 struct Bound {
@@ -147,4 +147,4 @@ class Search {
   double measured_within_ = std::numeric_limits<double>::infinity();
 };
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

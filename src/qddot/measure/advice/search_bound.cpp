@@ -6,7 +6,7 @@
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // The error is at most so many times the distance to a check, which may be less accurate than
@@ -220,4 +220,4 @@ double Search::error(const Trial& trial) const {
   return expected(trial);
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

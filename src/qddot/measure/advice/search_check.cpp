@@ -4,7 +4,7 @@
 
 #include "qddot/measure/advice/search.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // How many times as accurate a run is chosen to be that is to check another.
@@ -59,4 +59,4 @@ std::optional<Candidate> Search::check_of(const Trial& trial, double accuracy) c
   return best;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

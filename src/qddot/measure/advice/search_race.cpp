@@ -8,7 +8,7 @@
 #include "qddot/measure/motion/resolved_frequency.hpp"
 #include "qddot/measure/motion/timing.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // A run is worth making for its time below so many times that of the answer.
@@ -179,4 +179,4 @@ void Search::try_once(const Candidate& candidate, double seconds) {
   if (!was_tried(candidate)) run(*candidate.method, candidate.value, seconds);
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -12,7 +12,7 @@
 #include "qddot/measure/motion/resolved_frequency.hpp"
 #include "qddot/measure/motion/timing.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 double seconds_of_force(const ReducedScene& model) {
@@ -217,4 +217,4 @@ const Trial* Search::by_tolerance(double accuracy) {
   return nullptr;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -17,7 +17,7 @@
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/settle.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 void fill(Answer& answer, const Search& search, const Trial& trial, const ReducedScene& model) {
@@ -223,4 +223,4 @@ Answer solve(const Scene& scene, double until, double accuracy) {
   return solve(scene, until, Wanted{.accuracy = accuracy});
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

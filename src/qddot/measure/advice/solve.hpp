@@ -7,7 +7,7 @@
 #include "qddot/measure/advice/trial.hpp"
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The accuracy that is asked for.
 struct Wanted {
@@ -71,4 +71,4 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted);
 Answer solve(const Scene& scene, double until, const Wanted& wanted);
 Answer solve(const Scene& scene, double until, double accuracy);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -8,7 +8,7 @@
 
 #include "qddot/model/capabilities.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 struct Cost {
@@ -88,4 +88,4 @@ double forces_to_begin(const Method& method) {
   return method.recurrence_roots ? method.order / 2.0 * (method.order - 1) : 0;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

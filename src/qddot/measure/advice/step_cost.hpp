@@ -3,7 +3,7 @@
 #include "qddot/integrators/method.hpp"
 #include "qddot/model/system.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The time of a step of the method on a system, in steps of Verlet's method. It was measured on
 // other scenes with as many unknowns (see step_cost.cpp), and stands in for a method that was not
@@ -18,4 +18,4 @@ double steps_to_begin(const Method& method, const System& system);
 // Number of forces that the method evaluates before its first step.
 double forces_to_begin(const Method& method);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -8,7 +8,7 @@
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // Shorter runs [s] are timed again: the first one is cold.
@@ -86,4 +86,4 @@ std::vector<double> Stage::distances(const Trial& one, const Trial& other) const
   return all;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

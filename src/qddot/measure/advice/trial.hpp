@@ -5,7 +5,7 @@
 #include "qddot/integrators/method.hpp"
 #include "qddot/measure/motion/error.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The error that an accuracy bounds: of the positions at the end, of the positions at any time, or
 // of the energy at any time over the largest kinetic energy.
@@ -68,4 +68,4 @@ class Stage {
   Scales scales_;
 };
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -3,7 +3,7 @@
 #include "qddot/measure/reference/reference_rounding.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 std::optional<Divergence> parting_of_twins(const Stage& stage, const Trial& trial, double seconds) {
   const State pushed = displaced_start(stage.model(), stage.scales(), machine_epsilon);
@@ -17,4 +17,4 @@ std::optional<Divergence> parting_of_twins(const Stage& stage, const Trial& tria
   return divergence(times, distances);
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr Index points = 1000;  // at which means are compared, equally spaced
@@ -96,4 +96,4 @@ ExchangeComparison compare(const EnergyCourse& course, const EnergyCourse& other
   return result;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -4,7 +4,7 @@
 
 #include "qddot/model/system.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Energies of some springs over time.
 struct EnergyCourse {
@@ -32,4 +32,4 @@ struct ExchangeComparison {
 // 0, and times after the end of the shorter one do not count. Each has at least two times.
 ExchangeComparison compare(const EnergyCourse& course, const EnergyCourse& other, double window);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

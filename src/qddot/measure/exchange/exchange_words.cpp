@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // Beyond these of the tempo, the misfit and the sum from start to end, something is wrong.
@@ -47,4 +47,4 @@ std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& re
   return "exchanges as it should";
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -5,7 +5,7 @@
 #include "qddot/integrators/integrator.hpp"
 #include "qddot/measure/exchange/energy_exchange.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The verdict on a run of `exchange` that did not reach its end: its outcome and when.
 std::string verdict_on(const Summary& summary);
@@ -15,4 +15,4 @@ std::string verdict_on(const Summary& summary);
 // itself.
 std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& reference);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -14,7 +14,7 @@
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/stiff_energies.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr double reference_rtol = 1e-12;
@@ -112,4 +112,4 @@ CertifiedCourse certified_course(const Excitation& excitation, const Recall& rec
   return reference;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -9,7 +9,7 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // A scene whose stiff springs (Scene::stiff_above) start with energy, which they then exchange.
 struct Excitation {
@@ -57,4 +57,4 @@ using Recall =
 // Makes that reference of two runs. Throws NoReference if one does not reach the end.
 CertifiedCourse certified_course(const Excitation& excitation, const Recall& recall = {});
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

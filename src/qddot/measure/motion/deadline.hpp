@@ -8,7 +8,7 @@
 
 #include "qddot/measure/motion/interruption.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Requests a stop after a number of seconds, or when the program is to end. A sleeping thread does
 // that: the run that is timed only reads a flag. Disarmed when destroyed.
@@ -38,4 +38,4 @@ class Deadline {
   std::jthread watcher_;  // last: starts when all else is there, and joins first
 };
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 std::string duration_in_words(double seconds) {
   constexpr double minute = 60, hour = 60 * minute, day = 24 * hour, year = 365.25 * day;
@@ -14,4 +14,4 @@ std::string duration_in_words(double seconds) {
   return fmt::format("{:.2g} years", seconds / year);
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -6,7 +6,7 @@
 
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr double fewest_roundings = 1e4;
@@ -119,4 +119,4 @@ Errors larger(const Errors& one, const Errors& other) {
           std::max(one.energy, other.energy)};
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

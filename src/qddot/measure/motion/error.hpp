@@ -4,7 +4,7 @@
 
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // How far and how fast one part of a scene moves over its run.
 struct PartScale {
@@ -61,4 +61,4 @@ double worse(const Errors& errors);
 // The larger error of each kind.
 Errors larger(const Errors& one, const Errors& other);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <utility>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 struct Shared {
@@ -52,4 +52,4 @@ OwnInterruption::OwnInterruption(std::stop_token stop, Interruption why)
 
 OwnInterruption::~OwnInterruption() { own = outer_; }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <string>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // What asked the process to end before its work is done.
 struct Interruption {
@@ -51,4 +51,4 @@ class OwnInterruption {
   OwnInterruption* outer_;  // the one that this one replaces; may be none
 };
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -6,7 +6,7 @@
 #include "qddot/analysis/natural_modes.hpp"
 #include "qddot/scene/settle.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 std::optional<ModalShares> ModalShares::at_equilibrium(const ReducedScene& scene) try {
   // Only directions of the motion count: it has no kinetic energy in others.
@@ -40,4 +40,4 @@ Vec ModalShares::mean(const std::vector<State>& path) const {
 
 double total_variation(const Vec& a, const Vec& b) { return 0.5 * (a - b).lpNorm<1>(); }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -5,7 +5,7 @@
 
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The shares of the natural modes in the kinetic energy T of a motion. The modes x_j are those at
 // equilibrium, -K x_j = w_j^2 M x_j with x_i'Mx_j = delta_ij:
@@ -35,4 +35,4 @@ class ModalShares {
 // The total variation distance 1/2 sum |a_j - b_j| of two distributions: from 0 to 1.
 double total_variation(const Vec& a, const Vec& b);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

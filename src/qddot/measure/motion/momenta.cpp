@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 using Eigen::Vector3d;
@@ -115,4 +115,4 @@ double Momenta::change(const std::vector<Node>& start, const std::vector<Node>& 
                   (angular(now) - angular(start)).norm() / (scale * extent_));
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -5,7 +5,7 @@
 #include "qddot/model/system.hpp"
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The momenta that are conserved in a scene's motion, whatever its springs do:
 //   nothing pinned:     the linear momentum, as P(t) - m g t with m the total mass, and the angular
@@ -43,4 +43,4 @@ class Momenta {
   double mass_ = 0, extent_ = 1;
 };
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

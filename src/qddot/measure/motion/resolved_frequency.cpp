@@ -4,7 +4,7 @@
 
 #include "qddot/analysis/frequency_bound.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 double resolved_frequency(const Method& method, const System& system, const Vec& q) {
   if (!method.asks(Need::split_forces) || method.is(Trait::implicit))
@@ -20,4 +20,4 @@ double resolved_frequency(const Method& method, const System& system, const Vec&
   return largest;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -7,7 +7,7 @@
 
 #include "qddot/scene/invalid_input.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // Times whose relative difference is below this differ by rounding.
@@ -44,4 +44,4 @@ bool is_sample(const std::vector<double>& times, double t) {
   return found != times.end() && *found <= t * (1 + time_rounding);
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Wall time [s] since `start`.
 inline double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -44,4 +44,4 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

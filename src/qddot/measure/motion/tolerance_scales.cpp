@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 double extent(const std::vector<Node>& nodes) {
@@ -43,4 +43,4 @@ Options with_tolerance_scales(Options options, const ReducedScene& scene) {
   return options;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -3,7 +3,7 @@
 #include "qddot/integrators/integrator.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Sets the sizes of positions and velocities that absolute tolerances are relative to. The size of
 // positions is the largest extent L [m] of the scene at its start. The size of velocities [m/s] is
@@ -13,4 +13,4 @@ namespace qddot::measure {
 // 1 m for a scene without extent; the speed is L/s for a scene at rest in balance.
 Options with_tolerance_scales(Options options, const ReducedScene& scene);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

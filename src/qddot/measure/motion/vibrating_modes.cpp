@@ -6,7 +6,7 @@
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/natural_modes.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr Index most_whole = 1500;
@@ -63,4 +63,4 @@ double buckling_rate(const System& system, const Vec& q) {
   return std::sqrt(std::max(0.0, -lowest_modes(system, q, 1).squares[0]));
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -4,7 +4,7 @@
 
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // A natural mode of a scene: it vibrates as x cos(w t).
 struct Mode {
@@ -24,4 +24,4 @@ std::vector<Mode> sampled_modes(const System& system, const Vec& q, int count);
 // square root of the largest eigenvalue of M^-1 K(q). Zero if rounding may have made it positive.
 double buckling_rate(const System& system, const Vec& q);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

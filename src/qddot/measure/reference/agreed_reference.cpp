@@ -12,7 +12,7 @@
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/reference/reference_ways.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr int most_levels = 12;
@@ -107,4 +107,4 @@ Reference agreed_reference(const ReducedScene& scene, double until, double neede
   return *nearest;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -7,7 +7,7 @@
 
 #include "qddot/algebra/straight_line.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 Divergence divergence(const std::vector<double>& times, const std::vector<double>& differences) {
   std::vector<double> largest;
@@ -36,4 +36,4 @@ Divergence divergence(const std::vector<double>& times, const std::vector<double
   return {times.back() + std::log(apart / largest.back()) / lyapunov, lyapunov};
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

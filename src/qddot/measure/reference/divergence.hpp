@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Two motions are apart if their position error is this or more.
 constexpr double apart = 1e-2;
@@ -24,4 +24,4 @@ struct Divergence {
 // time, the horizon is extrapolated by that slope.
 Divergence divergence(const std::vector<double>& times, const std::vector<double>& differences);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The high-accuracy methods did not reach the end.
 class NoReference : public std::runtime_error {
@@ -10,4 +10,4 @@ class NoReference : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

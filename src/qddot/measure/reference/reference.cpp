@@ -15,7 +15,7 @@
 #include "qddot/measure/reference/reference_ways.hpp"
 #include "qddot/measure/reference/refinement.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr Index largest_modal_size = 2000;  // a dense eigenproblem of a few seconds
@@ -129,4 +129,4 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
   return reference;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -9,7 +9,7 @@
 #include "qddot/measure/reference/divergence.hpp"
 #include "qddot/measure/reference/no_reference.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The effect of a push by one rounding on a motion that was computed in a plane, on a line or with
 // mirror symmetry. The push moves all drawn nodes in all drawn dimensions.
@@ -86,4 +86,4 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
 // of a kind reaches the end.
 Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -7,7 +7,7 @@
 #include "qddot/measure/motion/modal_shares.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 double reach(const PartScale& part) { return std::max(part.extent, part.displacement); }
@@ -123,4 +123,4 @@ void measure_shares(Reference& reference, const ReducedScene& scene, const Solut
   reference.modal_shares_floor = total_variation(reference.modal_shares, modes->mean(other->path));
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

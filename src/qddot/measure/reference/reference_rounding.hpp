@@ -2,7 +2,7 @@
 
 #include "qddot/measure/reference/reference_ways.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The start with each unknown changed at random. Positions change by up to `part` times the largest
 // coordinate or displacement of their part of the scene, velocities by up to `part` times its
@@ -53,4 +53,4 @@ std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const ReducedSc
 void measure_shares(Reference& reference, const ReducedScene& scene, const Solution& composed,
                     double until, double seconds);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -11,7 +11,7 @@
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr std::int64_t longest_path = 100;
@@ -145,4 +145,4 @@ Reference joined(const ReducedScene& scene, const Solution& one, const Solution&
   return reference;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -8,7 +8,7 @@
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/reference/reference.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The end of a motion computed by one method.
 struct Solution {
@@ -49,4 +49,4 @@ std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double
 Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other,
                  const Errors& rounding_effect = {});
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

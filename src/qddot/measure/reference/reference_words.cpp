@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // "2.3" or "1.2e-10 to 2.3".
@@ -49,4 +49,4 @@ std::string symmetry_in_words(const Reference& reference) {
   return "";
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -4,7 +4,7 @@
 
 #include "qddot/measure/reference/reference.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The scales that errors against the reference are divided by, with their values, in a sentence.
 std::string what_divides(const Reference& reference);
@@ -13,4 +13,4 @@ std::string what_divides(const Reference& reference);
 // it, or that finding out took too long. Empty otherwise.
 std::string symmetry_in_words(const Reference& reference);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -7,7 +7,7 @@
 
 #include "qddot/measure/reference/reference_ways.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 constexpr int most_refinements = 20;
 constexpr int most_lost_levels = 3;
@@ -54,4 +54,4 @@ Solution refined(const ReducedScene& scene, double seconds, const Solve& solve,
   return *best;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -9,7 +9,7 @@
 #include "qddot/measure/speed/judgement.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 void keep_faster(const Point*& fastest, const Point& point) {
   if (!fastest || point.time < fastest->time) fastest = &point;
@@ -79,4 +79,4 @@ void add_stability_margins(std::vector<FrontRow>& rows, const ReducedScene& scen
   }
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -6,7 +6,7 @@
 
 #include "qddot/measure/speed/measurement.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The fastest points at one accuracy, of all methods and of each family; nullptr if there is none.
 // The error of a point is known to be at most the accuracy if the measured error (see
@@ -42,4 +42,4 @@ std::vector<const Point*> fastest_of_each_method(const std::vector<Point>& point
 // Computes the stability margins of the rows, from the largest frequency of the scene.
 void add_stability_margins(std::vector<FrontRow>& rows, const ReducedScene& scene);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

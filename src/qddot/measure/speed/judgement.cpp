@@ -5,7 +5,7 @@
 
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 double judged_error(const Point& point, const Reference& reference) {
   if (!reference.is_beyond_horizon()) return point.errors.position;
@@ -29,4 +29,4 @@ const char* judged_by(const Reference& reference) {
   return reference.is_beyond_horizon() ? "energy" : "position";
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

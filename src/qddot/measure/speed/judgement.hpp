@@ -2,7 +2,7 @@
 
 #include "qddot/measure/speed/measurement.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // A run's modal shares may differ from the reference's by this many times the difference by chance.
 constexpr double most_of_chance = 10;
@@ -29,4 +29,4 @@ bool is_uncertain(double error, double certified);
 // "position" or "energy".
 const char* judged_by(const Reference& reference);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // The error falls by 4 from rung to rung if it follows the order, or by 6 with an order of 8 and
@@ -45,4 +45,4 @@ std::optional<double> lacking_rung(const std::vector<Rung>& ladder) {
   return {};
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

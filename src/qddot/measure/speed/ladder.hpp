@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // A run of `steps` equal steps and its relative error, infinite if it failed.
 struct Rung {
@@ -22,4 +22,4 @@ constexpr double nearest_to_limit = 0.98;
 // and nothing to add.
 std::optional<double> lacking_rung(const std::vector<Rung>& ladder);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -2,7 +2,7 @@
 
 #include "qddot/model/kernels/level.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 #define QDDOT_DECLARE(level)               \
   namespace level {                        \
@@ -17,4 +17,4 @@ const LimitKernels& limit_kernels() {
   return *versions[kernels::level()];
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Loops that reach one limit of a core each, with the vector instructions of the springs' kernels.
 struct LimitKernels {
@@ -17,4 +17,4 @@ struct LimitKernels {
 // Returns the version in use.
 const LimitKernels& limit_kernels();
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

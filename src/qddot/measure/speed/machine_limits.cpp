@@ -6,7 +6,7 @@
 #include "qddot/measure/speed/limit_kernels.hpp"
 #include "qddot/model/system.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 double triad_bandwidth(double bytes, double seconds) {
   const Index n = std::max<Index>(1, static_cast<Index>(bytes / (3 * sizeof(double))));
@@ -38,4 +38,4 @@ double reading_rate(double bytes, double seconds) {
   return static_cast<double>(passes * size) * sizeof(double) / least;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

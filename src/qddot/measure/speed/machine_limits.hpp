@@ -1,6 +1,6 @@
 #pragma once
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Memory bandwidth of one core [bytes/s] in the triad a = b + s c (McCalpin, STREAM). The three
 // arrays take `bytes` together and count once each. The fastest of all passes in `seconds`.
@@ -14,4 +14,4 @@ double peak_flops(double seconds);
 // that holds them, else from memory. Zero if `bytes` is zero.
 double reading_rate(double bytes, double seconds);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

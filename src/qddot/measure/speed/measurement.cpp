@@ -9,7 +9,7 @@
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // Shorter than this, a run is timed together with others like it: the clock's own cost (some tens
@@ -86,4 +86,4 @@ Point measure_point(const Method& method, double value, const ReducedScene& scen
   return effort.recall ? effort.recall(method, value, take) : take();
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

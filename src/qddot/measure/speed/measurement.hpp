@@ -6,7 +6,7 @@
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/watch.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // One point of the work-precision chart: a method at one value of its knob.
 struct Point {
@@ -45,4 +45,4 @@ Options options_for(const Method& method, double value, const ReducedScene& scen
 Point measure_point(const Method& method, double value, const ReducedScene& scene, double until,
                     const Reference& reference, const Effort& effort);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -7,7 +7,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/scene_file.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // A first run at least so long [s] is a sample; shorter ones are timed in batches of `batch` [s].
@@ -137,4 +137,4 @@ double SweepBound::left(const Method& method, int points, double spent) const {
   return std::min(left, std::max(0, most_tolerances - points) * point(effort_.seconds));
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -4,15 +4,16 @@
 
 #include "qddot/measure/speed/measurement.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // An upper bound of the wall time [s] of a point whose run takes `run` [s], without set-up: the
 // time of all its runs in measure_point.
 double point_seconds_at_most(double run, const Effort& effort);
 
-// Upper bounds of the wall time of sweeps (see sweep.hpp). They follow from the values of the knob,
-// from Effort::seconds and from the numbers of steps. The time of a run of fixed steps is
-// proportional to its steps, which sweep() itself relies on to give up runs. Borrows the scene.
+// Upper bounds of the wall time of sweeps (see ladder_points.hpp). They follow from the values of
+// the knob, from Effort::seconds and from the numbers of steps. The time of a run of fixed steps is
+// proportional to its steps, which measure_ladder() itself relies on to give up runs. Borrows the
+// scene.
 class SweepBound {
  public:
   SweepBound(const ReducedScene& scene, double until, const Effort& effort);
@@ -41,4 +42,4 @@ class SweepBound {
   mutable std::map<const Method*, double> forces_;  // forces of an explicit step
 };
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -6,7 +6,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 std::vector<double> looks(const Method& method, const Options& options, double until,
@@ -59,4 +59,4 @@ PathErrors Watch::see(const Method& method, const Options& options, std::int64_t
   return seen;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -8,7 +8,7 @@
 #include "qddot/measure/motion/momenta.hpp"
 #include "qddot/measure/reference/reference.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Errors at times during a run; NaN if not measured or without meaning.
 struct PathErrors {
@@ -42,4 +42,4 @@ class Watch {
   std::optional<ModalShares> modes_;
 };
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

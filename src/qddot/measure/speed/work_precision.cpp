@@ -6,10 +6,9 @@
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
-#include "qddot/measure/speed/sweep.hpp"
+#include "qddot/measure/speed/ladder_points.hpp"
 
-namespace qddot::measure {
-
+namespace qddot::inline measure {
 namespace {
 
 // Throws std::invalid_argument where there is nothing to measure the methods on.
@@ -43,7 +42,8 @@ WorkPrecision work_precision(const ReducedScene& model, Reference reference,
     const auto see = [&](const Point& point) {
       if (report) report(point);
     };
-    const auto points = sweep(*method, model, all.reference.end.t, all.reference, effort, see);
+    const auto points =
+        measure_ladder(*method, model, all.reference.end.t, all.reference, effort, see);
     all.points.insert(all.points.end(), points.begin(), points.end());
   }
   return all;
@@ -58,4 +58,4 @@ WorkPrecision work_precision(const ReducedScene& model, double until,
                         effort, report);
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

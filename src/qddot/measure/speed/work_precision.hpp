@@ -5,12 +5,12 @@
 
 #include "qddot/measure/speed/front.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Speed against accuracy: the times and errors of every method, from coarse to fine.
 struct WorkPrecision {
   Reference reference;        // what errors are measured against
-  std::vector<Point> points;  // of each method over its knob's values (see sweep)
+  std::vector<Point> points;  // of each method over its knob's values (see measure_ladder)
 
   // The fastest point at each accuracy 1e-1 ... 1e-9; rows point into `points`.
   std::vector<FrontRow> front() const { return fastest_at_each_accuracy(points, reference); }
@@ -30,4 +30,4 @@ WorkPrecision work_precision(const ReducedScene& model, Reference reference,
                              std::vector<const Method*> methods = {}, const Effort& effort = {},
                              const std::function<void(const Point&)>& report = {});
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -19,7 +19,7 @@
 #include "qddot/measure/stability/linear_limit.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // Looks at the energy in a run; step sizes from h/2 to h/4096 that are tried for one that holds.
@@ -271,4 +271,4 @@ std::string diagnosis(const Method& method, const Options& options, const Reduce
   return words;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

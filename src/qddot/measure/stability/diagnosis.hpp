@@ -5,7 +5,7 @@
 #include "qddot/integrators/method.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Half a sentence on a step size that is unstable from the start: it is above the method's linear
 // limit, or the method grows at every h. Empty for stable step sizes, for methods that choose their
@@ -29,4 +29,4 @@ std::string growth_warning(const Method& method, const Summary& summary);
 std::string diagnosis(const Method& method, const Options& options, const ReducedScene& scene,
                       double until, const Summary& summary, double seconds);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -7,7 +7,7 @@
 
 #include "qddot/measure/stability/linear_step.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr int points = 400;  // of four decades
@@ -76,4 +76,4 @@ double measured_limit(const Method& method) {
   return std::numeric_limits<double>::infinity();
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -2,7 +2,7 @@
 
 #include "qddot/integrators/method.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The range of h w that is searched.
 constexpr double least_h_omega = 0.01, largest_h_omega = 100;
@@ -15,4 +15,4 @@ constexpr double least_h_omega = 0.01, largest_h_omega = 100;
 // if nothing grows up to the largest h w.
 double measured_limit(const Method& method);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

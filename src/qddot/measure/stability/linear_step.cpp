@@ -13,7 +13,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/model/mass_spring.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 using Complex = std::complex<double>;
@@ -139,4 +139,4 @@ LinearStep linear_step(const Method& method, double h_omega, Options options) {
   return {h_omega, roots_of(respond(method, options), root_rounding)};
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

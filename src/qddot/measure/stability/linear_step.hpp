@@ -5,7 +5,7 @@
 
 #include "qddot/integrators/method.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The effect of one fixed step of h w = `h_omega` on a vibration q'' = -w^2 q. A step multiplies (w
 // q, v), and all that the method remembers of earlier steps, by a matrix. The eigenvalues of the
@@ -48,4 +48,4 @@ std::vector<std::complex<double>> roots_of(const Responses& y, double noise);
 // reason, if a step fails, and std::invalid_argument for a method without fixed steps.
 LinearStep linear_step(const Method& method, double h_omega, Options options = {});
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // Below this, rounding of the closed form exceeds what its series leaves out.
@@ -35,4 +35,4 @@ Eigen::MatrixXd oscillation_covariance(Index n, std::complex<double> rate) {
       n, n, [&](Index i, Index j) { return at[static_cast<std::size_t>(std::abs(i - j))]; });
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -6,7 +6,7 @@
 
 #include "qddot/model/system.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Covariance matrices, n x n, of the means m_1 ... m_n of a process x(t) over blocks [i - 1, i] of
 // unit length. They are for unit variance.
@@ -24,4 +24,4 @@ Eigen::MatrixXd walk_covariance(Index n);
 //   Cov(m_i, m_j) = Re e^(-rate (|i - j| - 1)) g^2,   Var m_i = Re 2 (rate - 1 + e^-rate)/rate^2.
 Eigen::MatrixXd oscillation_covariance(Index n, std::complex<double> rate);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

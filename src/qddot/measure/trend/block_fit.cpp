@@ -14,7 +14,7 @@
 #include "qddot/measure/trend/student.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // The ratios of a walk's variance in a block to that of the noise. The least one is
@@ -321,4 +321,4 @@ BlockFit fit_blocks(const Vec& y) {
   return result;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

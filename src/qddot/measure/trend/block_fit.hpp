@@ -2,7 +2,7 @@
 
 #include "qddot/model/system.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // A number with its 95 % confidence interval.
 struct Interval {
@@ -47,4 +47,4 @@ struct BlockFit {
 // over their ratios to noise.
 BlockFit fit_blocks(const Vec& y);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -6,7 +6,7 @@
 
 #include "qddot/model/system.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The relative error of an invariant at time t [s]. The sample stands for the part `weight` of the
 // run, in any unit.
@@ -67,4 +67,4 @@ inline double slow_range(const Blocks& blocks) {
   return high - low;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -11,7 +11,7 @@
 #include "qddot/measure/trend/sample_steps.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // A shorter part of a run tells only that it blew up, or that so much of its energy is gone.
@@ -169,4 +169,4 @@ std::string verdict(const DriftRun& run, double until) {
   return fmt::format("{} at t = {:.4g} s; until then: {}", name(outcome), t, words);
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

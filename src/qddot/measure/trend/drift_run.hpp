@@ -7,7 +7,7 @@
 #include "qddot/measure/trend/energy_trend.hpp"
 #include "qddot/measure/trend/motion_scales.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // How the invariants of a run are measured.
 struct DriftPlan {
@@ -45,4 +45,4 @@ Verdict verdict_at(const DriftRun& run, double until);
 // The same in words. If the run ended early, it says when, and the energy's trend until then.
 std::string verdict(const DriftRun& run, double until);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 // Fewer means do not show whether they wander, or how far they may.
@@ -350,4 +350,4 @@ Trend line_of(std::span<const Sample> samples, const TrendScales& scales) {
   return trend;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -7,7 +7,7 @@
 #include "qddot/measure/trend/block_fit.hpp"
 #include "qddot/measure/trend/block_means.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The scales for the errors of a run.
 struct TrendScales {
@@ -76,4 +76,4 @@ Trend line_of(std::span<const Sample> samples, const TrendScales& scales);
 // The trend in words; "no drift" only if the interval of the slope contains zero.
 std::string trend_in_words(const Trend& trend, const TrendScales& scales);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -11,7 +11,7 @@
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/settle.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 constexpr double resolution = 0.5;  // h w_max
@@ -101,4 +101,4 @@ MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, do
   return scales;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -3,7 +3,7 @@
 #include "qddot/measure/motion/momenta.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // The scales for errors of invariants on a scene, the same for every method.
 struct MotionScales {
@@ -23,4 +23,4 @@ double fastest_frequency(const ReducedScene& scene);
 // earlier. The method is Blanes and Moan's of order 4, or IDA if nodes are massless.
 MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, double until);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

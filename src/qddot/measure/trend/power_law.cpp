@@ -7,7 +7,7 @@
 #include "qddot/algebra/straight_line.hpp"
 #include "qddot/measure/trend/student.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 PowerLaw fit_power_law(std::span<const double> n, std::span<const double> y) {
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
@@ -24,4 +24,4 @@ PowerLaw fit_power_law(std::span<const double> n, std::span<const double> y) {
   return {line.slope, line.slope - half, line.slope + half};
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

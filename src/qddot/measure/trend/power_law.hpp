@@ -2,7 +2,7 @@
 
 #include <span>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // y = c n^exponent, and the 95 % confidence interval of the exponent.
 struct PowerLaw {
@@ -15,4 +15,4 @@ struct PowerLaw {
 // different n, the interval for fewer than three points.
 PowerLaw fit_power_law(std::span<const double> n, std::span<const double> y);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

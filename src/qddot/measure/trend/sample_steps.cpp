@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 std::vector<SampledStep> sample_steps(std::int64_t count, std::int64_t cells) {
   std::mt19937_64 random(1);
@@ -24,4 +24,4 @@ std::vector<SampledStep> sample_steps(std::int64_t count, std::int64_t cells) {
   return sampled;
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // A sampled step, and the number of steps that it stands for.
 struct SampledStep {
@@ -22,4 +22,4 @@ constexpr int many_cells = 4096, few_cells = 256;
 // distances, and every cell sees slow ones. The result is ascending and deterministic. cells >= 1.
 std::vector<SampledStep> sample_steps(std::int64_t count, std::int64_t cells);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

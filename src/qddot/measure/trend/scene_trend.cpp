@@ -2,7 +2,7 @@
 
 #include "qddot/measure/motion/simulation.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 DriftRun energy_trend(const Scene& scene, const Method& method, const Options& options,
                       double until, double seconds) {
@@ -14,4 +14,4 @@ DriftRun energy_trend(const Scene& scene, const Method& method, const Options& o
                    motion_scales(run.model(), momenta, until), {step, until, seconds});
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

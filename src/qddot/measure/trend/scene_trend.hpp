@@ -3,7 +3,7 @@
 #include "qddot/measure/trend/drift_run.hpp"
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // Runs the method on the scene to the time `until` [s], for `seconds` of wall time at most, and
 // returns the trends of its energy and momenta. Samples are some thousands of multiples of
@@ -12,4 +12,4 @@ namespace qddot::measure {
 DriftRun energy_trend(const Scene& scene, const Method& method, const Options& options,
                       double until, double seconds = 60);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -6,7 +6,7 @@
 
 #include "qddot/measure/trend/sample_steps.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 using Random = std::mt19937_64;
@@ -195,4 +195,4 @@ Trend synthetic_trend(const SyntheticKind& kind, std::uint64_t seed, int cells) 
                   {.excess = 1, .frequency = 1, .rounding = kind.rounding, .step = step});
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -8,7 +8,7 @@
 
 #include "qddot/measure/trend/energy_trend.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 
 // An error of a known kind as a function of time over a run from 0 to 1. It is drawn anew for each
 // seed and called with ascending times.
@@ -36,4 +36,4 @@ std::vector<SyntheticKind> synthetic_kinds();
 constexpr double synthetic_steps = 1e6, synthetic_duration = 1000;
 Trend synthetic_trend(const SyntheticKind& kind, std::uint64_t seed, int cells);
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

@@ -5,7 +5,7 @@
 
 #include "qddot/measure/trend/energy_trend.hpp"
 
-namespace qddot::measure {
+namespace qddot::inline measure {
 namespace {
 
 std::string in_roundings(double value, const TrendScales& scales) {
@@ -126,4 +126,4 @@ std::string trend_in_words(const Trend& trend, const TrendScales& scales) {
   return "too short for a verdict";
 }
 
-}  // namespace qddot::measure
+}  // namespace qddot::inline measure

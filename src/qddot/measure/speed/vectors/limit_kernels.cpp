@@ -2,7 +2,7 @@
 
 #include "qddot/model/kernels/vectors/lanes.hpp"
 
-namespace qddot::measure::QDDOT_LEVEL {
+namespace qddot::inline measure::QDDOT_LEVEL {
 namespace {
 
 using namespace kernels::QDDOT_LEVEL;
@@ -49,4 +49,4 @@ double sum(const double* x, std::ptrdiff_t n) {
 extern const LimitKernels limit_kernels;
 const LimitKernels limit_kernels = {multiply_and_add, triad, sum};
 
-}  // namespace qddot::measure::QDDOT_LEVEL
+}  // namespace qddot::inline measure::QDDOT_LEVEL

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <concepts>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json_fwd.hpp>
+
+#include "experiments/kit/whole_file.hpp"
+
+namespace qddot::inline kit {
+
+// A table in CSV (RFC 4180), with lines ended by a line feed and one header row. Numbers have 17
+// significant digits, enough to read back the same double; fields of numbers that are not finite
+// are empty.
+class Csv {
+ public:
+  explicit Csv(const std::vector<std::string>& header);
+  // A table of rows without a header, for the rows() of another table.
+  Csv() = default;
+
+  // Appends one row, a field for each argument: numbers, or text that is quoted where it must be.
+  template <class... Fields>
+  void row(const Fields&... fields) {
+    (field(fields), ...);
+    end_row();
+  }
+  void field(double value);
+  template <std::integral Integer>
+  void field(Integer value) {
+    separate();
+    const fmt::format_int digits(value);
+    text_.append(digits.data(), digits.data() + digits.size());
+  }
+  void field(std::string_view text);
+  void end_row();
+  // Appends rows that another table of the same columns wrote, without its header.
+  void rows(std::string_view text) { text_.append(text.data(), text.data() + text.size()); }
+
+  std::string_view text() const { return {text_.data(), text_.size()}; }
+  void clear() { text_.clear(); }
+
+ private:
+  void separate() {
+    if (!row_is_empty_) text_.push_back(',');
+    row_is_empty_ = false;
+  }
+
+  fmt::memory_buffer text_;
+  bool row_is_empty_ = true;
+};
+
+// The sidecar X.json of a table X.csv.
+std::string sidecar_of(const std::string& path);
+
+// The text of a sidecar that records how a result was made (see provenance.hpp).
+std::string text_of_sidecar(const nlohmann::json& origin);
+
+// A Csv that goes to a file X.csv as it grows, and appears there on commit(), together with its
+// sidecar X.json. Throws InvalidInput at once if either place cannot be written.
+class CsvFile : public Csv {
+ public:
+  CsvFile(const std::string& path, const std::vector<std::string>& header);
+
+  const std::string& path() const { return file_.path(); }
+  // Writes the rows to the file once they exceed a megabyte.
+  void flush_if_large() {
+    if (text().size() > (1 << 20)) flush();
+  }
+  // Writes the rest of table and sidecar. `origin`: how the table was made (see provenance.hpp).
+  void complete(const nlohmann::json& origin);
+  // Gives both files their names. The disk holds all of them already.
+  void commit();
+  void commit(const nlohmann::json& origin) {
+    complete(origin);
+    commit();
+  }
+
+ private:
+  void flush() {
+    file_.write(text());
+    clear();
+  }
+
+  WholeFile file_, sidecar_;
+};
+
+}  // namespace qddot::inline kit

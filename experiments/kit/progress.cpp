@@ -1,0 +1,176 @@
+#include "experiments/kit/progress.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::inline kit {
+namespace {
+
+constexpr double between_redraws = 0.1;  // [s]
+constexpr std::size_t usual_columns = 80, no_limit = 1000;
+// A terminal may show ^C behind the line, and terminals differ in what they clear past the last
+// column.
+constexpr std::size_t kept_free = 3;
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::size_t columns_of_stderr() {
+  winsize size{};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return usual_columns;
+  return size.ws_col;
+}
+
+// What cannot be written is lost: no result depends on it.
+void write_to_stderr(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+bool is_terminal() {
+  const char* term = std::getenv("TERM");
+  return ::isatty(STDERR_FILENO) && term && *term && std::string_view(term) != "dumb";
+}
+
+}  // namespace
+
+Progress::Screen Progress::standard_error() {
+  return {steady_seconds, columns_of_stderr, write_to_stderr};
+}
+
+void Progress::start(const std::string& program, Form form, double quiet) {
+  const std::lock_guard lock(mutex_);
+  form_ = form;
+  state_ = {.program = program};
+  done_ = 0;
+  begun_ = last_finish_ = screen_.now();
+  next_plain_ = begun_ + quiet;
+}
+
+void Progress::stage(const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  state_.number = 0;
+  state_.what = what;
+  show();
+}
+
+void Progress::begin(std::size_t pieces) {
+  const std::lock_guard lock(mutex_);
+  state_.pieces = pieces;
+  state_.number = done_ = 0;
+  over_by_.reset();
+  last_finish_ = screen_.now();
+  slowest_ = 0;
+}
+
+void Progress::now_at(const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  state_.number = std::min(done_ + 1, state_.pieces);
+  state_.what = what;
+  show();
+}
+
+void Progress::finish(const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  const double now = screen_.now();
+  slowest_ = std::max(slowest_, now - last_finish_);
+  last_finish_ = now;
+  state_.number = done_ = std::min(done_ + 1, state_.pieces);
+  state_.what = what;
+  show();
+  say();
+}
+
+void Progress::left_at_most(std::optional<double> seconds) {
+  const std::lock_guard lock(mutex_);
+  state_.is_bound = true;
+  over_by_ = seconds ? std::optional(screen_.now() + *seconds) : std::nullopt;
+}
+
+void Progress::left_about(double seconds) {
+  const std::lock_guard lock(mutex_);
+  state_.is_bound = false;
+  over_by_ = screen_.now() + seconds;
+}
+
+void Progress::wipe() {
+  const std::lock_guard lock(mutex_);
+  clear();
+}
+
+void Progress::close() {
+  const std::lock_guard lock(mutex_);
+  clear();
+  form_ = Form::none;
+}
+
+Progress::Form Progress::form() const {
+  const std::lock_guard lock(mutex_);
+  return form_;
+}
+
+std::optional<double> Progress::left_now(double now) const {
+  if (!over_by_) return {};
+  const double left = std::max(0.0, *over_by_ - now);
+  if (!state_.is_bound) return left;
+  if (done_ == 0) return {};  // how loose it is nobody knows yet
+  const double of_slowest = slowest_ * static_cast<double>(state_.pieces - done_);
+  return left <= loosest_bound * std::max(1.0, of_slowest) ? std::optional(left) : std::nullopt;
+}
+
+void Progress::show() {
+  const double now = screen_.now();
+  if (form_ != Form::line || now - last_line_ < between_redraws) return;
+  last_line_ = now;
+  state_.elapsed = now - begun_;
+  state_.left = left_now(now);
+  const std::size_t columns = screen_.columns();
+  screen_.write(fmt::format(
+      "\r{}\033[K", progress_in_words(state_, columns > kept_free ? columns - kept_free : 1)));
+  is_visible_ = true;
+}
+
+void Progress::say() {
+  const double now = screen_.now();
+  if (form_ != Form::plain || now < next_plain_) return;
+  next_plain_ = now + plain_pause;
+  state_.elapsed = now - begun_;
+  state_.left = left_now(now);
+  screen_.write(progress_in_words(state_, no_limit) + "\n");
+}
+
+void Progress::clear() {
+  if (is_visible_) screen_.write("\r\033[K");
+  is_visible_ = false;
+}
+
+Progress& progress() {
+  static Progress all;
+  return all;
+}
+
+void start_progress(const std::string& program, const std::string& form) {
+  if (form == "none") return progress().start(program, Progress::Form::none);
+  if (form == "plain") return progress().start(program, Progress::Form::plain);
+  if (form != "auto") {
+    throw InvalidInput(
+        fmt::format("--progress {} is not allowed; it is one of auto, plain, none", form));
+  }
+  if (is_terminal()) return progress().start(program, Progress::Form::line);
+  progress().start(program, Progress::Form::plain, Progress::plain_pause);
+}
+
+}  // namespace qddot::inline kit

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "experiments/kit/progress_words.hpp"
+
+namespace qddot::inline kit {
+
+// Reports on stderr how far a program is, with an upper bound of the remaining time. It updates one
+// line of a terminal, or writes a plain line now and then. It writes only when one of its functions
+// is called, between timed runs: it has no thread that could disturb them. It shows at most ten
+// reports a second. Thread-safe.
+class Progress {
+ public:
+  enum class Form { line, plain, none };
+
+  // Its output and its clock.
+  struct Screen {
+    std::function<double()> now;  // [s]
+    std::function<std::size_t()> columns;
+    std::function<void(std::string_view)> write;
+  };
+  // stderr, by the steady clock.
+  static Screen standard_error();
+
+  // The least time [s] between two plain lines.
+  static constexpr double plain_pause = 30;
+  // A bound of the remaining time is not shown if it is more than so many times the estimate from
+  // the slowest piece so far.
+  static constexpr double loosest_bound = 8;
+
+  // Is silent until start().
+  explicit Progress(Screen screen = standard_error()) : screen_(std::move(screen)) {}
+  // Starts the clock. The first plain line comes after `quiet` seconds or later.
+  void start(const std::string& program, Form form, double quiet = 0);
+
+  // Names the work before, between or after pieces, which has no number.
+  void stage(const std::string& what);
+  // Sets the number of pieces to come.
+  void begin(std::size_t pieces);
+  // Names the work on the first piece that is not finished.
+  void now_at(const std::string& what);
+  // Counts a finished piece, measured now or kept from before.
+  void finish(const std::string& what);
+  // Sets an upper bound of the remaining time [s]; empty if unknown.
+  void left_at_most(std::optional<double> seconds);
+  // Sets an estimate of the remaining time [s].
+  void left_about(double seconds);
+
+  // Removes the line, before anything else is written to the terminal.
+  void wipe();
+  // The same, and is silent from now on.
+  void close();
+  Form form() const;
+  // The time on its clock [s].
+  double now() const { return screen_.now(); }
+
+ private:
+  std::optional<double> left_now(double now) const;
+  void show();
+  void say();
+  void clear();
+
+  mutable std::mutex mutex_;
+  Screen screen_;
+  Form form_ = Form::none;
+  ProgressState state_{};
+  std::size_t done_ = 0;
+  double begun_ = 0, last_finish_ = 0, slowest_ = 0;  // [s]
+  double last_line_ = -std::numeric_limits<double>::infinity(), next_plain_ = 0;
+  std::optional<double> over_by_{};  // on the clock
+  bool is_visible_ = false;
+};
+
+// The progress of this process.
+Progress& progress();
+
+// Starts it in the form auto, plain or none. auto is the updated line if stderr is a terminal, else
+// plain lines from the thirtieth second on. TERM=dumb is no terminal. Throws InvalidInput for
+// another word.
+void start_progress(const std::string& program, const std::string& form);
+
+}  // namespace qddot::inline kit

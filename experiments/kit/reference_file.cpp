@@ -1,0 +1,284 @@
+#include "experiments/kit/reference_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/shares.hpp"
+#include "experiments/kit/text_hash.hpp"
+#include "experiments/kit/whole_file.hpp"
+#include "qddot/measure/motion/duration.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::inline kit {
+namespace {
+
+constexpr double longest_making = 60;  // [s]
+// Refinement ends as soon as two methods agree; the limit is for scenes where two nearly agree.
+constexpr double longest_agreeing = 300;  // [s]
+
+constexpr const char* divisors =
+    "errors of positions and velocities are divided by the largest displacement from the start [m] "
+    "and the largest speed [m/s] of a node over the run, of those in the node's own part of the "
+    "scene where there are several (those at rest: of the whole scene); errors of the energy by "
+    "the largest kinetic energy [J]; all without what moves in closed form (nodes on no spring, "
+    "the "
+    "common fall of a part without pins), unless nothing else moves";
+
+std::vector<double> list(const Vec& x) { return {x.begin(), x.end()}; }
+
+Vec vector(const nlohmann::json& json) {
+  const auto values = json.get<std::vector<double>>();
+  return Eigen::Map<const Vec>(values.data(), std::ssize(values));
+}
+
+double digits(double certified) { return std::floor(-std::log10(certified) * 10) / 10; }
+
+// The file's contents; null where there is no regular file, whatever a pipe would have to say.
+nlohmann::json read_json(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return nullptr;
+  std::ifstream stream(file);
+  return nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
+}
+
+nlohmann::json part_to_json(const PartScale& part) {
+  return {{"nodes", part.nodes},
+          {"extent", part.extent},
+          {"displacement", part.displacement},
+          {"speed", part.speed},
+          {"at_rest", part.is_at_rest()}};
+}
+
+PartScale part_from_json(const nlohmann::json& json) {
+  return {.nodes = json.at("nodes"),
+          .extent = json.at("extent"),
+          .displacement = json.at("displacement"),
+          .speed = json.at("speed")};
+}
+
+nlohmann::json scales_to_json(const Scales& scales) {
+  nlohmann::json json = {{"displacement", scales.displacement},
+                         {"speed", scales.speed},
+                         {"kinetic", scales.kinetic},
+                         {"of", divisors},
+                         {"parts", nlohmann::json::array()}};
+  for (const PartScale& part : scales.parts) json["parts"].push_back(part_to_json(part));
+  return json;
+}
+
+Scales scales_from_json(const nlohmann::json& json) {
+  Scales scales{json.at("displacement"), json.at("speed"), json.at("kinetic")};
+  for (const auto& part : json.at("parts")) scales.parts.push_back(part_from_json(part));
+  return scales;
+}
+
+// Infinity is null.
+double time_or_never(const nlohmann::json& json) {
+  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+}
+
+nlohmann::json out_of_symmetry_to_json(const Reference& reference) {
+  const auto& out = reference.out_of_symmetry;
+  if (!out) return nullptr;
+  return {{"rounding_effect", out->effect}, {"horizon", out->horizon}, {"lyapunov", out->lyapunov}};
+}
+
+std::optional<OutOfSymmetry> out_of_symmetry_from_json(const nlohmann::json& json) {
+  if (json.is_null()) return {};
+  return OutOfSymmetry{json.at("rounding_effect"), time_or_never(json.at("horizon")),
+                       json.at("lyapunov")};
+}
+
+std::string written(const nlohmann::json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+// The checksum of all that is stored but itself: the hash of the compact form, in which numbers are
+// exact and keys in order.
+std::string checksum(nlohmann::json json) {
+  json.erase("checksum");
+  return text_hash(written(json, -1));
+}
+
+// Whether the end has the energy that the start has, which the exact motion keeps, to what is
+// certified and what another machine may round otherwise.
+bool keeps_energy(const Reference& r, const ReducedScene& scene) {
+  const State& start = scene.initial();
+  const double kinetic = scene.kinetic(start), potential = scene.potential(start);
+  const double rounded = 64 * std::numeric_limits<double>::epsilon() *
+                         (r.scales.kinetic + kinetic + std::abs(potential));
+  const double tolerated = r.certified.energy * r.scales.kinetic + rounded;
+  return std::abs(kinetic + potential - r.energy) <= tolerated &&
+         std::abs(scene.energy(r.end) - r.energy) <= tolerated;
+}
+
+bool fits(const Reference& reference, const ReducedScene& scene, double until) {
+  const Index n = scene.system().size();
+  const std::size_t nodes = scene.expand(scene.initial()).size();
+  return reference.end.t == until && reference.end.q.size() == n && reference.end.v.size() == n &&
+         reference.certified.position > 0 &&
+         std::ranges::all_of(reference.scales.parts,
+                             [&](const PartScale& part) {
+                               return std::ranges::all_of(part.nodes,
+                                                          [&](std::size_t i) { return i < nodes; });
+                             }) &&
+         keeps_energy(reference, scene);
+}
+
+// The reference that the file holds, if it is whole and that of the scene at `until`.
+std::optional<Reference> stored(const nlohmann::json& json, const ReducedScene& scene,
+                                double until) {
+  if (!json.contains("checksum") || json["checksum"] != checksum(json)) return {};
+  try {
+    Reference reference = reference_from_json(json);
+    if (fits(reference, scene, until)) return reference;
+  } catch (const nlohmann::json::exception&) {  // written by somebody else
+  }
+  return {};
+}
+
+void say_expected(double seconds) {
+  progress().wipe();
+  fmt::print(stderr, "making the reference takes some {}\n", duration_in_words(seconds));
+}
+
+// Throws Interrupted where the program is to end: what was made meanwhile may be poorer for it.
+Reference made(const ReducedScene& scene, const Scene& start, double until,
+               std::optional<double> needed) {
+  try {
+    Reference reference = needed
+                              ? agreed_reference(scene, until, *needed, longest_agreeing)
+                              : make_reference(scene, until, longest_making, &start, say_expected);
+    stop_if_interrupted();
+    return reference;
+  } catch (const NoReference&) {
+    stop_if_interrupted();
+    throw;
+  }
+}
+
+std::string file_in(const std::string& folder) { return folder + "/reference.json"; }
+
+// What a reference in a file is of.
+nlohmann::json key_of(const Scene& drawn, const ReducedScene& scene, double until,
+                      std::optional<double> needed) {
+  nlohmann::json key = {{"scene_hash", content_hash(drawn)},
+                        {"unknowns", scene.system().size()},
+                        {"until", until},
+                        {"source_hash", code_hash()}};
+  if (needed) key["needed"] = *needed;
+  return key;
+}
+
+}  // namespace
+
+nlohmann::json to_json(const Reference& r) {
+  return {{"made_by", r.made_by},
+          {"seconds", r.seconds},
+          {"certified_position", r.certified.position},
+          {"certified_velocity", r.certified.velocity},
+          {"certified_energy", r.certified.energy},
+          {"certified_digits",
+           {{"position", digits(r.certified.position)},
+            {"velocity", digits(r.certified.velocity)},
+            {"energy", digits(r.certified.energy)}}},
+          {"rounding_effect", r.rounding_effect},
+          {"perturbation_growth", r.perturbation_growth},
+          {"horizon", r.horizon},  // null where there is none
+          {"lyapunov", r.lyapunov},
+          {"modal_shares", list(r.modal_shares)},
+          {"modal_shares_floor", r.modal_shares_floor},
+          {"chaotic", r.is_chaotic()},
+          {"beyond_horizon", r.is_beyond_horizon()},
+          {"reduced_by_symmetry", r.is_reduced_by_symmetry},
+          {"out_of_symmetry", out_of_symmetry_to_json(r)},  // null where there is none to go out of
+          {"only_symmetric", r.is_only_symmetric()},
+          {"scales", scales_to_json(r.scales)},
+          {"energy", r.energy},
+          {"t", r.end.t},
+          {"q", list(r.end.q)},
+          {"v", list(r.end.v)}};
+}
+
+Reference reference_from_json(const nlohmann::json& json) {
+  return {.end = {json.at("t"), vector(json.at("q")), vector(json.at("v"))},
+          .energy = json.at("energy"),
+          .scales = scales_from_json(json.at("scales")),
+          .certified = {json.at("certified_position"), json.at("certified_velocity"),
+                        json.at("certified_energy")},
+          .rounding_effect = json.at("rounding_effect"),
+          .perturbation_growth = json.at("perturbation_growth"),
+          .horizon = time_or_never(json.at("horizon")),
+          .lyapunov = json.at("lyapunov"),
+          .is_reduced_by_symmetry = json.at("reduced_by_symmetry"),
+          .out_of_symmetry = out_of_symmetry_from_json(json.at("out_of_symmetry")),
+          .modal_shares = vector(json.at("modal_shares")),
+          .modal_shares_floor = json.at("modal_shares_floor"),
+          .made_by = json.at("made_by"),
+          .seconds = json.at("seconds")};
+}
+
+void require_reference_exists(const ReducedScene& scene, const std::string& source) {
+  const auto massless = scene.massless_nodes();
+  if (massless.empty()) return;
+  throw InvalidInput(fmt::format(
+      "{}: nodes[{}].mass: 0 is not allowed where a reference is needed, unless the node "
+      "joins two springs in tension; allowed are masses above 0",
+      source, massless.front()));
+}
+
+Reference reference_for(const Scene& drawn, const Scene& start, const ReducedScene& scene,
+                        double until, const std::string& folder, const nlohmann::json& origin,
+                        std::optional<double> needed) {
+  const std::string file = file_in(folder);
+  const nlohmann::json key = key_of(drawn, scene, until, needed);
+  const nlohmann::json found = read_json(file);
+  if (found.is_object() && found.value("key", nlohmann::json()) == key) {
+    if (auto reference = stored(found, scene, until)) return *reference;
+  }
+  const bool is_of_others = found.is_object() && found.value("key", nlohmann::json()) != key;
+  WholeFile whole(file);
+  if (!found.is_null() && !is_of_others) {
+    progress().wipe();
+    fmt::print(stderr,
+               "{}: the file was changed or is damaged (its checksum or its numbers are wrong): "
+               "the reference is made anew\n",
+               in_one_line(file));
+  }
+  Reference reference = made(scene, start, until, needed);
+  nlohmann::json json = origin;
+  json.update(to_json(reference));
+  json["key"] = key;
+  json["scene"] = drawn.name;
+  json["until"] = until;
+  // Reading back turns numbers that are not finite into null, and text into valid UTF-8.
+  json = nlohmann::json::parse(written(json, -1));
+  json["checksum"] = checksum(json);
+  whole.write(written(json, 1) + "\n");
+  whole.commit();
+  return reference;
+}
+
+Reference kept_reference(const Scene& drawn, const ReducedScene& scene, double until,
+                         const std::string& folder) {
+  const nlohmann::json found = read_json(file_in(folder));
+  if (found.is_object() &&
+      found.value("key", nlohmann::json()) == key_of(drawn, scene, until, std::nullopt)) {
+    if (auto reference = stored(found, scene, until)) return *reference;
+  }
+  throw InvalidInput(fmt::format(
+      "{}: it is missing or not the reference of this scene to {} s; the share {} makes it",
+      file_in(folder), until, reference_share));
+}
+
+}  // namespace qddot::inline kit

@@ -1,0 +1,122 @@
+#include "experiments/kit/scene_choice.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "experiments/kit/catalogue.hpp"
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/memory.hpp"
+#include "experiments/kit/overwriting.hpp"
+#include "experiments/kit/program.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/scene_file.hpp"
+#include "qddot/scene/settle.hpp"
+
+namespace qddot::inline kit {
+void add_scene_options(CommandLine& line, SceneChoice& choice) {
+  line.add_option("--scene", choice.name, "a generator's name or a scene file");
+  line.add_option(
+          "--no-reduce", choice.no_reduce,
+          fmt::format("a,b,...: reductions of the scene to leave out (default: none), of {}",
+                      fmt::join(reduction_names, ", ")))
+      .delimiter(',');
+}
+
+Scene load(const SceneChoice& choice) {
+  require_given(choice.name, "--scene", "a generator's name or a scene file");
+  return load(choice.name);
+}
+
+Scene load(const std::string& name) {
+  Scene scene = load_scene(name,
+                           [](const std::string& path) {
+                             protect_input(path);
+                             return read_text(path);
+                           },
+                           {.bytes = free_memory()});
+  scene.name = in_one_line(scene.name);  // it reaches terminals and tables
+  for (const std::string& warning : scene.warnings) {
+    fmt::print(stderr, "{}: warning: {}\n", program_invocation_short_name, in_one_line(warning));
+  }
+  return scene;
+}
+
+Scene started(const Scene& drawn, const SceneChoice& choice) {
+  return drawn.starts_at_equilibrium ? settled(drawn, choice.name) : drawn;
+}
+
+Reductions reductions_of(const SceneChoice& choice) {
+  Reductions reductions;
+  for (const std::string& name : choice.no_reduce) {
+    const auto found = std::ranges::find(reduction_names, name);
+    if (found == reduction_names.end()) {
+      throw InvalidInput(fmt::format("--no-reduce: {} is not a reduction; allowed are {}", name,
+                                     fmt::join(reduction_names, ", ")));
+    }
+    reductions = reductions.without(static_cast<Reduction>(found - reduction_names.begin()));
+  }
+  return reductions;
+}
+
+void require_fit(const Method& method, const ReducedScene& scene, const std::string& source) {
+  const auto why = misfit(method, scene.system());
+  const auto others = [&] {
+    return names_where([&](const Method& other) { return applies_to(other, scene.system()); });
+  };
+  if (why == Outcome::stiffness_varies) {
+    throw InvalidInput(
+        fmt::format("{}: {} needs a K that is the same everywhere, and K of this scene changes "
+                    "with the motion; allowed are {}",
+                    source, method.name, others()));
+  }
+  if (why == Outcome::no_stiff_set) {
+    throw InvalidInput(fmt::format(
+        "{}: stiff_above: it is missing, and {} integrates the forces of stiff springs apart from "
+        "the others; allowed are finite numbers above 0 in N/m, or the methods {}",
+        source, method.name, others()));
+  }
+  const auto massless = scene.massless_nodes();
+  if (!massless.empty() && !method.is(Trait::accepts_massless)) {
+    throw InvalidInput(fmt::format(
+        "{}: nodes[{}].mass: 0 is not allowed with {}, which divides by it; allowed are masses "
+        "above 0, or the methods {}",
+        source, massless.front(), method.name,
+        names_where([](const Method& other) { return other.is(Trait::accepts_massless); })));
+  }
+}
+
+std::vector<const Method*> select_methods(const std::vector<std::string>& list,
+                                          const ReducedScene& scene, const std::string& source) {
+  std::vector<const Method*> selected;
+  if (list.empty()) {
+    for (const Method& method : methods()) {
+      if (applies_to(method, scene.system())) selected.push_back(&method);
+    }
+  }
+  for (const std::string& name : list) {
+    const Method* method = find_method(name);
+    if (!method) {
+      throw InvalidInput(
+          fmt::format("--methods: {} is not a method; allowed are {}", name, method_names()));
+    }
+    if (std::ranges::find(selected, method) != selected.end()) {
+      throw InvalidInput(fmt::format("--methods: {} is named twice; allowed is once", name));
+    }
+    require_fit(*method, scene, source);
+    selected.push_back(method);
+  }
+  return selected;
+}
+
+std::vector<std::string> names_of(const std::vector<const Method*>& methods) {
+  std::vector<std::string> names;
+  for (const Method* method : methods) names.push_back(method->name);
+  return names;
+}
+
+}  // namespace qddot::inline kit

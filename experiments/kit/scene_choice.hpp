@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "experiments/kit/command_line.hpp"
+#include "qddot/integrators/method.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/scene.hpp"
+
+namespace qddot::inline kit {
+
+// The scene that a user names, and the reductions to leave out.
+struct SceneChoice {
+  std::string name;                    // a generator's or a file's
+  std::vector<std::string> no_reduce;  // names of reductions
+};
+
+// Adds --scene and --no-reduce.
+void add_scene_options(CommandLine& line, SceneChoice& choice);
+
+// Loads the scene of that name, a generator's or a file's, and prints its warnings to stderr.
+// Throws InvalidInput if there is none or it is wrong.
+Scene load(const std::string& name);
+Scene load(const SceneChoice& choice);
+
+// The scene as its motion starts: at its equilibrium, if the scene says so. Throws InvalidInput if
+// it has none.
+Scene started(const Scene& drawn, const SceneChoice& choice);
+
+// All reductions but those in `no_reduce`. Throws InvalidInput for an unknown name.
+Reductions reductions_of(const SceneChoice& choice);
+
+// Throws InvalidInput unless the method can run the scene. Some methods need a constant K, others
+// need named stiff springs, and most allow no massless node; the message names the node and the
+// methods that allow it. `source` names the scene.
+void require_fit(const Method& method, const ReducedScene& scene, const std::string& source);
+
+// The methods named in `list` (a,b,...), or all that can run the scene if the list is empty. Throws
+// InvalidInput for an unknown or repeated name, and as require_fit does.
+std::vector<const Method*> select_methods(const std::vector<std::string>& list,
+                                          const ReducedScene& scene, const std::string& source);
+
+// The methods' names.
+std::vector<std::string> names_of(const std::vector<const Method*>& methods);
+
+}  // namespace qddot::inline kit

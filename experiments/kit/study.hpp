@@ -1,0 +1,94 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/csv.hpp"
+#include "experiments/kit/journal.hpp"
+#include "experiments/kit/shares.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+
+namespace qddot::inline kit {
+
+// Adds --resume.
+void add_resume_option(CommandLine& line);
+
+// A study that is measured piece by piece into tables in one folder and may be interrupted at any
+// time. Each piece is kept in `folder`/PROGRAM.journal when it is measured. The same command with
+// --resume reads these pieces and measures the missing ones. The journal is removed when all tables
+// are complete.
+//
+// Several processes may divide a study:
+// - --list-shares prints, as JSON, the "key" of the study and its "shares",
+// - --share NAME --journal FILE measures that share into the file and makes no tables,
+// - --kept measures nothing and makes the tables of all complete shares in
+//   `folder`/PROGRAM.journal, wherever they were measured.
+class Study {
+ public:
+  // `about`: all that decides the results beside the program's options and the code, as the scene's
+  // hash. `tables`: the files X.csv in `folder` that it makes. Makes the folder, unless it lists
+  // shares. Says on stderr how many pieces of an interrupted run it keeps or measures anew. Throws
+  // InvalidInput as Journal does, and for an unknown share.
+  Study(const CommandLine& line, const std::string& folder, const std::vector<std::string>& tables,
+        const nlohmann::json& about, const Shares& shares = {});
+  // Removes the journal if nothing was measured.
+  ~Study();
+  Study(const Study&) = delete;
+  Study& operator=(const Study&) = delete;
+
+  // The exit status if there is nothing to do: --resume finds the study complete, or shares were
+  // listed.
+  std::optional<int> completed() const { return completed_; }
+  // Whether only one share is measured, without tables.
+  bool is_share() const { return !share_.empty(); }
+  // Whether several processes divide the study, so that no share may use results of another.
+  bool is_divided() const { return is_share() || is_kept_; }
+  // Whether the pieces of that share are available: measured now, or kept.
+  bool takes(const std::string& share) const;
+  // Whether the share may be measured now.
+  bool measures(const std::string& share) const { return !is_kept_ && takes(share); }
+
+  // The piece of that name: the kept one, or made now and kept. Throws Interrupted if the program
+  // is to end; a piece in progress is discarded then. Thread-safe.
+  nlohmann::json piece(const std::string& name, const std::function<nlohmann::json()>& make);
+
+  // Runs `body`, which makes pieces, until its end or an interruption, and removes the line of the
+  // progress. Marks a share as complete, even if NoReference was thrown.
+  void measure(const std::function<void()>& body);
+
+  // Completes a table. Its sidecar names this study, and "interrupted" says what ended it, or null.
+  // `status`: exit status of the program if nothing ended it.
+  void complete(CsvFile& table, nlohmann::json origin, int status);
+  // Gives all tables their names. Returns `status`, or that of the interruption after a message on
+  // how to go on.
+  int conclude(int status);
+  // Both, for tables of one origin.
+  int finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status);
+
+ private:
+  void list(const Shares& shares);
+  void open_share(const CommandLine& line, const Shares& shares);
+  void open_kept();
+  void open(const std::vector<std::string>& tables, const std::string& folder, bool resumes);
+  int conclude_whole(int status);
+
+  std::string program_, path_;
+  nlohmann::json options_, key_;
+  std::string share_;  // empty if all are measured
+  bool is_kept_ = false;
+  std::map<std::string, nlohmann::json> kept_;
+  std::optional<int> completed_;
+  std::unique_ptr<Journal> journal_;
+  std::optional<Interruption> why_;  // if measure() ended early
+  nlohmann::json failure_;           // of a share without a reference, in words
+  std::vector<CsvFile*> complete_;
+};
+
+}  // namespace qddot::inline kit

@@ -1,0 +1,213 @@
+#include <algorithm>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/shared_seconds.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+BOOST_AUTO_TEST_SUITE(progress)
+
+namespace {
+
+// A Progress on a screen that keeps what is written, by a clock that a test moves.
+struct Shown {
+  double now = 100;  // [s]
+  std::size_t columns = 80;
+  std::vector<std::string> written;
+  Progress progress{{.now = [this] { return now; },
+                     .columns = [this] { return columns; },
+                     .write = [this](std::string_view text) { written.emplace_back(text); }}};
+
+  std::string last() const { return written.empty() ? "" : written.back(); }
+};
+
+std::string line(const std::string& words) { return "\r" + words + "\033[K"; }
+const std::string wiped = "\r\033[K";
+
+const ProgressState state{.program = "work_precision",
+                          .number = 12,
+                          .pieces = 56,
+                          .what = "verlet h = 0.0005",
+                          .elapsed = 63.9,
+                          .left = 129.1};
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_bound_is_rounded_up_and_the_time_that_is_over_down) {
+  BOOST_TEST(clock_words(0) == "0:00");
+  BOOST_TEST(clock_words(63.9) == "1:03");
+  BOOST_TEST(clock_words(129.1, true) == "2:10");
+  BOOST_TEST(clock_words(3600) == "1:00:00");
+  BOOST_TEST(clock_words(3599.5, true) == "1:00:00");
+  BOOST_TEST(clock_words(-1) == "0:00");
+  BOOST_TEST(clock_words(1e300) == clock_words(1e9));
+}
+
+BOOST_AUTO_TEST_CASE(a_state_is_one_line) {
+  BOOST_TEST(progress_in_words(state, 80) ==
+             "work_precision 12/56  verlet h = 0.0005  1:03, at most 2:10 left");
+  ProgressState other = state;
+  other.left.reset();
+  BOOST_TEST(progress_in_words(other, 80) == "work_precision 12/56  verlet h = 0.0005  1:03");
+  other = {.program = "simulate", .what = "t = 1 of 2 s", .left = 10.9, .is_bound = false};
+  BOOST_TEST(progress_in_words(other, 80) == "simulate  t = 1 of 2 s  0:00, about 0:10 left");
+}
+
+BOOST_AUTO_TEST_CASE(few_columns_leave_the_times) {
+  BOOST_TEST(progress_in_words(state, 60) ==
+             "work_precision 12/56  verlet h = 0.  1:03, at most 2:10 left");
+  BOOST_TEST(progress_in_words(state, 39) == "12/56  verlet   1:03, at most 2:10 left");
+  BOOST_TEST(progress_in_words(state, 20) == "12/56  1:03, at most");
+  for (std::size_t columns = 0; columns < 90; ++columns)
+    BOOST_TEST(progress_in_words(state, columns).size() <= columns);
+}
+
+BOOST_AUTO_TEST_CASE(text_is_cut_by_what_it_takes_on_a_terminal) {
+  BOOST_TEST(in_columns("n\u00e9e", 2) == "n\u00e9");
+  BOOST_TEST(in_columns("e\u0301x", 1) == "e\u0301");            // an accent of its own takes none
+  BOOST_TEST(in_columns("\u5e03\u5e03", 3) == "\u5e03");         // these take two columns each
+  BOOST_TEST(in_columns("a\033[2Jb\nc\x7f", 9) == "a?[2Jb?c?");  // nothing that moves the cursor
+  BOOST_TEST(in_columns("\u009b2J", 9) == "?2J");
+  BOOST_TEST(in_columns("a\xff\xc3", 9) == "a??");  // no UTF-8
+  BOOST_TEST(in_columns(std::string("a\0b", 3), 9) == "a?b");
+}
+
+BOOST_AUTO_TEST_CASE(a_terminal_s_line_says_what_is_measured) {
+  Shown shown;
+  shown.progress.start("bench", Progress::Form::line);
+  shown.progress.stage("making the reference");
+  BOOST_TEST(shown.last() == line("bench  making the reference  0:00"));
+  shown.progress.begin(3);
+  shown.now += 5;
+  shown.progress.now_at("verlet");
+  BOOST_TEST(shown.last() == line("bench 1/3  verlet  0:05"));
+  shown.now += 5;
+  shown.progress.finish("verlet is done");
+  BOOST_TEST(shown.last() == line("bench 1/3  verlet is done  0:10"));
+  shown.now += 1;
+  shown.progress.now_at("rk4");
+  BOOST_TEST(shown.last() == line("bench 2/3  rk4  0:11"));
+  shown.columns = 15;  // three are left free
+  shown.now += 1;
+  shown.progress.now_at("rk4 again");
+  BOOST_TEST(shown.last() == line("2/3  r  0:12"));
+}
+
+BOOST_AUTO_TEST_CASE(it_is_written_at_most_ten_times_a_second) {
+  Shown shown;
+  shown.progress.start("bench", Progress::Form::line);
+  shown.progress.begin(10000);
+  for (int i = 0; i < 3000; ++i) {  // 3 s
+    shown.now += 1e-3;
+    shown.progress.now_at("verlet");
+  }
+  BOOST_TEST(shown.written.size() <= 30u);
+  BOOST_TEST(shown.written.size() >= 28u);  // and as often: sums of milliseconds are rounded
+}
+
+BOOST_AUTO_TEST_CASE(it_is_wiped_once_and_closed_for_good) {
+  Shown shown;
+  shown.progress.start("bench", Progress::Form::line);
+  shown.progress.wipe();
+  BOOST_TEST(shown.written.empty());  // there is nothing to wipe
+  shown.progress.stage("a");
+  shown.progress.wipe();
+  shown.progress.wipe();
+  BOOST_TEST(shown.written.size() == 2u);
+  BOOST_TEST(shown.last() == wiped);
+  shown.now += 1;
+  shown.progress.stage("b");
+  shown.progress.close();
+  BOOST_TEST(shown.last() == wiped);
+  shown.now += 1;
+  shown.progress.stage("c");
+  BOOST_TEST(shown.last() == wiped);
+}
+
+BOOST_AUTO_TEST_CASE(plain_lines_say_what_is_done_and_are_half_a_minute_apart) {
+  Shown shown;
+  shown.progress.start("bench", Progress::Form::plain);
+  shown.progress.stage("making the reference");
+  shown.progress.begin(100);
+  for (int i = 0; i < 100; ++i) {
+    shown.progress.now_at("verlet");
+    shown.now += 1;
+    shown.progress.finish("verlet is done");
+  }
+  const std::vector<std::string> expected = {
+      "bench 1/100  verlet is done  0:01\n", "bench 31/100  verlet is done  0:31\n",
+      "bench 61/100  verlet is done  1:01\n", "bench 91/100  verlet is done  1:31\n"};
+  BOOST_TEST(shown.written == expected, boost::test_tools::per_element());
+  shown.progress.wipe();
+  BOOST_TEST(shown.written.size() == expected.size());
+}
+
+BOOST_AUTO_TEST_CASE(what_is_over_soon_is_quiet) {
+  Shown shown;
+  shown.progress.start("bench", Progress::Form::plain, 30);
+  shown.progress.begin(40);
+  for (int i = 0; i < 40; ++i) {
+    shown.now += 1;
+    shown.progress.finish("verlet is done");
+  }
+  BOOST_TEST_REQUIRE(shown.written.size() == 1u);
+  BOOST_TEST(shown.last() == "bench 30/40  verlet is done  0:30\n");
+}
+
+BOOST_AUTO_TEST_CASE(none_says_nothing) {
+  Shown shown;
+  shown.progress.start("bench", Progress::Form::none);
+  shown.progress.begin(1);
+  shown.progress.now_at("verlet");
+  shown.progress.finish("verlet");
+  shown.progress.wipe();
+  BOOST_TEST(shown.written.empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_bound_runs_down_and_is_said_where_it_is_of_use) {
+  Shown shown;
+  shown.progress.start("bench", Progress::Form::line);
+  shown.progress.begin(11);
+  shown.progress.left_at_most(100);
+  shown.progress.now_at("a");
+  BOOST_TEST(shown.last() == line("bench 1/11  a  0:00"));  // nobody knows yet of how much use
+  shown.now += 10;
+  shown.progress.left_at_most(800);  // ten pieces like the slowest take 100 s
+  shown.progress.finish("a");
+  BOOST_TEST(shown.last() == line("bench 1/11  a  0:10, at most 13:20 left"));
+  shown.now += 15;
+  shown.progress.now_at("b");
+  BOOST_TEST(shown.last() == line("bench 2/11  b  0:25, at most 13:05 left"));
+  shown.progress.left_at_most(1300);
+  shown.now += 0.5;
+  shown.progress.now_at("b");
+  BOOST_TEST(shown.last() == line("bench 2/11  b  0:25"));
+  shown.progress.left_at_most({});
+  shown.now += 1;
+  shown.progress.now_at("b");
+  BOOST_TEST(shown.last() == line("bench 2/11  b  0:26"));
+}
+
+BOOST_AUTO_TEST_CASE(work_that_threads_share_takes_no_longer_than_is_said) {
+  // Pieces of these seconds, each taken by the first thread that is free, in any order.
+  std::vector<double> pieces = {1, 2, 3, 3, 5, 8};
+  for (const int threads : {1, 2, 3, 8}) {
+    double worst = 0;
+    do {
+      std::vector<double> busy_until(static_cast<std::size_t>(threads));
+      for (const double piece : pieces) *std::ranges::min_element(busy_until) += piece;
+      worst = std::max(worst, std::ranges::max(busy_until));
+    } while (std::ranges::next_permutation(pieces).found);
+    BOOST_TEST(worst <= shared_seconds_at_most(22, 8, threads));
+  }
+  BOOST_TEST(shared_seconds_at_most(22, 8, 1) == 22);
+  BOOST_TEST(shared_seconds_at_most(0, 0, 2) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(another_word_is_refused) {
+  BOOST_CHECK_THROW(start_progress("bench", "loud"), qddot::InvalidInput);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
