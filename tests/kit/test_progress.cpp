@@ -9,6 +9,8 @@
 
 BOOST_AUTO_TEST_SUITE(progress)
 
+using namespace qddot;
+
 namespace {
 
 // A Progress on a screen that keeps what is written, by a clock that a test moves.

@@ -8,6 +8,8 @@
 
 BOOST_AUTO_TEST_SUITE(own_interruption)
 
+using namespace qddot;
+
 BOOST_AUTO_TEST_CASE(it_ends_the_work_of_its_own_thread_alone) {
   std::stop_source source;
   std::latch is_interrupted(1), is_looked_at(1);
