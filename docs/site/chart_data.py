@@ -6,8 +6,7 @@ import math
 import sys
 from dataclasses import dataclass
 
-from code_state import ROOT
-from page_data import DATA, NOTHING, record, rows, seconds, small, times
+from page_data import DATA, NOTHING, ROOT, record, rows, seconds, small, times
 
 sys.path.append(str(ROOT / "experiments/plot"))
 import measurements  # noqa: E402 (the pictures' own reader of work_precision's tables)

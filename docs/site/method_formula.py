@@ -4,7 +4,7 @@ import functools
 import re
 
 import page_data
-from code_state import ROOT
+from page_data import ROOT
 
 
 @functools.cache

@@ -9,9 +9,9 @@ import functools
 import json
 import math
 import re
+from pathlib import Path
 
-from code_state import ROOT
-
+ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT / "docs/data"
 NOTHING = "–"  # where a table has no number
 
@@ -97,12 +97,19 @@ def processor(study):
     return record(study)["processor"]
 
 
+said_on_page = set()  # processors and dates that the page at hand has named; render.py clears it
+
+
 def made(*studies):
-    """The line under a table: the command that makes it anew, the processor, and when that was."""
+    """The line under a table: the command that makes it anew and, where the page has not said so yet,
+    the processor and when that was."""
     first = record(studies[0])
     dates = sorted({record(study)["date"] for study in studies})
     when = dates[0] if len(dates) == 1 else f"{dates[0]} to {dates[-1]}"
-    return f"(`./run studies {' '.join(studies)}`; one core of an {first['processor']}, {when})"
+    where = f"; one core of an {first['processor']}, {when}"
+    is_said = where in said_on_page
+    said_on_page.add(where)
+    return f"(`./run studies {' '.join(studies)}`{'' if is_said else where})"
 
 
 @functools.cache

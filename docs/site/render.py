@@ -5,9 +5,11 @@ numbers put in.
     render.py --check       says which are not as their templates and docs/data have them; status 1
     render.py --draft NAME  prints one; what is not measured yet is shown as such
 
-A template is Markdown with {{ ... }} and {% ... %} of Jinja; page_data.py has what these can call.
+A template is Markdown with {{ ... }} and {% ... %} of Jinja. It can call what page_data.py and
+chart_data.py offer, and what a Python file of its own name beside it defines.
 """
 
+import importlib.util
 import sys
 
 import jinja2
@@ -16,7 +18,7 @@ import chart_data
 import method_pages
 import page_data
 from energy_words import energy_in_words
-from code_state import ROOT
+from page_data import ROOT
 
 PAGES = ROOT / "docs/pages"
 # What a template can call.
@@ -41,6 +43,23 @@ def environment():
     return made
 
 
+def own_calls(template):
+    """What the Python file beside a template defines, by name."""
+    file = (PAGES / template).with_suffix(".py")
+    if not file.exists():
+        return {}
+    described = importlib.util.spec_from_file_location(f"page_{file.stem}", file)
+    module = importlib.util.module_from_spec(described)
+    described.loader.exec_module(module)
+    return {name: value for name, value in vars(module).items() if not name.startswith("_")}
+
+
+def render_page(template, **values):
+    """The text of one page."""
+    page_data.said_on_page.clear()
+    return template.render(**values)
+
+
 def target_of(template):
     """Where the page of a template goes: README.md to the root, all else to docs/."""
     return ROOT / template if template == "README.md" else ROOT / "docs" / template
@@ -54,10 +73,10 @@ def rendered():
         if name == "method.md":
             continue
         notice = NOTICE.format(source=f"docs/pages/{name}")
-        pages[target_of(name)] = notice + jinja.get_template(name).render()
+        pages[target_of(name)] = notice + render_page(jinja.get_template(name), **own_calls(name))
     template = jinja.get_template("method.md")
     for method in method_pages.all_methods():
-        page = template.render(method=method)
+        page = render_page(template, method=method)
         pages[ROOT / f"docs/methods/{method.name}.md"] = (
             NOTICE.format(source="docs/pages/method.md") + page
         )
@@ -112,7 +131,10 @@ def draft(name):
     for method in method_pages.all_methods():
         if method.name == name:
             return jinja.get_template("method.md").render(method=method)
-    return jinja.get_template(name).render()
+    own = {
+        key: drafted(value) if callable(value) else value for key, value in own_calls(name).items()
+    }
+    return jinja.get_template(name).render(own)
 
 
 def main():

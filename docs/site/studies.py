@@ -1,10 +1,12 @@
 """Measures what the pages of docs/ say, and keeps it in docs/data/ and docs/pictures/.
 
-    ./run studies                  all that are not measured yet, or are older than the code
-    ./run studies cloth bench      these alone
-    ./run studies --again cloth    anew, whatever there is
+    ./run studies                  all that are not measured yet, or whose commands, scene files or
+                                   needed studies have changed
+    ./run studies cloth bench      these alone, whatever there is
+    ./run studies --again cloth    these from the start, interrupted or not
     ./run studies --list           what there is, and how long each took
-    ./run studies --check          which are older than the code; status 1 where one is
+    ./run studies --check          which are to be measured (status 1 where one is), and how many
+                                   commits changed the code of the others since
     ./run studies --draw           the pictures alone, of what lies in results/studies
     ./run studies --quick          those that say what programs print, where that has changed
 
@@ -16,16 +18,15 @@ import argparse
 import datetime
 import json
 import os
+import re
 import shutil
+import subprocess
 import sys
 import time
 
-import code_state
-import entries
-from code_state import ROOT
-from entries import read_studies, run
-from kept_files import keep
+import study as entries
 from processor import processor
+from study import BIN, ROOT, keep, read_studies, run, source_hash, write_whole
 
 
 def draw(study):
@@ -34,35 +35,47 @@ def draw(study):
         for program in study.programs:
             run(study, f"experiments/{program}/{program}.py {os.path.relpath(study.folder, ROOT)}")
     for drawn, name in study.pictures.items():
-        keep(study.folder / f"{drawn}.png", entries.PICTURES, f"{name}.png")
+        keep(study.folder / f"{drawn}.png", entries.PICTURES / f"{name}.png")
 
 
 def begin(study, again):
     """Clears the folder of the study unless an interrupted run by the same sources left it; returns the
     seconds that this took so far. A program goes on with a journal of its own sources alone."""
     file = study.folder / "begun.json"
-    sources = code_state.source_hash()
+    same = {"source_hash": source_hash(), "commands": study.commands}
     begun = json.loads(file.read_text()) if file.exists() else {}
-    if again or begun.get("sources") != sources or begun.get("commands") != study.commands:
+    if again or any(begun.get(key) != value for key, value in same.items()):
         shutil.rmtree(study.folder, ignore_errors=True)
-        begun = {"sources": sources, "commands": study.commands, "seconds": 0}
-    study.folder.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(begun))
+        begun = {**same, "seconds": 0}
+        write_whole(file, json.dumps(begun))
     return begun["seconds"]
 
 
 def measure(study, again):
     """Runs the commands of a study; returns what they printed and the seconds that they took, those
     of runs that were interrupted included."""
-    before = begin(study, again)
-    start = time.time()
+    before, start = begin(study, again), time.time()
     try:
-        printed = "".join(run(study, command) for command in study.commands)
+        printed = study.printed()
     finally:
         seconds = before + time.time() - start
         file = study.folder / "begun.json"
-        file.write_text(json.dumps({**json.loads(file.read_text()), "seconds": seconds}))
+        write_whole(file, json.dumps({**json.loads(file.read_text()), "seconds": seconds}))
     return printed, seconds
+
+
+def built(study):
+    """The compiler, version and sources of the programs that measured, as its sidecars say; of a study
+    without sidecars as `simulate --version` says, which names no hash of sources."""
+    keys = ("compiler", "version", "source_hash")
+    for file in sorted(study.folder.glob("*.json")):
+        sidecar = json.loads(file.read_text())
+        if isinstance(sidecar, dict) and all(key in sidecar for key in keys):
+            return {key: sidecar[key] for key in keys}
+    asked = [BIN / "simulate", "--version"]
+    said = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+    version, compiler = re.fullmatch(r"\w+ of qddot (.*), (.*)\n", said).groups()
+    return {"compiler": compiler, "version": version}
 
 
 def make(study, again):
@@ -70,63 +83,44 @@ def make(study, again):
     for needed in (read_studies()[name] for name in study.needs):
         if not needed.folder.exists():
             make(needed, again=False)
-    state = study.state
+    inputs = study.inputs
     printed, seconds = measure(study, again)
-    data = entries.DATA / study.name
     if study.text:
-        (study.folder / study.text).write_text(printed, encoding="utf-8")
-        data.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(study.folder / study.text, data / study.text)
+        write_whole(study.folder / study.text, printed)
+        write_whole(study.data / study.text, printed)
     draw(study)
     for pattern in study.tables:
         for table in sorted(study.folder.glob(pattern)):
-            keep(table, data, columns=study.columns.get(table.name))
-    date = datetime.date.today().isoformat()
-    record = {**state, "date": date, "seconds": round(seconds, 1), **machine(study)}
-    part = data / "study.json.part"
-    part.parent.mkdir(parents=True, exist_ok=True)
-    part.write_text(json.dumps(record, indent=1) + "\n")
-    os.replace(part, part.with_suffix(""))
+            keep(table, study.data / table.name, study.columns.get(table.name))
+    when = {"date": datetime.date.today().isoformat(), "seconds": round(seconds, 1)}
+    record = {**inputs, **when, "processor": processor(), **built(study)}
+    write_whole(study.data / "study.json", json.dumps(record, indent=1) + "\n")
     (study.folder / "begun.json").unlink()
 
 
-def machine(study):
-    """The processor, by the name that its vendor and generation have, and the compiler."""
-    compiler = ""
-    for file in sorted(study.folder.glob("*.json")):
-        sidecar = json.loads(file.read_text())
-        compiler = sidecar.get("compiler", compiler) if isinstance(sidecar, dict) else compiler
-    return {"processor": processor(), "compiler": compiler}
-
-
 def show(studies):
-    """Prints one line a study: its age against the code, seconds and commands."""
+    """Prints one line a study: whether it is to be measured, seconds and commands."""
     for study in studies.values():
         record = study.record
-        state = "not measured" if not record else "fresh" if study.is_fresh() else "older"
+        state = "not measured" if not record else "to be measured" if study.due() else "measured"
         seconds = f"{record['seconds']:7.0f} s" if record else " " * 9
-        print(f"{study.name:24}{state:14}{seconds}  {'; '.join(study.commands)}")
+        print(f"{study.name:24}{state:16}{seconds}  {'; '.join(study.commands)}")
 
 
 def check(studies):
-    """Prints what is older than the code it describes, and by which folders; whether nothing is."""
-    good = True
+    """Prints which are to be measured and, of the others, how many commits changed their code since;
+    returns whether none is to be measured."""
+    good, commits = True, {}
     for study in studies.values():
-        if study.is_fresh():
-            continue
-        good = False
-        record = study.record
-        if not record:
-            print(f"{study.name}: not measured")
-        elif record["commands"] != study.commands:
-            print(f"{study.name}: measured by another command: {'; '.join(record['commands'])}")
-        else:
-            names = code_state.changed(record["code"], study.programs)
-            needs = record.get("needs", {})
-            names += [
-                name for name, value in study.state["needs"].items() if needs.get(name) != value
-            ]
-            print(f"{study.name}: older than {', '.join(names) or 'what its commands print'}")
+        if why := study.due():
+            good = False
+            print(f"{study.name}: {why}")
+        elif not study.quick:
+            commits.setdefault(study.commits_since(), []).append(study.name)
+    commits.pop(0, None)
+    for count in sorted(commits, key=lambda count: -1 if count is None else count):
+        said = "an unknown number of" if count is None else count
+        print(f"{said} commits changed code since these were measured: {', '.join(commits[count])}")
     return good
 
 
@@ -139,7 +133,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="say what there is")
     parser.add_argument("--draw", action="store_true", help="only draw the pictures anew")
     parser.add_argument("--quick", action="store_true", help="only what takes no time")
-    parser.add_argument("--check", action="store_true", help="say what is older than the code")
+    parser.add_argument("--check", action="store_true", help="say what is to be measured")
     arguments = parser.parse_args()
     studies = read_studies()
     for name in arguments.names:
@@ -159,10 +153,9 @@ def main():
                 draw(study)
         return 0
     for position, study in enumerate(chosen.values(), 1):
-        if study.is_fresh() and not arguments.again:
-            continue
-        print(f"{position}/{len(chosen)} {study.name}: {'; '.join(study.commands)}", flush=True)
-        make(study, arguments.again)
+        if arguments.names or arguments.again or study.due():
+            print(f"{position}/{len(chosen)} {study.name}: {'; '.join(study.commands)}", flush=True)
+            make(study, arguments.again)
     return 0
 
 

@@ -5,6 +5,7 @@ import csv
 import io
 import json
 import math
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -14,47 +15,9 @@ from unittest import mock
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs/site"))
 import chart_data  # noqa: E402
-import code_state  # noqa: E402
-import entries  # noqa: E402
 import page_data  # noqa: E402
+import study as entries  # noqa: E402
 import studies  # noqa: E402
-
-CODE = (
-    'double f(double x) {  // twice\n  return name("ab") + 2 * x;  /* so */ }\nsay("it is far");\n'
-)
-
-
-class CodeState(unittest.TestCase):
-    def test_words_and_spaces_do_not_count(self):
-        for old, new in (("twice", "half"), ("so", "or"), ("  return", "\n return"),
-                         ("it is far", "it went far away"), ('"it is far"', '"it is " "far off"')):  # fmt: skip
-            with self.subTest(old=old):
-                changed = CODE.replace(old, new)
-                self.assertNotEqual(CODE, changed)
-                self.assertEqual(code_state.without_words(CODE), code_state.without_words(changed))
-
-    def test_numbers_names_and_keys_count(self):
-        for old, new in (("2 *", "3 *"), ("x)", "y)"), ('"ab"', '"ac"')):
-            with self.subTest(old=old):
-                changed = CODE.replace(old, new)
-                self.assertNotEqual(
-                    code_state.without_words(CODE), code_state.without_words(changed)
-                )
-
-    def test_a_slash_in_a_string_begins_no_comment(self):
-        self.assertIn("f(3)", code_state.without_words('open("a//b"); f(3);'))
-
-    def test_a_change_is_named_by_its_folder(self):
-        state = code_state.state_of(["crossover"])
-        self.assertEqual([], code_state.changed(state, ["crossover"]))
-        for folder in ("src/qddot/model", "integrators/methods", "experiments/crossover"):
-            self.assertIn(folder, state)
-            self.assertEqual(
-                [folder], code_state.changed({**state, folder: "another"}, ["crossover"])
-            )
-        gone = {**state, "src/gone": "1"}
-        self.assertEqual(["src/gone"], code_state.changed(gone, ["crossover"]))
-        self.assertFalse([name for name in state if name.startswith("experiments/bench")])
 
 
 class Studies(unittest.TestCase):
@@ -67,44 +30,76 @@ class Studies(unittest.TestCase):
             patch.start()
             self.addCleanup(patch.stop)
 
-    def test_a_study_is_kept_whole_and_made_once(self):
-        study = entries.Study(
-            "small",
-            ["convergence --scene oscillator --until 0.5 --methods verlet,rk4"],
-            tables=["order.csv"],
-        )
-        self.assertIsNone(study.record)
-        studies.make(study, again=False)
-        with open(entries.DATA / "small/order.csv", newline="", encoding="utf-8") as file:
-            self.assertEqual({"verlet", "rk4"}, {row["method"] for row in csv.DictReader(file)})
-        self.assertEqual(["convergence"], study.programs)
-        self.assertTrue(study.is_fresh())
-        self.assertEqual(study.commands, study.record["commands"])
-        self.assertFalse(list(entries.DATA.rglob("*.part")))
-        self.assertFalse((study.folder / "begun.json").exists())
+    def check(self, *studies_):
+        """What --check says of these, and whether it is content."""
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
-            self.assertTrue(studies.check({"small": study}))
-            record = {**study.record, "code": {**study.record["code"], "src/qddot/model": "another"}}
-            (entries.DATA / "small/study.json").write_text(json.dumps(record))
-            self.assertFalse(studies.check({"small": study}))
-            study.commands = ["convergence --scene oscillator --until 1"]
-            self.assertFalse(studies.check({"small": study}))
-        self.assertIn("small: older than src/qddot/model\n", said.getvalue())
-        self.assertIn("small: measured by another command", said.getvalue())
+            good = studies.check({study.name: study for study in studies_})
+        return good, said.getvalue()
+
+    def rewrite(self, study, **changes):
+        """Changes the record of a study."""
+        record = {**study.record, **changes}
+        (study.data / "study.json").write_text(json.dumps(record))
+
+    def test_a_study_is_kept_whole_and_measured_where_it_is_another(self):
+        study = entries.Study(
+            "small",
+            ["convergence --scene examples/two_links.toml --until 0.1 --methods verlet,rk4"],
+            tables=["order.csv"],
+        )
+        self.assertEqual("not measured", study.due())
+        studies.make(study, again=False)
+        with open(study.data / "order.csv", newline="", encoding="utf-8") as file:
+            self.assertEqual({"verlet", "rk4"}, {row["method"] for row in csv.DictReader(file)})
+        self.assertEqual(["convergence"], study.programs)
+        self.assertFalse(list(entries.DATA.rglob("*.part")))
+        self.assertFalse((study.folder / "begun.json").exists())
+        sidecar = json.loads((study.folder / "order.json").read_text())
+        for key in ("version", "source_hash", "compiler"):
+            self.assertEqual(sidecar[key], study.record[key])
+        self.assertTrue(self.check(study)[0])
+        self.rewrite(study, needs={"examples/two_links.toml": "another"})
+        self.assertEqual(
+            (False, "small: changed since: examples/two_links.toml\n"), self.check(study)
+        )
+        study.commands = ["convergence --scene oscillator --until 1"]
+        self.assertIn("small: measured by another command", self.check(study)[1])
+
+    def test_commits_since_are_counted(self):
+        study = entries.Study("list", ["simulate --list-methods --csv"], text="m.csv")
+        studies.make(study, again=False)
+        with mock.patch.object(entries, "commits_after", lambda commit, *programs: len(commit)):
+            self.rewrite(study, version="0.1.0 (abc-dirty)")
+            self.assertEqual(
+                (True, "3 commits changed code since these were measured: list\n"),
+                self.check(study),
+            )
+        self.rewrite(study, version="0.1.0")
+        self.assertIn("an unknown number of commits", self.check(study)[1])
+
+    def test_git_counts_commits(self):
+        inside = ["git", "rev-parse", "--verify", "-q", "HEAD~1"]
+        if subprocess.run(inside, cwd=ROOT, capture_output=True, check=False).returncode:
+            self.skipTest("there are no commits here")
+        self.assertEqual(0, entries.commits_after("HEAD", "convergence"))
+        everything = ["git", "rev-list", "--max-count=1", "HEAD", "--", "src"]
+        last = subprocess.run(everything, cwd=ROOT, capture_output=True, text=True, check=True)
+        self.assertLess(0, entries.commits_after(last.stdout.strip() + "~1", "convergence"))
+        self.assertIsNone(entries.commits_after("no_commit", "convergence"))
 
     def test_an_interrupted_study_goes_on_and_one_of_other_sources_begins_anew(self):
         study = entries.Study("list", ["simulate --list-methods --csv"], text="m.csv")
         study.folder.mkdir(parents=True)
-        for sources, goes_on in ((code_state.source_hash(), True), ("others", False)):
-            begun = {"sources": sources, "commands": study.commands, "seconds": 100}
+        for sources, goes_on in ((entries.source_hash(), True), ("others", False)):
+            begun = {"source_hash": sources, "commands": study.commands, "seconds": 100}
             (study.folder / "begun.json").write_text(json.dumps(begun))
             (study.folder / "journal").write_text("a piece")
             studies.make(study, again=False)
             self.assertEqual(goes_on, (study.folder / "journal").exists())
             self.assertEqual(goes_on, study.record["seconds"] >= 100)
 
-    def test_a_study_is_old_where_one_that_it_needs_was_made_again(self):
+    def test_a_study_is_to_be_measured_where_one_that_it_needs_was_measured_again(self):
         needed = entries.Study("needed", ["simulate --list-scenes --csv"], text="s.csv")
         study = entries.Study(
             "list", ["simulate --list-methods --csv"], text="m.csv", needs=["needed"]
@@ -116,15 +111,9 @@ class Studies(unittest.TestCase):
         self.addCleanup(known.stop)
         studies.make(study, again=False)
         self.assertIsNotNone(needed.record)
-        studies.make(needed, again=False)
-        studies.make(study, again=False)
-        self.assertTrue(study.is_fresh())
-        record = {**needed.record, "date": "another day"}
-        (entries.DATA / "needed/study.json").write_text(json.dumps(record))
-        said = io.StringIO()
-        with contextlib.redirect_stdout(said):
-            self.assertFalse(studies.check({"list": study}))
-        self.assertEqual("list: older than needed\n", said.getvalue())
+        self.assertEqual("", study.due())
+        self.rewrite(needed, date="another day")
+        self.assertEqual((False, "list: changed since: needed\n"), self.check(study))
 
     def test_a_study_that_fails_keeps_nothing(self):
         study = entries.Study("bad", ["convergence --scene nothing"], tables=["order.csv"])
@@ -135,9 +124,9 @@ class Studies(unittest.TestCase):
     def test_a_quick_one_is_old_where_it_prints_another_text(self):
         study = entries.Study("list", ["simulate --list-methods --csv"], text="m.csv", quick=True)
         studies.make(study, again=False)
-        self.assertTrue(study.is_fresh())
+        self.assertEqual("", study.due())
         (entries.DATA / "list/m.csv").write_text("name\n")
-        self.assertFalse(study.is_fresh())
+        self.assertEqual("prints another text", study.due())
 
 
 class Words(unittest.TestCase):

@@ -1,0 +1,61 @@
+"""The numbers of the page on failures."""
+
+import method_pages
+from page_data import NOTHING, figures, row, rows
+
+HELD = ["bounded", "leaked", "over_budget"]
+GROWN = ["gained", "diverged"]
+WORDS = {"newton_failed": "Newton failed", "indefinite_matrix": "matrix indefinite"}
+
+
+def outcome_words(outcome):
+    """An outcome as the tables say it."""
+    return WORDS.get(outcome, outcome)
+
+
+def is_held(run):
+    return run["outcome"] in HELD
+
+
+def has_grown(run):
+    return run["outcome"] in GROWN
+
+
+def limit_of(method):
+    """The largest stable h ω by theory; beyond all numbers where there is none."""
+    return float(
+        row("stability_cloth", "limits.csv", method=method)["h_omega_limit_predicted"] or 1e99
+    )
+
+
+def first_failure(runs):
+    """Of runs, the one of the least h ω that fails, and how."""
+    failed = [run for run in runs if not is_held(run)]
+    if not failed:
+        return NOTHING
+    first = min(failed, key=lambda run: float(run["h_omega"]))
+    grown = f", × {figures(first['energy_max'])}" if has_grown(first) else ""
+    return f"{figures(first['h_omega'])}: {outcome_words(first['outcome'])}{grown}"
+
+
+def damping(mode):
+    """The damping ratio of a mode and its verdict."""
+    ratio = float(mode["damping_ratio_measured"])
+    return f"{'0' if abs(ratio) < 1e-8 else figures(ratio)}, {mode['verdict']}"
+
+
+def worst_limit():
+    """The largest difference of a measured and a predicted limit, relative to it."""
+    limits = rows("stability_cloth", "limits.csv")
+    return max(abs(float(limit["relative_difference"] or 0)) for limit in limits)
+
+
+def worst_damping():
+    """The largest difference of a measured and a predicted damping ratio of a hand-written method."""
+    methods = method_pages.all_methods()
+    hand = [m.name for m in methods if m.entry["family"] == "hand-written"]
+    ratios = [
+        (mode["damping_ratio_predicted"], mode["damping_ratio_measured"])
+        for mode in rows("stability_cloth", "modal.csv", method=hand)
+    ]
+    return max(abs(float(p) - float(m)) for p, m in ratios if p and m)
