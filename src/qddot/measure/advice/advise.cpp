@@ -19,10 +19,11 @@ namespace qddot::inline measure {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// What advice may take [s], whatever is advised, and of the run that is; what its runs may, and
-// what the twin may that shows chaos.
-constexpr double always_allowed = 0.4, of_the_run = 1.8, for_runs = 0.3, for_twin = 0.15;
-// Fraction of an accuracy that a run is expected to miss by, as in solve().
+// Time limits [s]. All runs together take at most `for_runs`, or `of_the_run` times the longest
+// advised run. The perturbed run that detects chaos takes at most `for_twin`. SUNDIALS' methods are
+// tried until `for_sundials` after the start.
+constexpr double for_runs = 0.3, of_the_run = 1.8, for_twin = 0.15, for_sundials = 0.4;
+// The fraction of an accuracy that a run is chosen to have as its expected error, as in solve().
 constexpr double expected_to_miss = 0.45;
 
 Candidate as_candidate(const Search& search, const Trial& trial) {
@@ -39,16 +40,17 @@ struct Contender {
   Candidate run;
   bool is_seen = false;
 
-  // What implicit steps take and miss by is known badly before.
+  // Forecasts of implicit methods are poor before a run of theirs: neither error nor time is
+  // reliable.
   bool is_vague() const { return !is_seen && run.method->is(Trait::implicit); }
-  // What it takes, with something on top for what is not known.
+  // The run's time [s]; a forecast time is raised, as it is uncertain.
   double handicapped() const {
     constexpr double unseen = 1.3;
     return is_seen ? run.seconds : unseen * run.seconds;
   }
 };
 
-// The runs that are expected or known to come to the accuracy, one a method, the fastest first.
+// The runs that reach the accuracy, as forecast or as measured: one for each method, fastest first.
 std::vector<Contender> contenders(const Search& search, double accuracy) {
   std::vector<Contender> all;
   if (search.forecast()) {
@@ -98,8 +100,8 @@ Advice advice_for(const Search& search, double accuracy) {
   return advice;
 }
 
-// Makes the runs that are advised, from the least accurate on, so long as that pays: each teaches
-// the forecast for the next.
+// Makes the advised runs, from the coarsest accuracy on, while there is time. Each run corrects the
+// forecast for the next.
 void try_out(Search& search, const std::vector<double>& coarse_first,
              std::chrono::steady_clock::time_point begin) {
   double longest = 0;
@@ -111,7 +113,8 @@ void try_out(Search& search, const std::vector<double>& coarse_first,
       std::max(for_runs, std::min(of_the_run * longest, search.seconds_worth_trying()));
   search.stop_after(allowed);
   for (const double accuracy : coarse_first) {
-    // The run, its check, and what may be faster; then once more, where all that says otherwise.
+    // An attempt makes the advised run, its check, and runs that may be faster. The advice may then
+    // differ: it is tried again.
     constexpr double with_its_check = 3;
     for (int attempt = 0; attempt < 3; ++attempt) {
       const double left = allowed - seconds_since(begin);
@@ -127,8 +130,8 @@ void try_out(Search& search, const std::vector<double>& coarse_first,
   }
 }
 
-// How fast the most accurate run that takes so little parts from one with a start that is one
-// rounding away.
+// Measures how fast two motions part whose starts differ by one rounding. It repeats the most
+// accurate run that takes at most `for_twin` seconds.
 void see_chaos(Advices& all, const Search& search) {
   const Trial* best = search.most_accurate(true, for_twin);
   if (!best) return;
@@ -138,7 +141,7 @@ void see_chaos(Advices& all, const Search& search) {
   }
 }
 
-// What no two runs agree on cannot be expected of one.
+// Withdraws the advice that no run has confirmed: beyond the horizon no run is right.
 void refuse_chaos(Advices& all) {
   for (Advice& advice : all.for_each) {
     if (!advice.take || advice.is_seen) continue;
@@ -149,13 +152,14 @@ void refuse_chaos(Advices& all) {
   }
 }
 
-// SUNDIALS' fastest methods choose their steps: of them only runs tell. The explicit one is tried
-// for each accuracy, the implicit one for the first, until time is up.
+// SUNDIALS' methods choose their steps, so their error and time are known from runs only. The
+// explicit method is tried for each accuracy, the implicit one for the coarsest, until
+// `for_sundials`.
 void try_sundials(Search& search, const std::vector<double>& coarse_first,
                   std::chrono::steady_clock::time_point begin) {
   constexpr double tolerance = 0.1;  // of the accuracy
   const auto try_one = [&](const char* name, double accuracy) {
-    const double left = always_allowed - seconds_since(begin);
+    const double left = for_sundials - seconds_since(begin);
     const double rtol = std::clamp(tolerance * accuracy, 1e-13, 1e-2);
     if (left > 0) search.try_once({find_method(name), rtol, 0, 0}, left);
   };

@@ -9,13 +9,13 @@
 
 namespace qddot::inline measure {
 
-// What to take for one accuracy.
+// The advice for one accuracy.
 struct Advice {
   double accuracy = 0;
   // The run to take. Empty if no run is expected to reach the accuracy; `why` then says the reason.
   std::optional<Candidate> take{};
   std::string why{};
-  bool is_seen = false;  // the error is not expected but was seen, in a run and its check
+  bool is_seen = false;  // whether the error comes from a run and its check, not from the forecast
   // The fastest of the other methods, and the fastest of each family, where known.
   std::optional<Candidate> runner_up{}, own_explicit{}, own_implicit{}, sundials{};
 
@@ -36,7 +36,7 @@ struct Advices {
   // common. Zero and infinite if no such parting was seen.
   double lyapunov = 0, horizon = 0;
   int runs = 0;
-  double seconds = 0;  // that it took
+  double seconds = 0;  // the time [s] that the advice took
 };
 
 // Finds the method that reaches each accuracy in the least time. An accuracy is a relative error:

@@ -14,20 +14,20 @@ namespace qddot::inline measure {
 namespace {
 
 constexpr double without_end = std::numeric_limits<double>::infinity();
-// Steps are that far below the limit of stability over the motion, which is seen at some times
-// only.
+// Steps are chosen this far below the stability limit. The largest frequency is known at some times
+// of the motion only, and may be larger between them.
 constexpr double below_limit = 0.95;
-// After a step that did not hold.
+// Steps are chosen this far below a step size that failed.
 constexpr double below_failure = 0.8;
-// Errors of implicit methods come from slower vibrations than w_p says, for they leave the fast
-// ones out: by this much in the median of the training cases.
+// Implicit methods do not resolve the fast vibrations that w_p contains. Their sensitivity is
+// smaller by this factor, the median of the training cases.
 constexpr double implicit_share = 0.3;
 // Seconds of a dense eigenproblem of n unknowns are about this times n^3.
 constexpr double seconds_of_eigenproblem = 1.3e-9;
-constexpr double largest_exact = 2000;  // as method `exact` has it
-// A correction above this says that errors grow exponentially.
+constexpr double largest_exact = 2000;  // unknowns of a part; the limit of method `exact`
+// An error that exceeds its forecast by this factor shows that errors grow exponentially.
 constexpr double grows = 30;
-// A run tells nothing about much finer and coarser ones.
+// A run gives no forecast for knobs that are finer or coarser by more than this factor.
 constexpr double farthest = 100;
 
 bool is_told_by_frequency(const Method& method) {
@@ -121,7 +121,8 @@ double Forecast::seconds(const Method& method, double value) const {
   if (method.order == 0) return seconds_of_exact(stage_.model());
   const auto seen = seen_.find(&method);
   if (seen != seen_.end()) {
-    // Half of what steps with steps inside take is the latter's, whatever the step.
+    // Half of such a step's time is spent on its inner steps, whose number does not depend on the
+    // step size.
     const double share = method.knob == Knob::rtol         ? 1.0 / method.order
                          : method.asks(Need::split_forces) ? 0.5
                                                            : 1;
@@ -151,7 +152,7 @@ std::optional<Candidate> Forecast::from_steps(const Method& method, double error
   if (w > 0 && sensitivity_ > 0)
     h = std::min(h, largest_h_omega(method, error / sensitivity(method)) / w);
   if (!(h > 0)) return {};
-  // A whole number of steps from one look to the next.
+  // The number of steps is a multiple of the number of looks, so that no look shortens a step.
   const double looks = static_cast<double>(stage_.times().size());
   double steps = std::ceil(until / h * (1 - 1e-9));
   if (steps > 4 * looks) steps = looks * std::ceil(steps / looks);
@@ -167,7 +168,7 @@ std::optional<Candidate> Forecast::from_seen(const Method& method, double error)
   const double finer = std::pow(seen.error / error, 1 / power_of_error(method));
   if (!(finer < farthest && finer > 1 / farthest)) return {};
   double value = seen.value / finer;
-  // The middle between a step that held and one that failed.
+  // The value lies between the largest step that succeeded and the smallest one that failed.
   const auto failed = failed_.find(&method);
   if (failed != failed_.end() && failed->second > seen.value)
     value = std::min(value, std::sqrt(failed->second * seen.value));
@@ -208,7 +209,7 @@ void Forecast::learn_error(const Trial& trial, double error) {
   const Method& method = *trial.method;
   if (method.order == 0 || error == 0) return;
   if (!is_told_by_frequency(method)) {
-    // Errors this large come from steps that are too long; no order makes them small.
+    // An error this large is not proportional to h^order: the step is too long.
     constexpr double too_long = 0.1;
     if (error < too_long || method.knob == Knob::rtol) {
       seen_[&method] = {trial.value, error, trial.seconds};

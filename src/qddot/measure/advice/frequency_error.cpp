@@ -15,10 +15,10 @@ namespace qddot::inline measure {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// Values are kept at steps of 2 % in h w.
+// Values are stored at multiples of 2 % in h w.
 constexpr double per_logarithm = 50;
 constexpr double least_searched = 1e-9, largest_searched = 100;
-// Growth by rounding alone.
+// A spectral radius that exceeds 1 by less than this is a rounding error, not growth.
 constexpr double root_rounding = 1e-9;
 
 double computed(const Method& method, double h_omega) {
@@ -26,7 +26,7 @@ double computed(const Method& method, double h_omega) {
   LinearStep step;
   try {
     step = linear_step(method, h_omega);
-  } catch (const std::runtime_error&) {  // it does not make the step
+  } catch (const std::runtime_error&) {  // the step failed
     return infinite;
   }
   if (step.spectral_radius() > 1 + root_rounding) return infinite;
@@ -51,7 +51,8 @@ double at(const Method& method, double h_omega) {
   return kept(method, static_cast<int>(std::floor(std::log(h_omega) * per_logarithm)));
 }
 
-// Below that h w the error falls as the order says, and roots are still known well enough.
+// The h w below which the error is proportional to (h w)^order. Roots at this h w are still
+// accurate.
 double asymptotic(const Method& method) { return method.order <= 4 ? 0.1 : 0.05 * method.order; }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 constexpr int burst_steps = OwnFrequencies::highest_order + 2;
 constexpr double burst_h_omega = 0.5;
 
-// Positions at the start and after each step of a burst; fewer where it failed.
+// Positions at the start and after each step of a burst; fewer if the burst failed.
 std::vector<Vec> burst(const ReducedScene& model, const State& from, double h) {
   const auto integrator = make_integrator(*find_method("verlet"), model.system(), {.step_size = h});
   State state{0, from.q, from.v};
@@ -23,7 +23,8 @@ std::vector<Vec> burst(const ReducedScene& model, const State& from, double h) {
   return q;
 }
 
-// Adds the squares of the k-th differences of bursts along the path; how many came to their end.
+// Adds the squares of the k-th differences of bursts along the path. Returns the number of bursts
+// that reached their end.
 int add_bursts(const ReducedScene& model, const std::vector<State>& path, double h, int bursts,
                std::array<double, OwnFrequencies::highest_order + 2>& squares) {
   int taken = 0;
@@ -40,18 +41,19 @@ int add_bursts(const ReducedScene& model, const std::vector<State>& path, double
   return taken;
 }
 
-// k-th differences of rounded positions have variances of C(2k, k) times the positions'. Once the
-// squares of differences are no larger than that, they are continued by the former ratio.
+// Rounding gives k-th differences a variance of C(2k, k) times the variance of the positions.
+// Squares that are no larger than that are replaced by an extrapolation from the orders below.
 void leave_out_rounding(std::array<double, OwnFrequencies::highest_order + 2>& squares,
                         double largest_q) {
-  constexpr double largest_of_many = 4;  // of a normal distribution, in its deviations
+  constexpr double largest_of_many = 4;  // standard deviations: the largest of many normal numbers
   const double rounding = largest_of_many * machine_epsilon * largest_q;
   double binomial = 2;
   for (std::size_t k = 2; k < squares.size(); ++k) {
     const double order = static_cast<double>(k);
     binomial *= 2 * (2 * order - 1) / order;
     if (k < 4 || squares[k] > binomial * rounding * rounding) continue;
-    // The last one before may be mixed with it.
+    // The difference of order k - 1 may contain rounding too, so that the smaller of two ratios is
+    // used.
     squares[k] =
         squares[k - 1] * std::min(squares[k - 1] / squares[k - 2], squares[k - 2] / squares[k - 3]);
   }
@@ -66,7 +68,8 @@ double OwnFrequencies::at(int order) const {
 
 OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<State>& path,
                                double w_max, int bursts) {
-  // Forces may change little at the start of a motion but much later, so that bursts fail.
+  // A burst fails if forces change little at the start of a motion but much later. It is then
+  // repeated with shorter steps.
   constexpr int most_attempts = 8;
   constexpr double shorter = 4;
   std::array<double, OwnFrequencies::highest_order + 2> squares{};  // of the k-th differences

@@ -7,9 +7,9 @@
 
 namespace qddot::inline measure {
 
-// The frequencies at which a motion itself changes, whatever frequencies its system has. The error
-// of a method of order p comes from derivatives of the motion: a vibration of amplitude a adds a
-// w^p along its way a w dt. The frequency that counts at order p is
+// The frequencies at which a motion itself changes, whatever the natural frequencies of its system.
+// The error of a method of order p comes from derivatives of the motion: a vibration of amplitude a
+// adds a w^p along its way a w dt. The frequency for order p is
 //   w_p = (|q^(p+1)| / |q'|)^(1/p)   [rad/s],
 // where norms are root mean squares over time and unknowns. All w_p of a slow motion are far below
 // w_max. If the motion has fast vibrations of small amplitude, w_p grows with p.

@@ -12,14 +12,14 @@
 namespace qddot::inline measure {
 namespace {
 
-// Fraction of the accuracy that a run is chosen to miss by, as it is known to a factor of about two
-// before.
+// The fraction of the accuracy that a run is chosen to have as its expected error. The forecast is
+// right to a factor of about two.
 constexpr double aim = 0.45;
 constexpr int most_rounds = 14;
-// The distance of two runs grows by itself up to here.
+// The distance below which two runs part exponentially.
 constexpr double parting = 0.03;
 
-// Each look costs as much as about seven forces.
+// A look costs as much as about seven forces.
 int number_of_looks(double steps, AccuracyOf of) {
   if (!std::isfinite(steps)) steps = 1;
   return static_cast<int>(of == AccuracyOf::positions ? std::clamp(steps / 80, 4.0, 24.0)
@@ -31,8 +31,8 @@ struct SeenError {
   double error;
 };
 
-// Whether a run of an implicit method tells anything about finer ones. Its steps may be far too
-// long, and good only by chance: a finer run with a larger error shows that.
+// Whether a run of an implicit method predicts the error of finer ones. Steps that are far too long
+// may be right by chance; a finer run with a larger error shows that.
 bool is_telling(const SeenError& one, const std::vector<SeenError>& all, double lost) {
   const Method& method = *one.trial->method;
   if (!method.is(Trait::implicit)) return true;
@@ -85,7 +85,8 @@ double Search::distance(const Trial& one, const Trial& other) const {
   return place->second;
 }
 
-// How far apart two runs are or, where they are lost, would be had their distance gone on growing.
+// The distance of two runs. If they are lost, the distance is extrapolated from its exponential
+// growth before.
 double Search::lost_distance(const Trial& trial, const Trial& better) const {
   const double end = distance(trial, better);
   if (end < lost) return end;
@@ -105,7 +106,7 @@ double Search::lost_distance(const Trial& trial, const Trial& better) const {
 }
 
 void Search::learn() {
-  // A run that misses by a hundredth measures the motion well enough.
+  // The scales of a run with an error below this are accurate enough.
   constexpr double well_enough = 0.01;
   const Trial* best = most_accurate();
   if (best && best != measured_by_ && !(measured_within_ < well_enough)) {
@@ -136,11 +137,12 @@ bool Search::was_tried(const Candidate& candidate) const {
   });
 }
 
-// The run that is expected to come to the accuracy in the least time. Implicit ones only where they
-// promise much: what a step of theirs takes is known badly before.
+// The run that is expected to reach the accuracy in the least time. An implicit run must promise a
+// much shorter time, since the time of its steps is uncertain.
 std::optional<Candidate> Search::fresh(double accuracy) const {
   constexpr double much = 0.2;
-  // A smaller error takes error^(-1/order) more steps, which is little for methods of high order.
+  // A smaller error takes error^(-1/order) more steps. This is cheap at high order, so that such
+  // methods aim at a smaller error.
   constexpr double lower_by_order = 0.95;
   const auto all = forecast_->candidates([&](const Method& method) {
     return accuracy * std::pow(lower_by_order, std::max(0, method.order - 2));
@@ -149,8 +151,8 @@ std::optional<Candidate> Search::fresh(double accuracy) const {
   for (const Candidate& c : all) {
     if (!c.method->is(Trait::implicit)) least = std::min(least, c.seconds);
   }
-  // A method whose errors were seen is preferred: what others promise may be far off, and a run of
-  // theirs needs a check of its own.
+  // Methods with known errors are preferred by this factor. A forecast without a run may be far
+  // off, and such a run needs a check of its own.
   constexpr double unseen = 2;
   std::optional<Candidate> best;
   double shortest = std::numeric_limits<double>::infinity();
@@ -165,7 +167,7 @@ std::optional<Candidate> Search::fresh(double accuracy) const {
   return best;
 }
 
-// Whether nothing is known of the motion's end yet.
+// Whether no explicit run is known to be near the motion's end state.
 bool Search::all_are_lost() const {
   return std::ranges::all_of(trials_, [&](const Trial& trial) {
     return !trial.reached_end() || trial.method->is(Trait::implicit) || error(trial) >= lost;
@@ -196,7 +198,7 @@ const Trial* Search::find(double accuracy) {
       return nullptr;
     std::optional<Candidate> next = fresh((all_are_lost() ? cautious : 1) * aim * accuracy);
     if (promising) {
-      // A cheaper run than the check, which the promising one checks, does as well.
+      // The next run replaces the check if it is cheaper and the promising run checks it.
       const std::optional<Candidate> check = check_of(*promising, accuracy);
       const bool is_checked =
           next && !next->method->is(Trait::implicit) &&

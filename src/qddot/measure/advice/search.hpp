@@ -43,34 +43,36 @@ class Search {
   // Makes the first run and its bursts, for an accuracy that find() will be asked for. Returns
   // false if the run did not reach the end; trials() says why.
   bool survey(double accuracy);
-  // Makes runs until one is known to be within `accuracy`; nullptr if none is.
+  // Makes runs until the error of one is known to be at most `accuracy`; nullptr if that fails.
   const Trial* find(double accuracy);
   // Makes runs that may reach the accuracy faster than `answer`, while that is worth its time and
   // for `seconds` at most. Returns the fastest run that is known to reach it.
   const Trial* race(const Trial* answer, double accuracy, double seconds);
 
-  // Makes that run unless it was made before, for `seconds` at most.
+  // Makes the run unless it was made before, for `seconds` at most.
   void try_once(const Candidate& candidate, double seconds);
 
-  // A bound of the trial's error: from its distance to more accurate trials, else to a coarser one.
+  // A bound of the trial's error from its distance to more accurate trials, else to a coarser one.
   // Empty if there is neither.
   std::optional<Bound> bound(const Trial& trial) const;
-  bool is_known(const Trial& trial, double accuracy) const;  // to be within the accuracy
+  // Whether the trial's error bound is at most the accuracy.
+  bool is_known(const Trial& trial, double accuracy) const;
   // The bound of the trial's error, or the expected error if there is none.
   double error(const Trial& trial) const;
-  // The most accurate trial that bounds the error of this one; nullptr if there is none.
+  // The most accurate trial that can check this one; nullptr if there is none.
   const Trial* checker(const Trial& trial) const;
-  // The coarser trial of the same method that bounds it otherwise, or nullptr. If errors fall by
-  // the method's order, the error of the finer run is less than the distance of the two.
+  // The coarser trial of the same method that bounds the error if no trial checks it, or nullptr.
+  // If errors fall by the method's order, the error of the finer run is less than the distance of
+  // the two.
   const Trial* coarser(const Trial& trial) const;
-  // The trial with the least expected error, or nullptr if none reached the end. Trials are all, or
-  // only those that were also seen before the end; none took more than `longest` [s].
+  // The trial with the least expected error, or nullptr if none reached the end. `seen_on_its_way`
+  // leaves only trials that were also seen before the end; `longest` limits their time [s].
   const Trial* most_accurate(bool seen_on_its_way = false,
                              double longest = std::numeric_limits<double>::infinity()) const;
 
-  // Takes what errors are divided by from that trial (see Stage).
+  // Takes the scales of errors from the trial (see Stage).
   void measure_by(const Trial& trial);
-  // The distance of two of trials() that reached the end (see Stage); computed once.
+  // The distance of two trials that reached the end (see Stage); computed once.
   double distance(const Trial& one, const Trial& other) const;
 
   const Stage& stage() const { return stage_; }
@@ -79,25 +81,26 @@ class Search {
   const std::deque<Trial>& trials() const { return trials_; }
   double w_start() const { return w_start_; }
   double seconds_left() const;
-  // The time [s] after which more runs hardly help: refinement removes neither chaos nor rounding.
+  // The time [s] after which more runs hardly help: finer steps remove neither chaos nor rounding.
   double seconds_worth_trying() const;
-  // No run begins after so many seconds in all.
+  // No run begins after `seconds` from the start.
   void stop_after(double seconds) { limit_ = seconds; }
 
  private:
   // An earlier run is good enough if its expected error is at most this fraction of the accuracy.
   static constexpr double good_enough = 0.6;
-  // How many times as accurate a run must be to check another.
+  // A run checks another one if its expected error is smaller by at least this factor.
   static constexpr double checks = 2.1;
-  // Two runs at this distance or more have nothing in common.
+  // Two runs at this distance or more tell nothing about each other.
   static constexpr double lost = 0.1;
-  // Steps of the first run of implicit methods; a coarse accuracy may need only some steps.
+  // Steps of the first run of an implicit method; a coarse accuracy may need only some steps.
   static double few_steps(double accuracy) { return accuracy > 1e-3 ? 2 : 8; }
-  // Steps of a run of Verlet's method at its stability limit, by the bound of w_max at the start;
+  // Steps of a run of Verlet's method at its stability limit, from the bound of w_max at the start;
   // at least 1.
   double steps_of_verlet() const;
 
-  // Too long implicit steps may hardly move, which keeps the energy well.
+  // Implicit methods are not used for an accuracy of the energy: steps that are too long hardly
+  // move, which conserves it.
   bool may_be_implicit() const { return of_ != AccuracyOf::energy; }
   std::optional<Bound> bound_by_order(const Trial& trial) const;
   std::optional<Bound> bound_by_checked(const Trial& best) const;
@@ -140,10 +143,10 @@ class Search {
   Stage stage_;
   std::optional<Forecast> forecast_;
   std::deque<Trial> trials_;
-  mutable std::map<std::pair<const Trial*, const Trial*>, double> distances_;  // as measured now
+  mutable std::map<std::pair<const Trial*, const Trial*>, double> distances_;  // by these scales
   mutable std::map<const Trial*, double> truncations_;  // by the present forecast
-  const Trial* surveyed_by_ = nullptr;                  // the run whose states bursts began at
-  const Trial* measured_by_ = nullptr;                  // gave the scales; its expected error:
+  const Trial* surveyed_by_ = nullptr;                  // the run at whose states bursts began
+  const Trial* measured_by_ = nullptr;  // the run that gave the scales; its expected error:
   double measured_within_ = std::numeric_limits<double>::infinity();
 };
 

@@ -1,4 +1,4 @@
-// What a search knows of the errors of its runs.
+// The error bounds that a search derives from its runs.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,18 +9,18 @@
 namespace qddot::inline measure {
 namespace {
 
-// The error is at most so many times the distance to a check, which may be less accurate than
-// expected.
+// A check may be less accurate than expected. The error is at most this factor times the distance
+// to it.
 constexpr double margin = 1.4;
-// The error of the finer of two runs of one method is at most so many times their distance, if
-// errors fall by the order: 19 of 20 training runs were within it.
+// The same for the finer of two runs of one method, if errors fall by the order: 19 of 20 training
+// runs were within it.
 constexpr double margin_of_finer = 1.2;
-// The same factor for the error that the order predicts from their distance: 19 of 20 training
-// pairs were within it, and one was eight times as accurate. The order does not predict all of an
-// error: even a much finer run keeps the part `least_left`.
+// The same for the error that the order predicts from the distance: 19 of 20 training pairs were
+// within it, and one was eight times as accurate. The order does not predict all of an error: even
+// a much finer run keeps the part `least_left`.
 constexpr double margin_of_order = 1.6, least_left = 0.1;
-// If one run is slightly finer than the other, the bound relies on the order of the method. The
-// order is trusted up to this factor.
+// The same if one run is only slightly finer than the other: the bound then relies on the order
+// alone.
 constexpr double margin_of_hardly_finer = 4;
 // A slightly finer run has at most this fraction of the other's error.
 constexpr double hardly_finer = 0.7;
@@ -28,7 +28,7 @@ constexpr double hardly_finer = 0.7;
 }  // namespace
 
 // The rounding error of a run. A motion computed mode by mode has w_max^2 to its last digit. So a
-// slower frequency w is wrong by w_max^2 / (2 w) roundings, for a time t.
+// slower frequency w has an error of w_max^2 / (2 w) roundings, for a time t.
 double Search::rounding(const Trial& trial) const {
   if (trial.method->order > 0) {
     const double steps = forecast_ ? forecast_->rounding(*trial.method, trial.value) : 0;
@@ -47,8 +47,8 @@ double Search::expected(const Trial& trial) const {
   return truncation(trial) + forecast_->rounding(*trial.method, trial.value);
 }
 
-// Implicit steps that leave vibrations unresolved may behave quite unlike the forecast. Before an
-// error of such a method was seen, its runs judge no run of another method.
+// Implicit steps that do not resolve vibrations may differ much from the forecast. Until an error
+// of the method was seen, its runs check no run of another method.
 bool Search::is_vague(const Trial& trial) const {
   return forecast_ && trial.method->is(Trait::implicit) && !forecast_->has_learned(*trial.method);
 }
@@ -94,8 +94,8 @@ const Trial* Search::most_accurate(bool seen_on_its_way, double longest) const {
   return best;
 }
 
-// |q - q*| <= |q - q_best| + |q_best - q*|: where the most accurate run is bounded, it bounds all
-// others, whatever is expected of them.
+// q - q*| <= |q - q_best| + |q_best - q*|: a bound for the most accurate run gives bounds for all
+// others.
 std::optional<Bound> Search::bound(const Trial& trial) const {
   const std::optional<Bound> own = bound_by_order(trial);
   const Trial* best = most_accurate();
@@ -107,8 +107,8 @@ std::optional<Bound> Search::bound(const Trial& trial) const {
   return own && own->error <= by_best ? own : Bound{by_best, best};
 }
 
-// The error of a run is less than the errors of the runs that it checks, and so less than its
-// distance to them.
+// A bound for the most accurate run from the runs that it checks: its error is less than theirs,
+// and so less than its distance to them.
 std::optional<Bound> Search::bound_by_checked(const Trial& best) const {
   std::optional<Bound> least;
   for (const Trial& other : trials_) {
@@ -129,7 +129,8 @@ std::optional<Bound> Search::bound_by_order(const Trial& trial) const {
     return Bound{margin * stage_.energy_error(trial) + 4 * machine_epsilon};
   if (trial.method->order == 0) return Bound{expected(trial)};
   if (const Trial* check = checker(trial)) {
-    // What is not much finer checks nothing, but may contradict.
+    // A run that is only slightly finer cannot check the trial, but a large distance to it raises
+    // the bound.
     constexpr double may_differ = 0.5;
     double most = 0;
     for (const Trial& other : trials_) {
@@ -148,8 +149,8 @@ std::optional<Bound> Search::bound_by_order(const Trial& trial) const {
   return {};
 }
 
-// Small errors of smooth motions fall as the order says. Runs that take no time had better be
-// checked by what does not need that.
+// Whether the bound may use the order. Small errors of smooth motions fall by it. A fast run can
+// afford a check that needs no order.
 bool Search::falls_by_order(const Trial& finer, double error_of_coarser) const {
   constexpr double small = 1e-4, no_time = 5e-3;
   const Method& method = *finer.method;
@@ -178,16 +179,16 @@ const Trial* Search::coarser(const Trial& trial) const {
   return nearest;
 }
 
-// How far apart two runs are. A distance far below what is expected may be so by chance: errors
-// change their sign. It is believed half of the way.
+// The distance of two runs. If it is far below the expected error, that may be chance, as errors
+// change sign. The result is then the geometric mean of the two.
 double Search::likely_distance(const Trial& trial, const Trial& better) const {
   const double gap = distance(trial, better);
   if (!forecast_) return gap;
   return std::max(gap, std::sqrt(gap * std::min(expected(trial), 1.0)));
 }
 
-// Whether `finer` is a run of the same method with so much smaller steps that, by its order, its
-// error is less than the distance of the two.
+// Whether `finer` is a run of the same method with much smaller steps. By the order, its error is
+// then less than the distance of the two.
 bool Search::is_refined_by(const Trial& coarser, const Trial& finer) const {
   const Method& method = *finer.method;
   return coarser.method == &method && method.knob == Knob::step_size &&

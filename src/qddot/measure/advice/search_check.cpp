@@ -1,4 +1,4 @@
-// Which run a search checks another one by.
+// The run that a search chooses to check another one.
 #include <algorithm>
 #include <limits>
 
@@ -7,16 +7,16 @@
 namespace qddot::inline measure {
 namespace {
 
-// How many times as accurate a run is chosen to be that is to check another.
+// The ratio of the expected errors of a run and of the check chosen for it.
 constexpr double chosen_to_check = 2.4;
-// The same for a run that is expected to miss by so small a part of the accuracy that a rough check
-// will do.
+// A smaller ratio, for a run whose expected error is at most the fraction `far_within` of the
+// accuracy.
 constexpr double chosen_to_check_roughly = 1.6, far_within = 1.0 / 30;
 
 }  // namespace
 
-// A coarser run of the same method, which takes less than the trial itself: where the error falls
-// as the order says, it bounds the trial's. Near the limit of stability there is none.
+// A coarser run of the same method, which is cheaper than the trial. If errors fall by the order,
+// it bounds the trial's error. None exists near the stability limit.
 std::optional<Candidate> Search::coarser_check_of(const Trial& trial, double accuracy) const {
   constexpr double times = 8, at_least = 4, margin = 1.7;
   const double error = expected(trial);
@@ -28,8 +28,8 @@ std::optional<Candidate> Search::coarser_check_of(const Trial& trial, double acc
   return {};
 }
 
-// The cheapest run that is expected to check the trial: one of the same method does by its order,
-// so that others have to be clearly cheaper.
+// The cheapest run that is expected to check the trial. A run of the same method is preferred,
+// since its order alone makes it a check: others must be clearly cheaper.
 std::optional<Candidate> Search::check_of(const Trial& trial, double accuracy) const {
   constexpr double clearly = 0.8;
   std::optional<Candidate> best = coarser_check_of(trial, accuracy);

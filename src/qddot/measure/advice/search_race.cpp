@@ -1,4 +1,4 @@
-// How a search goes on once it has an answer: runs that may be faster.
+// The last phase of a search: runs that may be faster than its answer.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,11 +11,11 @@
 namespace qddot::inline measure {
 namespace {
 
-// A run is worth making for its time below so many times that of the answer.
+// A run is made only if it is expected to take less than this fraction of the answer's time.
 constexpr double clearly_faster = 0.92;
 
-// What runs are worth that are only perhaps faster than the answer [s]: what nobody notices and,
-// where the answer takes long itself, a part of it.
+// The time [s] for runs that may be faster than the answer. It is unnoticed by users or, for a long
+// answer, a small part of the answer's time.
 double seconds_of_race(const Trial& answer) {
   constexpr double unnoticed = 0.02, as_long = 0.01, part = 0.08;
   const double falling = as_long * as_long / answer.seconds;
@@ -24,8 +24,9 @@ double seconds_of_race(const Trial& answer) {
 
 }  // namespace
 
-// More steps of an implicit method that has missed the accuracy or diverged: as many as it should
-// need, or one if it was not tried. Empty if that takes `seconds` or more.
+// A run with more steps of an implicit method that missed the accuracy or diverged. It has the
+// number of steps that the order predicts, or one step if the method was not tried. Empty if that
+// takes `seconds` or more.
 std::optional<Candidate> Search::more_steps(const Method& method, double accuracy,
                                             double seconds) const {
   constexpr double fewest = 1.2, most = 6, infinite = std::numeric_limits<double>::infinity();
@@ -38,7 +39,7 @@ std::optional<Candidate> Search::more_steps(const Method& method, double accurac
     const double times = std::pow(missed / (good_enough * accuracy), 1.0 / method.order);
     const double made = std::round(stage_.until() / trial.value);
     steps = std::max(steps, std::ceil(std::clamp(times, fewest, most) * made));
-    // A lost run does not tell how many steps would do.
+    // A lost run does not predict how many steps are enough.
     if (missed < lost) enough = std::max(enough, times * made);
   }
   const double h = stage_.until() / std::max(steps, enough);
@@ -46,10 +47,9 @@ std::optional<Candidate> Search::more_steps(const Method& method, double accurac
   return Candidate{&method, stage_.until() / steps, 0, forecast_->seconds(method, h)};
 }
 
-// An unknown run that may be faster than the answer: by an adaptive method of high order for few
-// unknowns, by one that splits off stiff forces if some are named, or by an implicit one. The time
-// of adaptive methods and of the first implicit steps is hard to forecast: they are tried if much
-// time is left.
+// A run without forecast that may be faster than the answer. Adaptive methods of high order are for
+// few unknowns, multirate methods for named stiff forces. Times of adaptive runs and of the first
+// implicit steps are uncertain, so these are tried only if much time is left.
 std::optional<Candidate> Search::unknown(const Trial& answer, double accuracy, double left) const {
   constexpr Index few = 60;
   constexpr double part_of_answer = 0.5, much = 2;
@@ -83,7 +83,7 @@ std::optional<Candidate> Search::unknown(const Trial& answer, double accuracy, d
 }
 
 // The fastest run, not made yet, that is expected to reach the accuracy in less than `seconds`.
-// Methods are the explicit ones alone, or all.
+// `explicitly` leaves explicit methods only.
 std::optional<Candidate> Search::promised(double accuracy, double seconds, bool explicitly) const {
   for (const Candidate& c : forecast_->candidates(good_enough * accuracy)) {
     if (c.seconds > seconds) break;
@@ -94,8 +94,8 @@ std::optional<Candidate> Search::promised(double accuracy, double seconds, bool 
   return {};
 }
 
-// A run of an explicit method without a run so far, in less than `seconds`. Its expected error may
-// be too large by a factor of `unsure`.
+// A run in less than `seconds` by an explicit method of which no error was seen. Its expected error
+// may exceed the accuracy by the factor `unsure`.
 std::optional<Candidate> Search::unseen(double accuracy, double seconds) const {
   constexpr double unsure = 30;
   for (const Candidate& c : forecast_->candidates(unsure * good_enough * accuracy, true)) {
@@ -105,10 +105,10 @@ std::optional<Candidate> Search::unseen(double accuracy, double seconds) const {
   return {};
 }
 
-// An implicit run that is likely to come to the accuracy in less than so many seconds, as an
-// earlier one of the method came near.
+// An implicit run that is likely to reach the accuracy in less than `seconds`, because an earlier
+// run of the method missed it by little.
 std::optional<Candidate> Search::lead(double accuracy, double seconds) const {
-  constexpr double near = 6;  // times the steps, at most
+  constexpr double near = 6;  // times as many steps, at most
   std::optional<Candidate> best;
   for (const Trial& trial : trials_) {
     const Method& method = *trial.method;
@@ -126,14 +126,14 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
   if (!answer) return nullptr;
   seconds = std::min(seconds, seconds_of_race(*answer));
   survey_again();
-  // A lead is worth more time than was meant.
+  // A lead may take this fraction of the answer's time, even beyond the time limit of the race.
   constexpr double worth = 0.5;
   int leads = 2;
   const double end = seconds_since(begin_) + seconds;
   while (forecast_ && answer->method->order > 0 && seconds_left() > 0) {
     const double left = end - seconds_since(begin_);
     const double faster = std::min(left, clearly_faster * answer->seconds);
-    // What is known best first.
+    // The best-known methods come first.
     std::optional<Candidate> next = promised(accuracy, faster, true);
     if (!next) next = unknown(*answer, accuracy, left);
     if (!next) next = unseen(accuracy, faster);
@@ -152,9 +152,9 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
              : answer;
 }
 
-// Errors go through zero, so that runs which are too coarse may be good by chance. Tries them,
-// those by explicit methods that are expected to miss by least first. That one of them is good says
-// nothing of others: they are held against what is known, and teach nothing.
+// Tries explicit runs that are expected to be too coarse, the least coarse first. Errors change
+// sign, so that one of them may be accurate by chance. Each is compared with checked runs and does
+// not correct the forecast.
 const Trial* Search::gamble(const Trial* answer, double accuracy, double seconds) {
   constexpr double most = 300, coarser = 2;
   const double end = seconds_since(begin_) + seconds;

@@ -1,4 +1,4 @@
-// How a search begins: the first run and what it tells, or what makes it needless.
+// The first phase of a search: a run from which all forecasts follow, or one that already answers.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,13 +24,13 @@ double seconds_of_force(const ReducedScene& model) {
   return least;
 }
 
-// w_max at the start, to some percent for no more than the run is worth.
+// w_max [rad/s] at the start to some percent, at a cost that is small beside the run.
 double frequency_at_start(const ReducedScene& model, double until, double bound) {
   const System& system = model.system();
   const Vec& q = model.initial().q;
   constexpr Index small = 300;
-  // Thirty products with K cost as much as about a hundred forces, and come within some percent
-  // from below.
+  // Thirty products with K cost as much as about a hundred forces. They give a value that is some
+  // percent too small.
   constexpr double worth_searching = 600, from_below = 1.02;
   if (system.size() <= small) return largest_frequency(system, q);
   if (until * bound < 2 * worth_searching) return bound;
@@ -62,12 +62,12 @@ bool Search::survey(double accuracy) {
   const ReducedScene& model = stage_.model();
   const double until = stage_.until();
   if (model.system().has_massless()) return true;
-  // Where the forces push away from the start more than they pull back, the motion is as fast as
-  // their bound says, and nothing vibrates.
+  // If the forces at the start mainly push away from it, w_max is far below its bound. The motion
+  // is then as fast as the bound, and nothing vibrates.
   constexpr double hardly_vibrates = 0.1;
   w_start_ = frequency_at_start(model, until, bound_of_w_);
   if (w_start_ < hardly_vibrates * bound_of_w_) w_start_ = bound_of_w_;
-  // An eigenproblem of a few unknowns takes no time.
+  // An eigenproblem of a few unknowns takes less time [s] than any search.
   constexpr double not_worth_a_search = 1e-4;
   const double exactly = seconds_of_exact(model);
   if (exactly < std::max(not_worth_a_search, 1.5 * steps_of_verlet() * seconds_of_force(model))) {
@@ -82,7 +82,8 @@ bool Search::survey_by_verlet() {
   const ReducedScene& model = stage_.model();
   const double until = stage_.until();
   constexpr double below_limit = 0.9, shorter = 0.75, much_shorter = 0.5;
-  // More where none holds, as where the motion comes to be much faster than its start.
+  // More attempts are made if no run reaches the end, as when the motion becomes much faster than
+  // its start.
   constexpr int most_attempts = 6, most_of_all = 16;
   const double looks = static_cast<double>(stage_.times().size());
   double steps = std::max(8.0, std::ceil(until * w_start_ / (2 * below_limit)));
@@ -91,7 +92,8 @@ bool Search::survey_by_verlet() {
     if (attempt > 0) steps /= attempt < most_attempts ? shorter : much_shorter;
     steps = looks * std::ceil(steps / looks);
     first = &run(*find_method("verlet"), until / steps, limit_);
-    // More of this are not worth much time: what is chaotic stays so.
+    // After `long_enough` seconds a run is accepted although its energy grows: shorter steps do not
+    // remove chaos.
     constexpr double grows = 10, long_enough = 0.3;
     const Outcome outcome = first->summary.outcome;
     if (outcome == Outcome::over_budget || outcome == Outcome::went_slack) return false;
@@ -102,8 +104,8 @@ bool Search::survey_by_verlet() {
       break;
   }
   if (!first->reached_end()) return false;
-  // The bound may grow more than w_max does. Steps that held for so long were not far beyond their
-  // limit.
+  // The bound of w_max may grow more than w_max does. The run was stable, so that its h w_max was
+  // hardly above 2.
   constexpr double hardly_beyond = 1.02;
   const double w = std::min(w_start_ * growth_of_frequency(model, first->path, bound_of_w_, steps),
                             hardly_beyond * 2 * steps / until);
@@ -119,8 +121,8 @@ bool Search::survey_by_verlet() {
   return true;
 }
 
-// Steps near the limit of stability have vibrations of their own making, which bursts along the
-// first run take for the motion's. Bursts along the most accurate run say what it has.
+// Repeats the bursts along the most accurate run. Steps near the stability limit make vibrations of
+// their own, which bursts along the first run mistake for those of the motion.
 void Search::survey_again() {
   const Trial* best = most_accurate(true);
   if (!best || !forecast_ || best == surveyed_by_) return;
@@ -132,11 +134,11 @@ void Search::survey_again() {
   learn();
 }
 
-// Doubles the number of steps until the error of the last but one run is known to be at most the
-// accuracy. So is the error of the finest run, as errors fall by the order. Ends early if they do
-// not, or if the next run would exceed `seconds` in all or `longest` by itself. An undamped step
-// that does not resolve a vibration turns it by half a turn. Numbers of steps are odd and even by
-// turns, so that runs that agree have missed no vibration.
+// Doubles the number of steps until the error of the last run but one is known to be at most the
+// accuracy. The error of the finest run is smaller, as errors fall by the order. Stops if they do
+// not fall so, or if the next run would exceed `seconds` in all or `longest` by itself. An implicit
+// step that does not resolve a vibration turns it by half a turn. So the numbers of steps are odd
+// and even in turn: runs that agree have missed no vibration.
 bool Search::refine(const Method& method, double steps, double accuracy, double seconds,
                     double longest) {
   const double fall = std::pow(2, method.order), end = seconds_since(begin_) + seconds;
@@ -149,7 +151,8 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
   for (double before = 0; seconds_since(begin_) < end;) {
     Trial& trial = run(method, stage_.until() / steps, end - seconds_since(begin_));
     if (!trial.reached_end()) {
-      // Steps that resolve the soft forces may meet a resonance with the stiff ones.
+      // The diverged steps resolve the soft forces but may be in resonance with the stiff ones;
+      // slightly shorter ones may hold.
       const bool may_hold = !last && method.asks(Need::split_forces) &&
                             trial.summary.outcome == Outcome::diverged && more_attempts-- > 0;
       if (!may_hold) return false;
@@ -159,7 +162,7 @@ bool Search::refine(const Method& method, double steps, double accuracy, double 
     measure_by(trial);
     if (last) {
       const double gap = distance(*last, trial);
-      // Far within the accuracy, the order does not matter.
+      // An error far below the accuracy need not fall by the order.
       constexpr double far_within = 0.1;
       const bool is_asymptotic =
           (before > gap && before < 2 * fall * gap) || gap < far_within * accuracy;
@@ -180,10 +183,10 @@ bool Search::by_refinement(double accuracy) {
   const ReducedScene& model = stage_.model();
   const System& system = model.system();
   const double force = seconds_of_force(model), explicitly = steps_of_verlet() * force;
-  // What such a method does within a step is not refined with it.
+  // Outer steps do not refine the inner ones, so the soft forces must be much slower than w_max.
   constexpr double much_softer = 0.05, share = 0.4;
   constexpr double no_time = 0.05, unnoticed = 4e-3;
-  // What its first step takes is known badly before, and mostly less.
+  // The forecast time of the first implicit step is uncertain, and mostly too long.
   constexpr double first_step = 12e-3, as_long = 5e-3;
   for (const char* name : {"linear_midpoint", "multirate_adams4", "multirate_adams2"}) {
     const Method& method = *find_method(name);

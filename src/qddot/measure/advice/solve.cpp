@@ -38,8 +38,8 @@ EstimateKind kind_of(const Search& search, const Trial& trial, AccuracyOf of) {
   return bound && bound->by_coarser ? EstimateKind::refined : EstimateKind::compared;
 }
 
-// The run with the least known error, and a bound of that error. The bound is twice the distance of
-// two runs, if these should have about the same error.
+// The run with the least known error bound, and that bound. For two runs without a bound it is
+// twice their distance, as if both had about the same error.
 std::pair<const Trial*, double> nearest(const Search& search, AccuracyOf of) {
   const Trial* best = search.most_accurate();
   double least = std::numeric_limits<double>::infinity();
@@ -61,7 +61,7 @@ std::pair<const Trial*, double> nearest(const Search& search, AccuracyOf of) {
   return {best, least};
 }
 
-// The last time until which the two most accurate runs agree to the accuracy.
+// The last time [s] until which the two most accurate runs agree to the accuracy.
 double agreed_until(const Search& search, const Trial& one, double accuracy) {
   const Trial* other = nullptr;
   for (const Trial& trial : search.trials()) {
@@ -76,8 +76,8 @@ double agreed_until(const Search& search, const Trial& one, double accuracy) {
   return until;
 }
 
-// Says why no run is known to be accurate enough, and what can be had. `stopped_by`: what ended the
-// search early, empty where nothing did.
+// Explains why no run is known to be accurate enough, and which accuracy or end is possible.
+// `stopped_by`: the reason why the search ended early, or empty.
 void explain_failure(Answer& answer, Search& search, const Wanted& wanted, double until,
                      const std::string& stopped_by) {
   const auto [best, least] = nearest(search, wanted.of);
@@ -114,7 +114,7 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
   const std::string instead =
       agreed > 0 ? fmt::format("; up to t = {:.3g} s it can be reached", agreed) : "";
   if (answer.horizon <= until) {
-    // Two runs that are lost may come near each other by chance.
+    // Two lost runs may be near each other by chance.
     answer.error_estimate = std::numeric_limits<double>::infinity();
     answer.error_estimate_kind = EstimateKind::none;
     answer.why = fmt::format(
@@ -130,7 +130,7 @@ void explain_failure(Answer& answer, Search& search, const Wanted& wanted, doubl
   }
 }
 
-// What rests, or moves in closed form, has no error.
+// The answer for a scene that rests or moves in closed form: it has rounding errors only.
 Answer of_nothing(const ReducedScene& model, double until) {
   Answer answer;
   answer.is_reached = true;
@@ -191,7 +191,7 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
   try {
     if (search.survey(wanted.accuracy)) found = search.find(wanted.accuracy);
     if (found) found = search.race(found, wanted.accuracy, search.seconds_left());
-    // What the race taught may be that the bound is another, or that there is none.
+    // The race may have raised the bound of the run, or removed it.
     if (found && !search.is_known(*found, wanted.accuracy)) found = search.find(wanted.accuracy);
     if (search.seconds_left() <= 0) stopped_by = "time was up";
   } catch (const Interrupted& interrupted) {

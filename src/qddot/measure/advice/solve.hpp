@@ -9,30 +9,30 @@
 
 namespace qddot::inline measure {
 
-// The accuracy that is asked for.
+// The requested accuracy.
 struct Wanted {
   double accuracy = 1e-3;  // relative, from least_accuracy to below 1
   AccuracyOf of = AccuracyOf::positions;
-  // After so many seconds no further run begins, and the present one is stopped.
+  // No further run begins after this time [s], and the present one is stopped.
   double seconds = std::numeric_limits<double>::infinity();
 };
 
-// Rounding is larger than errors below this.
+// The smallest accuracy that can be asked for; smaller errors are below rounding.
 constexpr double least_accuracy = 1e-14;
 // Throws std::invalid_argument, which names the allowed range, for an accuracy outside of it.
 void require_accuracy(double accuracy);
 
-// How an error estimate was made.
+// The origin of an error estimate.
 enum class EstimateKind {
-  compared,   // with a more accurate run, of another step size or formula
-  refined,    // with a coarser run of the same method; errors fall by its order
+  compared,   // distance to a more accurate run, of another step size or formula
+  refined,    // distance to a coarser run of the same method; errors fall by its order
   conserved,  // the energy's own error, which needs no other run
-  rounding,   // of a motion computed mode by mode, which has no other error
-  none,       // no run came to the end
+  rounding,   // rounding alone, for a motion computed mode by mode
+  none,       // no run reached the end
 };
 const char* name(EstimateKind kind);
 
-// Wall time of an answer [s]: `run` for the answer itself, `check` for the run that checks it, and
+// Wall time of an answer [s]: `run` for the answer itself, `check` for the run that checks it,
 // `pilots` for all other runs and work.
 struct AnswerSeconds {
   double pilots = 0, run = 0, check = 0;
@@ -43,13 +43,13 @@ struct AnswerSeconds {
 // A motion with a bound of its error.
 struct Answer {
   bool is_reached = false;  // whether the error estimate is at most the accuracy
-  std::string why{};        // if not reached: the reason and what is possible instead
+  std::string why{};        // if not reached: the reason, and what is possible instead
   const Method* method = nullptr;
   double value = 0;  // of the knob: h [s] or rtol
   // A bound of the error that Wanted::of names; infinite if none is known.
   double error_estimate = std::numeric_limits<double>::infinity();
   EstimateKind error_estimate_kind = EstimateKind::none;
-  // What chose the method: "modes", "forecast", "refinement" or (for IDA) "tolerance".
+  // The choice of the method: "modes", "forecast", "refinement" or (for IDA) "tolerance".
   std::string advised_by{};
   // The time [s] from which two motions that start one rounding apart are different, and the rate
   // [1/s] at which they part. Infinite and zero if this was not seen.

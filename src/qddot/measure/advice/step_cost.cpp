@@ -56,7 +56,7 @@ bool is_linearly_implicit(const Method& method) {
   return method.name.starts_with("linear_midpoint");
 }
 
-// The unknowns that a step solves for.
+// The number of unknowns that a step solves for.
 Index unknowns_solved_for(const Method& method, const System& system) {
   const Split* split = is_linearly_implicit(method) ? split_of(system) : nullptr;
   return split ? static_cast<Index>(split->stiff_unknowns.size()) : system.size();
@@ -69,15 +69,16 @@ double usual_step_cost(const Method& method, const System& system) {
   if (found == costs.end()) return std::numeric_limits<double>::infinity();
   const Index all = system.size(), solved_for = unknowns_solved_for(method, system);
   if (solved_for == all) return cost_at(*found, all);
-  // The cost is in steps of Verlet's method on so few unknowns, and all of them are moved besides.
+  // The table's cost is in Verlet steps on `solved_for` unknowns. One Verlet step on all of them is
+  // added.
   return 1 +
          cost_at(*found, solved_for) * static_cast<double>(solved_for) / static_cast<double>(all);
 }
 
 double steps_to_begin(const Method& method, const System& system) {
-  constexpr Index small = 300;  // where it takes no time
-  // The additional time of a run of one step, in steps, on scenes of 500 to 10^4 unknowns: 1 to 11
-  // by linear_midpoint, which solves once a step, 4 to 260 by methods with Newton's iterations.
+  constexpr Index small = 300;  // below this size the analysis takes no time
+  // The additional time of a run of one step, in steps. Measured on 500 to 10^4 unknowns: 1 to 11
+  // for methods with one solve a step, 4 to 260 for Newton's iterations.
   constexpr double linear = 5, newton = 40;
   if (!method.is(Trait::implicit) || unknowns_solved_for(method, system) <= small) return 0;
   return is_linearly_implicit(method) ? linear : newton;

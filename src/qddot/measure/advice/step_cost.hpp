@@ -5,17 +5,17 @@
 
 namespace qddot::inline measure {
 
-// The time of a step of the method on a system, in steps of Verlet's method. It was measured on
-// other scenes with as many unknowns (see step_cost.cpp), and stands in for a method that was not
-// timed on this scene. Infinite if it was never measured. Linearly implicit methods solve only for
-// the unknowns that feel stiff forces, if these are told apart.
+// The time of a step of the method on the system, in steps of Verlet's method. It was measured on
+// other scenes of that size (see step_cost.cpp) and serves until the method was timed on this
+// scene. Infinite if it was never measured. Linearly implicit methods solve only for the unknowns
+// that feel stiff forces, if these are told apart.
 double usual_step_cost(const Method& method, const System& system);
 
-// The time that an implicit method takes before its steps, in its steps: it analyses the pattern of
+// The time that an implicit method takes before its steps, in its steps. It analyses the pattern of
 // K, and its first, long steps take the most iterations.
 double steps_to_begin(const Method& method, const System& system);
 
-// Number of forces that the method evaluates before its first step.
+// The number of forces that the method evaluates before its first step.
 double forces_to_begin(const Method& method);
 
 }  // namespace qddot::inline measure

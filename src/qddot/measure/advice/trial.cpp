@@ -11,10 +11,10 @@
 namespace qddot::inline measure {
 namespace {
 
-// Shorter runs [s] are timed again: the first one is cold.
+// Runs shorter than this [s] are timed again, as the first one runs with cold caches.
 constexpr double short_run = 1e-3;
 constexpr int repeats_of_short = 3;
-// A clock's duration has an end [s].
+// The longest time limit [s]: a clock's duration cannot be infinite.
 constexpr double longest_wait = 1e8;
 
 }  // namespace

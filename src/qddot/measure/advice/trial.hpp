@@ -28,7 +28,7 @@ struct Trial {
 
 // The motion that trials compute: a model up to a time, seen at the ends of `looks` equal parts of
 // that time. Implicit methods of fixed steps are seen at the end alone if only positions there are
-// asked for. Each look between two steps would add a step of another length.
+// asked for: a look between two steps would add a step of another length.
 class Stage {
  public:
   // Borrows the model.
@@ -42,7 +42,7 @@ class Stage {
   // several runs.
   void time_again(Trial& trial) const;
 
-  // Takes the scales of errors from that trial, which reached the end. There are no errors before.
+  // Takes the scales of errors from the trial, which reached the end. Errors need this first.
   void measure_by(const Trial& trial);
 
   // The distance of two trials that reached the end, relative to the motion. It is the one at the

@@ -6,17 +6,17 @@
 namespace qddot::inline measure {
 namespace {
 
-constexpr Index points = 1000;  // at which means are compared, equally spaced
+constexpr Index points = 1000;  // equally spaced times at which means are compared
 constexpr double slowest = 1.0 / 64, fastest = 4;
 
-// Value i + x of a sequence of columns, 0 <= x < 1 and i >= 0, between its columns linearly.
+// The column at position i + x of a sequence of columns, linear between columns i and i + 1.
 Vec between(const Eigen::MatrixXd& columns, double place) {
   const auto i = std::min(static_cast<Index>(place), columns.cols() - 2);
   const double x = std::min(place - static_cast<double>(i), 1.0);
   return (1 - x) * columns.col(i) + x * columns.col(i + 1);
 }
 
-// The integrals of all energies from 0 to each time, by trapezia.
+// The integrals of all energies from 0 to each time, by the trapezoidal rule.
 Eigen::MatrixXd integrals(const EnergyCourse& course) {
   const auto n = static_cast<Index>(course.times.size());
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(course.energies.front().size(), n);
@@ -29,7 +29,7 @@ Eigen::MatrixXd integrals(const EnergyCourse& course) {
   return sums;
 }
 
-// A column for each of the equally spaced times from 0 to `end`.
+// Running means, one column for each of the equally spaced times from 0 to `end`.
 Eigen::MatrixXd running_means(const EnergyCourse& course, double window, double end) {
   const Eigen::MatrixXd sums = integrals(course);
   const auto integral = [&](double t) {
@@ -50,7 +50,7 @@ Eigen::MatrixXd running_means(const EnergyCourse& course, double window, double 
 
 // The root mean square of I_j(t) - R_j(a t).
 double misfit(const Eigen::MatrixXd& means, const Eigen::MatrixXd& other, double a) {
-  // The sum is over R's time if the course is the faster one, so that neither leaves its range.
+  // For a > 1 the sum is over the time of R, so that neither course leaves its range.
   const double s = std::max(a, 1.0);
   double sum = 0;
   for (Index i = 0; i < points; ++i) {
@@ -60,7 +60,8 @@ double misfit(const Eigen::MatrixXd& means, const Eigen::MatrixXd& other, double
   return std::sqrt(sum / static_cast<double>(points * means.rows()));
 }
 
-// The best of factors that are equally spaced in their logarithm, `count` to either side of `a`.
+// The factor with the least misfit among `count` on either side of `a`, each `ratio` times the
+// last.
 double best_near(const Eigen::MatrixXd& means, const Eigen::MatrixXd& other, double a, double ratio,
                  int count) {
   double best = a, least = misfit(means, other, a);

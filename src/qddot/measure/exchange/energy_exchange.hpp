@@ -12,17 +12,17 @@ struct EnergyCourse {
   std::vector<Vec> energies{};  // [J] of all springs, at each time
 };
 
-// Compares how energy goes from spring to spring in a course I_j(t) and in another course R_j(t), j
-// the spring. Both are running means, which leave out vibrations within a window.
+// Compares the exchange of energy between springs in a course I_j(t) and in another course R_j(t),
+// j the spring. Both are running means, which remove vibrations shorter than a window.
 struct ExchangeComparison {
   // The largest |I_j(t) - R_j(t)| over springs and times, over sum R_j(0).
   double distance = 0;
-  // `tempo` is the a from 1/64 to 4 for which I_j(t) is nearest to R_j(a t); `misfit` is the root
-  // mean square of their difference for that a. Both courses are divided by the time mean of their
-  // own sum first. A small misfit says that one course is the other, played faster or slower.
-  // Compared are all t up to the end T, or up to T/a if that is less.
+  // `tempo` is the factor a from 1/64 to 4 for which I_j(t) is nearest to R_j(a t); `misfit` is the
+  // root mean square of their difference for that a. Both courses are divided by the time mean of
+  // their own sum first. A small misfit says that one course is the other at another speed. The
+  // comparison is up to the end T, or to T/a if that is less.
   double tempo = 1, misfit = 0;
-  // sum I_j over sum R_j(0): at the start, at the end, and the mean over time.
+  // The ratio of sum I_j to sum R_j(0): at the start, at the end, and the mean over time.
   double first = 1, last = 1, level = 1;
   // The largest change of an I_j since its start, over `level`.
   double exchanged = 0;

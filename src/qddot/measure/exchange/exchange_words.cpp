@@ -8,9 +8,10 @@
 namespace qddot::inline measure {
 namespace {
 
-// Beyond these of the tempo, the misfit and the sum from start to end, something is wrong.
+// Tolerances for the tempo, the misfit, the change of the sum over the run, and its level; a course
+// outside of them is wrong.
 constexpr double tempo_tolerance = 1.1, most_misfit = 0.1, most_change = 0.1, most_level = 2;
-// Parts of the sum that are an exchange and that are none.
+// Exchanged parts of the sum: above the first there is an exchange, below the second none.
 constexpr double some_exchange = 0.1, no_exchange = 0.02;
 
 // The deviation of a tempo from 1: "14 % too slowly", "2.3 times too fast".

@@ -20,7 +20,7 @@ namespace {
 constexpr double reference_rtol = 1e-12;
 constexpr double periods_of_mean = 40;
 
-// The highest frequency [rad/s] of the stiff springs alone; 0 where there are none.
+// The highest frequency [rad/s] of the stiff springs alone; 0 if there are none.
 double stiff_frequency(const System& system, const Vec& q) {
   double highest = 0;
   Index first = 0;

@@ -48,13 +48,13 @@ struct CertifiedCourse {
 
   double h = 0;
   ExchangeRun run{};
-  double certified = 0;  // the largest |I_j - I_j'| of the two, over the sum at the start
+  double certified = 0;  // the largest |I_j - I_j'| of both, over the sum at the start
 };
 
-// Returns a run by its name: one that is kept, or else the one that `run` makes.
+// Returns a run by its name: a stored one, or else the one that `run` makes.
 using Recall =
     std::function<ExchangeRun(const std::string& name, const std::function<ExchangeRun()>& run)>;
-// Makes that reference of two runs. Throws NoReference if one does not reach the end.
+// Makes the reference from two runs. Throws NoReference if one does not reach the end.
 CertifiedCourse certified_course(const Excitation& excitation, const Recall& recall = {});
 
 }  // namespace qddot::inline measure

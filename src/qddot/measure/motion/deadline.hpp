@@ -11,7 +11,7 @@
 namespace qddot::inline measure {
 
 // Requests a stop after a number of seconds, or when the program is to end. A sleeping thread does
-// that: the run that is timed only reads a flag. Disarmed when destroyed.
+// so, and the timed run only reads a flag. The destructor disarms it.
 class Deadline {
  public:
   explicit Deadline(double seconds)
@@ -35,7 +35,7 @@ class Deadline {
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::stop_callback<Ask> on_interruption_{interruption(), Ask{source_}};
-  std::jthread watcher_;  // last: starts when all else is there, and joins first
+  std::jthread watcher_;  // last: starts when the other members exist, and joins first
 };
 
 }  // namespace qddot::inline measure

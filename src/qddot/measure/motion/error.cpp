@@ -13,7 +13,7 @@ constexpr double fewest_roundings = 1e4;
 
 double divided(double error, double scale) { return scale > 0 ? error / scale : error; }
 
-// Keeps the larger; one that is no number is not lost.
+// Raises `largest` to x if x is larger or not a number.
 void raise(double& largest, double x) {
   if (!(x <= largest)) largest = x;
 }
@@ -32,7 +32,7 @@ std::vector<std::size_t> all_of(const std::vector<Node>& nodes) {
   return all;
 }
 
-// The nodes as what is integrated moves them; where nothing is, as they move.
+// The nodes without the common fall of parts; if nothing is integrated, as they move.
 std::vector<Node> measured(const ReducedScene& scene, const State& state) {
   return scene.system().size() > 0 ? scene.expand_beside_falls(state) : scene.expand(state);
 }
@@ -45,7 +45,7 @@ std::vector<PartScale> parts_of(const ReducedScene& scene, const std::vector<Nod
       part.extent = std::max(part.extent, start[i].position.lpNorm<Eigen::Infinity>());
     }
   }
-  // Where there are none, whatever moves is in free flight.
+  // Without integrated parts, all moving nodes are in free flight.
   if (parts.empty()) parts.push_back({.nodes = all_of(start)});
   return parts;
 }

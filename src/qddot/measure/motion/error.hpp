@@ -6,22 +6,22 @@
 
 namespace qddot::inline measure {
 
-// How far and how fast one part of a scene moves over its run.
+// The magnitudes of the motion of one part of a scene over its run.
 struct PartScale {
   std::vector<std::size_t> nodes{};  // of the scene
   double extent = 0;                 // largest coordinate of a node at the start [m]
   double displacement = 0;           // largest |x - x(0)| of a node [m]
   double speed = 0;                  // largest |v| of a node [m/s]
 
-  // Whether it moves by less than 1e4 roundings of its coordinates, too little for four digits: it
-  // rests, and has no motion to measure errors by.
+  // Whether it moves by less than 1e4 roundings of its coordinates, too little for four digits. It
+  // is then at rest and gives no scale.
   bool is_at_rest() const;
 };
 
-// What errors are divided by: magnitudes of a motion over its run. Motion in closed form has no
-// error and counts only if nothing else moves. That is the motion of nodes in free flight, of parts
-// that rest in their fall, and the common fall of a part without pins. Such a part is measured in
-// the frame that falls with it.
+// The scales of errors: magnitudes of a motion over its run. Motion in closed form has no error and
+// counts only if nothing else moves. This is the motion of nodes in free flight, of parts that rest
+// in their fall, and the common fall of a part without pins. Such a part is measured in the frame
+// that falls with it.
 struct Scales {
   double displacement = 0;  // largest |x - x(0)| of a node [m]
   double speed = 0;         // largest |v| of a node [m/s]
@@ -29,8 +29,8 @@ struct Scales {
   // The scales of each part of the scene; empty if the ones above hold for all nodes.
   std::vector<PartScale> parts{};
 
-  // What errors of a part's positions [m] and velocities [m/s] are divided by: its own scale, or
-  // the scene's if the part is at rest.
+  // The scales of a part's errors of positions [m] and velocities [m/s]: its own, or the scene's if
+  // the part is at rest.
   double displacement_of(const PartScale& part) const;
   double speed_of(const PartScale& part) const;
 };

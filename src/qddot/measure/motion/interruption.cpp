@@ -9,7 +9,7 @@ namespace {
 
 struct Shared {
   std::stop_source source;
-  std::mutex mutex;  // of `why`
+  std::mutex mutex;  // guards `why`
   std::optional<Interruption> why;
   std::atomic<bool> is_noticed = false;
 };

@@ -7,7 +7,7 @@
 
 namespace qddot::inline measure {
 
-// What asked the process to end before its work is done.
+// The cause that asks the process to end before its work is done.
 struct Interruption {
   std::string by;  // SIGINT, SIGTERM or --time-limit, as in sidecars
   int status;      // exit status of the program
@@ -23,18 +23,18 @@ class Interrupted : public std::runtime_error {
 
 // Ends all work of this process in order, now and from now on: runs stop after the step at hand.
 void interrupt(const Interruption& why);
-// The token that interrupt() requests a stop of. Runs take it, or that of a Deadline, which waits
-// for it too.
+// The token that interrupt() requests a stop of. Runs take this token, or that of a Deadline, which
+// also follows it.
 std::stop_token interruption();
-// Why the work is to end; empty as long as it may go on.
+// The cause of the interruption; empty as long as work may go on.
 std::optional<Interruption> interrupted();
 // Throws Interrupted once the work is to end.
 void stop_if_interrupted();
 // Whether one of the last two functions has reported the interruption.
 bool is_interruption_noticed();
 
-// Interrupts one thread: while this lives, interruption() and interrupted() in the thread that made
-// it follow `stop` and no longer the process.
+// Interrupts one thread. While this lives, interruption() and interrupted() of the thread that made
+// it follow `stop` and not the process.
 class OwnInterruption {
  public:
   OwnInterruption(std::stop_token stop, Interruption why);
@@ -48,7 +48,7 @@ class OwnInterruption {
  private:
   std::stop_token stop_;
   Interruption why_;
-  OwnInterruption* outer_;  // the one that this one replaces; may be none
+  OwnInterruption* outer_;  // the one that this one replaces, or nullptr
 };
 
 }  // namespace qddot::inline measure

@@ -9,12 +9,12 @@
 namespace qddot::inline measure {
 
 std::optional<ModalShares> ModalShares::at_equilibrium(const ReducedScene& scene) try {
-  // Only directions of the motion count: it has no kinetic energy in others.
+  // Only dimensions of the motion count: other modes have no kinetic energy.
   const Equilibrium rest = equilibrium_of(scene);
   if (rest.outcome != Equilibrium::Outcome::reached) return {};
   const Index count = std::min(most_modes, finite_modes(scene.system()));
   return ModalShares(scene.system().mass(), lowest_modes(scene.system(), rest.q, count).shapes);
-} catch (const std::runtime_error&) {  // an eigenvalue that was not found
+} catch (const std::runtime_error&) {  // an eigenvalue was not found
   return {};
 }
 

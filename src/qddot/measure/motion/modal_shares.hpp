@@ -11,7 +11,7 @@ namespace qddot::inline measure {
 // equilibrium, -K x_j = w_j^2 M x_j with x_i'Mx_j = delta_ij:
 //   T_j = 1/2 (x_j'M v)^2,   T = sum_j T_j at any amplitude.
 // Potential energies 1/2 w_j^2 (x_j'M (q - q_eq))^2 are not used: they would take the rotation of a
-// cloth for stretching. The lowest modes count each by itself, all others as one.
+// cloth for stretching. The lowest modes have a share each, all others share one.
 class ModalShares {
  public:
   static constexpr Index most_modes = 32;
@@ -29,7 +29,7 @@ class ModalShares {
   ModalShares(const Vec& mass, const Eigen::MatrixXd& shapes);
 
   Vec mass_;
-  Eigen::MatrixXd impulses_;  // M x_j, a column each
+  Eigen::MatrixXd impulses_;  // M x_j, one column for each mode
 };
 
 // The total variation distance 1/2 sum |a_j - b_j| of two distributions: from 0 to 1.

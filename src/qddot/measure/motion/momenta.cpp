@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Whether two directions are the same but for rounding, either way round; a zero one is any.
+// Whether two directions are parallel up to rounding and sign; zero is parallel to all.
 bool parallel(const Vector3d& a, const Vector3d& b) {
   return a.cross(b).norm() <= 1e-12 * a.norm() * b.norm();
 }
@@ -20,7 +20,7 @@ const std::vector<Vector3d>& all_axes() {
   return axes;
 }
 
-// Those about which the springs to pins at these points, and gravity, turn nothing.
+// The axes about which gravity and the springs to pins at these points have no torque.
 std::vector<Vector3d> turning_axes(const std::vector<Vector3d>& pins, const Vector3d& gravity) {
   if (pins.empty()) return all_axes();
   Vector3d line = Vector3d::Zero();  // along which all pins are

@@ -10,7 +10,7 @@
 namespace qddot::inline measure {
 namespace {
 
-// Times whose relative difference is below this differ by rounding.
+// Times with a relative difference below this differ by rounding only.
 constexpr double time_rounding = 1e-12;
 constexpr double most_samples = 1e8;
 

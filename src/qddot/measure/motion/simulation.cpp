@@ -11,7 +11,7 @@
 namespace qddot {
 namespace {
 
-// What the method says to a system that it cannot run.
+// Throws if the method cannot run the system.
 void require_fit(const Method& method, const System& system) {
   if (const auto why = misfit(method, system))
     throw std::invalid_argument(fmt::format("{}: {}", method.name, advice(*why)));
@@ -28,7 +28,8 @@ const Method& method(std::string_view name) {
 
 ReducedScene reduced_for(const Method& method, const Scene& scene, const Reductions& reductions) {
   const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
-  // Springs in series are one in tension only: who takes the node between them need not care.
+  // A node between springs in series must stay a node in compression too, unless the method accepts
+  // no massless node.
   return ReducedScene(start, method.is(Trait::accepts_massless)
                                  ? reductions.without(Reduction::massless)
                                  : reductions);

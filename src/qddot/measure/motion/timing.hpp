@@ -20,7 +20,7 @@ double seconds_of(const Work& work) {
   return seconds_since(start);
 }
 
-// The least wall time of one call of work() [s]: its time when nothing disturbs it. Found from
+// The least wall time [s] of one call of work(): its time without disturbances. It is the least of
 // passes of a millisecond or more, which take `seconds` together.
 template <class Work>
 double least_seconds(double seconds, const Work& work) {

@@ -25,7 +25,7 @@ double largest_omega(const NaturalModes& modes) {
   return std::sqrt(std::max(0.0, modes.squares.maxCoeff()));
 }
 
-// Those of the ascending modes that are next to `count` frequencies spread evenly.
+// The ascending modes that are nearest to `count` evenly spread frequencies.
 std::vector<Mode> spread(std::vector<Mode> all, int count) {
   if (std::ssize(all) <= count) return all;
   const double low = all.front().omega, high = all.back().omega;

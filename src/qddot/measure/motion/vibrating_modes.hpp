@@ -14,10 +14,10 @@ struct Mode {
   Vec shape;     // x, x'Mx = 1 (x in kg^-1/2)
 };
 
-// Up to `count` of the modes that vibrate about q, in ascending order, the lowest and the highest
-// among them. Systems of up to 1500 unknowns give modes spread evenly over the logarithm of the
+// Up to `count` of the modes that vibrate about q, in ascending order, with the lowest and the
+// highest. Systems of up to 1500 unknowns give modes spread evenly over the logarithm of the
 // frequency; larger ones give both ends of the spectrum. Modes with w below 1e-6 w_max are left
-// out: they do not move in a run that follows the fastest one.
+// out: they do not move in a run that resolves the fastest mode.
 std::vector<Mode> sampled_modes(const System& system, const Vec& q, int count);
 
 // The largest rate [1/s] at which a motion leaves q, where compressed springs push sideways: the

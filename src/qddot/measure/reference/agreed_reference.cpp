@@ -18,24 +18,24 @@ namespace {
 constexpr int most_levels = 12;
 constexpr std::int64_t samples_for_scales = 1000;  // for the scales
 
-// One way of computing the motion, finer with each level.
+// A method that computes the motion, more accurately with each level.
 struct Way {
   bool resolves_vibrations;
-  double expected;  // seconds that the next level takes
-  double growth;    // of these from one level to the next
+  double expected;  // seconds of the next level
+  double growth;    // ratio of these seconds from level to level
   std::function<std::optional<Solution>(int level, double seconds)> solve;
   int level = 0;
   std::optional<Solution> finest{};
 };
 
-// Steps of h w <= coarsest at the start, half of that with each level.
+// A run with fixed steps: h w <= coarsest at the start, halved with each level.
 std::optional<Solution> resolved(const ReducedScene& scene, const char* name, double until,
                                  double coarsest, int level, double seconds) {
   const double w = frequency_bound(scene.system(), scene.initial().q);
   const double least = std::max(16.0, std::ceil(until * w / coarsest * std::exp2(level)));
   if (!(least < most_steps)) return {};
   const auto samples = std::min(static_cast<std::int64_t>(least), samples_for_scales);
-  // A whole number of steps from one sample to the next.
+  // The number of steps from one sample to the next is whole.
   const double h =
       until / static_cast<double>(samples) / std::ceil(least / static_cast<double>(samples));
   auto solution = seen_run(scene, *find_method(name), {.step_size = h}, scene.initial(), until,
@@ -69,9 +69,9 @@ Reference agreed_reference(const ReducedScene& scene, double until, double neede
   const auto by_ida = [&](int level, double limit) {
     return ida(scene, until, tolerance(level), limit);
   };
-  // Verlet begins, and its time gives that of the others: they evaluate 17 and 13 forces a step,
-  // and steps of Fehlberg's pair are no longer than three of Verlet's. The time of an implicit
-  // method is a guess.
+  // Verlet runs first, and the other times are estimated from its time. Kahan and Li's composition
+  // evaluates 17 forces a step. Fehlberg's pair evaluates 13, and its steps are no longer than
+  // three of Verlet's. The time of the implicit method is a guess.
   Way verlet{true, 0, 2, explicitly("verlet", 1)};
   const auto begin = std::chrono::steady_clock::now();
   verlet.finest = verlet.solve(verlet.level++, seconds);

@@ -11,17 +11,17 @@ constexpr double apart = 1e-2;
 // thousands over a run.
 constexpr double exponential_growth = 1e6;
 
-// How two motions that start close to each other part.
+// The exponential parting of two motions that start close to each other.
 struct Divergence {
   double horizon;   // t [s] from which on they are `apart`; infinite for regular motions
   double lyapunov;  // growth rate of their difference [1/s]; zero for regular motions
 };
 
-// Computes it from `differences` (position errors) at ascending `times` [s]; the first one is that
-// of the start, above 0. The exponent is the least-squares slope of ln(largest difference so far).
-// It is fitted over the second half of the time in which that difference is below `apart`/10;
-// above, it no longer grows freely. If the motions part exponentially but are not apart at the last
-// time, the horizon is extrapolated by that slope.
+// Computes the divergence from `differences` (position errors) at ascending `times` [s]; the first
+// one, at the start, is above 0. The exponent is the least-squares slope of ln(largest difference
+// so far). It is fitted over the second half of the time in which that difference is below
+// `apart`/10; above, it no longer grows freely. If the motions part exponentially but are not apart
+// at the last time, the horizon is extrapolated by that slope.
 Divergence divergence(const std::vector<double>& times, const std::vector<double>& differences);
 
 }  // namespace qddot::inline measure

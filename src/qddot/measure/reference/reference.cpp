@@ -20,9 +20,9 @@ namespace {
 
 constexpr Index largest_modal_size = 2000;  // a dense eigenproblem of a few seconds
 
-// Throws NoReference if there is no such step, or if `steps` steps of order 8 would take more than
-// twice `seconds`; that is timed on a few steps. Calls `expect` if the reference is likely to take
-// all its time.
+// Throws NoReference if no step resolves the motion, or if `steps` steps of order 8 would take more
+// than twice `seconds`, estimated from a few steps. Calls `expect` if the reference is likely to
+// take all its time.
 void require_affordable(const ReducedScene& scene, double until, double steps, double seconds,
                         const Expect& expect) {
   constexpr double tried = 16, refinements = 8;
@@ -49,13 +49,13 @@ void require_affordable(const ReducedScene& scene, double until, double steps, d
   if (expect && expected * refinements > seconds) expect(std::max(4 * seconds, 60.0));
 }
 
-// A composition, as fine as it gets, and what a rounding of the start does to it.
+// A composition, refined as far as possible, and the effect of a rounding of its start.
 class Composed {
  public:
   Composed(const ReducedScene& scene, double until, double seconds, double longest_rounding,
            const Expect& expect)
       : scene_(scene), until_(until), longest_rounding_(longest_rounding) {
-    // Steps that resolve the fastest frequency at the start: h w = 2, 1, 1/2, ...
+    // The steps resolve the fastest frequency at the start: h w = 2, 1, 1/2, ...
     const double bound = frequency_bound(scene.system(), scene.initial().q);
     const double coarsest = std::max(16.0, std::ceil(until * bound / 2));
     require_affordable(scene, until, coarsest, seconds, expect);

@@ -21,8 +21,8 @@ struct OutOfSymmetry {
 };
 
 // The motion that errors are measured against, at its end, with a bound of its own error.
-// `certified` is that bound, in the units of Errors (see joined in reference_ways.hpp); errors
-// below it mean nothing. The program fuzz_references shows how often the bound holds.
+// `certified` is that bound, in the units of Errors (see joined in reference_ways.hpp); smaller
+// errors mean nothing. The program fuzz_references shows how often the bound holds.
 struct Reference {
   State end;
   double energy = 0;  // E(0) [J], which the exact motion keeps
@@ -47,7 +47,7 @@ struct Reference {
   std::string made_by;  // the two methods, with their options
   double seconds = 0;   // time to make it [s]
 
-  // Whether the motion at the end exists in exact symmetry alone. Any push out of symmetry has then
+  // Whether the motion at the end exists in exact symmetry alone: any push out of symmetry has
   // moved the nodes apart before the end, in less than 0.8 of the motion's own horizon. The
   // symmetric motion itself is known. All methods compute it on the same reduced system, so that
   // their errors still compare.

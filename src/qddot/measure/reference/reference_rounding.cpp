@@ -12,7 +12,7 @@ namespace {
 
 double reach(const PartScale& part) { return std::max(part.extent, part.displacement); }
 
-// Unknown by unknown, what `of` says of the part that it belongs to.
+// A vector over the unknowns: each entry is `of` the part that the unknown belongs to.
 template <class Of>
 Vec by_unknown(const ReducedScene& scene, const Scales& scales, const Of& of) {
   Vec all = Vec::Zero(scene.system().size());
@@ -46,8 +46,8 @@ RoundingRun::RoundingRun(const ReducedScene& scene, const Solution& composed, do
       knob_(composed.knob),
       steps_(until / composed.knob),
       start_(displaced_start(scene, scales_, machine_epsilon)) {
-  // Masses and stiffnesses are rounded too. If all frequencies are off by one rounding, each state
-  // comes early or late by one of the time.
+  // Masses and stiffnesses are rounded too. If all frequencies change by one rounding, each state
+  // comes early or late by one rounding of the time.
   moved_ = composition(scene, start_, until * (1 + machine_epsilon), knob_, seconds);
   if (!moved_) return;
   effect_ = errors_between(scene, moved_->end, composed.end, 0, scales_);
@@ -92,7 +92,8 @@ std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const ReducedSc
                            Reductions().without(Reduction::dimension).without(Reduction::mirror));
   Scales scales;
   extend(scales, drawn, drawn.initial());
-  // Nodes that start in the origin are rounded where they go.
+  // A node that starts at the origin has no coordinate to round; its displacement is rounded
+  // instead.
   for (PartScale& part : scales.parts) {
     if (part.extent == 0) part.displacement = composed.scales.displacement;
   }

@@ -15,12 +15,12 @@ namespace qddot::inline measure {
 namespace {
 
 constexpr std::int64_t longest_path = 100;
-// Looks at a run for its scales; a list of more times would cost more than it shows.
+// The most samples for the scales of a run; a longer list of times costs more than it shows.
 constexpr std::int64_t most_looks = 1'000'000;
 constexpr double safety = 2;
 
-// Moves q and v on by `until` [s], in units of `length` [m] and `speed` [m/s]; false where the
-// deadline passes before.
+// Advances q and v by `until` [s], with errors in units of `length` [m] and `speed` [m/s]. Returns
+// false if the deadline passes before.
 bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<Vec> v, double until,
                            double tolerance, double length, double speed,
                            const Deadline& deadline) {
@@ -42,7 +42,7 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
 
   auto stepper =
       odeint::make_controlled<odeint::runge_kutta_fehlberg78<Stacked>>(tolerance, tolerance);
-  // t and the rest of it that rounding left over: thousands of steps must add up to the end.
+  // The time t and its rounding error `rest`: the sum of thousands of steps must be the end.
   double t = 0, rest = 0, dt = until / 1000;
   for (bool is_over = until == 0; !is_over;) {
     if (deadline.passed() || t + dt == t) return false;
@@ -134,7 +134,7 @@ Reference joined(const ReducedScene& scene, const Solution& one, const Solution&
   const Errors drift = errors_between(scene, one.end, one.end, energy, one.scales);
   certified.energy = std::max(certified.energy, drift.energy);
   for (double* part : {&certified.position, &certified.velocity, &certified.energy}) {
-    // Two roundings of the same number may agree by chance.
+    // Two roundings of one number may agree by chance.
     *part = std::max(safety * *part, machine_epsilon);
   }
   Reference reference{.end = one.end,

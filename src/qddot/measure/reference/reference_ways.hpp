@@ -17,10 +17,10 @@ struct Solution {
   double knob = 0;
   std::string made_by{};
   std::vector<State> path{};  // at some of the samples, the end included
-  Errors change{};            // how far refinement may still change the end; zero if not refined
+  Errors change{};            // change that refinement may still make; zero if not refined
 };
 
-// The motion from `initial` by a method with these options. Its scales are those at the ends of
+// The motion from `initial` by a method with these options. Its scales are taken at the ends of
 // `samples` equal parts of the time, or at some of these if there are more than a million. About a
 // hundred of them make its path. Empty if it does not reach the end in `seconds`.
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,

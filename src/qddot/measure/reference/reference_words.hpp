@@ -6,11 +6,11 @@
 
 namespace qddot::inline measure {
 
-// The scales that errors against the reference are divided by, with their values, in a sentence.
+// A sentence that names the scales of errors against the reference, with their values.
 std::string what_divides(const Reference& reference);
 
-// A sentence that says whether the motion exists in exact symmetry alone and what a push does to
-// it, or that finding out took too long. Empty otherwise.
+// A sentence on symmetry: whether the motion exists in exact symmetry alone and what a push does to
+// it, or that this took too long to find out. Empty otherwise.
 std::string symmetry_in_words(const Reference& reference);
 
 }  // namespace qddot::inline measure

@@ -28,7 +28,7 @@ Solution refined(const ReducedScene& scene, double seconds, const Solve& solve,
   const auto start = std::chrono::steady_clock::now();
   std::optional<Solution> best;
   Errors last;                                              // change
-  double before = std::numeric_limits<double>::infinity();  // the larger of the last change
+  double before = std::numeric_limits<double>::infinity();  // the larger part of the last change
   double share = 1;
   for (int level = 0; level < most_refinements; ++level) {
     const auto begin = std::chrono::steady_clock::now();

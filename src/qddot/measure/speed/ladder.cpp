@@ -7,17 +7,19 @@ namespace qddot::inline measure {
 namespace {
 
 // The error falls by 4 from rung to rung if it follows the order, or by 6 with an order of 8 and
-// ten rungs a decade. A fall of several times that is not due to an order.
+// ten rungs a decade. A fall by more than this factor is not due to the order.
 constexpr double steepest_fall = 40;
-// The ladder is not refined beyond so many times the steps of the limit. A run with steps above the
-// limit that reaches its end by chance is nearer than that: at twice the limit, vibrations grow by
-// more than 10 in a step.
+// A ladder is refined up to this many times the steps of the limit. A run beyond the limit that
+// reaches its end by chance is nearer to it: at twice the limit, vibrations grow by more than 10 in
+// a step.
 constexpr double farthest = 8;
-// The ladder misses the cheapest step for an accuracy by at most the ratio of two rungs. That is a
-// few percent at the limit, an eighth at half of it and a third at an eighth of it.
+// The ratio of two rungs at the limit, and its growth below. The cheapest step for an accuracy is
+// missed by at most that ratio. It is a few percent at the limit, an eighth at half of it and a
+// third at an eighth of it.
 constexpr double closest_ratio = 1.04, widening = 0.125;
 
-// The first of the fewest rungs that leave no ratio between the two larger than `allowed`.
+// The first rung after the coarse one that allows a ratio of at most `allowed` with the fewest
+// rungs.
 double first_between(const Rung& coarse, const Rung& fine, double allowed) {
   const double ratio = fine.steps / coarse.steps;
   const double parts = std::ceil(std::log(ratio) / std::log(allowed));

@@ -12,7 +12,7 @@
 namespace qddot::inline measure {
 namespace {
 
-// Points to either side; errors reach rounding long before.
+// The most points on either side of number 0; errors reach rounding long before.
 constexpr int most_points = 60;
 
 // Values of the knob, finer with the number. Number 0 of a step size is h w = 4 for explicit
@@ -25,10 +25,10 @@ class KnobValues {
     steps_ = method.is(Trait::implicit) ? 2 : std::max(1.0, std::ceil(until * w / 4));
   }
 
-  // Nothing where there is no such value.
+  // The value with this number; empty if it does not exist.
   std::optional<double> value(int number) const {
     if (std::abs(number) > most_points) return {};
-    // Without step error one step is as good as many.
+    // A method without error of its steps needs one step only.
     if (method_.order == 0) return number == 0 ? std::optional(until_) : std::nullopt;
     if (method_.knob == Knob::rtol) {
       const double rtol = std::pow(10.0, -1 - number);
@@ -44,14 +44,14 @@ class KnobValues {
   double until_, steps_;
 };
 
-// Whether the error has come to where a finer knob changes nothing.
+// Detects that a finer knob no longer reduces the error.
 class Stagnation {
  public:
   explicit Stagnation(const Reference& reference) : reference_(reference) {}
 
   bool after(const Point& point) {
     if (point.outcome != Outcome::reached_end) return false;
-    // Steps that are held to a stability limit do not answer to the tolerance yet.
+    // Steps that are limited by stability do not follow the tolerance yet.
     if (2 * point.counts.stability_limited_steps > point.counts.steps) return false;
     const double error = judged_error(point, reference_);
     idle_ = error > 0.8 * best_ ? idle_ + 1 : 0;
@@ -65,9 +65,8 @@ class Stagnation {
   int idle_ = 0;
 };
 
-// A run of fixed steps takes time in proportion to their number, so one that is far too long need
-// not be begun. Implicit steps become cheaper as they become shorter: Newton then needs fewer
-// iterations.
+// Whether a finer run is sure to exceed the time limit. The time of fixed steps is proportional to
+// their number. Shorter implicit steps are cheaper, since Newton then needs fewer iterations.
 bool takes_too_long(const Method& method, const Point& last, double value, const Effort& effort) {
   const double saved_at_most = method.is(Trait::implicit) ? 10 : 1;
   return method.knob == Knob::step_size && last.outcome == Outcome::reached_end &&
@@ -78,8 +77,8 @@ bool is_good(const Point& point, const Reference& reference) {
   return point.outcome == Outcome::reached_end && judged_error(point, reference) < 1;
 }
 
-// Whether coarse steps end at a limit of stability: those of explicit methods do, and implicit ones
-// that ran away. Other implicit ones end where they are inaccurate or are not solved.
+// Whether coarse steps end at a stability limit: those of explicit methods do, and implicit ones
+// whose energy grew without bound. Other implicit ones become inaccurate or find no solution.
 bool has_limit(const Method& method, const std::vector<Point>& points) {
   if (method.knob != Knob::step_size || method.order == 0 || linear_limit(method) == 0)
     return false;
@@ -87,8 +86,8 @@ bool has_limit(const Method& method, const std::vector<Point>& points) {
          std::ranges::find(points, Outcome::diverged, &Point::outcome) != points.end();
 }
 
-// The rungs of a ladder of step sizes that may be refined: from the coarsest to the first that is
-// enough, or to the first that is over budget.
+// The rungs of a ladder of step sizes that may be refined, from the coarsest to the first that is
+// accurate enough or over budget.
 std::vector<Rung> rungs(const std::vector<Point>& points, double until, const Reference& reference,
                         const std::function<bool(const Point&)>& is_enough) {
   std::vector<Rung> ladder;
@@ -135,8 +134,8 @@ std::vector<Point> measure_ladder(const Method& method, const ReducedScene& scen
     const Point& last = points.back();
     if (last.value == *value) continue;
     if (last.outcome == Outcome::reached_end && (is_enough(last) || stagnation.after(last))) break;
-    // Where Newton struggles at the coarse end, finer may be faster: two such points are forgiven.
-    // Explicit steps only become more.
+    // A finer implicit run may be faster if Newton's iteration hardly converges at the coarse end:
+    // two runs over budget are accepted. Explicit runs only become longer.
     unfinished = last.outcome == Outcome::over_budget ? unfinished + 1 : 0;
     const bool has_worked =
         std::ranges::any_of(points, [&](const Point& p) { return is_good(p, reference); });
@@ -153,7 +152,7 @@ std::vector<Point> measure_ladder(const Method& method, const ReducedScene& scen
     const auto finer =
         std::ranges::find_if(points, [&](const Point& other) { return other.value < point.value; });
     points.insert(finer, point);
-    if (point.outcome == Outcome::over_budget) break;  // though a finer one was not
+    if (point.outcome == Outcome::over_budget) break;  // although a finer one was not
   }
   return points;
 }

@@ -4,7 +4,7 @@
 
 namespace qddot::inline measure {
 
-// Loops that reach one limit of a core each, with the vector instructions of the springs' kernels.
+// Loops that each reach one limit of a core, with the vector instructions of the springs' kernels.
 struct LimitKernels {
   // Multiplies and adds from register to register; returns the number of operations.
   double (*multiply_and_add)(int rounds);
@@ -14,7 +14,7 @@ struct LimitKernels {
   double (*sum)(const double* x, std::ptrdiff_t n);
 };
 
-// Returns the version in use.
+// The loops for this processor's instructions.
 const LimitKernels& limit_kernels();
 
 }  // namespace qddot::inline measure

@@ -27,7 +27,7 @@ double reading_rate(double bytes, double seconds) {
   const Index size = static_cast<Index>(bytes / sizeof(double)) / 64 * 64;
   if (size == 0) return 0;
   const Vec numbers = Vec::Zero(size);
-  // A pass of at least a megabyte, so that the clock's own time does not count.
+  // A pass reads at least a megabyte, so that the clock's own time does not count.
   const Index passes = std::max<Index>(1, (1 << 17) / size);
   volatile double sink = 0;
   const double least = least_seconds(seconds, [&] {

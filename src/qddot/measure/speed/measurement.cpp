@@ -12,15 +12,15 @@
 namespace qddot::inline measure {
 namespace {
 
-// Shorter than this, a run is timed together with others like it: the clock's own cost (some tens
-// of ns) stays below a thousandth.
+// Runs shorter than this [s] are timed in batches. The clock's own cost (some tens of ns) then
+// stays below a thousandth.
 constexpr double shortest_sample = 1e-4;
-// A first run at least so long [s] is a sample like any other: what is cold about it is over soon.
+// A first run of at least this time [s] counts as a sample: its warm-up is a small part of it.
 constexpr double own_warm_up = 0.1;
-// A run that is looked at ends sooner or later [s]; it is as long as the one before, and not timed.
+// The time limit [s] of a watched run. It is as long as the run before and is not timed.
 constexpr double longest_look = 60;
 
-// The point as it is measured now.
+// Measures the point.
 Point taken(const Method& method, double value, const ReducedScene& scene, double until,
             const Reference& reference, const Effort& effort) {
   Point point{.method = &method, .value = value};
@@ -52,7 +52,7 @@ Point taken(const Method& method, double value, const ReducedScene& scene, doubl
         summary = integrator->advance(state, until);
       }
     });
-    if (summary.outcome != Outcome::reached_end) {  // the time of half a run is none
+    if (summary.outcome != Outcome::reached_end) {  // half a run gives no time
       point.outcome = summary.outcome;
       point.t_reached = summary.t_reached;
       return point;
@@ -66,7 +66,7 @@ Point taken(const Method& method, double value, const ReducedScene& scene, doubl
   if (effort.watch) {
     point.path = effort.watch->see(method, options, point.counts.steps,
                                    std::max(longest_look, 2 * effort.seconds));
-    // The end of the run that was timed counts as well.
+    // The energy error at the end of the timed run counts too.
     point.path.energy = std::max(point.path.energy, point.errors.energy);
   }
   return point;

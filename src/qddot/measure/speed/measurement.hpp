@@ -28,10 +28,11 @@ struct Effort {
   using Take = std::function<Point()>;
 
   double seconds = 10;  // for one run; slower ones become over_budget
-  int repeats = 5;    // timed runs; at least one; fewer where they would take half of that together
-  Options options{};  // beside the knob
+  // Timed runs; fewer, but at least one, if these would take more than half of `seconds`.
+  int repeats = 5;
+  Options options{};             // beside the knob
   const Watch* watch = nullptr;  // if any, sees one more run, untimed
-  // If set, returns the point if it is known already, else calls `take`.
+  // If set, returns a point that is already known, else calls `take`.
   std::function<Point(const Method&, double value, const Take& take)> recall{};
 };
 

@@ -12,7 +12,7 @@ namespace {
 std::vector<double> looks(const Method& method, const Options& options, double until,
                           std::int64_t steps) {
   const bool fixed = method.knob == Knob::step_size && method.order > 0;
-  // Each part of a system has steps of its own, which were all counted.
+  // The steps of all parts were counted together, but each part has its own.
   const double whole =
       fixed ? std::round(until / options.step_size) : std::floor(static_cast<double>(steps) / 4);
   const double count = std::clamp(whole, 1.0, Watch::most_looks);

@@ -11,7 +11,7 @@
 namespace qddot::inline measure {
 namespace {
 
-// Throws std::invalid_argument where there is nothing to measure the methods on.
+// Throws std::invalid_argument if there is nothing to measure the methods on.
 void require_measurable(const ReducedScene& model, const std::vector<const Method*>& methods) {
   const System& system = model.system();
   if (system.size() == 0 || system.has_massless()) {

@@ -22,18 +22,20 @@
 namespace qddot::inline measure {
 namespace {
 
-// Looks at the energy in a run; step sizes from h/2 to h/4096 that are tried for one that holds.
+// The number of looks at a run's energy, and of halved step sizes that are tried, from h/2 to
+// h/4096.
 constexpr int most_looks_back = 32, most_halvings = 12;
 constexpr std::size_t most_named = 3;
 // A motion counts as unchanged while its energy has changed by less than this part of the largest
 // kinetic energy so far.
 constexpr double same = 0.5;
-// A growth of the energy is reported from the first factor on; beyond the second its size means
-// nothing.
+// A growth of the energy by more than the first factor is reported; beyond the second its size
+// means nothing.
 constexpr double largest_growth = 10, countless = 1e6;
-// No intended motion is as fast [m/s].
+// A speed [m/s] that no intended motion has.
 constexpr double largest_speed = 1e15;
-// Implicit methods are not tried in scenes so large that their factors take seconds, and gigabytes.
+// The largest scene for which implicit methods are tried: factors of larger ones take seconds and
+// gigabytes.
 constexpr Index most_factorized = 100000;
 
 bool has_own_step(const Method& method) { return has_linear_step(method) && method.order > 0; }
@@ -53,7 +55,7 @@ Summary run(const Method& method, const Options& options, const ReducedScene& sc
       ->advance(state, until, some, deadline.token());
 }
 
-// Watches whether a motion still has its energy.
+// Watches whether the energy of a motion is still right.
 class EnergyWatch {
  public:
   explicit EnergyWatch(const ReducedScene& scene)
@@ -61,9 +63,9 @@ class EnergyWatch {
     see(scene.initial());
   }
   bool see(const State& state) {
-    const double kinetic = scene_.system().kinetic(state.v);  // a fall would hide what is gained
+    const double kinetic = scene_.system().kinetic(state.v);  // a common fall would hide the gain
     const double change = std::abs(scene_.energy(state) - start_);
-    // Kinetic energy that the error has added is not counted.
+    // Kinetic energy that stems from the error is not counted.
     if (is_same_ && change <= same * std::max(largest_, kinetic - change)) {
       largest_ = std::max(largest_, kinetic - change);
     } else if (change > 0) {
@@ -96,7 +98,7 @@ Before before_failure(const Method& method, const Options& options, const Reduce
                 .buckling = pushed(scene.initial().q)};
   EnergyWatch watch(scene);
   const auto see = [&](const State& state) {
-    // The first state of a wrong energy counts: its step began where all was right.
+    // The first state with a wrong energy counts: its step began at a right one.
     const bool counts = watch.is_same();
     if (watch.see(state)) before.t = state.t;
     if (!counts) return;
@@ -159,7 +161,7 @@ std::optional<bool> holds(const Method& method, const Options& options, const Re
                           double until, double seconds) {
   if (seconds <= 0) return {};
   const double energy = scene.energy(scene.initial());
-  // Without what falls in closed form, whose potential has no least value.
+  // The potential without the motion in closed form: that of a fall has no minimum.
   const auto potential = [&](const State& state) {
     return scene.energy(state) - scene.system().kinetic(state.v);
   };
@@ -169,7 +171,7 @@ std::optional<bool> holds(const Method& method, const Options& options, const Re
     largest = std::max(largest, scene.energy(state));
   });
   if (summary.outcome == Outcome::over_budget) return {};
-  // Above the lowest potential seen no more than the rest can become kinetic.
+  // At most the energy above the lowest potential can become kinetic.
   return summary.outcome == Outcome::reached_end && largest - energy <= same * (energy - lowest);
 }
 

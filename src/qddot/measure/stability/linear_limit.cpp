@@ -10,9 +10,10 @@
 namespace qddot::inline measure {
 namespace {
 
-constexpr int points = 400;  // of four decades
+constexpr int points = 400;  // over four decades
 constexpr double growth_rounding = 1e-12;
-// If two roots only touch, rounding separates them by the square root of a rounding.
+// The distance of two roots that touch: rounding separates them by the square root of
+// machine_epsilon.
 constexpr double parted = 1e-6;
 
 double growth(const Method& method, double h_omega) {
@@ -23,8 +24,8 @@ bool grows(const Method& method, double h_omega) {
   return growth(method, h_omega) > growth_rounding;
 }
 
-// Half the sum of the two leading roots: below 1 where they are a pair on the unit circle, above
-// where they have parted along the real axis.
+// Half the sum of the two leading roots. It is below 1 for a pair on the unit circle, and above for
+// roots that have parted along the real axis.
 double half_trace(const Method& method, double h_omega) {
   const auto roots = linear_step(method, h_omega).roots;
   return roots.size() < 2 ? std::numeric_limits<double>::infinity()
@@ -35,7 +36,7 @@ double grid(int i) {
   return least_h_omega * std::pow(largest_h_omega / least_h_omega, 1. * i / points);
 }
 
-// The h w between a and c at which the roots come nearest to separating.
+// The h w between a and c at which the roots are nearest to separating.
 double nearest_to_parting(const Method& method, double a, double c) {
   const auto f = [&](double h_omega) { return -half_trace(method, h_omega); };
   return boost::math::tools::brent_find_minima(f, a, c, std::numeric_limits<double>::digits / 2)
@@ -50,8 +51,8 @@ double bisected(const Method& method, double stable, double unstable) {
   return stable;
 }
 
-// Whether the limit is no threshold: the growth a little above it is still no more than rounding,
-// as that of a power of h w.
+// Whether growth fades as a power of h w instead of starting at a threshold: a little above the
+// limit it is still below rounding.
 bool fades_out(const Method& method, double limit) {
   return growth(method, (1 + 1e-5) * limit) < 2 * growth_rounding;
 }

@@ -4,7 +4,7 @@
 
 namespace qddot::inline measure {
 
-// The range of h w that is searched.
+// The range of h w in which the limit is searched.
 constexpr double least_h_omega = 0.01, largest_h_omega = 100;
 
 // The stability limit of the implemented method: the largest h w up to which q'' = -w^2 q does not

@@ -19,10 +19,11 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Matrix4d;
 
-// What rounding may leave of the responses of an oscillator.
+// The relative error that rounding may leave in the responses of an oscillator.
 constexpr double root_rounding = 1e-11;
 
-// The roots of a 2 x 2 matrix. Near a double root t +- sqrt(t^2 - d) keeps what an iteration loses.
+// The roots of a 2 x 2 matrix. Near a double root, t +- sqrt(t^2 - d) keeps digits that an
+// iteration loses.
 std::vector<Complex> pair_of_roots(const Eigen::Matrix2d& a) {
   const double t = (a(0, 0) + a(1, 1)) / 2, d = a.determinant();
   const double discriminant = t * t - d;
@@ -47,7 +48,7 @@ bool is_without_memory(const Responses& y, double noise) {
   return true;
 }
 
-// A's roots if A has `rank` rows, and whether that explains all responses.
+// The roots of A with `rank` rows, and whether A explains all responses.
 struct Realization {
   std::vector<Complex> roots{};
   bool explains = true;
@@ -58,7 +59,7 @@ Realization realize(const Responses& y, int rank, double noise) {
   next << y[1], y[2], y[2], y[3];
   const Eigen::JacobiSVD<Matrix4d, Eigen::NoQRPreconditioner> svd(
       now, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  // The rows and columns beyond the rank are zero.
+  // Rows and columns beyond the rank stay zero.
   Eigen::Vector4d root = Eigen::Vector4d::Zero(), inverse = root;
   root.head(rank) = svd.singularValues().head(rank).cwiseSqrt();
   inverse.head(rank) = root.head(rank).cwiseInverse();

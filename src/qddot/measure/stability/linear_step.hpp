@@ -8,9 +8,8 @@
 namespace qddot::inline measure {
 
 // The effect of one fixed step of h w = `h_omega` on a vibration q'' = -w^2 q. A step multiplies (w
-// q, v), and all that the method remembers of earlier steps, by a matrix. The eigenvalues of the
-// matrix (the roots) decide what happens in the long run. The exact motion has the one pair exp(+-
-// i h w).
+// q, v), and all that the method remembers of earlier steps, by a matrix. The roots are the
+// matrix's eigenvalues, which decide the long run. The exact motion has the one pair exp(+- i h w).
 struct LinearStep {
   double h_omega = 0;
   std::vector<std::complex<double>> roots{};  // the largest modulus first
@@ -25,8 +24,8 @@ struct LinearStep {
   double period_error() const;
 };
 
-// Whether a step of the method multiplies an oscillator's state by one matrix: its steps are fixed,
-// and they are not for a part of the forces alone.
+// Whether a step of the method multiplies an oscillator's state by one matrix. Its steps must be
+// fixed and not only for a part of the forces.
 inline bool has_linear_step(const Method& method) {
   return method.knob == Knob::step_size && !method.asks(Need::split_forces);
 }
@@ -44,8 +43,8 @@ constexpr int steps_observed = 5;
 std::vector<std::complex<double>> roots_of(const Responses& y, double noise);
 
 // The method's step at that h w: given by the method itself (Method::recurrence_roots), or found by
-// running it with `options`, except for their step size. Throws std::runtime_error, with the
-// reason, if a step fails, and std::invalid_argument for a method without fixed steps.
+// running it with `options`, except for their step size. Throws std::runtime_error with the reason
+// if a step fails. Throws std::invalid_argument for a method without fixed steps.
 LinearStep linear_step(const Method& method, double h_omega, Options options = {});
 
 }  // namespace qddot::inline measure

@@ -7,7 +7,8 @@
 namespace qddot::inline measure {
 namespace {
 
-// Below this, rounding of the closed form exceeds what its series leaves out.
+// Below this rate the series is used: rounding of the closed form exceeds the terms that it leaves
+// out.
 constexpr double small_rate = 1e-3;
 
 }  // namespace
@@ -25,7 +26,7 @@ Eigen::MatrixXd oscillation_covariance(Index n, std::complex<double> rate) {
   const std::complex<double> mean = is_small ? 1.0 - rate / 2.0 : (1.0 - left) / rate;
   const std::complex<double> own =
       is_small ? 1.0 - rate / 3.0 : 2.0 * (rate - 1.0 + left) / (rate * rate);
-  std::vector<double> at(static_cast<std::size_t>(n), own.real());  // by distance
+  std::vector<double> at(static_cast<std::size_t>(n), own.real());  // by distance in blocks
   std::complex<double> covariance = mean * mean;
   for (std::size_t distance = 1; distance < at.size(); ++distance) {
     at[distance] = covariance.real();

@@ -17,29 +17,29 @@
 namespace qddot::inline measure {
 namespace {
 
-// The ratios of a walk's variance in a block to that of the noise. The least one is
-// `least_ratio`/n^2, which adds a third to the variance of the slope; the largest one is a walk
-// alone. The shares are the same ratios for an oscillation; the largest one gives its period far
-// better than to a block.
+// The ratios of a walk's variance in a block to that of the noise. The least, `least_ratio`/n^2,
+// adds a third to the variance of the slope; the largest is a walk without noise. The shares are
+// the same ratios for an oscillation. Their largest value gives its period to much less than a
+// block.
 constexpr double least_ratio = 4, most_ratio = 1e4, ratio_step = 2;
 constexpr double least_share = 1.0 / 16, most_share = 1e8, share_step = 4, sharp_step = 16;
 // 2 ln of the ratio of likelihoods that chance exceeds once in a hundred times. The variance of the
 // walk, zero, is at the edge of its range (Self and Liang, J. American Statistical Association 82
 // (1987) 605-610).
 constexpr double certain_walk = 5.4;
-// The same once in twenty times, for the variance of noise beside a walk: below it, there is taken
-// to be no noise. Else a part of the walk would go to the noise, whose variance cannot be negative,
-// and the walk and the interval of the slope would be too small.
+// The same once in twenty times, for the variance of noise beside a walk. Below it the noise is set
+// to zero. Else it would take a part of the walk, and the interval of the slope would be too small.
 constexpr double likely_noise = 2.7;
 // The same for the likeliest coloured noise and the likeliest wave over a walk, if the walk is
 // true. Found by simulation (the program `verdicts` prints how often it happens).
 constexpr double certain_noise = 7, certain_wave = 12;
-// An oscillation surely returns if so many of its periods have been seen.
+// An oscillation surely returns if at least this many of its periods were seen.
 constexpr double least_periods = 1.25;
 // The 95 % quantile of chi-squared for one fitted number. The one for memories is larger, because
 // they are reported only for noise that cannot be told from a walk; found by simulation.
 constexpr double chance = 3.84, memory_chance = 9;
-// Periods that are looked at for slow sines, over the length of the series.
+// The longest period of a slow sine that is tried, in lengths of the series, and the ratio of two
+// trials.
 constexpr double slowest_period = 33, slow_step = 1.03;
 
 struct Fit {
@@ -83,8 +83,8 @@ class Series {
             -0.5 * (log_determinant + static_cast<double>(n) * std::log(squares))};
   }
 
-  // [rad a block] of the sine beside a line that leaves the least squares, from a quarter of a
-  // period in all on.
+  // The frequency [rad/block] of the sine that, with a line, leaves the least squares. The series
+  // contains at least a quarter of its period.
   double sharpest_frequency() const {
     const auto n = static_cast<double>(size());
     double least = std::numeric_limits<double>::infinity(), sharpest = 0;
@@ -101,8 +101,8 @@ class Series {
     return sharpest;
   }
 
-  // [blocks] The shortest period, from the length of the series on, of a sine without a slope that
-  // explains the means as well as `profile`; infinite if there is none.
+  // The shortest period [blocks], from the length of the series on, of a sine without a slope that
+  // explains the means as well as `profile`. Infinite if there is none.
   double shortest_slow_period(double profile) const {
     const auto n = static_cast<double>(size());
     double least = std::numeric_limits<double>::infinity(), best = n;
@@ -114,7 +114,7 @@ class Series {
         best = period;
       }
     }
-    // One that is known more precisely than by these steps.
+    // Refines the best period by ternary search.
     double low = std::max(n, best / slow_step), high = best * slow_step;
     for (int cut = 0; cut < 40; ++cut) {
       const double third = (high - low) / 3;
@@ -148,10 +148,10 @@ class Series {
     return std::max(least_, left.squaredNorm());
   }
 
-  // What a sine of that period [blocks] leaves, without a slope.
+  // The sum of squares that a sine of that period [blocks] leaves, without a slope.
   double squares_beside_sine(double period) const {
     const double w = 2 * M_PI / period;
-    // The cosine as its difference from one, so that it is no constant for long periods.
+    // The cosine minus one replaces the cosine, which is nearly constant for long periods.
     return squares_beside(3, [&](double t) {
       const double half = std::sin(w * t / 2);
       return Eigen::RowVector3d(1, half * half, std::sin(w * t));
@@ -180,7 +180,7 @@ std::vector<Fit> walks(const Series& series) {
   return fits;
 }
 
-// Coloured noises, and for each how long it remembers.
+// Fits with coloured noise, and the memory [blocks] of each.
 struct Coloured {
   std::vector<Fit> fits;
   std::vector<double> memory;
@@ -198,12 +198,13 @@ Coloured coloured(const Series& series) {
   return result;
 }
 
-// What is searched over: the logarithm of the ratio to noise, the frequency, the decay [a block].
+// The parameters of a wave: logarithm of its ratio to noise, frequency [rad/block], decay
+// [1/block].
 struct Wave {
   double log_ratio, frequency, decay;
 };
 
-// Waves about the sharpest frequency, then ever nearer to the likeliest one.
+// Fits with waves: first of the sharpest frequency, then ever closer to the likeliest one.
 struct Waves {
   std::vector<Fit> fits;
   Wave best{};
@@ -247,7 +248,7 @@ Waves waves(const Series& series) {
   return result;
 }
 
-// [blocks] How short a memory coloured noise may have.
+// The shortest memory [blocks] that coloured noise is likely to have.
 double least_memory(const Coloured& noises, const Fit& walk) {
   const double likely =
       std::max(walk.log_likelihood, likeliest(noises.fits).log_likelihood) - memory_chance / 2;

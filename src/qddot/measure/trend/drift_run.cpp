@@ -14,12 +14,13 @@
 namespace qddot::inline measure {
 namespace {
 
-// A shorter part of a run tells only that it blew up, or that so much of its energy is gone.
+// A run shorter than this part of its time has no verdict, unless it blew up or lost this much of
+// its energy.
 constexpr double least_part = 0.5, gone = 0.9;
-// What is kept of the samples for tables and pictures.
+// The numbers of samples that tables and pictures keep: in each octave, and at equal distances.
 constexpr int path_octave = 24, path_even = 256;
 
-// Takes the invariants of a run's states.
+// Records the invariants of a run's states.
 class Recorder {
  public:
   Recorder(const ReducedScene& scene, const Momenta& momenta, const MotionScales& scales,
@@ -41,7 +42,7 @@ class Recorder {
     return observer;
   }
 
-  // Where the run ended, if that is beyond the last sample.
+  // Adds the end of the run if it is after the last sample.
   void see_end(const State& state) {
     if (energies_.empty() ? state.t > 0 : state.t > energies_.back().t) see(state, 1);
   }
@@ -120,7 +121,7 @@ DriftRun run_drift(const Method& method, const Options& options, const ReducedSc
   const auto steps = sample_steps(count, lands ? few_cells : many_cells);
   Recorder recorder(scene, momenta, scales, steps, plan.step_size);
   Observer observer = recorder.observer();
-  // A last sample that rounding puts beyond the end is at the end.
+  // A last sample that rounding puts after the end is moved to the end.
   for (double& t : observer.times) t = std::min(t, plan.until);
 
   State state = scene.initial();

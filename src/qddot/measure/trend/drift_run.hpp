@@ -9,7 +9,7 @@
 
 namespace qddot::inline measure {
 
-// How the invariants of a run are measured.
+// The times and the limit of a drift measurement.
 struct DriftPlan {
   double step_size = 0,
          until = 0;     // [s]; adaptive methods too are measured at multiples of step_size

@@ -10,41 +10,42 @@
 namespace qddot::inline measure {
 namespace {
 
-// Fewer means do not show whether they wander, or how far they may.
+// The least number of block means. Fewer do not show whether the error wanders.
 constexpr Index told_blocks = 16;
 // The trend of the last part of a run replaces that of the whole if its uncertainty is smaller by
-// this factor: the run did something else before. If the run is one line through noise, the last
-// part is nearly three times less certain; if it is a walk, nearly as certain.
+// this factor. For a line through noise, the last part is nearly three times less certain; for a
+// walk, nearly as certain.
 constexpr double much_surer = 0.25;
-// A drift, or its end, must not look like part of a sine with a period of up to so many runs'
+// A drift, or its end, must differ from part of a sine with a period of up to this many run
 // lengths.
 constexpr double slow_runs = 2;
-// Such a sine moves by more than `range` times its range in any last part of the run, in means over
-// eighths of the part. About its crest it moves by 1 - cos(7/8 pi/4) of its amplitude in half of
-// the run, and by 1 - cos(7/8 pi/8) in a quarter of it.
+// Such a sine moves by more than `range` times its range in the part of the run after `begin`, in
+// means over eighths of the part. About its crest it moves by 1 - cos(7/8 pi/4) of its amplitude in
+// half of the run. In a quarter of it, it moves by 1 - cos(7/8 pi/8).
 struct LastPart {
   double begin, range;
 };
-// A faster sine moves as much as before, and not by this factor less.
+// A faster sine moves as much in the last part as before. A steady part moves by less than this
+// fraction.
 constexpr double quieter = 0.5;
 constexpr LastPart last_parts[] = {{0.5, 0.11}, {0.75, 0.029}};
-// A walk or slow wave can be seen beneath an oscillation ten times as large. It is then mentioned;
-// the verdict follows the oscillation.
+// A walk or slow wave can be seen beneath an oscillation ten times as large. The words then mention
+// it; the verdict follows the oscillation.
 constexpr double beneath = 0.1;
-// An oscillation widens if it grows by so much of its mean size.
+// An oscillation widens if it grows by at least this fraction of its mean size.
 constexpr double widening_part = 0.1;
-// A run of so many memories nearly always tells coloured noise from a walk, and a run of two
-// periods tells a wave from a drift. A new run should be longer by the last factor.
+// A run of this many memories nearly always tells coloured noise from a walk, and a run of two
+// periods tells a wave from a drift. A new run is longer by at least `longer`.
 constexpr double memories_needed = 60, periods_needed = 2, longer = 4;
 // A loss or gain of less than this part of the excess energy is called a drift.
 constexpr double exponential_part = 0.1;
-// A loss is fitted until so much of the excess is left: only slow modes remain then. Less than
-// `tiny` counts as nothing, and an excess that returns to half was no loss.
+// A loss is fitted until this fraction of the excess is left: only slow modes remain then. Less
+// than `tiny` counts as zero. An excess that returns to half was no loss.
 constexpr double nearly_gone = 0.1, tiny = 1e-3, half_back = 0.5;
-// A blow-up is fitted between these two, where the growing energy is far larger than the energy
+// A blow-up is fitted between these errors: the growing energy is far larger than the energy
 // before.
 constexpr double growing = 100, grown = 1e8;
-// Roundings of the energy that one evaluation of it and one step may make: sums over many springs.
+// The roundings of the energy in one evaluation and in one step; both sum over many springs.
 constexpr double roundings_of_energy = 100, roundings_of_step = 10;
 
 Interval scaled(const Interval& x, double factor) {
@@ -55,7 +56,7 @@ Interval scaled(const Interval& x, double factor) {
 struct Exponential {
   Interval rate;
   double level = 0, middle = 0, slow_period = 0;
-  double range = 0, slow = 0;  // of the means of ln x, and of those over eighths of the blocks
+  double range = 0, slow = 0;  // of the means of ln x, and of means over eighths of the blocks
 };
 
 Exponential fit_exponential(Blocks x) {
@@ -67,7 +68,7 @@ Exponential fit_exponential(Blocks x) {
       x.means.maxCoeff() - x.means.minCoeff(), slow_range(x)};
 }
 
-// Half of what the middle 95 % of weighted numbers span.
+// Half the width of the middle 95 % of weighted numbers.
 double half_span(std::vector<std::pair<double, double>> weighted) {
   std::ranges::sort(weighted);
   double all = 0;
@@ -93,7 +94,7 @@ std::span<const Sample> after(std::span<const Sample> samples, double t) {
           samples.end()};
 }
 
-// The samples of a trend that is exponential, and what they say.
+// The fit of an exponential to the excess energy x = 1 + e/excess.
 class Excess {
  public:
   Excess(std::span<const Sample> samples, const TrendScales& scales)
@@ -101,11 +102,11 @@ class Excess {
 
   double of(const Sample& sample) const { return 1 + sample.error / scales_.excess; }
 
-  // Fits what is lost, or won without end in sight.
+  // Fits a loss, or a gain that does not end.
   void fit_slow(Trend& trend) const {
     const auto end = std::ranges::find_if(
         samples_, [&](const Sample& sample) { return of(sample) < nearly_gone; });
-    // An oscillation that is so large comes back.
+    // An excess that returns is a large oscillation, not a loss.
     if (std::any_of(end, samples_.end(), [&](const Sample& s) { return of(s) > half_back; }))
       return;
     const std::span<const Sample> window(samples_.begin(), end);
@@ -135,7 +136,7 @@ class Excess {
     return fit_exponential(in_blocks(window, begin, [&](const Sample& s) { return of(s); }));
   }
 
-  // Whether a last part of what began to fall or rise is level.
+  // Whether the fall or rise is over: the last part of the window is level.
   bool has_ended(std::span<const Sample> window, const Exponential& whole) const {
     return std::ranges::any_of(last_parts, [&](const LastPart& part) {
       const double begin = part.begin * window.back().t;
@@ -145,12 +146,12 @@ class Excess {
     });
   }
 
-  // Whether that may be a part of a slow sine. None loses most of what there is.
+  // Whether the trend may be part of a slow sine. A sine does not lose most of the excess.
   bool is_slow_sine(std::span<const Sample> window, const Exponential& fit) const {
     return fit.slow_period < slow_runs * window.back().t && of(window.back()) > half_back;
   }
 
-  // A rate of too few samples for a fit, so that nothing says how sure it is.
+  // Takes a rate from too few samples for a fit; its interval is unknown.
   void take_alone(Trend& trend, double rate) const {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     trend.rate = {rate, unknown, unknown};
@@ -171,9 +172,8 @@ class Excess {
   const TrendScales& scales_;
 };
 
-// Whether the trend is no more than rounding of energies in a run. Rounding oscillates, walks with
-// the square root of the number of steps or, if all roundings have one sign, drifts with that
-// number.
+// Whether the trend may be rounding of the energy alone. Roundings oscillate or walk with the
+// square root of the number of steps. If all have one sign, they drift with that number.
 bool is_rounding(const Trend& trend, double largest_mean, double steps, const TrendScales& s) {
   const double walked = (roundings_of_energy + roundings_of_step * std::sqrt(steps)) * s.rounding;
   if (trend.oscillation > walked) return false;
@@ -188,10 +188,10 @@ struct Line {
   BlockFit fit{};
   double length = 0;  // of a block [s]
   double walk = 0, oscillation = 0, largest_mean = 0;
-  double range = 0, slow = 0;  // of the means, and of those over eighths of the blocks
+  double range = 0, slow = 0;  // of the means, and of means over eighths of the blocks
   double start = 0;            // its value at `begin`
   Interval widening{};
-  double widening_period = 0;  // [s] the same of its slope as BlockFit::slow_period
+  double widening_period = 0;  // [s] as BlockFit::slow_period, of the slope of the widening
 
   double uncertainty() const { return drift.high - drift.low; }
   double slow_period() const { return fit.slow_period * length; }
@@ -217,7 +217,7 @@ std::optional<Line> line_through(std::span<const Sample> samples, double begin) 
   return line;
 }
 
-// How the root of the mean square about the line grows from block to block.
+// Fits the growth of the root mean square about the line, from block to block.
 void fit_widening(Line& line, std::span<const Sample> samples) {
   Blocks squares = in_blocks(samples, line.begin, [&](const Sample& s) {
     const double deviation = s.error - line.start - line.drift.value * (s.t - line.begin);
@@ -231,7 +231,7 @@ void fit_widening(Line& line, std::span<const Sample> samples) {
   line.widening_period = fit.slow_period * squares.length;
 }
 
-// The last part of a run that has done something else before, if it has.
+// The last part of the run, if the run was different before.
 std::optional<Line> steady_line(std::span<const Sample> samples, const Line& whole) {
   const double duration = samples.back().t;
   for (const LastPart& part : last_parts) {
@@ -248,7 +248,7 @@ std::optional<Line> steady_line(std::span<const Sample> samples, const Line& who
   return {};
 }
 
-// The slope, which may be none where a slow sine explains it.
+// The slope. Its interval contains zero if a slow sine may explain it.
 Interval cautious_drift(const Line& line, double duration) {
   const Interval& d = line.drift;
   const bool may_be_sine = d.excludes_zero() && line.slow_period() < slow_runs * duration;
@@ -256,7 +256,7 @@ Interval cautious_drift(const Line& line, double duration) {
   return {d.value, std::min(d.low, 0.0), std::max(d.high, 0.0)};
 }
 
-// What is not told of a line, and how long a run has to be to tell it.
+// Whether the line leaves something undecided; sets the length of a run that could decide.
 bool is_undecided(Trend& trend, const Line& line, double duration) {
   const bool is_seen = trend.walk * std::sqrt(duration) > beneath * trend.oscillation;
   const bool may_be_sine = line.drift.excludes_zero() && trend.slow_period < slow_runs * duration;

@@ -9,7 +9,7 @@
 
 namespace qddot::inline measure {
 
-// The scales for the errors of a run.
+// Scales for the errors of a run.
 struct TrendScales {
   double excess = 1;     // energy at t = 0 minus that at rest, in units of the error
   double frequency = 1;  // [rad/s], for the damping ratio of a loss

@@ -17,9 +17,9 @@ namespace {
 constexpr double resolution = 0.5;  // h w_max
 constexpr int most_steps = 20000, stride = 4;
 constexpr double fine_rtol = 1e-6;
-constexpr double longest_run = 20;  // [s], for scenes of a size that no study of 10^6 steps suits
+constexpr double longest_run = 20;  // [s], for scenes too large for studies of 10^6 steps
 
-// Looks at a motion and takes what is large in it into the scales.
+// Extends the scales by the magnitudes of states of a motion.
 class Look {
  public:
   Look(const ReducedScene& scene, const Momenta& momenta, MotionScales& scales)
@@ -28,7 +28,7 @@ class Look {
   void at(const State& state) {
     const Vec& mass = scene_.system().mass();
     scene_.system().force(state.q, f_);
-    // What is integrated alone counts: a fall in closed form has no error.
+    // Only the integrated motion counts: a fall in closed form has no error.
     const bool is_integrated = scene_.system().size() > 0;
     const double kinetic = is_integrated ? scene_.system().kinetic(state.v) : scene_.kinetic(state);
     const double potential = scene_.energy(state) - kinetic;

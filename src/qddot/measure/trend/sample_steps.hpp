@@ -11,8 +11,8 @@ struct SampledStep {
   double weight = 1;
 };
 
-// Samples in an octave of a run. `few_cells` is for methods whose steps have to end at the samples:
-// so few that they disturb only the first steps.
+// The number of samples in an octave of a run. `few_cells` is for methods that must end a step at
+// each sample, so that samples disturb the first steps only.
 constexpr int many_cells = 4096, few_cells = 256;
 
 // Samples the steps 1 ... count, equally many in each octave (count/2, count], (count/4, count/2],

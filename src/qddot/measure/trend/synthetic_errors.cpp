@@ -17,7 +17,7 @@ constexpr double size = 1e-4;
 double normal(Random& random) { return std::normal_distribution<double>()(random); }
 double phase(Random& random) { return std::uniform_real_distribution<double>(0, 2 * M_PI)(random); }
 
-// Independent at each time.
+// White noise.
 Draw noise(double deviation) {
   return [=](Random& random) {
     return [deviation, own = Random(random())](double) mutable { return deviation * normal(own); };
@@ -42,7 +42,8 @@ Draw course(const ErrorCourse& fixed) {
   return [=](Random&) { return fixed; };
 }
 
-// As fast as three steps and as three hundred, and a beat of a seventieth of the run.
+// A vibration with periods of three and of three hundred steps, and a beat of a seventieth of the
+// run.
 Draw vibration() {
   return sum(sum(sine(0.6 * size, 3.1e-6), sine(0.3 * size, 3.3e-4)), sine(0.1 * size, 0.014));
 }
@@ -74,7 +75,7 @@ Draw line(double slope) {
   return course([=](double t) { return slope * t; });
 }
 
-// An oscillation whose amplitude goes from `first` to `last`.
+// An oscillation whose amplitude changes from `first` to `last`.
 Draw widening(double first, double last) {
   return [=](Random& random) {
     return
@@ -82,7 +83,7 @@ Draw widening(double first, double last) {
   };
 }
 
-// A sine of zero mean drift, and of the period of so many runs, over noise.
+// A sine, over noise, with a period in lengths of the run; it has no drift.
 SyntheticKind slow_sine(const std::string& name, double period) {
   return {name, sum(sine(size, period), noise(0.3 * size)), {Verdict::bounded}, 0., {}, {}, period};
 }
@@ -133,8 +134,8 @@ std::vector<SyntheticKind> synthetic_kinds() {
   wander.walk = size;
   kinds.push_back(wander);
   kinds.push_back({"walk under oscillation", sum(walk(size), widening(1, 1)), {}, 0.});
-  // The noise in a block's mean is 0.09 of that in the samples. So the first drift can hardly be
-  // seen and may be called bounded: the interval contains it.
+  // A block's mean has 0.09 of the samples' noise. The first drift is below it and may be called
+  // bounded: its interval contains it.
   kinds.push_back({"small drift over noise",
                    sum(line(0.1 * size), noisy),
                    {Verdict::drifts, Verdict::bounded},

@@ -10,8 +10,8 @@
 
 namespace qddot::inline measure {
 
-// An error of a known kind as a function of time over a run from 0 to 1. It is drawn anew for each
-// seed and called with ascending times.
+// An error of a known kind as a function of time over a run from 0 to 1. Each seed draws another
+// one. It is called with ascending times.
 using ErrorCourse = std::function<double(double t)>;
 
 // A kind of errors, and its true properties.
@@ -19,8 +19,9 @@ struct SyntheticKind {
   std::string name;
   std::function<ErrorCourse(std::mt19937_64&)> draw;
   std::vector<Verdict> right;  // right verdicts; `undecided` and `unknown` claim nothing
-  // Over the whole run. `drift`: the slope of a line, zero for errors that return or walk. `rate`:
-  // that of an exponential. `widening`: the growth of an oscillation over its mean size.
+  // True values over the whole run. `drift`: the slope of a line, zero for errors that return or
+  // walk. `rate`: the rate of an exponential. `widening`: the growth of an oscillation over its
+  // mean size.
   std::optional<double> drift{}, rate{}, widening{};
   std::optional<double> period{}, memory{};  // of a slow sine; of coloured noise
   std::optional<double> walk{};              // standard deviation that a walk gains over the run

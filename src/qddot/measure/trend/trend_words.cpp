@@ -35,7 +35,7 @@ std::string period_words(const Trend& trend) {
              : "";
 }
 
-// A walk that is too small for the verdict, beneath the oscillation.
+// A sentence on a walk that is too small for the verdict, beneath the oscillation.
 std::string beneath_words(const Trend& trend) {
   return trend.colour == Colour::undecided
              ? fmt::format(", beneath it at most a random walk of {:.1e} a root second", trend.walk)
@@ -66,7 +66,7 @@ std::string undecided_words(const Trend& trend) {
          (may_be_sine(trend) ? "slope " + drift_words(trend.drift) : no_drift_words(trend.drift));
 }
 
-// Where the drift of the second half is surely another one.
+// A sentence if the drift of the second half surely differs.
 std::string change_words(const Trend& trend) {
   if (trend.late_drift.holds(trend.drift.value)) return "";
   const bool is_less = std::abs(trend.late_drift.value) < std::abs(trend.drift.value);

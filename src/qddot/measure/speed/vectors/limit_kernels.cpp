@@ -7,7 +7,7 @@ namespace {
 
 using namespace kernels::QDDOT_LEVEL;
 
-// More chains of dependent operations than two units of latency 4 need.
+// Independent chains of operations: more than two units of latency 4 need.
 constexpr int chains = 12;
 
 double multiply_and_add(int rounds) {
