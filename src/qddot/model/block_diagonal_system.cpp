@@ -18,7 +18,7 @@ Vec all_masses(const std::vector<std::unique_ptr<System>>& blocks) {
   return mass;
 }
 
-// Calls action(block, its segment of q, where that begins) for each block.
+// Calls action(block, its segment of q, the segment's start) for each block.
 template <class Action>
 void for_each(const std::vector<std::unique_ptr<System>>& blocks, const ConstVec& q,
               const Action& action) {

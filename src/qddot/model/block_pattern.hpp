@@ -57,8 +57,8 @@ class BlockPattern {
     return pattern;
   }
 
-  // How many rows lie between the own block of node min(i, j) and the block of i and j, which must
-  // be joined; valid after make().
+  // The number of rows between node min(i, j)'s own block and the block of i and j, which must be
+  // joined. Valid after make().
   int place(int i, int j) const {
     if (i == j) return 0;
     const auto& list = below_[std::min(i, j)];

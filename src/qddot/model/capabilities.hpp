@@ -69,8 +69,8 @@ class PiecewiseLinear {
   virtual bool is_linear_at(const ConstVec& q) const = 0;
 };
 
-// Where a system has the forces of the scene that it was made from; elsewhere its forces are wrong
-// (see Holds in spring.hpp). A system without this is valid everywhere.
+// The positions at which a system has the forces of the scene that it was made from; elsewhere its
+// forces are wrong (see Holds in spring.hpp). A system without this capability is valid everywhere.
 class Validity {
  public:
   virtual ~Validity() = default;

@@ -54,7 +54,7 @@ class ConstrainedSystem final : public System,
   void clear_held(SymmetricMatrix& k) const;
 
   std::shared_ptr<const System> system_;
-  // What the system offers.
+  // The capabilities of the system; nullptr for a missing one.
   const SplitStiffness* split_stiffness_;
   const DiscreteGradient* discrete_gradient_;
   const Laplacian* laplacian_;
@@ -62,7 +62,7 @@ class ConstrainedSystem final : public System,
   const Validity* validity_;
   const Kinks* kinks_;
   std::vector<Index> unknowns_;  // the held ones
-  std::vector<Index> entries_;   // of the pattern, those in a row or column of a held one
+  std::vector<Index> entries_;   // of the pattern, in a row or column of a held unknown
   std::optional<Split> split_;   // of the system, held likewise
 };
 

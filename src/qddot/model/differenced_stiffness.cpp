@@ -12,7 +12,7 @@
 namespace qddot {
 namespace {
 
-// Which columns have an entry in each row, the diagonal one first.
+// The columns with an entry in each row, the diagonal one first.
 std::vector<std::vector<Index>> neighbours(const std::vector<std::pair<Index, Index>>& pairs,
                                            Index n) {
   std::vector<std::vector<Index>> rows(static_cast<std::size_t>(n));
@@ -32,11 +32,12 @@ std::vector<std::vector<Index>> neighbours(const std::vector<std::pair<Index, In
   return rows;
 }
 
-// The columns of each colour: greedily, the first that no column with a row in common has.
+// The columns of each colour. Each column takes the first colour in which no other column shares a
+// row with it.
 std::vector<std::vector<Index>> coloured(const std::vector<std::vector<Index>>& rows) {
   std::vector<std::vector<Index>> columns_of;
   std::vector<std::size_t> colour_of(rows.size(), std::numeric_limits<std::size_t>::max());
-  std::vector<Index> taken_by;  // for each colour, the last column that it was refused
+  std::vector<Index> taken_by;  // for each colour, the last column that it could not take
   for (std::size_t j = 0; j < rows.size(); ++j) {
     for (const Index row : rows[j]) {
       for (const Index other : rows[static_cast<std::size_t>(row)]) {
@@ -97,7 +98,7 @@ void DifferencedStiffness::stiffness(const ConstVec& q, SymmetricMatrix& k) cons
     for (const Index j : columns) moved[j] = q[j] - d;
     system_->force(moved, behind);
     for (const Index j : columns) {
-      const double width = (q[j] + d) - (q[j] - d);  // as rounding leaves it
+      const double width = (q[j] + d) - (q[j] - d);  // the difference as rounded
       moved[j] = q[j];
       // Half of each entry off the diagonal comes from its own column, half from its mirror image.
       for (const Index i : rows_of_[static_cast<std::size_t>(j)]) {

@@ -27,14 +27,14 @@ class DifferencedStiffness final : public System {
   void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
 
-  // How many forces one K costs.
+  // The number of forces that one K costs.
   Index forces_per_stiffness() const { return 2 * static_cast<Index>(columns_of_.size()); }
 
  private:
   std::shared_ptr<const System> system_;
   SymmetricMatrix pattern_;
-  std::vector<std::vector<Index>> columns_of_;  // each colour
-  std::vector<std::vector<Index>> rows_of_;     // each column's, above and below the diagonal
+  std::vector<std::vector<Index>> columns_of_;  // of each colour
+  std::vector<std::vector<Index>> rows_of_;     // of each column, above and below the diagonal
   double length_;
 };
 

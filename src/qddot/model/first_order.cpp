@@ -3,7 +3,7 @@
 namespace qddot {
 
 FirstOrderPattern::FirstOrderPattern(const System& system) {
-  // A lower triangle that carries its own entry numbers, completed by its transpose.
+  // A lower triangle whose values are their own entry numbers, completed by its transpose.
   const SymmetricMatrix& lower = system.stiffness_pattern();
   SymmetricMatrix numbered = lower;
   for (int p = 0; p < numbered.nonZeros(); ++p) numbered.valuePtr()[p] = p;

@@ -19,7 +19,7 @@ class FirstOrderPattern {
   // The pattern for a system that computes K.
   explicit FirstOrderPattern(const System& system);
 
-  // Where each column starts among the entries (2n + 1), and the row of each entry.
+  // The start of each column among the entries (2n + 1), and the row of each entry.
   const std::vector<std::int64_t>& column_starts() const { return column_starts_; }
   const std::vector<std::int64_t>& rows() const { return rows_; }
 
@@ -30,7 +30,7 @@ class FirstOrderPattern {
 
  private:
   std::vector<std::int64_t> column_starts_, rows_;
-  std::vector<int> source_;  // of each entry of the full K, its place in the lower triangle
+  std::vector<int> source_;  // the place in the lower triangle of each entry of the full K
 };
 
 }  // namespace qddot

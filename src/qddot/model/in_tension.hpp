@@ -74,12 +74,11 @@ class InTension {
     return difference(layout, spring, v);
   }
 
-  // The cubic resolves a vibration along the spring, w^2 = k (1/m_i + 1/m_j), if h w <= 2. If a
-  // step is longer, the rates of l at both ends are corrected twice. First they lose the part that
-  // both have in common but the lengths do not show, which is a first-order error of the
-  // velocities. Then they are scaled by 4/(h w): a vibration of speed u has the amplitude u/w, but
-  // the cubic goes up to u h/4. If h w > 8, the vibration turns more than once in a step, and the
-  // two ends tell nothing of it.
+  // The cubic resolves a vibration along the spring, w^2 = k (1/m_i + 1/m_j), if h w <= 2. For a
+  // longer step, the rates of l at both ends are corrected twice. First they lose their common part
+  // that the lengths do not show: it is a first-order error of the velocities. Then they are scaled
+  // by 4/(h w): a vibration of speed u has the amplitude u/w, but the cubic reaches u h/4. If h w >
+  // 8, the vibration turns more than once in a step, and the ends give no information about it.
   static SquaredLength path(const Layout<D>& layout, const Vec& mass, const Spring& spring,
                             const State& from, const State& to) {
     const double h = to.t - from.t;

@@ -46,7 +46,7 @@ class Layout {
   }
 
  private:
-  std::vector<std::array<int, D + 1>> axes_;  // the coordinates, and last their count
+  std::vector<std::array<int, D + 1>> axes_;  // the coordinates, then their count
   std::vector<int> first_{0};
 };
 

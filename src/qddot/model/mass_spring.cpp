@@ -123,7 +123,7 @@ class MassSpring final : public System,
     });
   }
 
-  // Only on a line do motions meet lengths of zero.
+  // A length of zero is a kink only on a line.
   Index kinks() const override { return kinks_; }
   void kink_lengths(const ConstVec& q, MutableVec lengths) const override {
     Index i = 0;
@@ -204,7 +204,7 @@ class MassSpring final : public System,
 
   Layout<D> layout_;
   SpringLists<D> springs_;
-  InTension<D> in_tension_;              // the springs that hold in tension only, once more
+  InTension<D> in_tension_;              // springs that hold in tension only, a second time
   Vec weight_;                           // M g + load [N]
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none
   double constant_energy_;

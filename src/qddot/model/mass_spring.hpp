@@ -57,8 +57,8 @@ struct Network {
   bool offers_split = false;            // whether the system offers SplitForces, by `stiff`
 };
 
-// How forces are summed: spring by spring, node by node in vectors (kernels/springs_by_node.hpp),
-// or in the faster way for that number of nodes.
+// The order of summing forces: spring by spring, node by node in vectors
+// (kernels/springs_by_node.hpp), or the faster one for that number of nodes.
 enum class Forces { spring_by_spring, by_vectors, whichever_is_faster };
 
 // Makes a System of the network, with one unknown for each of the D N coordinates that may move, in

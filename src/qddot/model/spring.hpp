@@ -43,8 +43,9 @@ struct SpringLaw {
   }
 };
 
-// When a spring's law holds: always, or in tension only, l >= l0. The second is for a spring that
-// replaces several in series through massless nodes: those fold up where this one would push.
+// The validity of a spring's law: always, or in tension only, l >= l0. The second is for a spring
+// that replaces several in series through massless nodes. They fold up in compression, where this
+// one would push.
 enum class Holds { always, in_tension };
 
 // Functions of one spring between x_i and x_j in D = 1, 2 or 3 dimensions: d = x_j - x_i [m],

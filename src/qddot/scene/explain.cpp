@@ -22,13 +22,14 @@ void find_fastest(Explanation& explanation, const ReducedScene& all) {
     const NaturalModes lowest = lowest_modes(all.system(), start.q, 1);
     if (lowest.squares.size() == 0 || lowest.squares[0] >= 0) return;
     explanation.growth = std::sqrt(-lowest.squares[0]);
-    // A displacement goes through the reduction as a velocity does.
+    // A displacement is expanded as a velocity.
     const auto nodes = all.expand({0, start.q, lowest.shapes.col(0)});
     const auto amplitude = [](const Node& node) { return node.velocity.norm(); };
     explanation.fastest =
         static_cast<std::size_t>(std::ranges::max_element(nodes, {}, amplitude) - nodes.begin());
   } catch (const std::exception&) {
-    // Massless nodes that are loose, or an iteration that does not converge: it stays unknown.
+    // The equilibrium stays unknown, for loose massless nodes or an iteration that does not
+    // converge.
   }
 }
 
@@ -87,7 +88,8 @@ std::string stability_sentence(const Explanation& e, const Scene& scene) {
   return sentence;
 }
 
-// What the reduced motion does not see: it is exact, but the slightest push would leave it.
+// A sentence on instabilities that the reduced motion cannot show: it is exact, but the slightest
+// push would leave it.
 std::string left_out_sentence(const Explanation& e) {
   return fmt::format(
       "{} of these directions lead{} out of what is left (dimension, mirror): the motion as drawn "

@@ -9,24 +9,24 @@
 
 namespace qddot {
 
-// What a scene is, and what is left of it to be integrated; no motion is computed.
+// The properties of a scene and of the system that is left of it; no motion is computed.
 struct Explanation {
   Index drawn_unknowns = 0;  // dimension x nodes
   Index unknowns = 0;
   std::vector<Finding> findings;
   bool stiffness_is_constant = false;
-  std::size_t stiff_springs = 0;  // of the springs as drawn, where the scene names stiff ones
+  std::size_t stiff_springs = 0;  // of the springs as drawn, if the scene names stiff ones
   // These are for the start of the system that is left:
   double omega_bound = 0;  // upper bound of w_max [rad/s], by Gershgorin; infinite without mass
-  double omega_max = 0;    // by Lanczos, to about 1e-4; NaN where it was not found
+  double omega_max = 0;    // by Lanczos, to about 1e-4; NaN if it was not found
   // These are for the start, in all directions in which the nodes may move:
   int unstable = 0;           // directions in which V falls: K is indefinite if there are any
-  int flat = 0;               // in which V is flat within rounding (see CurvatureSigns),
-  double flat_rate = 0;       // and the rate [1/s] that no growth in them exceeds
-  int unstable_left_out = 0;  // unstable ones that the reduced motion never takes
-  double growth = 0;          // of the fastest [1/s]; 0 if not known
-  std::size_t fastest = 0;    // the node that the fastest moves most
-  bool is_examined = true;    // false: too large for that, or K overflows
+  int flat = 0;               // directions in which V is flat within rounding (see CurvatureSigns),
+  double flat_rate = 0;       // and the rate [1/s] that bounds growth in them
+  int unstable_left_out = 0;  // unstable ones that the reduced motion never enters
+  double growth = 0;          // rate of the fastest one [1/s]; 0 if not known
+  std::size_t fastest = 0;    // the node that moves most in the fastest one
+  bool is_examined = true;    // false: the scene is too large, or K overflows
 };
 
 // The largest scenes, in unknowns as drawn, in which directions are examined and w_max is computed;
@@ -34,7 +34,7 @@ struct Explanation {
 struct ExplanationLimits {
   Index examined = 100'000, frequency = std::numeric_limits<Index>::max();
 };
-// The limits for a tenth of a second: for sidecars, which are written beside every run.
+// Limits for a tenth of a second: for sidecars, which are written beside every run.
 inline constexpr ExplanationLimits at_a_glance{6000, 6000};
 
 // Explains `scene` as it starts, and `reduced`. Throws nothing for any content of a scene, because

@@ -12,8 +12,8 @@
 namespace qddot {
 namespace {
 
-// One entry of a scene, so that a refusal can name it: `index` of the nodes, springs or faces, or
-// the scene itself where `list` is empty.
+// An entry of a scene, for the sentence that refuses it: `index` in the list of nodes, springs or
+// faces, or the scene itself if `list` is empty.
 struct Entry {
   const std::string& source;
   const char* list = "";
@@ -78,7 +78,7 @@ void check_face(const Entry& entry, const std::array<std::size_t, 3>& face, std:
 // 64-bit FNV-1a.
 class Hash {
  public:
-  // Least significant byte first, whatever the machine's own order.
+  // Adds the least significant byte first, in the same order on every machine.
   void add(std::uint64_t bits) {
     for (int byte = 0; byte < 8; ++byte, bits >>= 8) {
       hash_ = (hash_ ^ (bits & 0xff)) * 0x00000100000001b3ULL;
@@ -121,7 +121,7 @@ std::string content_hash(const Scene& scene) {
   for (const Node& node : scene.nodes) {
     hash.add(std::uint64_t(node.pinned));
     hash.add(node.position);
-    if (node.pinned) continue;  // its mass and velocity move nothing
+    if (node.pinned) continue;  // its mass and velocity have no effect
     hash.add(node.velocity);
     hash.add(node.mass);
   }
@@ -131,7 +131,7 @@ std::string content_hash(const Scene& scene) {
     hash.add(spring.law.rest_length);
     hash.add(spring.law.quartic);
   }
-  // Added only where it holds, so that it leaves the hashes of all other scenes as they are.
+  // The flag is added only if it is true, which keeps the hashes of all other scenes.
   if (scene.starts_at_equilibrium) hash.add(std::uint64_t(1));
   return hash.digits();
 }

@@ -47,7 +47,7 @@ struct Scene {
   // Springs with more stiffness [N/m] are stiff, for methods that treat their forces apart
   // (SplitForces). If missing, none are named. Changes no motion.
   std::optional<double> stiff_above{};
-  // What the user should know about how the scene was read: sentences. Changes no motion.
+  // Sentences that tell the user how the scene was read. Changes no motion.
   std::vector<std::string> warnings{};
 };
 

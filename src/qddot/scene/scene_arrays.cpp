@@ -13,7 +13,7 @@ void require_size(bool fits, const char* array, Index has, const std::string& al
   if (!fits) throw InvalidInput(fmt::format("{}: {} entries; allowed are {}", array, has, allowed));
 }
 
-// Entry i of an array that has one for all or one for each of `count`.
+// An array with one entry for all, or with one for each of `count`.
 class Values {
  public:
   Values(const char* name, const Eigen::VectorXd& values, std::size_t count)

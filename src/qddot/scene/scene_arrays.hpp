@@ -15,7 +15,7 @@ struct SceneArrays {
   std::vector<std::array<std::size_t, 2>> springs{};  // the two nodes of each
   Eigen::VectorXd mass{};                             // [kg], of each node or of all
   Eigen::VectorXd stiffness{};                        // [N/m], of each spring or of all
-  std::vector<std::size_t> pinned{};                  // nodes that stay where they are
+  std::vector<std::size_t> pinned{};                  // nodes that do not move
   Eigen::VectorXd gravity{};                          // dimension [m/s^2]; empty: none
   Eigen::MatrixXd velocities{};                       // as positions [m/s]; empty: at rest
   Eigen::VectorXd rest_length{};  // [m], of each spring or of all; empty: its length as given

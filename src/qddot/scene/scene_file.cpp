@@ -87,7 +87,7 @@ bool starts_at_equilibrium(const TomlTable& file) {
   return start == "equilibrium";
 }
 
-// Nodes whose motion nothing decides: no mass, no pin, and no spring that pulls.
+// Warns of nodes with undetermined motion: no mass, no pin, and no spring that pulls.
 void warn_of_loose_nodes(Scene& scene) {
   std::vector<bool> is_held(scene.nodes.size(), false);
   for (const Spring& spring : scene.springs) {

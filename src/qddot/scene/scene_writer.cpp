@@ -25,7 +25,7 @@ std::size_t sequence_length(std::string_view text) {
   for (std::size_t k = 1; k < length; ++k) {
     if (byte(k) < 0x80 || byte(k) > 0xbf) return 0;
   }
-  // What has a shorter form, is half of a surrogate pair, or lies beyond U+10FFFF.
+  // Wrong are overlong forms, halves of surrogate pairs, and code points above U+10FFFF.
   const bool wrong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
                      (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
   return wrong ? 0 : length;
@@ -39,7 +39,7 @@ class TomlText {
   void line(std::string_view key, std::string_view value) {
     add_key(key);
     text_.push_back('"');
-    // Reading bounds the dots of a line, since they part keys.
+    // Reading refuses a line of many dots, which may separate keys: they are written as escapes.
     const bool hides_dots = std::ranges::count(value, '.') > 20;
     while (!value.empty()) {
       const std::size_t length = sequence_length(value);

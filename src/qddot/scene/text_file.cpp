@@ -20,7 +20,7 @@ std::string read_text(const std::string& path) {
   };
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) refuse("this is a folder");
-  // A pipe may never be written to, and a device never end.
+  // A pipe may never be written to, and a device may never end.
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     refuse("this is a pipe, a socket or a device");
   std::ifstream in(path, std::ios::binary);

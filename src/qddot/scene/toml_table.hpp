@@ -12,7 +12,7 @@
 
 namespace qddot {
 
-// The numbers that a key takes, and their name in messages.
+// The allowed numbers of a key, and their name in messages.
 struct Range {
   bool (*holds)(double);
   std::string_view words;
@@ -24,8 +24,8 @@ inline constexpr Range positive{[](double x) { return x > 0; }, "finite numbers 
 // The finite number that a node holds, if it holds one; an integer serves as a number.
 std::optional<double> finite_number(const toml::node& node);
 
-// A table of a TOML file and its place there. Content that is not as asked for is refused:
-// InvalidInput with file, line, entry, key, value and what is allowed. Integers serve as numbers.
+// A table of a TOML file and its place there. Wrong content is refused: InvalidInput names file,
+// line, entry, key, value and what is allowed. Integers serve as numbers.
 class TomlTable {
  public:
   // `table` and `file` must outlive this; `entry` is empty for the file's top level.

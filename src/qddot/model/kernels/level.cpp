@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view names[] = {QDDOT_LEVELS(QDDOT_NAME)};
 #undef QDDOT_NAME
 
-// Whether this processor runs the instructions of that version.
+// Whether this processor runs the instructions of the version.
 bool is_run([[maybe_unused]] std::string_view name) {
 #ifdef __x86_64__
   const bool v2 = __builtin_cpu_supports("ssse3") && __builtin_cpu_supports("sse4.2") &&

@@ -14,16 +14,16 @@
 
 namespace qddot::kernels {
 
-// The environment asks for kernels that this processor does not run. what() is one sentence with
-// the variable, its value and the allowed ones.
+// Thrown if the environment asks for kernels that this processor cannot run. what() is one sentence
+// with the variable, its value and the allowed ones.
 class NoSuchKernels : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 // The number of the version in use: the widest that the processor runs, or the one that the
-// environment variable QDDOT_KERNELS names. Throws NoSuchKernels if the processor does not run that
-// one, and std::runtime_error if it runs none.
+// environment variable QDDOT_KERNELS names. Throws NoSuchKernels if the processor cannot run the
+// named one, and std::runtime_error if it runs none.
 int level();
 
 // Lists the names of all versions.

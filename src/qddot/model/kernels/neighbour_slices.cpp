@@ -6,7 +6,7 @@
 namespace qddot::kernels {
 namespace {
 
-// Measured: what a slot that gathers costs, in slots of one shift.
+// The measured cost of a gathering slot, in slots of one shift.
 constexpr double cost_of_gather = 1.6;
 // Rows are sorted within windows of this size; across more, positions are far apart in memory.
 constexpr int window = 256;
@@ -104,8 +104,8 @@ class Slicer {
     append(laws);
   }
 
-  // A row without a spring gets another row's neighbour. A spring to itself would have no length,
-  // which is computed in a slower way.
+  // A row without a spring gets another row's neighbour. A spring to itself has length zero, which
+  // takes the slower way.
   void take_gathers(int first, const Rows& rows) {
     std::size_t most = 0;
     for (const auto& row : rows) most = std::max(most, row.size());

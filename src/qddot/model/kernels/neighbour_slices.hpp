@@ -8,29 +8,30 @@
 
 namespace qddot::kernels {
 
-// One end of a spring, seen from its node: what it pulls that node towards.
+// One end of a spring as seen from its node: the other end.
 struct Neighbour {
-  int point;  // a node, or a point that is none; see slice_neighbours
+  int point;  // a node, or an extra point; see slice_neighbours
   SpringLaw law;
 };
 
 // The springs of all nodes, laid out for a processor that evaluates several at once. A row is a
-// node, a slice is `slice_rows` rows, a slot is one spring of each of them. Every spring stands
-// here twice, once for each end, so that a row sums its own forces and nothing is scattered. Rows
-// with fewer springs get slots with springs of no stiffness. This is the format SELL-C-sigma
+// node, a slice has `slice_rows` rows, and a slot has one spring of each row. Every spring is here
+// twice, once for each end, so that a row sums its own forces and nothing is scattered. Rows with
+// fewer springs are filled with springs of stiffness zero. This is the format SELL-C-sigma
 // (Kreutzer, Hager, Wellein, Fehske, Bishop, SIAM J. Sci. Comput. 36 (2014) C401-C423) with two
-// kinds of slots: those that gather, and those of one shift, like most inside a grid.
+// kinds of slots. Some slots gather their neighbours; others, as most inside a grid, have one
+// shift.
 struct NeighbourSlices {
-  // The node of each row, -1 where a row only fills up the last slice. Rows are the first places;
-  // then come the points that are no nodes, in order.
+  // The node of each row, -1 for rows that fill up the last slice. Places are numbered by rows
+  // first and then by the extra points.
   std::vector<int> node;
   int places = 0;
   std::vector<Slice> slices;  // and the end
   std::vector<int> shifts;    // of a slot: its rows' neighbours are at the rows' places plus this
   std::vector<int> gathers;   // of a slot: `slice_rows` places
-  // The stiffness of the springs of a slot's rows; then, where any spring of all has one, their
-  // rest lengths; then, where any has one, their quartic stiffness. Each slice has its slots of one
-  // shift first, then its slots that gather.
+  // The stiffnesses of a slot's springs. The rest lengths follow if any spring of the network has
+  // one, then the quartic stiffnesses likewise. Each slice has its slots of one shift first, then
+  // its slots that gather.
   Vec laws;
   int law_vectors = 1;
   std::vector<char> gathered;  // of a slice: whether any slot gathers from its places

@@ -12,7 +12,7 @@ class ShiftSlots {
  public:
   explicit ShiftSlots(const NeighbourSlices& slices) : slices_(slices) {}
 
-  // The only slot of a slice that has this shift; -1 where there is none or more of them.
+  // The only slot of the slice with this shift; -1 if there is none or more than one.
   int find(int slice, int shift) const {
     const auto begin = slices_.shifts.begin() + slices_.slices[slice].shift,
                end = slices_.shifts.begin() + slices_.slices[slice + 1].shift;
@@ -21,7 +21,7 @@ class ShiftSlots {
     return static_cast<int>(found - slices_.shifts.begin());
   }
 
-  // Whether the springs of a slot of negative shift stand in the slots of the opposite shift.
+  // Whether the slots of the opposite shift contain the springs of a slot of negative shift.
   bool has_opposites(int slice, int s) const {
     const int shift = slices_.shifts[s];
     if (shift > -slice_rows || find(slice, shift) != s) return false;

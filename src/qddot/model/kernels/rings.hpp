@@ -4,13 +4,13 @@
 
 namespace qddot::kernels {
 
-// Which slots of one shift keep their springs' tau/l, and where, for the slots of the opposite
-// shift some slices later. Such a slot finds them if it sees exactly the same springs from their
-// other ends, none of which are rows of the same slice.
+// The slots of one shift that store tau/l of their springs, for slots of the opposite shift some
+// slices later. Such a slot reads the values if it has exactly the same springs from their other
+// ends, none of which are rows of the same slice.
 struct Rings {
   std::vector<Ring> rings;
   std::vector<RingUse> uses;  // of the slots of one shift
-  Index numbers = 0;          // of the memory that all rings take
+  Index numbers = 0;          // in the memory of all rings
 };
 
 Rings rings_of(const NeighbourSlices& slices);

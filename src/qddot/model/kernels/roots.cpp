@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<std::string_view, kinds_of_roots> root_names = {"processor", "estimated_root",
                                                                      "estimated"};
 
-// A row of nodes with springs to the next twelve, as many as there are to the nodes before.
+// A row of nodes with springs to the next twelve.
 class Sample {
  public:
   Sample() {
@@ -33,7 +33,7 @@ class Sample {
     offset_ = f_ = Vec::Zero(std::ssize(unknowns_));
   }
 
-  // How long the forces take [s].
+  // The time of one evaluation of the forces [s].
   double time(const SpringKernels& kernels) {
     using Clock = std::chrono::steady_clock;
     const SpringTable springs{.slices = slices_.slices.data(),
@@ -63,10 +63,10 @@ class Sample {
   Vec q_, x_, offset_, f_;
 };
 
-// The kinds are timed by turns, and the least time of each counts: other work of the processor
-// lengthens some passes.
+// The fastest kind of roots. The kinds are timed in turn and the least time of each counts, since
+// other work of the processor lengthens some passes.
 Roots fastest() {
-  // Smaller gains may be the work of other programs on the machine.
+  // The least ratio of times that counts as faster; smaller gains may be other programs' work.
   constexpr double worth = 0.85;
   constexpr int turns = 40;  // of some 10 microseconds each
   Sample sample;

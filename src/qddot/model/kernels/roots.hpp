@@ -7,16 +7,16 @@
 
 namespace qddot::kernels {
 
-// The roots in use, which the environment variable QDDOT_ROOTS may name. They are else the
-// processor's own, unless others are clearly faster here, timed for a millisecond at the first
-// call. Throws NoSuchKernels if this processor has none of that name.
+// The kind of roots in use. The environment variable QDDOT_ROOTS may name it. Else it is the
+// processor's own, unless another is clearly faster, as timed for a millisecond at the first call.
+// Throws NoSuchKernels if this processor has none of that name.
 Roots roots();
 
 // Lists the names of all kinds, in the order of Roots.
 std::span<const std::string_view> names_of_roots();
 
-// Whether no spring's law makes a number between an estimate and its tension too large or too
-// small. The kernels check the lengths.
+// Whether estimated roots are safe: no spring's law gives numbers that overflow or underflow
+// between the estimate and the tension. The kernels check the lengths.
 bool can_be_estimated(const NeighbourSlices& slices);
 
 }  // namespace qddot::kernels

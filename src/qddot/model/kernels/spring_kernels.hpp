@@ -11,25 +11,24 @@ namespace qddot::kernels {
 // processors add the springs of a node in the same order.
 constexpr int slice_rows = 8;
 
-// Where a slice's slots begin; they end where those of the next begin.
+// The start of a slice's slots; they end where those of the next slice begin.
 struct Slice {
   int shift, gather;
   std::ptrdiff_t law;
 };
 
-// How the coordinates of a slice's rows stand among the unknowns: all of them follow one another,
-// those of each row do, or some are no unknowns.
+// The order of the unknowns of a slice: consecutive for all of its rows, consecutive for each row,
+// or with coordinates that are no unknowns.
 enum class Order { by_slice, by_row, none };
 
-// A ring buffer for the springs of one shift, until their other ends come some rows later. It holds
-// the numbers of the last `mask` + 1 rows, a power of two, and its first rows once more behind
-// them.
+// A ring buffer for the springs of one shift, until the rows of their other ends follow. It holds
+// the numbers of the last `mask` + 1 rows, a power of two; its first rows are repeated behind them.
 struct Ring {
   std::ptrdiff_t begin;  // in the memory of all rings
   int mask;
 };
 
-// What a slot of one shift does with a ring: nothing, keep its numbers there, or find them there.
+// The use of a ring by a slot of one shift: none, to store its numbers, or to read them.
 struct RingUse {
   enum { none, keeps, finds } kind;
   int ring;
@@ -43,7 +42,7 @@ struct SpringTable {
   const RingUse* ring_uses;  // of the slots of one shift
   const double* laws;
   int law_vectors;
-  const int* unknowns;   // D of each row; where a coordinate x is none, -1 - x
+  const int* unknowns;   // D of each row; -1 - x for a coordinate that is x and no unknown
   const Order* orders;   // of the slices
   const char* gathered;  // of the slices: whether any slot gathers from their rows
 };
@@ -55,31 +54,32 @@ struct Positions {
   double* points;
 };
 
-// How far apart those points are.
+// The distance between two of those points.
 template <int D>
 constexpr int point_stride = D == 1 ? 1 : 4;
 
-// Where K's values go; see StiffnessKernel.
+// The places of K's values; see StiffnessKernel.
 struct StiffnessTable {
   const int *slot_targets, *targets;
   const int* columns;  // D of each row
 };
 
-// Which part of the tension counts in K: what is compressed, scaled by `compression`, or none of a
-// spring that has a rest length.
+// The part of the tension that counts in K: compressed springs are scaled by `compression`, or
+// springs with a rest length count none.
 struct TensionPart {
   bool is_material;
   double compression;
 };
 
-// How a spring's length and quotient tau/l are computed: by the processor's own root and division,
-// the root from an estimate, or both. All have the same bits. See vectors/roots.hpp.
+// The way to a spring's length and to the quotient tau/l: by the processor's own root and division,
+// by an estimate of the root, or by estimates of both. All give the same bits. See
+// vectors/roots.hpp.
 enum class Roots { processor, estimated_root, estimated };
 constexpr int kinds_of_roots = 3;
 
 // One version's functions for D dimensions; each works on the slices [from, end).
 struct SpringKernels {
-  // Puts the rows' coordinates at q where they are looked up.
+  // Copies the rows' coordinates at q to their places in the positions.
   void (*place)(const SpringTable&, const double* q, const Positions&, int from, int end);
   // f = offset + the forces of the rows' springs. `rings`: memory for all rings.
   void (*force)(const SpringTable&, const Positions&, double* rings, const double* offset,
@@ -95,7 +95,7 @@ struct SpringKernels {
                     double* values, int from, int end);
 };
 
-// Returns the version in use for 1, 2 or 3 dimensions; nullptr where it has no such roots.
+// Returns the version in use for 1, 2 or 3 dimensions; nullptr if it has no such roots.
 const SpringKernels* spring_kernels(int dimension, Roots roots);
 
 }  // namespace qddot::kernels

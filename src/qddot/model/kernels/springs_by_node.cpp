@@ -23,7 +23,7 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout)
     if (is_new) points_.push_back(x);
     neighbours[anchor.i].push_back({nodes + point->second, anchor.law});
   }
-  // Ordered by mirror, then by source, so that the image of a grid is a grid.
+  // Images are ordered by mirror, then by source, so that the image of a grid is a grid.
   std::map<std::pair<std::array<double, D>, int>, int> images;
   const auto image_of = [&](int node, const Eigen::Vector3d& mirror) -> int& {
     std::array<double, D> signs;
@@ -37,7 +37,7 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout)
     point = nodes + static_cast<int>(points_.size() + images_.size());
     images_.push_back({image.second, image.first});
   }
-  // It pulls x_i towards S x_j and x_j towards S x_i, with S the mirror.
+  // The spring pulls x_i towards S x_j and x_j towards S x_i, with S the mirror.
   for (const auto& link : network.image_links) {
     neighbours[link.i].push_back({image_of(link.j, link.mirror), link.law});
     neighbours[link.j].push_back({image_of(link.i, link.mirror), link.law});
@@ -50,7 +50,7 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout)
   for (int row = 0; row < slices_.rows(); ++row) {
     unknowns_.insert(unknowns_.end(), D, -1);
     const int node = slices_.node[row];
-    if (node < 0) {  // each at its own place, so that no distance is zero
+    if (node < 0) {  // each at a place of its own, so that no distance is zero
       unknowns_[D * row] = -2 - row;
       continue;
     }

@@ -13,16 +13,16 @@
 namespace qddot::kernels {
 
 // The springs of a network in D = 1, 2 or 3 dimensions, for the processor's vectors. Each node sums
-// its own springs, several nodes side by side, so every spring is seen twice, once from each end.
-// Its tau/l is computed once where Rings keep it. A node is pulled towards a node, the mirror image
-// of one, or a fixed point.
+// its own springs, several nodes side by side, so that every spring is evaluated twice, once from
+// each end. If Rings store its tau/l, that is computed once. A node is pulled towards a node, the
+// mirror image of one, or a fixed point.
 template <int D>
 class SpringsByNode {
  public:
   SpringsByNode(const Network& network, const Layout<D>& layout);
 
   const NeighbourSlices& slices() const { return slices_; }
-  // The D coordinates of a row; -1 - x where one is always x and no unknown.
+  // The D coordinates of a row; -1 - x for a coordinate that is always x and no unknown.
   const int* unknowns(int row) const { return unknowns_.data() + D * row; }
   const SpringKernels& kernels() const { return *kernels_; }
   // Everything as kernels read it; valid as long as this.

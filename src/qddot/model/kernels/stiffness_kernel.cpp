@@ -10,7 +10,7 @@ bool is_full(const Layout<D>& layout, int i, int j) {
   return layout.is_full(i) && layout.is_full(j);
 }
 
-// Where in K's values the block of two nodes of full blocks begins; -1 where there is none.
+// The start in K's values of the block of two full nodes; -1 if there is none.
 template <int D>
 int block_of(const SymmetricMatrix& pattern, const Layout<D>& layout, int i, int j) {
   const auto [column, row] = std::minmax({layout.first(i), layout.first(j)});
@@ -21,7 +21,7 @@ int block_of(const SymmetricMatrix& pattern, const Layout<D>& layout, int i, int
   return found < end && *found == row ? static_cast<int>(found - rows) : -1;
 }
 
-// How many of the links between nodes of full blocks each block has, by where it begins.
+// The number of links between full nodes of each block, by the block's start.
 template <int D>
 std::vector<int> links_by_block(const Network& network, const Layout<D>& layout,
                                 const SymmetricMatrix& pattern) {
@@ -57,7 +57,7 @@ StiffnessKernel<D>::StiffnessKernel(const Network& network, const Layout<D>& lay
   }
 }
 
-// Where the blocks on the diagonal are.
+// The starts of the blocks on the diagonal.
 template <int D>
 void StiffnessKernel<D>::place_columns(const SpringsByNode<D>& springs,
                                        const SymmetricMatrix& pattern, Written& written) {
@@ -74,7 +74,7 @@ void StiffnessKernel<D>::place_columns(const SpringsByNode<D>& springs,
   }
 }
 
-// Where the blocks below it are, slot by slot of the springs.
+// The starts of the blocks below the diagonal, in the order of the springs' slots.
 template <int D>
 void StiffnessKernel<D>::place_slots(const Layout<D>& layout, const SpringsByNode<D>& springs,
                                      const SymmetricMatrix& pattern, const std::vector<int>& links,
@@ -93,7 +93,7 @@ void StiffnessKernel<D>::place_slots(const Layout<D>& layout, const SpringsByNod
   const auto add_slot = [&](int row, const auto& place_of) {
     std::vector<int> targets(slice_rows, -1);
     for (int t = 0; t < slice_rows; ++t) {
-      // A slot has springs of no stiffness where a row has none.
+      // A row without a spring has one of stiffness zero.
       const bool is_spring = law[t] > 0 || (slices.law_vectors == 3 && law[2 * slice_rows + t] > 0);
       if (is_spring) targets[t] = target(row + t, place_of(t));
       if (targets[t] < 0) continue;

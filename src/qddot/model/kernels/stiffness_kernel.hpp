@@ -30,7 +30,7 @@ class StiffnessKernel {
                           SymmetricMatrix& k) const;
 
  private:
-  // Which of K's values something here writes.
+  // Marks the values of K that this kernel writes.
   using Written = std::vector<bool>;
   void place_columns(const SpringsByNode<D>& springs, const SymmetricMatrix& pattern,
                      Written& written);
@@ -40,11 +40,11 @@ class StiffnessKernel {
              SymmetricMatrix& k) const;
 
   std::vector<int> links_left_out_;
-  // Where targets_ has, slot by slot, the values of K at which its rows' blocks begin; -1 if
-  // nowhere. A row without a block has -1.
+  // For each slot, the start of its rows' values in targets_, or -1. A value there is the start of
+  // a row's block in K, or -1 without a block.
   std::vector<int> slot_targets_, targets_;
-  std::vector<int> columns_;  // D of each row, where its unknowns' columns begin; or -1
-  std::vector<int> zeros_;    // what nobody here writes
+  std::vector<int> columns_;  // D of each row: the start of its unknowns' columns, or -1
+  std::vector<int> zeros_;    // values that this kernel does not write
 };
 
 }  // namespace qddot::kernels

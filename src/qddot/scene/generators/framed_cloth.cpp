@@ -26,7 +26,7 @@ Scene draw_framed_cloth(const GeneratorValues& p) {
     if ((along_j && is_border(i)) || (along_i && is_border(j)))
       law.stiffness = p.at("frame_stiffness");
   }
-  // The frame is stiff if it is stiffer than all of the cloth; else nothing is.
+  // The frame counts as stiff if it is stiffer than the whole cloth.
   const double cloth =
       std::max({p.at("structural_stiffness"), p.at("shear_stiffness"), p.at("bending_stiffness")});
   scene.stiff_above = std::max(cloth, cloth + 0.5 * (p.at("frame_stiffness") - cloth));

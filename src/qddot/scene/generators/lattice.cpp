@@ -26,7 +26,7 @@ constexpr std::array<std::array<int, 3>, 13> directions = {{{1, 0, 0},
                                                             {1, -1, -1}}};
 
 SceneSize size_of_lattice(const GeneratorValues& p) {
-  // How many pairs of nodes along an axis are 0 or 1 apart.
+  // The number of pairs of nodes along an axis that are 0 or 1 apart.
   const auto pairs = [&](const char* nodes, int apart) {
     return static_cast<std::size_t>(p.at(nodes)) - static_cast<std::size_t>(std::abs(apart));
   };

@@ -45,7 +45,7 @@ Face sorted(Face face) {
   return face;
 }
 
-// Appends the sides that one tetrahedron alone has.
+// Appends the triangles that belong to one tetrahedron only.
 void add_boundary(Mesh& mesh) {
   std::vector<std::pair<Face, Face>> sides;  // sorted, and as seen from outside
   for (const auto& [a, b, c, d] : mesh.tetrahedra) {
@@ -120,7 +120,7 @@ double Words::number(std::string_view field, std::string_view word) const {
 }
 
 Mesh read_mesh(const std::filesystem::path& file, const TextSource& read) {
-  reader_for(file);  // a file of another ending is not opened
+  reader_for(file);  // a file with an unknown ending is not opened
   return parse_mesh(read(file.string()), file);
 }
 

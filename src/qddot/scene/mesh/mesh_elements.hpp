@@ -12,7 +12,7 @@ namespace qddot::mesh {
 // Both number the corners alike.
 struct Element {
   std::string_view name;
-  std::string_view medit_section;  // empty where it is passed over
+  std::string_view medit_section;  // empty: not read from MEDIT files
   int gmsh_type;
   int dimension;
   std::size_t corners;

@@ -182,7 +182,7 @@ class GmshReader {
                       header.line);
     };
     compare(fmt::format("number of {}s", what), header.entries, range.count);
-    if (range.count == 0) return;  // tags of nothing may be any
+    if (range.count == 0) return;  // without entries, any tags are allowed
     compare(fmt::format("least {} tag", what), header.least, range.least);
     compare(fmt::format("largest {} tag", what), header.largest, range.largest);
   }
@@ -210,7 +210,7 @@ class GmshReader {
 
   Words words_;
   Mesh mesh_;
-  bool has_blocks_ = false;                         // as version 4.1 has
+  bool has_blocks_ = false;                         // as in version 4.1
   std::unordered_map<Tag, std::size_t> vertex_of_;  // by the node's tag
 };
 

@@ -16,8 +16,8 @@ class MeditReader {
     if (const auto word = words_.next(); word != "MeshVersionFormatted")
       words_.refuse("first word", word, "is MeshVersionFormatted");
     whole("MeshVersionFormatted", 0, 9);
-    // A section that has no edges is passed over up to the next keyword. Any other section ends
-    // where its count says: a number behind it is one too many.
+    // A section without edges is skipped up to the next keyword. Any other section ends after its
+    // count: a further number is one too many.
     bool passes_over = false;
     std::string_view section = "MeshVersionFormatted";
     for (auto word = words_.next(); !word.empty() && word != "End"; word = words_.next()) {
@@ -37,7 +37,7 @@ class MeditReader {
   }
 
  private:
-  // Reads the section with that keyword; false if it is none that is read.
+  // Reads the section with that keyword; false if it is not one of those read.
   bool read_section(std::string_view keyword) {
     const auto element =
         std::find_if(elements.begin(), elements.end(),
@@ -104,7 +104,7 @@ class MeditReader {
   Mesh mesh_;
   std::size_t dimension_ = 3;
   std::vector<std::string_view> seen_;  // sections
-  std::size_t largest_ = 0;             // of all indices, counted from 1
+  std::size_t largest_ = 0;             // the largest index, counted from 1
   int largest_line_ = 0;
 };
 

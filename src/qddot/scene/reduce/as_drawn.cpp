@@ -6,7 +6,7 @@ namespace qddot::reduce {
 namespace {
 
 constexpr double eps = 0x1p-52;
-// A product below the smallest normal number is off by up to this; a term of a sum takes some
+// The error of a product below the smallest normal number is at most this; a term of a sum has some
 // products.
 constexpr double underflow = 8 * 0x1p-1074;
 

@@ -10,8 +10,8 @@
 
 namespace qddot::reduce {
 
-// One part with all that acts on it, numbered anew: its nodes, the pinned nodes that its springs
-// hold it to, and gravity.
+// A part of a scene with all that acts on it, numbered anew: its nodes, the pinned nodes at the
+// other ends of its springs, and gravity.
 struct DrawnPart {
   std::vector<std::size_t> nodes{};  // the scene's numbers: free nodes, then pinned ones
   std::size_t free = 0;              // how many are free

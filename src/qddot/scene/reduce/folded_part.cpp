@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The node of i's orbit that stands for all of it.
+// The node of i's orbit that represents the whole orbit.
 int original_of(int i, const Orbits& orbits, int mirrors, const std::vector<Vector3d>& y) {
   const auto rank = [&](int node) {
     const Vector3d& at = y[static_cast<std::size_t>(node)];
-    unsigned behind = 0;  // the first mirror counts most
+    unsigned behind = 0;  // the first mirror is the most significant
     for (int d = 0; d < mirrors; ++d) behind = 2 * behind + (at[d] < 0 ? 1 : 0);
     return std::pair(behind, node);
   };
@@ -33,7 +33,7 @@ std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedPa
     if (original_of(i, orbits, mirrors, half.y) != i) continue;
     const unsigned zero = half.on_planes[static_cast<std::size_t>(i)];
     for (unsigned g = 0; g < orbits.elements(); ++g) {
-      // The image of zero is zero.
+      // Zero is its own image.
       Vector3d signs = Vector3d::Ones();
       for (int d = 0; d < mirrors; ++d) {
         if ((g & ~zero) >> d & 1) signs[d] = -1;
@@ -44,13 +44,13 @@ std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedPa
   return images;
 }
 
-// Springs that agree in this may be added: the same ends in the same way, and the same length.
+// Springs with equal keys may be added: they have the same ends, images and length.
 auto ends(const FoldedPart::Spring& spring) {
   const auto [low, high] = std::minmax(spring.a, spring.b);
   return std::tuple(low, high, spring.mirror[0], spring.mirror[1], spring.mirror[2], spring.holds);
 }
 
-// One spring for each set of images, as stiff as all of them, at the place of the first.
+// One spring for each set of images, with the sum of their stiffnesses, at the place of the first.
 std::vector<FoldedPart::Spring> summed(const std::vector<FoldedPart::Spring>& springs,
                                        double tolerance) {
   std::vector<std::size_t> order(springs.size());
@@ -104,7 +104,8 @@ FoldedPart folded(const DrawnPart& drawn, const Mirrors& mirrors) {
     for (int d = 0; d < mirrors.count; ++d) {
       if (zero >> d & 1) image.mirror[d] = 1;
     }
-    // Both ends are one node for ever; without a rest length (see mirrors_of) it does nothing.
+    // Both ends are one node forever: without a rest length (see mirrors_of) the spring has no
+    // force.
     if (image.a == image.b && image.mirror == Vector3d::Ones()) continue;
     result.springs.push_back(image);
   }

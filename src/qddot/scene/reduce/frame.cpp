@@ -7,7 +7,7 @@
 namespace qddot::reduce {
 namespace {
 
-// Whether coordinate d is the same for all positions, and zero for all that moves or pulls.
+// Whether all positions share coordinate d, and all velocities and gravity are zero in it.
 bool is_shared(const DrawnPart& drawn, int d) {
   const auto rests = [&](const Eigen::Vector3d& v) { return v[d] == 0; };
   return drawn.gravity[d] == 0 && std::ranges::all_of(drawn.v, rests) &&
@@ -25,7 +25,7 @@ class Span {
       direction_ = remainder(rest.normalized()).normalized();  // twice is enough (Kahan)
     }
   }
-  // Takes the best of what was offered since the last time; false where all was spanned already.
+  // Takes the best vector offered since the last call; false if none adds a direction.
   bool take() {
     if (best_ == 0) return false;
     basis_.col(rank_++) = direction_;
@@ -47,7 +47,7 @@ class Span {
   double best_ = 0;
 };
 
-// The span of the motion, from the point farthest above its noise to the least.
+// The span of the motion. Directions are added in the order of their distance above noise.
 Span span_of(const DrawnPart& drawn) {
   const double noise = rounding * largest_coordinate(drawn.x);
   const double speed_noise = rounding * largest_coordinate(drawn.v);
@@ -79,7 +79,7 @@ Frame frame_of(const DrawnPart& drawn, int dimension) {
   Frame frame{.dimension = 0};
   std::array<bool, 3> is_kept{};
   for (int d = 0; d < dimension; ++d) is_kept[d] = !is_shared(drawn, d);
-  // If nothing moves, one coordinate remains to say so.
+  // If nothing moves, one coordinate is kept for the system.
   if (std::ranges::count(is_kept, true) == 0) is_kept[0] = true;
   int dropped = 3;
   for (int d = 2; d >= 0; --d) {
@@ -93,7 +93,7 @@ Frame frame_of(const DrawnPart& drawn, int dimension) {
     }
   }
 
-  // Lengths overflow beyond this.
+  // The largest length that does not overflow when squared.
   constexpr double largest = 1e150;
   for (const double size : {largest_coordinate(drawn.x), largest_coordinate(drawn.v),
                             drawn.gravity.lpNorm<Eigen::Infinity>()}) {
@@ -102,7 +102,7 @@ Frame frame_of(const DrawnPart& drawn, int dimension) {
   const Span span = span_of(drawn);
   if (span.rank() == 0 || span.rank() >= frame.dimension) return frame;
   for (int d = 0; d < 3; ++d) {
-    // This one is shared but for a deviation.
+    // The coordinate is shared up to a small deviation.
     if (is_kept[d] && span.remainder(Eigen::Vector3d::Unit(d)).norm() > 1 - 1e-9) return frame;
   }
   Frame rotated{span.rank(), drawn.x.front(), complete(span.basis(), span.rank())};

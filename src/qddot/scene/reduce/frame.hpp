@@ -21,7 +21,7 @@ struct Frame {
     for (int d = dimension; d < 3; ++d) y[d] = 0;
     return y;
   }
-  // And back; y must be zero beyond D.
+  // The point and the direction of coordinates y, which must be zero beyond D.
   Eigen::Vector3d from_point(const Eigen::Vector3d& y) const { return origin + axes * y; }
   Eigen::Vector3d from_direction(const Eigen::Vector3d& y) const { return axes * y; }
 };

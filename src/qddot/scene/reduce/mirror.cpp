@@ -56,7 +56,7 @@ class Places {
   }
 
  private:
-  // A direction that puts few nodes of a regular grid into the same place.
+  // A direction along which the nodes of a regular grid have different places.
   static double key(const Vector3d& x) {
     return x.dot(Vector3d(0.52573111211913361, 0.64018438963104533, 0.56025190285797853));
   }
@@ -97,7 +97,7 @@ class Ends {
 
 bool nearly(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
 
-// Nodes in an order in which each comes after a neighbour, if it has one before it at all.
+// The nodes in an order in which each follows one of its neighbours, if possible.
 std::vector<int> along_springs(const DrawnPart& drawn,
                                const std::vector<std::vector<int>>& neighbours) {
   std::vector<int> order;
@@ -136,10 +136,10 @@ class Search {
     order_ = along_springs(drawn, neighbours_);
   }
 
-  // Whether a spring with a direction is too short to say which: rounding could put its ends into
-  // one place, and what it does there is not known.
+  // Whether a spring with a rest length is so short that rounding could put both ends into one
+  // place, where its direction is undefined.
   bool has_unclear_spring() const {
-    constexpr double clear = 1024;  // a direction known to a thousandth
+    constexpr double clear = 1024;  // a direction accurate to a thousandth
     return std::ranges::any_of(drawn_.springs, [&](const Spring& spring) {
       const auto [a, b] = spring.nodes;
       return spring.law.rest_length > 0 &&
@@ -154,8 +154,8 @@ class Search {
     Plane plane{direction};
     if (std::abs(direction.dot(drawn_.gravity)) > rounding * drawn_.gravity.norm()) return {};
     center(plane);
-    // A principal axis is known less well than the nodes: to the square root of rounding where two
-    // moments are nearly equal. What it maps the nodes to decides it.
+    // A principal axis is less accurate than the nodes: to the square root of rounding if two
+    // moments are nearly equal. The pairs of nodes that it finds determine it anew.
     constexpr double coarse = 1e-7;
     const bool is_exact = (plane.normal.array() == 0).count() == 2;
     if (!is_exact) {
@@ -166,8 +166,8 @@ class Search {
       center(plane);
       if (std::abs(plane.normal.dot(drawn_.gravity)) > rounding * drawn_.gravity.norm()) return {};
     }
-    // The image of the first node decides those of its neighbours; any of several in one place may
-    // be it.
+    // The image of the first node decides the images of its neighbours. If several nodes are in one
+    // place, each of them is tried.
     for (const int first : candidates(plane, order_.front())) {
       const auto exactly = images(plane, tolerance_, speed_tolerance_, earlier, first);
       if (exactly && moves_any(*exactly) && maps_springs(*exactly)) {
@@ -178,7 +178,7 @@ class Search {
   }
 
  private:
-  // Puts the plane through the middle of all nodes, which a mirror image shares.
+  // Puts the plane through the middle of all nodes, which any mirror plane contains.
   void center(Plane& plane) const {
     double low = INFINITY, high = -INFINITY;
     for (const Vector3d& x : drawn_.x) {
@@ -205,7 +205,7 @@ class Search {
   }
 
   // The reflection S must commute with the group G of the earlier ones: if i has the image j, then
-  // g i has g j for all g in G. That is possible if the same g leave i and j in place.
+  // g i has g j for all g in G. This requires that the same g leave i and j in place.
   std::optional<Images> images(const Plane& plane, double tolerance, double speed_tolerance,
                                const std::vector<Images>& earlier, std::optional<int> first) const {
     Images all(drawn_.x.size(), -1);
@@ -227,15 +227,15 @@ class Search {
     return all;
   }
 
-  // Whether springs between i and nodes whose images are known are those of j and these.
+  // Whether the springs of i to nodes with known images agree with those of j to these images.
   bool neighbours_agree(int i, int j, const Images& images) const {
     return std::ranges::all_of(neighbours_[i], [&](int next) {
       return images[next] < 0 || are_springs_alike(i, next, j, images[next]);
     });
   }
 
-  // Turns the plane towards the direction in which most images differ from their nodes; false if
-  // none does.
+  // Turns the plane's normal to the mean direction from nodes to their images; false if no node
+  // moves.
   bool refine(Plane& plane, const Images& images) const {
     Vector3d sum = Vector3d::Zero();
     for (std::size_t i = 0; i < images.size(); ++i) {
@@ -250,7 +250,8 @@ class Search {
     return true;
   }
 
-  // Whether any node moves. If all lie on the plane, the dimension takes account of that.
+  // Whether any free node has another image than itself. Else all lie on the plane, and the
+  // dimension is reduced instead.
   bool moves_any(const Images& images) const {
     for (std::size_t i = 0; i < drawn_.free; ++i) {
       if (images[i] != static_cast<int>(i)) return true;
@@ -282,10 +283,10 @@ class Search {
   Places places_;
   Ends ends_;
   std::vector<std::vector<int>> neighbours_;  // of each node; empty where no two nodes coincide
-  std::vector<int> order_;                    // in which nodes find their images
+  std::vector<int> order_;                    // in which images are found
 };
 
-// Directions worth trying, in space, within the frame.
+// The directions in the frame that are tried as normals.
 std::vector<Vector3d> candidates(const DrawnPart& drawn, const Frame& frame) {
   std::vector<Vector3d> all;
   const auto add = [&](const Vector3d& direction) {
@@ -311,7 +312,7 @@ std::vector<Vector3d> candidates(const DrawnPart& drawn, const Frame& frame) {
       const Vector3d y = frame.point(drawn.x[i]) - mean;
       moments += y * y.transpose();
     }
-    // Moments of their own keep the axes that are left out apart from the others; they come last.
+    // Large moments separate the axes outside of the frame; they come last.
     const double apart = 1 + 2 * moments.trace();
     for (int d = dimension; d < 3; ++d) moments(d, d) = apart;
     const EigenPairs axes = dense_pairs(moments);
@@ -354,7 +355,7 @@ Mirrors mirrors_of(const DrawnPart& drawn, const Frame& frame) {
     if (rest.norm() > 0.5) axes.col(column++) = rest.normalized();
   }
   mirrors.frame.axes = axes;
-  // A point on all planes; unchanged along the other axes.
+  // A point on all planes; its coordinates along the other axes stay.
   for (const Plane& plane : planes) {
     mirrors.frame.origin += (plane.offset - plane.normal.dot(mirrors.frame.origin)) * plane.normal;
   }

@@ -20,7 +20,7 @@ class Orbits {
     }
     return node;
   }
-  // Whether the same elements leave two nodes where they are.
+  // Whether the same elements leave both nodes in place.
   bool are_fixed_alike(int a, int b) const {
     for (unsigned g = 1; g < elements(); ++g) {
       if ((image(g, a) == a) != (image(g, b) == b)) return false;

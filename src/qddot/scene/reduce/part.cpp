@@ -9,7 +9,7 @@ namespace {
 
 constexpr int no_number = -1;
 
-// The originals' numbers in the network: of the free ones, or of the pinned ones too.
+// The originals' numbers in the network, of free ones only or of pinned ones too.
 std::vector<int> numbers_of(const DrawnPart& drawn, const FoldedPart& half, bool with_pins) {
   std::vector<int> numbers(drawn.nodes.size(), no_number);
   int next = 0;
@@ -34,8 +34,8 @@ void add_spring(const FoldedPart::Spring& spring, const FoldedPart& half,
   }
 }
 
-// Massless nodes on two springs, by the part's numbers. They fold up where these are compressed,
-// across the line, of which a network of one dimension knows nothing.
+// Massless nodes on two springs, by the part's numbers. In compression they fold up across the
+// line, in a direction that a one-dimensional network does not have.
 std::vector<bool> joints_of(const DrawnPart& drawn) {
   std::vector<int> springs(drawn.nodes.size(), 0);
   for (const Spring& spring : drawn.springs) {
@@ -89,7 +89,7 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     const int number = numbers[half.images[i].original];
     if (number == no_number) continue;
-    // What holds a pinned node bears its weight as well; its mass only has to be some number.
+    // A pin carries the node's weight, so its mass may be any positive number.
     network.node_mass[number] += i < drawn.free ? drawn.mass[i] : 1;
     for (int d = 0; d < axes; ++d) network.load[axes * number + d] += drawn.mass[i] * g[d];
     network.constant_energy -= drawn.mass[i] * drawn.gravity.dot(mirrors_.frame.origin);
@@ -122,7 +122,7 @@ Part::Motion Part::motion(std::size_t i, const Eigen::Ref<const Vec>& q,
   const Image& image = images_[i];
   const Unknowns& unknowns = layout_[static_cast<std::size_t>(image.original)];
   Eigen::Vector3d y = Eigen::Vector3d::Zero(), w = Eigen::Vector3d::Zero();
-  if (unknowns.count == 3) {  // as most nodes in space
+  if (unknowns.count == 3) {  // most nodes in space
     y = image.signs.cwiseProduct(q.segment<3>(unknowns.first));
     w = image.signs.cwiseProduct(v.segment<3>(unknowns.first));
   } else {

@@ -57,9 +57,9 @@ class Part {
   };
   Moments moments(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v) const;
 
-  // How it differs from the drawn part at the start, with both numbers; nothing if all agrees.
-  // Compares nodes, masses, positions, velocities and energies, up to rounding and the tolerances
-  // of its reductions. Momenta and angular momenta follow from the first four. All agrees by
+  // The difference from the drawn part at the start, with both numbers; nothing if all agrees. It
+  // compares nodes, masses, positions, velocities and energies, up to rounding and the tolerances
+  // of the reductions. Momenta and angular momenta follow from the first four. All agrees by
   // construction: a defect of a reduction shows here. Call before take_system().
   std::optional<std::string> difference_from(const DrawnPart& drawn) const;
 
@@ -69,7 +69,7 @@ class Part {
     int original;
     Eigen::Vector3d signs;
   };
-  // Where an original's coordinates stand in q: `axis[a]` is unknown first + a.
+  // The places of an original's coordinates in q: `axis[a]` is unknown first + a.
   struct Unknowns {
     Index first;
     int count;

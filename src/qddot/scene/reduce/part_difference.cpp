@@ -63,7 +63,7 @@ std::optional<std::string> Part::masses_differ(const DrawnPart& drawn) const {
     }
   }
   for (Index k = 0; k < mass.size(); ++k) {
-    if (!moves[static_cast<std::size_t>(k)]) continue;  // of a pinned node
+    if (!moves[static_cast<std::size_t>(k)]) continue;  // the column of a pinned node
     const double own = system_->mass()[k];
     if (std::abs(own - mass[k]) > rounding * mass[k]) {
       return instead_of("a mass", own, mass[k], "kg");

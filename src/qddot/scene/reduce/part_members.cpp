@@ -17,7 +17,7 @@ std::vector<PartMembers> parts_of(const std::vector<Node>& nodes,
   }
 
   constexpr auto none = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> number(nodes.size(), none);  // of the part of each set's root
+  std::vector<std::size_t> number(nodes.size(), none);  // part of each set's root
   std::vector<PartMembers> parts;
   const auto part_of = [&](std::size_t node) -> PartMembers& {
     std::size_t& place = number[sets.find_set(node)];

@@ -32,7 +32,7 @@ std::vector<bool> on_lines(const std::vector<Node>& nodes, const std::vector<Spr
   if (dimension == 1) return is_on_line;
   for (const PartMembers& members : parts_of(nodes, springs)) {
     DrawnPart drawn = drawn_part(members, nodes, springs, gravity);
-    let_fall(drawn);  // whether that is left out or not, no part leaves a line by falling
+    let_fall(drawn);  // a part stays on its line when it falls, whether that is reduced or not
     if (frame_of(drawn, dimension).dimension > 1) continue;
     for (const std::size_t node : members.nodes) is_on_line[node] = true;
   }
@@ -102,7 +102,7 @@ std::vector<PartMembers> Reduced::divide(const std::vector<Spring>& springs,
   std::vector<std::size_t> flying;
   for (PartMembers& members : parts_of(nodes_, springs)) {
     const std::size_t first = members.nodes.front();
-    if (is_condensed[first]) continue;  // on no spring any more
+    if (is_condensed[first]) continue;  // it is on no spring any more
     if (members.springs.empty() && reductions.has(Reduction::free_flight)) {
       const bool is_heavy = nodes_[first].mass > 0;
       flying_.push_back({first, nodes_[first].velocity,
@@ -240,7 +240,7 @@ std::vector<std::vector<std::size_t>> Reduced::nodes_by_part() const {
   }
   for (const Series& series : series_) {
     const std::size_t part = std::min(part_of[series.ends[0]], part_of[series.ends[1]]);
-    if (part == parts_.size()) continue;  // between two pinned nodes
+    if (part == parts_.size()) continue;  // a spring between two pinned nodes
     for (const auto& joint : series.joints) nodes[part].push_back(joint.node);
   }
   return nodes;

@@ -15,7 +15,7 @@
 
 namespace qddot::reduce {
 
-// The contents of a ReducedScene, and the steps by which it is made, in order; functions as there.
+// The contents of a ReducedScene and the steps that make it; the functions are documented there.
 class Reduced final : public WayBack {
  public:
   Reduced(const Scene& scene, const Reductions& reductions);
@@ -48,19 +48,19 @@ class Reduced final : public WayBack {
   template <class Action>
   void for_falling(const State& state, const Action& action) const;
 
-  // Each step of the reduction, in order.
+  // The steps of the reduction, in order.
   void leave_out_pins();
   void merge(std::vector<Spring>& springs);
   void condense(std::vector<Spring>& springs);
   std::vector<PartMembers> divide(const std::vector<Spring>& springs, const Reductions& reductions);
-  // The part as its motion is integrated; nothing if it rests in its fall.
+  // The part as its motion is integrated; nothing if it rests in its falling frame.
   std::optional<DrawnPart> moving_part(const PartMembers& members,
                                        const std::vector<Spring>& springs,
                                        const Reductions& reductions);
   void leave_out_static_springs(const std::vector<Spring>& springs);
   void build(const std::vector<PartMembers>& parts, const std::vector<Spring>& springs,
              const Reductions& reductions);
-  // The part, reduced as far as it still starts as drawn.
+  // The part with all reductions that leave its start as drawn.
   Part faithful_part(const DrawnPart& drawn, Reductions reductions);
   // Checks that each free node has one place, and that energies are the scene's. Positions and
   // velocities of nodes on springs are compared part by part; joints are placed by their series.
@@ -69,7 +69,7 @@ class Reduced final : public WayBack {
     findings_.push_back({reduction, std::move(what)});
   }
 
-  std::vector<Node> nodes_;  // as drawn, condensed ones in their places
+  std::vector<Node> nodes_;  // as drawn, with condensed ones at their places
   int dimension_;
   Eigen::Vector3d gravity_;
   std::optional<double> stiff_above_;

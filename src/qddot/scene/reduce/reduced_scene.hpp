@@ -33,19 +33,18 @@ class WayBack;
 // Then all nodes, T and V are compared with the scene.
 class ReducedScene {
  public:
-  // The scene must be valid (see validate); it is taken as drawn, wherever it says it starts.
-  // Throws std::logic_error, in a sentence, if the start is not that of the scene whatever is left
-  // out: a defect of this class.
+  // The scene must be valid (see validate); its drawn positions are the start, even if it asks for
+  // equilibrium. Throws std::logic_error, in a sentence, if the start differs from the scene's for
+  // every set of reductions: a defect of this class.
   explicit ReducedScene(const Scene& scene, const Reductions& reductions = {});
-  // Takes a system of the caller's own, of which nothing is left out: node after node has
-  // `dimension` unknowns. Throws std::invalid_argument, in a sentence, if the sizes are not
-  // allowed.
+  // Takes a system of the caller's own without any reduction: each node has `dimension` unknowns,
+  // node after node. Throws std::invalid_argument, in a sentence, if the sizes are not allowed.
   ReducedScene(std::shared_ptr<const System> system, State initial, int dimension);
   ~ReducedScene();
   ReducedScene(ReducedScene&&) noexcept;
   ReducedScene& operator=(ReducedScene&&) noexcept;
 
-  // The system that is left; it may consist of blocks (see Blocks).
+  // The reduced system; it may consist of blocks (see Blocks).
   const System& system() const;
   // Its positions and velocities at t = 0.
   const State& initial() const;
@@ -69,7 +68,7 @@ class ReducedScene {
   // Massless nodes that have unknowns, ascending: most methods cannot run them.
   std::vector<std::size_t> massless_nodes() const;
 
-  // What the reductions did, in order; one that found nothing says nothing.
+  // The reductions' effects, in order; a reduction without effect has no entry.
   const std::vector<Finding>& findings() const;
   // The parts of the scene (see reduce/part.hpp).
   const std::vector<reduce::Part>& parts() const;

@@ -8,7 +8,7 @@
 
 namespace qddot {
 
-// What may be left out of a scene without changing its motion.
+// Reductions of a scene that do not change its motion.
 enum class Reduction {
   pins,                // pinned nodes are no unknowns
   duplicates,          // springs between the same nodes are one, springs of no stiffness none
@@ -56,7 +56,7 @@ class Reductions {
   std::bitset<reduction_names.size()> left_out_;
 };
 
-// What a reduction did to a scene, and why it may: one sentence or two.
+// The effect of a reduction on a scene, and why it is exact: one sentence or two.
 struct Finding {
   Reduction reduction;
   std::string what;

@@ -89,7 +89,7 @@ class Condenser {
     joints.push_back(node);
     chain_.assign(back_chain.rbegin(), back_chain.rend());
     const std::size_t last = follow(node, touching_[node][1], chain_, joints);
-    if (first == last) return {};  // a loop that comes back to where it began
+    if (first == last) return {};  // a loop that returns to its start
     return exact_series({first, last}, joints);
   }
 
@@ -119,7 +119,7 @@ class Condenser {
     return series;
   }
 
-  // Whether joints on a line stay folded, as the header says.
+  // Whether joints on a line stay folded (see series.hpp).
   bool stays_folded(std::array<std::size_t, 2> ends, const std::vector<std::size_t>& joints,
                     double stiffness) const {
     const Eigen::Vector3d along = nodes_[ends[1]].position - nodes_[ends[0]].position;

@@ -19,8 +19,8 @@ class WayBack {
   virtual const System& system() const = 0;
   virtual const State& initial() const = 0;
   virtual int dimension() const = 0;
-  // Does ReducedScene::expand if `falls`, else expand_beside_falls. `nodes`: empty, or what this
-  // gave before.
+  // Does ReducedScene::expand if `falls`, else expand_beside_falls. `nodes`: empty, or the result
+  // of an earlier call.
   virtual void expand(const State& state, bool falls, std::vector<Node>& nodes) const = 0;
   virtual double kinetic(const State& state) const = 0;
   virtual double potential(const State& state) const = 0;

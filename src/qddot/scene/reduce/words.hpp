@@ -10,7 +10,7 @@
 
 namespace qddot::reduce {
 
-// The sentences by which reductions say what they left out and why they may.
+// The sentences that explain each reduction and why it is exact.
 std::string pinned_sentence(std::size_t pins);
 std::string merged_sentence(std::size_t gone, std::size_t left);
 std::string condensed_sentence(const std::vector<std::size_t>& nodes, std::size_t series);
@@ -19,7 +19,7 @@ std::string flying_sentence(const std::vector<std::size_t>& nodes);
 // at rest about theirs.
 std::string falling_sentence(std::size_t falling, std::size_t resting);
 std::string parts_sentence(std::size_t parts);
-// Says that a reduction was left out of a part because it changed the part, and how.
+// A sentence that says which reduction was left out of a part because it changed the part, and how.
 std::string mistaken_sentence(const std::string& difference);
 
 // Findings of the parts, each with its system: their subspaces, mirrors and constant K, with parts

@@ -62,18 +62,18 @@ template <int D>
   }
 }
 
-// Keeps a vector's rows in a ring.
+// Stores a vector's rows in a ring.
 [[gnu::always_inline]] inline void keep(const Ring& ring, double* rings, int row, Lanes value) {
   const int at = row & ring.mask;
   store(rings + ring.begin + at, value);
   if (at < slice_rows) store(rings + ring.begin + ring.mask + 1 + at, value);
 }
-// What a ring has kept of the rows from one on.
+// Reads the stored numbers of the rows from `row` on.
 [[gnu::always_inline]] inline Lanes find(const Ring& ring, const double* rings, int row) {
   return load(rings + ring.begin + (row & ring.mask));
 }
 
-// A spring has the same tau/l at both ends: what the first has computed, the second finds.
+// Both ends of a spring have the same tau/l: the first end stores it, the second reads it.
 template <int D, int law_vectors, Roots chosen, bool has_rings>
 void sum_forces(const SpringTable& springs, const Positions& positions, double* rings,
                 const double* offset, double* f, int from, int end) {

@@ -15,7 +15,7 @@
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 
-// Vectors as wide as the level's. The compiler makes them from whatever the processor has.
+// Vectors as wide as the level's registers.
 #ifdef __AVX512F__
 constexpr int lanes = 8;
 #elif defined __AVX__
@@ -23,7 +23,7 @@ constexpr int lanes = 4;
 #else
 constexpr int lanes = 2;
 #endif
-// Anywhere in memory, which Clang 14 reads off a typedef only.
+// A vector at any address; Clang 14 accepts the attribute on a typedef only.
 typedef double Lanes __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
 static_assert(alignof(Lanes) == 8);
 using LaneNumbers = long __attribute__((vector_size(lanes * sizeof(long))));
@@ -40,8 +40,8 @@ using LaneNumbers = long __attribute__((vector_size(lanes * sizeof(long))));
   return x;
 }
 
-// a b + c and c - a b, rounded once where the level fuses them. The compiler fuses sums of products
-// as well, but where two products are added it is free to choose which.
+// a b + c and c - a b, rounded once at levels that fuse them. The compiler also fuses sums of
+// products, but it is free to choose which of two products.
 [[gnu::always_inline]] inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
 #ifdef __AVX512F__
   return _mm512_fmadd_pd(a, b, c);

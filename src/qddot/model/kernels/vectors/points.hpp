@@ -3,7 +3,7 @@
 #include "qddot/model/kernels/spring_kernels.hpp"
 #include "qddot/model/kernels/vectors/lanes.hpp"
 
-// How the coordinates of as many points as a vector has lanes get into vectors and out again.
+// Moves the coordinates of several points, one for each lane, into vectors and back.
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 

@@ -32,8 +32,8 @@ constexpr bool has_estimates = QDDOT_FUSES;
 
 #if QDDOT_FUSES
 
-// Whether numbers are in [2^-128, 2^128) or, where estimates are made in single precision,
-// [2^-64, 2^64): asked of many at once, by their exponents.
+// Whether many numbers are all in [2^-128, 2^128), or in [2^-64, 2^64) for estimates in single
+// precision. The check uses their exponents.
 class Range {
  public:
   void add(Lanes a) { seen_ |= reinterpret_cast<LaneNumbers>(a) - ((1023l - half) << 52); }
@@ -90,7 +90,7 @@ struct Root {
 
 #else
 
-// Nothing to estimate with: the processor's own.
+// The processor's own root takes any number.
 class Range {
  public:
   void add(Lanes) {}
@@ -104,7 +104,7 @@ struct Root {
 
 #endif
 
-// The root of a; in the range, unless it is the processor's.
+// The root of a. Estimated roots need a in the range.
 template <Roots roots>
 [[gnu::always_inline]] inline Lanes root_of(Lanes a) {
   if constexpr (roots == Roots::processor) {
@@ -114,8 +114,8 @@ template <Roots roots>
   }
 }
 
-// Calls with_roots<roots>(range) and, if it met numbers that are not in the range, once more with
-// the processor's own.
+// Calls with_roots<roots>(range). If a number was outside of the range, calls it again with the
+// processor's own roots.
 template <Roots roots, class WithRoots>
 [[gnu::always_inline]] inline void by_roots(const WithRoots& with_roots) {
   Range range;

@@ -9,7 +9,7 @@ namespace {
   return positions.coordinates + a * positions.stride + place;
 }
 
-// A vector's rows of a slice: part * lanes and the following.
+// A part of a slice has the rows of one vector: part * lanes and the following.
 constexpr int parts_of_slice = slice_rows / lanes;
 
 // |d|^2 of a vector's rows.

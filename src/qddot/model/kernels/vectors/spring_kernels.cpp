@@ -11,8 +11,8 @@ namespace {
 template <int D, Roots roots>
 constexpr SpringKernels kernels() {
   if constexpr (roots == Roots::processor || has_estimates) {
-    // A line needs no roots. Only forces use estimated quotients. K divides by a length, whose
-    // estimated inverse is only next to the nearest number; mean forces divide by a sum of two
+    // A line needs no roots, and only forces use estimated quotients. K divides by a length, and
+    // its estimated inverse may be next to the nearest number. Mean forces divide by a sum of two
     // lengths.
     constexpr Roots processor = Roots::processor, none_on_line = D == 1 ? processor : roots,
                     of_lengths = none_on_line == processor ? processor : Roots::estimated_root;

@@ -102,7 +102,7 @@ void write(const SpringTable& springs, const Positions& positions, const Stiffne
     const int* columns = table.columns + D * (slice * slice_rows + part * lanes);
     Lanes own[triangle<D>];
     by_roots<roots>([&]<Roots in_use>(Range & range) __attribute__((always_inline)) {
-      // A range-for would forget that vectors may lie anywhere.
+      // A range-for would lose the attribute that vectors may be unaligned.
       for (int e = 0; e < triangle<D>; ++e) own[e] = Lanes{};
       const auto add = [&](int slot, const Lanes(&d)[D], const double* law)
           __attribute__((always_inline)) {
@@ -137,8 +137,8 @@ void write(const SpringTable& springs, const Positions& positions, const Stiffne
   }
 }
 
-// Inverse lengths are the processor's own quotients: the others are next to the nearest number
-// only.
+// Inverse lengths are the processor's own quotients: estimated ones may be next to the nearest
+// number.
 template <int D, Roots roots>
 void stiffness(const SpringTable& springs, const Positions& positions, const StiffnessTable& table,
                TensionPart part, double* values, int from, int end) {

@@ -48,7 +48,7 @@ void multiply(const double* a, const double* b, double* out, std::ptrdiff_t n) {
   for (; i < n; ++i) out[i] = a[i] * b[i];
 }
 
-// The next `width` vectors of add_combination: sums side by side hide each other's latency.
+// Adds the next `width` vectors: sums side by side hide each other's latency.
 template <int width>
 [[gnu::always_inline]] inline void combine(const double* x, double d, const double* v, double c,
                                            const double* const* z, const double* b, int count,
@@ -87,7 +87,7 @@ void add_combination(const double* x, double d, const double* v, double c, const
   }
 }
 
-// The next `width` vectors of step_by_history; likewise.
+// Advances the next `width` vectors, side by side as above.
 template <int width>
 [[gnu::always_inline]] inline void step_some(const double* f, const double* c,
                                              const double* const* u, const double* r,
@@ -141,7 +141,7 @@ void step_by_history(const double* f, const double* c, const double* const* u, c
 // vectors: so all processors round them alike.
 constexpr int sums = 32, vectors_of_sums = sums / lanes;
 
-// number(i) and lanes_at(i) give the numbers to square: one, and a vector of them.
+// number(i) and lanes_at(i) return the numbers to square: one, or a vector of them.
 template <class LanesAt, class Number>
 [[gnu::always_inline]] inline double sum_of_squares(std::ptrdiff_t n, const LanesAt& lanes_at,
                                                     const Number& number) {
@@ -153,7 +153,7 @@ template <class LanesAt, class Number>
       columns[w] = add_product(some, some, columns[w]);
     });
   }
-  // Eighths of 32, then number by number.
+  // Eight sums of the 32, then their sum.
   double eight[8] = {};
   double column[sums];
   for (int w = 0; w < vectors_of_sums; ++w) store(column + w * lanes, columns[w]);
