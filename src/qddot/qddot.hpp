@@ -1,6 +1,6 @@
 #pragma once
 
-// All that a program outside the project needs of qddot: scenes, own systems, methods and
+// The headers for programs outside the project: scenes, own systems, methods and
 // measurements. Everything is in namespace qddot.
 
 #include "qddot/analysis/equilibrium.hpp"

@@ -9,14 +9,14 @@
 namespace qddot {
 namespace {
 
-// Work is counted in operations of a factorisation. A solve reads an entry of L twice, and an
-// iteration reads an entry of the triangle twice. These numbers of operations take as long; both
-// wait for memory. Measured on lattices and cloths of 4000 to 30,000 unknowns, at 60 Gflop/s.
+// Operations of a factorisation that take as long as an iterative method's reading of memory: per
+// entry of L for a solve, which reads it twice, and per entry of the triangle for an iteration.
+// Measured on lattices and cloths of 4000 to 30,000 unknowns, at 60 Gflop/s.
 constexpr double per_factor_entry = 30, per_matrix_entry = 22;
-// A factorisation of no more work than this many iterations leaves little to gain: then all is
+// The work, in iterations, up to which a factorisation leaves little to gain. Then all is
 // multifrontal, and exact to rounding.
 constexpr double fewest_iterations = 300;
-// Hysteresis: conjugate gradients are left as soon as they cost more. They are taken again only if
+// Hysteresis: conjugate gradients are left as soon as they cost more. They are used again only if
 // they cost half as much when last used, which may be long ago.
 constexpr double share_to_return = 0.5;
 
@@ -70,7 +70,8 @@ class AutomaticFactors final : public Factors {
   SolveOutcome solve(const FourColumns& b, FourColumns& x) override { return solve_with(b, x); }
 
  private:
-  // Begins another matrix, to be solved with as would have been best for the last one.
+  // Begins another matrix. It is solved with in the way that was the cheaper one for the last
+  // matrix.
   void begin(double a, double s, const SymmetricMatrix& k, bool only_positive) {
     if (solves_ > 0 && fits_) {
       if (iterated_solves_ > 0) last_rate_ = iterated_ / iterated_solves_;
@@ -107,7 +108,7 @@ class AutomaticFactors final : public Factors {
     return direct_->solve(b, x);
   }
 
-  // Factorises the matrix at hand after all.
+  // Factorises the present matrix, which was solved with by conjugate gradients so far.
   Definiteness take_direct() {
     make_direct();
     is_direct_ = true;
@@ -122,15 +123,15 @@ class AutomaticFactors final : public Factors {
 
   const SymmetricMatrix pattern_;
   const Vec diagonal_;
-  SymbolicFactorization symbolic_;  // until direct_ is made of it
+  SymbolicFactorization symbolic_;  // until direct_ is made from it
   const Work work_;
-  const bool fits_;  // whether there is memory for L
+  const bool fits_;  // whether L fits into memory
   std::unique_ptr<IterativeFactors> iterative_;
-  std::unique_ptr<Factors> direct_;  // once it is needed
+  std::unique_ptr<Factors> direct_;  // empty until it is needed
 
   bool prefers_direct_ = false;
-  double last_rate_ = 0;  // iterations a solve
-  // The matrix at hand: how it is solved with, how often it was, and by how many iterations.
+  double last_rate_ = 0;  // iterations of a solve
+  // The present matrix: the way of its solves, their number, and their iterations.
   bool is_direct_ = false, only_positive_ = false;
   double a_ = 0, s_ = 0;
   const SymmetricMatrix* k_ = nullptr;

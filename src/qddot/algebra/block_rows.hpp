@@ -12,14 +12,14 @@ namespace qddot {
 // A symmetric matrix a D - s K, both triangles, stored by rows of B x B blocks (see blocks.hpp). A
 // product reads it once from front to back and writes each row once. Blocks of fewer unknowns are
 // filled up with rows and columns of the identity. Vectors have B entries for each row of blocks,
-// zero where filled up, and `slack` more to be read past the end.
+// zero where filled up, and `slack` more, which may be read past the end.
 template <int B>
 class BlockRows {
  public:
   using Block = Eigen::Matrix<double, B, B>;
   using Entries = Eigen::Matrix<double, B, 1>;
-  // A row's entries in computations. 3 entries use the first of 4 lanes, as one register of the
-  // processor has; the fourth means nothing.
+  // A row's entries in computations. Three entries use the first of 4 lanes, as one register of the
+  // processor has; the fourth has no meaning.
   using Lanes = Eigen::Array<double, B == 3 ? 4 : B, 1>;
   static constexpr Index slack = 1;
 
@@ -80,7 +80,7 @@ class BlockRows {
         for (int at = diagonal_[j] + 1; at < row_start_[j + 1]; ++at) {
           const int i = column_[at], height = first_[i + 1] - first_[i];
           double* right = block(at);       // row j, column i,
-          double* left = block(next_[i]);  // and the other way round
+          double* left = block(next_[i]);  // and its transpose
           for (int r = 0; r < height; ++r) right[c + B * r] = left[r + B * c] = -s * *from++;
           if (c == width - 1) ++next_[i];
         }
@@ -123,7 +123,7 @@ class BlockRows {
 
   std::vector<int> first_;                          // unknown of each row
   std::vector<int> row_start_, diagonal_, column_;  // of blocks
-  std::vector<int> next_;                           // of each row, the block to be filled next
+  std::vector<int> next_;                           // the block of each row that is filled next
   LargeArray values_;                               // block by block, column by column
 };
 

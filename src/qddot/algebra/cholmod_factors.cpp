@@ -34,7 +34,7 @@ class CholmodFactors : public Factors {
     view_.xtype = CHOLMOD_REAL;
     view_.dtype = CHOLMOD_DOUBLE;
     view_.sorted = view_.packed = 1;
-    if (matrix_.rows() > 0) factor_ = analyze(CHOLMOD_AUTO);  // it does not take an empty matrix
+    if (matrix_.rows() > 0) factor_ = analyze(CHOLMOD_AUTO);  // CHOLMOD refuses an empty matrix
   }
 
   ~CholmodFactors() override {
@@ -69,7 +69,7 @@ class CholmodFactors : public Factors {
   Index bytes() const override {
     if (!factor_) return 0;
     if (factor_->is_super) return static_cast<Index>(sizeof(double) * factor_->xsize);
-    // Each number has its row's index with it.
+    // Each number is stored with the index of its row.
     const auto* counts = static_cast<const int*>(factor_->ColCount);
     const Index numbers = std::accumulate(counts, counts + factor_->n, Index{0});
     return static_cast<Index>(sizeof(double) + sizeof(int)) * numbers;
@@ -116,8 +116,8 @@ class CholmodFactors : public Factors {
     return factor;
   }
 
-  // OpenBLAS maps a buffer at its first dense product and, if that fails, tries for ever. Throws
-  // std::bad_alloc if the remaining address space does not hold one.
+  // OpenBLAS maps a buffer at its first dense product and, if that fails, retries forever. Throws
+  // std::bad_alloc if the remaining address space cannot hold one.
   static void require_buffer() {
     constexpr std::size_t buffer = std::size_t{128} << 20;  // its BUFFER_SIZE on x86-64
     void* place = ::mmap(nullptr, buffer, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -130,8 +130,8 @@ class CholmodFactors : public Factors {
     static std::atomic<bool> has_buffer = false;
     if (!has_buffer) require_buffer();
     current_ = factor;
-    // CHOLMOD asks for 4 threads whatever OMP_NUM_THREADS says; in parts this small the threads
-    // only wait for each other.
+    // CHOLMOD asks for 4 threads whatever OMP_NUM_THREADS is. For parts this small, threads only
+    // wait for each other.
     const int levels = omp_get_max_active_levels();
     omp_set_max_active_levels(0);
     cholmod_factorize(&view_, factor, &common_);

@@ -73,7 +73,7 @@ class ConjugateGradients final : public IterativeFactors {
     auto x = all(x_), r = all(r_), z = all(z_), p = all(p_), q = all(q_);
     x.setZero();
     double rz = precondition();
-    if (!std::isfinite(rz)) {  // as a direct solver answers what is no number
+    if (!std::isfinite(rz)) {  // a direct solver also returns such a result
       x.setConstant(std::numeric_limits<double>::quiet_NaN());
       return SolveOutcome::found;
     }

@@ -15,8 +15,8 @@ class EffectiveMass {
   // still be solved with; a `singular` one cannot.
   using Definiteness = qddot::Definiteness;
 
-  // What follows holds for direct solvers, such as the default. conjugate_gradients.hpp says what
-  // differs there.
+  // The functions are described for direct solvers, such as the default; see also
+  // conjugate_gradients.hpp.
   explicit EffectiveMass(const System& system, Solver solver = Solver::multifrontal);
   // The same with another diagonal (n entries) in place of the system's masses.
   EffectiveMass(const System& system, Vec diagonal, Solver solver = Solver::multifrontal);

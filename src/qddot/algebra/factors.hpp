@@ -12,8 +12,8 @@ enum class Definiteness { positive, indefinite, singular };
 // Four right-hand sides or solutions, n x 4, row by row, so that one load reads a row.
 using FourColumns = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
-// A way to factorise a D - s K and to solve with it; functions as those of EffectiveMass. It is
-// made of K's pattern (n x n), which is analysed once, and of the diagonal D (n). K, when
+// Factorises a D - s K and solves with it; the functions are those of EffectiveMass. It is made
+// from K's pattern (n x n), which is analysed once, and from the diagonal D (n). K, when
 // factorised, must stay unchanged until the last solve.
 class Factors {
  public:
@@ -27,7 +27,8 @@ class Factors {
   // Memory [bytes] of the factors alone, known after the analysis. A solve reads it once forwards
   // and once backwards.
   virtual Index bytes() const = 0;
-  // Sets what an iterative solve may leave; direct ones leave rounding errors in any case.
+  // Sets the residual that an iterative solve may leave; direct ones leave rounding errors in any
+  // case.
   virtual void set_tolerance(double) {}
 };
 

@@ -16,7 +16,7 @@ class LaplacianMass {
   // Finds the different matrices and analyses their patterns.
   explicit LaplacianMass(const System& system);
 
-  // Factorises M + s L, s [s^2] >= 0. Returns false if it is not positive definite, which takes
+  // Factorises M + s L, s [s^2] >= 0. Returns false if it is not positive definite, as with
   // massless unknowns or numbers that are not finite.
   bool factorize(double s);
   // x = (M + s L)^-1 b with the last factors; b, x: n, x sized by the caller.

@@ -22,7 +22,7 @@ class LargeArray {
     const std::size_t whole = std::max<std::size_t>((bytes + unit - 1) / unit, 1) * unit;
     data_.reset(static_cast<double*>(std::aligned_alloc(unit, whole)));
     if (!data_) throw std::bad_alloc();
-    if (unit == page) madvise(data_.get(), whole, MADV_HUGEPAGE);  // a hint: refused is as well
+    if (unit == page) madvise(data_.get(), whole, MADV_HUGEPAGE);  // a hint, which may be refused
     std::fill_n(data_.get(), size, 0.0);
   }
   double* get() const { return data_.get(); }

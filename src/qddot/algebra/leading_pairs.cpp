@@ -18,10 +18,10 @@ using Eigen::VectorXd;
 
 constexpr double tolerance = 1e-10;
 constexpr Index most_restarts = 2000;
-// How many pairs a later round asks for; most only show that nothing was missed.
+// The number of pairs that a later round asks for; most rounds only show that nothing was missed.
 constexpr Index later_count = 4;
 
-// A with the space of some orthonormal vectors projected out, as Spectra wants an operator.
+// A without the space of some orthonormal vectors, as an operator for Spectra.
 class Deflated {
  public:
   using Scalar = double;

@@ -19,19 +19,19 @@ using namespace multifrontal;
 
 constexpr int height = strip_height;
 
-// Memory to work on fronts one after the other, by one thread or a team.
+// The memory that fronts need one after the other, for one thread or a team.
 struct Workspace {
   // `scaled` holds L D in a tile's rows or, for a team, in all rows.
   Workspace(const Fronts::Sizes& sizes, int tile_strips, bool for_team)
       : updates(sizes.updates),
-        columns(sizes.pivot_columns + height),  // kernels write a column's last vector whole
+        columns(sizes.pivot_columns + height),  // kernels write the last vector of a column whole
         scaled(Index{panel} *
                (for_team ? sizes.height + height * tile_strips : height * tile_strips)) {}
 
   LargeArray updates;
-  LargeArray columns;  // of the pivots of the front at hand, until they are columns of L
-  LargeArray scaled;   // L D of a panel, strips as those of L
-  std::array<Block, panel / height> blocks;  // the panel's, on the diagonal
+  LargeArray columns;  // of the present front's pivots, until they are columns of L
+  LargeArray scaled;   // L D of a panel, in strips as L
+  std::array<Block, panel / height> blocks;  // of the panel, on the diagonal
   Index negative = 0;                        // pivots
 };
 
@@ -150,7 +150,7 @@ class Multifrontal : public Factors {
              .height = f.height()}};
   }
 
-  // Whether to go on. All threads of a team must answer alike. So they read failed_ only after the
+  // Whether to continue. All threads of a team must answer alike: they read failed_ only after the
   // team has met since its last change, and meet again before the next.
   bool factorize(const Task& task, const Open& open, Team& team) {
     assemble_pivots(task, open, team);
@@ -199,7 +199,8 @@ class Multifrontal : public Factors {
                         open.matrix, first, end);
   }
 
-  // The pivots [from, end), and what they take off everything after them. Whether to go on.
+  // Eliminates the pivots [from, end) and subtracts their part from the rest. Returns whether to
+  // continue.
   bool eliminate(const Open& open, int from, int end, bool only_positive, Team& team) {
     const Front& f = open.f;
     const int first = from / height, after = strips_of(end);

@@ -42,8 +42,8 @@ constexpr std::string_view name(Solver solver) {
   return solver_names[static_cast<std::size_t>(solver)].second;
 }
 
-// Thrown when a numerical library gives up and no argument is to blame; what() says so in a
-// sentence. An integrator turns it into an outcome.
+// Thrown when a numerical library fails although all arguments are allowed; what() is a sentence on
+// it. An integrator turns it into an outcome.
 class SolverFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -5,7 +5,7 @@
 namespace qddot {
 
 // The least-squares line y = level + slope (x - middle). `middle` is the mean of x, `spread` the
-// sum of (x - middle)^2, and `left` the sum of squares that the line leaves of y.
+// sum of (x - middle)^2, and `left` the sum of squared distances of y from the line.
 struct StraightLine {
   double slope = 0, level = 0, middle = 0;
   double spread = 0, left = 0;

@@ -20,7 +20,7 @@ struct Graph {
   std::vector<int> start, rows, unknowns;
 };
 
-// CHOLMOD merges supernodes of few vertices whatever zeros that brings in.
+// The graph of blocks. CHOLMOD merges supernodes of few vertices whatever zeros that adds.
 Graph block_graph(const SymmetricMatrix& pattern) {
   const std::vector<int> first = block_starts(pattern);
   Graph graph;
@@ -41,10 +41,10 @@ Graph block_graph(const SymmetricMatrix& pattern) {
   return graph;
 }
 
-// Nested dissection is tried too if the order of minimum degree takes this many operations a
-// vertex. The order with fewer entries in L is taken. Measured: it is found in the time of 2.4e5
-// operations a vertex and saves a tenth of a factorisation. The gain ranges from nothing in the
-// plane below 3000 nodes to two thirds in space at 8000. So a hundred factorisations pay for it.
+// The operations per vertex, with the order of minimum degree, from which nested dissection is
+// tried too. The order with fewer entries in L is taken. Nested dissection takes the time of 2.4e5
+// operations a vertex and saves a tenth of a factorisation, as measured. It gains nothing in the
+// plane below 3000 nodes, and two thirds in space at 8000. So a hundred factorisations pay for it.
 constexpr double worth_dissection = 2e4;
 
 // CHOLMOD's workspace and its symbolic factor of a graph.
@@ -125,11 +125,11 @@ double SymbolicFactorization::operations() const {
 }
 
 SymbolicFactorization analyse(const SymmetricMatrix& pattern) {
-  if (pattern.rows() == 0) return {};  // CHOLMOD does not take it
+  if (pattern.rows() == 0) return {};  // CHOLMOD refuses an empty matrix
   Graph graph = block_graph(pattern);
   const int vertices = static_cast<int>(graph.unknowns.size());
-  // METIS cuts the graph and draws from the process' one rand(), after setting its seed. Two
-  // threads at once would find an order that depends on chance.
+  // METIS cuts the graph with random numbers of the process' one rand(), after setting its seed. In
+  // two threads at once the order would depend on chance.
   static std::mutex one_at_a_time;
   const std::unique_lock lock(one_at_a_time);
   const Analysis analysis(graph);

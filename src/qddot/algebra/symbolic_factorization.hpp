@@ -13,10 +13,10 @@ struct Supernode {
   std::vector<int> rows;  // the rows below the pivots, ascending
 };
 
-// The order in which a symmetric matrix is factorised, and where L then has entries.
+// The order in which a symmetric matrix is factorised, and the places of L's entries.
 struct SymbolicFactorization {
-  std::vector<int> place;             // place[i]: where unknown i comes in the order
-  std::vector<Supernode> supernodes;  // in postorder: a subtree's lie together, its root last
+  std::vector<int> place;             // place[i]: the position of unknown i in the order
+  std::vector<Supernode> supernodes;  // in postorder: a subtree's are consecutive, its root last
 
   // The number of entries of L with its diagonal, and of operations to compute it. A pivot with r
   // rows below takes r divisions, r (r + 1) / 2 products and as many differences.

@@ -16,20 +16,22 @@
 namespace qddot {
 namespace {
 
-// Rounding moves the entries of a spring's block by some 9 eps k; a row of K has one or two such
-// blocks. It moves the sums by some eps/4 a spring. The rest is for the pivots.
+// Rounding changes the entries of a spring's block by some 9 eps k; a row of K has one or two such
+// blocks. It changes the sums by some eps/4 for each spring. The rest is for the pivots.
 constexpr double roundings = 32;
-// Positions are moved by this many of their roundings, so that those of K do not show.
+// Positions are moved by this many of their roundings, so that the rounding of K itself does not
+// matter.
 constexpr double magnified = 1 << 20;
 constexpr int probes = 2;
-// The share of E that the pivots' own errors may have, and what E is raised to if they have more.
+// The largest part of E that errors of the pivots may take, and the factor by which E is raised if
+// they take more.
 constexpr double share_of_pivots = 0.25, raised_to = 8;
 constexpr int most_raises = 20;
 // A dense decomposition is cheap up to this size, and it has no pivots.
 constexpr Index largest_dense = 1000;
 
-// The stiffness that the springs at each row of K can make there. A spring's k does not show in the
-// rows across it, but the rounding of its length does.
+// The stiffness that the springs at each row of K have. A spring's k is absent from the rows across
+// it, but the rounding of its length is not.
 Vec stiffness_of_rows(const System& system, const SymmetricMatrix& k) {
   const Vec rows = row_sums(k);
   const auto* laplacian = capability<Laplacian>(system);
@@ -38,7 +40,7 @@ Vec stiffness_of_rows(const System& system, const SymmetricMatrix& k) {
     laplacian->laplacian(l);
     return rows + row_sums(l);
   }
-  // The rows along it are those of the same node, which share its block of the pattern.
+  // The rows along the spring belong to the same node, and so to the same block of the pattern.
   Vec most = rows;
   for (Index j = 0; j < k.cols(); ++j) {
     for (SymmetricMatrix::InnerIterator entry(k, j); entry; ++entry) {
@@ -49,7 +51,7 @@ Vec stiffness_of_rows(const System& system, const SymmetricMatrix& k) {
   return rows + most;
 }
 
-// E [N/m].
+// The diagonal E [N/m] of the rounding errors (see curvature_signs()).
 Vec rounding_of_rows(const System& system, const Vec& q, const SymmetricMatrix& k) {
   Vec e = roundings * machine_epsilon * stiffness_of_rows(system, k);
   std::minstd_rand random(1);
@@ -64,8 +66,8 @@ Vec rounding_of_rows(const System& system, const Vec& q, const SymmetricMatrix& 
   return e;
 }
 
-// How far the factors of -K + a E are from exact, in units of E: the residual of a solution,
-// relative to the solution, in the metric of E.
+// The error of the factors of -K + a E in units of E: the residual of a solution over the solution,
+// in the metric of E.
 double error_of_factors(EffectiveMass& factors, double a, const SymmetricMatrix& k, const Vec& e) {
   const Vec root = e.cwiseSqrt();
   std::minstd_rand random(2);
@@ -124,7 +126,7 @@ CurvatureSigns curvature_signs(const System& system, const Vec& q) {
   if (!e.allFinite()) throw std::range_error("the stiffness matrix overflows");
   const double largest = e.maxCoeff();
   if (largest == 0) return {.negative = 0, .flat = static_cast<int>(system.size())};
-  // Any other number will do where no spring pulls.
+  // The metric may have any positive number where no spring pulls.
   const auto is_pulled = (e.array() > 0).eval();
   Vec metric = is_pulled.select(e, largest);
   const Below counts = by_pivots(system, k, metric);

@@ -4,14 +4,14 @@
 
 namespace qddot {
 
-// The signs of the eigenvalues of -K(q), as far as rounding lets them be told. They count the
-// independent directions in which the potential energy falls, or is flat to second order.
+// The signs of the eigenvalues of -K(q), as far as rounding allows. They count the independent
+// directions in which the potential energy falls, or is flat to second order.
 struct CurvatureSigns {
   int negative = 0;  // it falls, whatever rounding does
-  // Rounding decides: something is loose, or the sign cannot be told. All others are positive.
+  // The sign is within rounding: something is loose, or too soft. All other eigenvalues are
+  // positive.
   int flat = 0;
-  // The rate [1/s] that no growth in a flat direction exceeds; 0 without one, infinite without
-  // mass.
+  // The rate [1/s] that bounds growth in flat directions; 0 without one, infinite without mass.
   double flat_rate = 0;
 };
 

@@ -70,7 +70,8 @@ class Descent {
 
   bool is_stationary() const { return largest(f_) <= 8 * machine_epsilon * row_sum_ * reach_; }
 
-  // The root mean square [m] of a displacement by the metric: the same for a rotated scene.
+  // The root mean square [m] of a displacement by the metric; it does not change if the scene is
+  // rotated.
   double size(const Vec& p) const {
     return std::sqrt(p.dot(metric_.cwiseProduct(p)) / metric_.sum());
   }
@@ -84,7 +85,7 @@ class Descent {
       shift_ = std::max(least(), 4 * shift_);
     }
     matrix_.solve(f_ + shift_ * metric_.cwiseProduct(before_), p_);
-    if (!(f_.dot(p_) > 0)) {  // inertia leads uphill
+    if (!(f_.dot(p_) > 0)) {  // the inertia points uphill
       before_.setZero();
       matrix_.solve(f_, p_);
     }
@@ -95,7 +96,7 @@ class Descent {
     return row_sum_ > 0 ? least_shift * row_sum_ / metric_.minCoeff() : least_shift;
   }
 
-  // One step downhill; false where none is found.
+  // One step downhill; false if none is found.
   bool step() {
     ++iterations_;
     double shift = shift_ > 4 * least() ? shift_ / 4 : 0;
@@ -144,7 +145,7 @@ class Descent {
     for (int halvings = 0; halvings < most_halvings; ++halvings, s /= 2) {
       const double ahead = system_.potential(q_ + s * direction);
       const double behind = system_.potential(q_ - s * direction);
-      // Half of what the curvature promises.
+      // Half of the decrease that the curvature predicts.
       if (!(std::min(ahead, behind) <= v_ + 0.25 * curvature_.value * s * s)) continue;
       move_to(q_ + (ahead <= behind ? s : -s) * direction);
       radius_ = first_radius * length_;
@@ -154,7 +155,7 @@ class Descent {
     return false;
   }
 
-  // Newton's steps as long as they halve the residual.
+  // Newton steps as long as they halve the residual.
   void polish() {
     before_.setZero();
     for (int i = 0; i < most_polishing && largest(f_) > 0 && direction(0); ++i) {
@@ -186,7 +187,7 @@ class Descent {
   EffectiveMass matrix_{system_, metric_};
   Vec start_;
   double length_, radius_{first_radius * length_};
-  // What belongs to the place q.
+  // The values at the place q.
   Vec q_, f_{system_.size()};
   SymmetricMatrix k_{system_.stiffness_pattern()};
   double v_ = 0, row_sum_ = 0, reach_ = 0;

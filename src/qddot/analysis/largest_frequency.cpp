@@ -11,14 +11,14 @@
 namespace qddot {
 namespace {
 
-// The residual allowed, relative to w^2: an eigenvalue is as near, mostly far nearer (3e-6 off for
-// a chain of 1e5 masses, whose eigenvalues crowd at the end).
+// The allowed residual, relative to w^2. The error of the eigenvalue is no larger and mostly far
+// smaller: 3e-6 for a chain of 1e5 masses, whose eigenvalues crowd at the end.
 constexpr double relative_error = 1e-4;
-// Lanczos' basis would be the whole space.
+// Up to this size, Lanczos' basis would be the whole space.
 constexpr Index most_dense = 40;
 
-// -M^-1/2 K M^-1/2 over the square of the bound: no eigenvalue is above 1. A massless unknown has
-// no stiffness here.
+// -M^-1/2 K M^-1/2 over the square of the bound, so that no eigenvalue is above 1. A massless
+// unknown has no stiffness here.
 SymmetricMatrix scaled(const System& system, const Vec& q, double bound) {
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
@@ -47,7 +47,7 @@ double frequency_at_least(const System& system, const Vec& q) {
   const double bound = frequency_bound(system, q);
   if (bound == 0 || std::isinf(bound)) return bound;
   const SymmetricMatrix k = scaled(system, q, bound);
-  // Lanczos' three terms, from a random vector; rounding makes no value larger.
+  // Lanczos' recurrence from a random vector; rounding makes no value larger.
   const Index steps = std::min<Index>(30, k.rows());
   Vec before = Vec::Zero(k.rows()), now(k.rows());
   std::minstd_rand random(1);

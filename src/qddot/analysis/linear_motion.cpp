@@ -8,7 +8,7 @@
 namespace qddot {
 namespace {
 
-// sin(x)/x, whole at x = 0.
+// sin(x)/x, continuous at x = 0.
 double sinc(double x) { return x == 0 ? 1 : std::sin(x) / x; }
 
 }  // namespace
@@ -25,7 +25,7 @@ LinearMotion::LinearMotion(const System& system)
   const SymmetricMatrix a = -(per_root.asDiagonal() * k * per_root.asDiagonal());
   const EigenPairs modes = dense_pairs(Eigen::MatrixXd(a));
   u_ = modes.vectors;
-  omega_ = modes.values.cwiseMax(0).cwiseSqrt();  // rounding alone makes w^2 negative
+  omega_ = modes.values.cwiseMax(0).cwiseSqrt();  // w^2 is negative by rounding only
 }
 
 State LinearMotion::after(const State& from, double duration) const {

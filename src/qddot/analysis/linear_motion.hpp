@@ -30,7 +30,7 @@ class LinearMotion {
  private:
   const System& system_;
   Vec root_mass_;      // M^1/2
-  Eigen::MatrixXd u_;  // modes, a column each
+  Eigen::MatrixXd u_;  // modes, one in each column
   Vec omega_;          // [rad/s]
 };
 

@@ -19,13 +19,14 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// The dense decomposition up to this size takes no longer than Lanczos' method, and cannot fail.
+// Up to this size the dense decomposition takes no longer than Lanczos' method, and it cannot fail.
 constexpr Index most_dense_modes = 400;
-// Shifts stand off the spectrum by this part of its width, or more by factors of `growth`.
+// The distance of a shift from the spectrum, over the spectrum's width; more by factors of
+// `growth`.
 constexpr double least_offset = 1e-8;
 constexpr double growth = 4;
 constexpr int most_tries = 40;
-// Values below this part of another are computed once more.
+// Values below this part of another are computed again.
 constexpr double small_part = 1e-3;
 
 // The pencil -K x = w^2 M x at one q.
@@ -34,7 +35,7 @@ struct Pencil {
   const Vec& mass;
   SymmetricMatrix k;
   std::vector<Index> massive{}, massless{};
-  double width = 0;  // Gershgorin's bound of all finite w^2; 1 where nothing pulls
+  double width = 0;  // Gershgorin's bound of all finite w^2; 1 without springs
 
   Pencil(const System& s, const Vec& q, const Vec& m)
       : system(s), mass(m), k(s.stiffness_pattern()) {
@@ -57,9 +58,9 @@ struct Pencil {
 }
 
 // Eigenvalues that are small beside the largest have its rounding errors, but their vectors are
-// right to rounding. Only the rounding of what these vectors meet of the matrix A is left in the
-// space of them. This is repeated for what is small even there. `projected` is X'AX for some of the
-// vectors.
+// accurate to rounding. In the space of these vectors, only the rounding of the matrix entries that
+// they meet remains. This is repeated for values that are small even there. `projected` is X'AX for
+// some of the vectors.
 template <class Projected>
 void look_again_at_small(const Projected& projected, Vec& values, MatrixXd& vectors) {
   Index first = 0, count = values.size();
@@ -92,7 +93,7 @@ NaturalModes dense_modes(const Pencil& p) {
   MatrixXd follow(b.size(), a.size());  // x_b = follow x_a
   if (!b.empty()) {
     const DenseCholesky held(stiff(b, b));
-    // A matrix that is singular may pass by rounding; its reciprocal condition tells.
+    // Rounding may make a singular matrix positive; its reciprocal condition is then tiny.
     if (!held.is_positive() ||
         held.reciprocal_condition() < machine_epsilon * static_cast<double>(b.size())) {
       refuse_loose_massless();
@@ -111,11 +112,12 @@ NaturalModes dense_modes(const Pencil& p) {
   return modes;
 }
 
-// The modes nearest to a shift that the factors of `matrix` = +-(-K - shift M) belong to, which
-// must leave (..)^-1 positive on the massive unknowns.
+// The modes nearest to a shift, by the factors of `matrix` = +-(-K - shift M). Its inverse must be
+// positive on the massive unknowns.
 NaturalModes modes_beside(const Pencil& p, EffectiveMass& matrix, double offset, Index count) {
   const Vec root = p.mass.cwiseSqrt();
-  // M^1/2 (..)^-1 M^1/2, with eigenvalues 1 / |w^2 - shift|, zero for massless unknowns.
+  // The operator M^1/2 matrix^-1 M^1/2 with eigenvalues 1 / |w^2 - shift|, zero for massless
+  // unknowns.
   const auto apply = [&](const Vec& z, Vec& y) {
     matrix.solve(root.cwiseProduct(z), y);
     y = offset * root.cwiseProduct(y);
@@ -127,7 +129,8 @@ NaturalModes modes_beside(const Pencil& p, EffectiveMass& matrix, double offset,
     matrix.solve(root.cwiseProduct(pairs.vectors.col(j)), x);
     shapes.col(j) = x * (offset / pairs.values[j]);
   }
-  // Rayleigh-Ritz in the space of these shapes: the errors of w^2 are of second order in theirs.
+  // Rayleigh-Ritz in the space of these shapes: the errors of w^2 are of second order in the
+  // shapes' errors.
   const auto projected = [&](const MatrixXd& some) {
     return MatrixXd(-some.transpose() * (p.k.selfadjointView<Eigen::Lower>() * some));
   };
@@ -165,7 +168,7 @@ NaturalModes lowest_modes(const System& system, const Vec& q, Index count, const
     offset *= growth;
   }
   NaturalModes modes = modes_beside(p, matrix, offset, count);
-  // A shift far off the spectrum makes different modes look alike.
+  // A shift far from the spectrum makes different modes nearly equal.
   for (int tries = 0; tries < most_tries; ++tries) {
     const double size = modes.squares.lpNorm<Eigen::Infinity>();
     if (size >= small_part * offset) break;

@@ -10,21 +10,21 @@ namespace qddot {
 // growing x e^(|w| t).
 struct NaturalModes {
   Vec squares;             // w^2 [1/s^2], ascending
-  Eigen::MatrixXd shapes;  // x, a column each, x'Mx = 1 (x in kg^-1/2)
+  Eigen::MatrixXd shapes;  // x, one in each column, x'Mx = 1 (x in kg^-1/2)
 };
 
-// The number of finite natural frequencies: one for each unknown with mass. A massless unknown only
+// The number of finite natural frequencies: one for each unknown with mass. A massless unknown
 // follows the others; its frequency is infinite.
 Index finite_modes(const System& system);
 
 // The `count` lowest modes at q (n), or all finite ones if there are fewer; negative w^2 come
 // first. Each is given with its multiplicity (a free body in space at rest has six of w = 0). Small
 // systems use a dense decomposition, large ones Lanczos' method on (-K - s M)^-1 M. The shift s is
-// below all w^2 and near to the lowest; it is found by trying which matrix is positive definite.
-// The error of w^2 is the rounding of K at the places that move in the shape; curvature_signs()
-// tells whether it hides the sign. Throws std::domain_error if a massless unknown is not held by
-// its springs, so that M q'' = f(q) does not say how it moves (-K among the massless is not
-// positive definite). Throws std::invalid_argument if the system has no K.
+// below all w^2 and near to the lowest; a search for positive definite matrices finds it. The error
+// of w^2 is the rounding of K at the places that move in the shape; curvature_signs() tells whether
+// it hides the sign. Throws std::domain_error if springs do not hold a massless unknown: -K among
+// the massless is not positive definite, and M q'' = f(q) does not determine its motion. Throws
+// std::invalid_argument if the system has no K.
 NaturalModes lowest_modes(const System& system, const Vec& q, Index count);
 
 // The same with another diagonal (n entries, >= 0) in place of M.

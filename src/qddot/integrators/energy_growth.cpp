@@ -8,15 +8,15 @@
 namespace qddot {
 namespace {
 
-// The number of steps between two looks at the kinetic energy, which takes a tenth of a step's
-// time; and of such looks between two at the whole energy, which takes several forces' time.
+// The number of steps between two looks at the kinetic energy, each a tenth of a step's time. Then
+// the number of such looks between two at the whole energy, each several forces' time.
 constexpr int steps_a_look = 32, looks_an_energy = 32;
 constexpr double largest = 1e300;
 // [s^2]: vibrations of 1e9 to 1 rad/s.
 constexpr double shortest_way = 1e-18, longest_way = 1;
 
-// The lowest V on the way on which a motion from rest at q sets out, q + s M^-1 f; V falls there at
-// first. Each s tried is twice the last. `ahead` and `way` are scratch.
+// The lowest V on the path q + s M^-1 f, along which a motion from rest at q begins. V falls there
+// at first. Each s is twice the last one. `ahead` and `way` are scratch.
 double lowest_ahead(const System& system, const Vec& q, Vec& ahead, Vec& way) {
   system.force(q, way);
   for (Index i = 0; i < way.size(); ++i) {
@@ -62,7 +62,7 @@ void EnergyGrowth::see(const Vec& q, const Vec& v) {
   lowest_ = std::min(lowest_, potential);
 }
 
-// The change of V by the last bits of the positions at the start.
+// The change of V by one rounding of the positions at the start.
 double EnergyGrowth::rounding() {
   const double potential = system_.potential(q_);
   double most = machine_epsilon * std::abs(potential);
@@ -83,12 +83,12 @@ double EnergyGrowth::factor(const State& state) {
   const double gained = most_ - start_;
   double own = start_ - lowest_;
   if (gained <= own) return own > 0 ? 1 + gained / own : 1;
-  // A run that grew from the first step on has seen nothing of the motion.
+  // A run that grew from its first step on has no other energy of its own.
   own = std::max(own, start_ - lowest_ahead(system_, q_, q_of_kinetic_, v_of_kinetic_));
   const double unsure = rounding();
   if (gained <= unsure + 4 * machine_epsilon * std::abs(most_)) return 1;
   const double growth = 1 + gained / std::max(own, unsure);
-  // An energy that overflows at the start says nothing.
+  // An energy that overflows at the start gives no growth.
   return std::isnan(growth) ? 1 : std::min(growth, largest);
 }
 

@@ -35,8 +35,8 @@ class EnergyGrowth {
   int until_look_ = 1, looks_ = 0;
   double start_ = 0;                     // E(0)
   double most_ = 0, lowest_ = 0;         // E and V so far
-  double kinetic_ = 0;                   // the largest, whose E is not seen yet,
-  Vec q_of_kinetic_, v_of_kinetic_, q_;  // q and v there; q at the start
+  double kinetic_ = 0;                   // the largest, at a state whose E is not yet computed,
+  Vec q_of_kinetic_, v_of_kinetic_, q_;  // that state; q at the start
 };
 
 }  // namespace qddot

@@ -14,9 +14,9 @@
 namespace qddot {
 namespace {
 
-// Nothing of a motion is left beyond |v| = 1e30 m/s, and numbers are still far from overflow.
+// Beyond |v| = 1e30 m/s a run has failed; numbers are still far from overflow.
 constexpr double largest_speed_squared = 1e60;
-// h^2 below this has lost digits.
+// Below this, h^2 has lost digits.
 constexpr double shortest_squared = 1e-290;
 // An eigenvalue of the balance of massless nodes counts as negative this far below zero. The limit
 // is at least rtol, as adaptive methods leave the nodes' places as uncertain.
@@ -266,7 +266,7 @@ void Integrator::take_over(Integrator& other) {
 
 void Integrator::set_out(const State& state) {
   reached_ = state.t;
-  if (blocks_of(system_).empty()) {  // else each block looks after itself
+  if (blocks_of(system_).empty()) {  // blocks check their own massless nodes
     growth_.start(state);
     if (system_.has_massless() && system_.has_stiffness()) {
       balance_ = std::make_unique<MasslessBalance>(

@@ -32,12 +32,12 @@ enum class Outcome {
   not_finite,            // a force, energy or start value is no number
   solver_failed,         // a library gave up for another reason
   over_budget,           // stopped from outside
-  stiffness_varies,      // a method for constant K, and a system whose K is not
+  stiffness_varies,      // a method for constant K, and a system whose K varies
   went_slack,            // compressed springs at a massless node (Validity, MasslessBalance)
   no_stiff_set,          // a method that takes stiff forces apart, and none are named (SplitForces)
   no_laplacian,          // a method that takes L in place of -K, and a system that has none
-  no_stiffness,          // a method that needs K, and a system that computes none
-  no_discrete_gradient,  // a method that needs one of V, and a system that computes none
+  no_stiffness,          // a method that needs K, and a system without K
+  no_discrete_gradient,  // a method that needs one, and a system without one
 };
 
 std::string_view name(Outcome outcome);    // the enumerator's
@@ -57,7 +57,7 @@ struct Counts {
   Counts& operator+=(const Counts& more);
 };
 
-// Where the time of a run went [s]; zero unless Options::timed.
+// The time of a run by kinds of work [s]; zero unless Options::timed.
 struct Seconds {
   double force = 0, stiffness = 0, factorization = 0, solve = 0;
 
@@ -78,7 +78,7 @@ class Stopwatch {
   Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
-  Seconds* seconds_;  // may be none
+  Seconds* seconds_;  // may be nullptr
   double Seconds::*which_;
   std::chrono::steady_clock::time_point start_;
 };
@@ -90,13 +90,13 @@ inline double order_mean(const Counts& counts) {
              : std::numeric_limits<double>::quiet_NaN();
 }
 
-// How a run ended, and what it did.
+// A run's end, and the work that it took.
 struct Summary {
   Outcome outcome = Outcome::solver_failed;
   double t_reached = 0;  // [s]
   Counts counts;
   Seconds seconds;
-  std::string message = "advance was not called";  // one sentence; empty where the end was reached
+  std::string message = "advance was not called";  // one sentence; empty if the end was reached
   // The energy growth of the run (see EnergyGrowth); of several parts the largest.
   double energy_growth = 1;
   // The number of the failed step, 1, 2, ..., in the part that failed; 0 if the end was reached.
@@ -146,19 +146,19 @@ class Integrator {
   const Method& method() const { return method_; }
   const Options& options() const { return options_; }
   Counts& counts() { return counts_; }
-  // Where to add times; nullptr unless the run is timed.
+  // The record of times; nullptr unless the run is timed.
   Seconds* seconds() { return options_.timed ? &seconds_ : nullptr; }
   // The end of the run [s]; known from start() on.
   double t_end() const { return t_end_; }
   bool must_stop() const { return stop_.stop_requested(); }
-  // Whether the step from `from` to `to` can be accepted: reached_end, or else why not
+  // Whether the step from `from` to `to` can be accepted: reached_end, or the reason why not
   // (not_finite, diverged, went_slack).
   Outcome check_step(const State& from, const State& to);
   // The same if |v|^2 of `to` is known.
   Outcome check_step(const State& from, const State& to, double squared_speed);
   // Whether check_step() looks at more than the size of the velocities.
   bool checks_velocities() const { return validity_; }
-  // Whether note() will look at the velocities of the next state.
+  // Whether note() reads the velocities of the next state.
   bool looks_next() const { return growth_.looks_next(); }
   // Call with each state that is accepted.
   void note(const State& state) {
@@ -169,7 +169,7 @@ class Integrator {
   void join(const Integrator& run);
   // Takes over the counts, seconds and message of another since the last call.
   void take_over(Integrator& other);
-  // Does all that comes before the first step of a run.
+  // Prepares everything before the first step of a run.
   void set_out(const State& state);
   // The reason for the outcome, in a sentence.
   std::string words_on(Outcome outcome) const;
@@ -212,7 +212,7 @@ class Integrator {
   }
 
  private:
-  friend class Parts;  // runs several as one
+  friend class Parts;  // runs several integrators as one
 
   Outcome run(State& state, double t_end, const Observer& observer);
   // The energy growth in the run up to `state`.
@@ -220,7 +220,7 @@ class Integrator {
 
   const Method& method_;
   const System& system_;
-  // What the system offers; nullptr where it does not.
+  // The system's capabilities; nullptr for a missing one.
   const SplitStiffness* split_stiffness_;
   const DiscreteGradient* discrete_gradient_;
   const Validity* validity_;
@@ -231,10 +231,10 @@ class Integrator {
   std::stop_token stop_;
   std::string message_;
   EnergyGrowth growth_;
-  std::unique_ptr<MasslessBalance> balance_;  // where there are massless nodes
+  std::unique_ptr<MasslessBalance> balance_;  // only if there are massless nodes
   bool has_begun_ = false;
   std::atomic<double> reached_ = 0;  // [s]
-  double slack_at_ = 0;              // [s], where went_slack
+  double slack_at_ = 0;              // [s], time of the outcome went_slack
   std::int64_t failed_step_ = 0;
 };
 

@@ -8,15 +8,16 @@
 namespace qddot {
 namespace {
 
-// Nodes that move this many times as far as a balance leads them have jumped. Just before a balance
-// is lost, they move like the root of the time left: twice as far as the first slope says. If
-// springs that are only quartic become taut, they move like the cube root: three times as far.
+// A node has jumped if it moves this many times as far as its balance predicts. Just before a
+// balance is lost, nodes move as the square root of the time left: twice as far as the first slope
+// predicts. Springs with only a quartic term that become taut move nodes as the cube root: three
+// times as far.
 constexpr double most_times_as_far = 4;
-// A solve leaves soft directions farther off than the tolerance says: 6 times as far among random
-// scenes.
+// The largest ratio of an error that a solve leaves in soft directions to its tolerance. It is 6
+// among random scenes.
 constexpr double most_times_unsolved = 30;
-// The part of its coordinates by which rounding moves a node: 1e-16, over the softest direction
-// that is still told from an unstable one.
+// The part of its coordinates by which rounding moves a node: 1e-16 over the softest direction that
+// still counts as stable.
 constexpr double rounding = 1e-10;
 
 }  // namespace
@@ -46,7 +47,7 @@ MasslessBalance::MasslessBalance(const System& system, Vec start, double toleran
   scale_.resize(count);
   pull_.resize(count);
   for (Place* place : {from_.get(), to_.get()}) {
-    place->q.setConstant(system.size(), std::numeric_limits<double>::quiet_NaN());  // nowhere
+    place->q.setConstant(system.size(), std::numeric_limits<double>::quiet_NaN());  // unknown
     place->f.resize(system.size());
     place->k = k;
     place->own = own;
@@ -60,8 +61,8 @@ bool MasslessBalance::factorize(Place& place) {
   for (std::size_t e = 0; e < source_.size(); ++e) {
     own.valuePtr()[e] = -place.k.valuePtr()[source_[e]];
   }
-  // A direction across a straight row of springs is soft. It is compared with the stiffest
-  // direction of its node and of those beside it.
+  // A direction across a straight row of springs is soft. The tolerance is relative to the stiffest
+  // direction of its node and of the node's neighbours.
   const Index count = own.cols();
   const auto diagonal = [&](Index i) { return std::abs(own.valuePtr()[diagonals_[i]]); };
   for (Index i = 0; i < count; ++i) scale_[i] = diagonal(i);
@@ -78,11 +79,11 @@ bool MasslessBalance::factorize(Place& place) {
   return place.factors.info() == Eigen::Success && place.factors.vectorD().minCoeff() > 0;
 }
 
-// Let m stand for massless and o for other nodes. f_m = 0 at q' = (q_m', q_o') gives -K_mm
-// (q_m' - q_m) = f_m(q) + K_mo (q_o' - q_o). So nodes come into balance, and follow the others as
-// the K of either end leads. Where they turn, a slope is zero for an instant; that of the step
-// before is not. A step's prediction errs by at most the way of the nodes in the step before, and a
-// solve leaves a part of this error.
+// Let m stand for massless and o for other nodes. f_m = 0 at q' = (q_m', q_o') gives -K_mm (q_m' -
+// q_m) = f_m(q) + K_mo (q_o' - q_o). So nodes first come into balance, and then follow the others
+// by the K of either end. When they turn, a slope is zero for an instant, but that of the step
+// before is not. The error of a step's prediction is at most the nodes' path in the step before,
+// and a solve leaves a part of it.
 bool MasslessBalance::have_followed(double h) {
   double moved = 0;
   for (Index i = 0; i < std::ssize(massless_); ++i) {
@@ -104,7 +105,7 @@ bool MasslessBalance::have_followed(double h) {
   return moved <= most_times_as_far * (least + out_of_balance) + unsolved + rounding * farthest;
 }
 
-// How far K leads the massless nodes when the others move from q_o to q_o' [m].
+// The displacement [m] of massless nodes by K when the others move from q_o to q_o'.
 double MasslessBalance::led(const Place& place) {
   pull_.setZero();
   for (Index column = 0; column < place.k.outerSize(); ++column) {

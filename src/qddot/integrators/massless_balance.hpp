@@ -11,13 +11,13 @@ namespace qddot {
 
 // Checks whether massless nodes stay where their forces balance. They do at a minimum of V over
 // their positions: -K among their unknowns is positive semidefinite there. Otherwise, as between
-// compressed springs, the balance is unstable. A node without mass leaves it in no time, and no
-// equation of motion says where to. A step may pass such a place, end in another balance and never
-// meet the unstable one. Then nodes have jumped, which the balances at both ends tell.
+// compressed springs, the balance is unstable: a node without mass leaves it at once, and no
+// equation of motion determines its new place. A step may pass such a place and end in another
+// balance. Then nodes have jumped, which the balances at both ends show.
 class MasslessBalance {
  public:
   // The system must have massless nodes and a K; the nodes may be out of balance at `start` (n). An
-  // eigenvalue is negative if it is below -tolerance times the stiffness of the nodes around.
+  // eigenvalue is negative if it is below -tolerance times the stiffness of the nodes around it.
   // `solve_tolerance`: the part of a prediction's error that the solve of a step leaves.
   MasslessBalance(const System& system, Vec start, double tolerance, double solve_tolerance);
 
@@ -58,8 +58,8 @@ class MasslessBalance {
   std::vector<Index> massless_;   // each unknown's place among the massless ones, or -1
   std::vector<Index> source_;     // the place in K of each entry of `own`
   std::vector<Index> diagonals_;  // places of its diagonal
-  double speed_before_ = 0;       // [m/s], to which the last step's first balance led
-  double moved_before_ = 0;       // [m], how far massless nodes went in that step
+  double speed_before_ = 0;       // [m/s], of the last step's first balance
+  double moved_before_ = 0;       // [m], of massless nodes in that step
   Vec scale_, pull_;
 };
 

@@ -37,7 +37,7 @@ enum class Trait {
   bounds_steps,      // holds its steps to 1/w_max if the system has K
 };
 
-// What a method needs of a system beside its forces.
+// Properties of a system, beside its forces, that a method needs.
 enum class Need {
   stiffness,           // K
   constant_stiffness,  // K that is the same everywhere
@@ -61,7 +61,7 @@ enum class Option {
 struct Method {
   std::string name;
   std::string summary;  // one line
-  std::string source;   // where the formula is from
+  std::string source;   // the formula's publication
   int order = 1;        // of the global error in q and v; 0: no error at any step size
   Family family = Family::hand_written;
   Knob knob = Knob::step_size;
@@ -74,7 +74,7 @@ struct Method {
   SetOf<Trait> traits{};
   SetOf<Need> needs{};
   SetOf<Option> takes{};
-  // The name of the method that this one is with SUNDIALS' own matrix and solver; else empty.
+  // The name of the method that this one repeats with SUNDIALS' own matrix and solver; else empty.
   std::string stock_of{};
   std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Options&) = nullptr;
 
@@ -98,7 +98,7 @@ inline bool is_split(const System& system) {
   return std::ranges::all_of(blocks, [](const auto& block) { return is_split(*block); });
 }
 
-// Why the method cannot run on the system, whatever its masses; nothing if it can.
+// The reason why the method cannot run on the system, whatever its masses; nothing if it can.
 inline std::optional<Outcome> misfit(const Method& method, const System& system) {
   if (method.asks(Need::stiffness) && !system.has_stiffness()) return Outcome::no_stiffness;
   if (method.asks(Need::constant_stiffness) && !system.stiffness_is_constant())

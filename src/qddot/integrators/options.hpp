@@ -29,7 +29,7 @@ struct Options {
   bool compensated = false;
 };
 
-// The smallest rtol: a step's error adds up several roundings of 2.2e-16, which hide what is less.
+// The smallest rtol: the sum of several roundings in a step's error hides smaller ones.
 constexpr double least_rtol = 1e-15;
 
 // Throws std::invalid_argument unless the method can run with these: step size, sizes and

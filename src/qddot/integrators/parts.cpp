@@ -36,9 +36,9 @@ Outcome Parts::run_to(State& state, double t_stop) {
   for (Part& part : parts_) part.begin = part.state;
   Outcome outcome = Outcome::reached_end;
   double t_end = t_stop;
-  std::exception_ptr thrown;  // by the part that decides
+  std::exception_ptr thrown;  // by the part that failed first
   const auto is_there = [&](const Part& part) { return part.state.t == t_end; };
-  // Each failure is a new end, earlier than the last; parts that went beyond it run to it anew.
+  // Each failure gives an earlier end than the last; parts beyond it run to it again.
   while (!std::ranges::all_of(parts_, is_there)) {
     for (Part& part : parts_) {
       if (is_there(part)) continue;
@@ -69,7 +69,7 @@ Outcome Parts::run_part(Part& part, double t_end) {
     outcome = part.integrator->run_to(part.state, t_end);
   } catch (const SolverFailure& error) {
     part.integrator->set_message(error.what());
-  } catch (...) {  // kept until the others have come to the same time
+  } catch (...) {  // rethrown when the others have come to the same time
     part.thrown = std::current_exception();
   }
   if (outcome == Outcome::reached_end) part.state.t = t_end;

@@ -11,8 +11,8 @@ namespace qddot {
 // Runs a system of uncoupled parts (see Blocks) as one run with one outcome. Each part has its own
 // integrator and, if the method is adaptive, its own steps. Counts and seconds are sums over the
 // parts. If a part fails, the others are brought to the time that it reached; the earliest of
-// several failures decides. A run that is stopped from outside ends at the last time that all parts
-// share: its start or an observer's time. There is no time to bring them farther.
+// several failures decides. A run stopped from outside ends at the last time that all parts share:
+// its start or an observer's time. No time is left to bring them farther.
 class Parts final : public Integrator {
  public:
   Parts(const Method& method, const System& system, const Options& options);
@@ -33,7 +33,7 @@ class Parts final : public Integrator {
   Outcome run_to(State& state, double t_stop) override;
 
   void start(Part& part);
-  // Brings the part to t_end from where it begins, whether or not it has run from there before.
+  // Brings the part to t_end from its start, even if it has run from there before.
   Outcome run_part(Part& part, double t_end);
   void gather(State& state);
   double growth_of(Part& part);

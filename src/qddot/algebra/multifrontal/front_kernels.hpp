@@ -6,14 +6,14 @@
 // spring_kernels.hpp.
 namespace qddot::multifrontal {
 
-// Dense matrices are cut into strips of this many rows; see vectors/strips.hpp.
+// The number of rows of a strip, into which dense matrices are cut; see vectors/strips.hpp.
 constexpr int strip_height = 8;
-// The number of strips that hold so many rows.
+// The number of strips that hold this many rows.
 [[gnu::always_inline]] constexpr int strips_of(int rows) {
   return (rows + strip_height - 1) / strip_height;
 }
-// The pivots whose columns are taken off the rest of a front at once: so many that a tile's rows of
-// L stay in the first cache.
+// The number of pivots whose columns are subtracted from the rest of a front at once. With this
+// many, a tile's rows of L stay in the first cache.
 constexpr int panel = 96;
 
 // Rows of an update that stay neighbours in the front they are added to.
@@ -21,7 +21,7 @@ struct Run {
   int from, to, length;
 };
 
-// An entry of K or D and where it goes in the columns of its front's pivots.
+// An entry of K or D, and its place in the columns of its front's pivots.
 struct Entry {
   int source, target;
 };
@@ -44,7 +44,7 @@ struct Block {
   bool regular;  // every pivot is a number that can be divided by
 };
 
-// A front's dense matrix while it is worked on; sizes as in Front.
+// A front's dense matrix during the elimination; sizes as in Front.
 struct OpenFront {
   double* columns;  // of the pivots, until they are columns of L
   double* update;
@@ -59,7 +59,7 @@ struct ChildUpdate {
   const Run *begin, *end;
 };
 
-// A front's part of L and where its rows are among the unknowns.
+// A front's part of L and the places of its rows among the unknowns.
 struct FrontFactor {
   const double* l;
   int first, pivots, pivot_strips, strips, below;
@@ -68,31 +68,33 @@ struct FrontFactor {
 
 // One version's functions.
 struct FrontKernels {
-  // Strips that a tile of products has.
+  // The number of strips of a tile of products.
   int tile_strips;
 
-  // Writes the lower triangle of the pivots' columns [from, end): the matrix' entries there.
+  // Writes the matrix' entries of the lower triangle in the pivots' columns [from, end).
   void (*assemble)(const OpenFront&, const Combination&, Entries of_k, Entries of_diagonal,
                    int from, int end);
   // Adds a child's update in the columns [from, end), all of pivots or none.
   void (*add_update)(const ChildUpdate&, const OpenFront&, int from, int end);
 
-  // The next three work on the panel of pivots that begins with `from`. `scaled` holds its columns
-  // of L D in the rows of a tile, in strips of `panel` columns. Block i is that of strip i, on the
-  // diagonal.
+  // The next three work on the panel of pivots that begins at `from`. `scaled` holds the panel's
+  // columns of L D in the rows of a tile, in strips of `panel` columns. Block i is the diagonal
+  // block of strip i.
   void (*factorize_block)(const OpenFront&, int from, int i, const double* scaled, Block&);
   // Computes strips i, ... of L and L D in the panel's columns, up to those of strip `end`.
   void (*divide)(const OpenFront&, int from, int end, int i, int strips, const Block* blocks,
                  double* scaled);
-  // Takes pivots [from, end) off strips i, ... after them. The first ones begin the update.
+  // Subtracts the part of pivots [from, end) from the strips i, ... after them. The first pivots
+  // start the update.
   void (*subtract_from_rest)(const OpenFront&, int from, int end, int i, int strips,
                              const double* scaled);
 
-  // Solves L z = b: puts the front's pivots of z into y, and takes their share off the rows below.
+  // Solves L z = b: puts the front's pivots of z into y, and subtracts their part from the rows
+  // below.
   void (*forward)(const FrontFactor&, double* y, double* z);
   // Solves L' x = y: puts the front's pivots of x into y.
   void (*backward)(const FrontFactor&, double* y, double* x);
-  // Both for four right-hand sides, rows of y; backwards() divides by the pivots, too.
+  // Both for four right-hand sides, rows of y; backwards() also divides by the pivots.
   void (*forwards)(const FrontFactor&, double* y, double* z);
   void (*backwards)(const FrontFactor&, const double* pivots, double* y, double* x);
 };

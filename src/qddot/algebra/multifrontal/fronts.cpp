@@ -38,7 +38,7 @@ Fronts::Fronts(const SymmetricMatrix& pattern, SymbolicFactorization symbolic) {
   divide(parents);
   place_updates(parents);
 
-  std::vector<int> position(n);  // of the rows of the front at hand
+  std::vector<int> position(n);  // of the present front's rows
   const std::vector<Placed> placed = in_order_of_elimination(pattern);
   auto entry = placed.begin();
   for (int s = 0; s < count; ++s) {
@@ -97,9 +97,9 @@ void Fronts::add_runs(Front& child, const std::vector<int>& position) {
   child.run_end = static_cast<int>(runs_.size());
 }
 
-// Branches are the largest subtrees of no more than a share of the work; smaller neighbours are
-// joined. Shares are so small that a few threads divide them well. Work that takes no longer than
-// threads to meet is not divided.
+// Branches are the largest subtrees with at most a share of the work; smaller neighbours are
+// joined. Shares are small enough for a few threads to divide them well. Work that takes no longer
+// than a meeting of threads is not divided.
 void Fronts::divide(const std::vector<int>& parents) {
   constexpr double shares = 16, least_work = 1e7;  // operations
   const int count = static_cast<int>(all_.size());
@@ -137,10 +137,10 @@ void Fronts::divide(const std::vector<int>& parents) {
   }
 }
 
-// Updates are made and used up as on a stack, but a front's own begins to grow before those of its
-// children are used up. Two stacks in turn, one for even and one for odd depths of the tree, leave
-// each update where it is made. Those that branches keep come first, as all are alive at once. A
-// strip's height is free after each update: kernels write the last vector of its last column whole,
+// Updates are created and consumed as on a stack, but a front's update begins to grow before those
+// of its children are consumed. Two stacks, one for even and one for odd depths of the tree, leave
+// each update in place. Updates that branches keep come first, as all of them exist at once. A
+// strip's height is free after each update. Kernels write the last vector of its last column whole,
 // while another thread may write the next update.
 void Fronts::place_updates(const std::vector<int>& parents) {
   const int count = static_cast<int>(all_.size());

@@ -10,11 +10,11 @@
 namespace qddot::multifrontal {
 
 // The dense matrix of one supernode: `pivots` columns that become columns of L, and the `below` x
-// `below` update of the rest. Rows and columns are numbered pivots first, then, from the next whole
-// strip on, the rows below. What lies between is zero.
+// `below` update of the rest. Rows and columns are numbered pivots first. The rows below begin at
+// the next whole strip; the numbers between are zero.
 struct Front {
   int first, pivots, below;
-  Index factor, update;  // where its part of L and its update begin, in doubles
+  Index factor, update;  // the starts of its part of L and of its update, in doubles
   bool kept;             // the update is for a front above the branches
   int row_start, row_end;
   int entry_start, entry_end;
@@ -31,8 +31,8 @@ struct Front {
   int below_height() const { return strip_height * below_strips(); }
 };
 
-// Fronts [start, end): subtrees that need no other fronts. A branch is small against the whole, so
-// that one thread can do it. The tree is divided alike for any number of threads.
+// Fronts [start, end): subtrees that need no other fronts. A branch is small beside the whole, so
+// that one thread can do it. The tree is divided in the same way for any number of threads.
 struct Branch {
   int start, end;
 };
@@ -49,7 +49,7 @@ class Fronts {
   const std::vector<Branch>& branches() const { return branches_; }
   // Those above the branches, in the order of elimination: few, but the largest.
   const std::vector<int>& top() const { return top_; }
-  // place()[i]: where unknown i comes in the order of elimination.
+  // place()[i]: the position of unknown i in the order of elimination.
   const std::vector<int>& place() const { return place_; }
 
   std::span<const int> rows(const Front& f) const { return part(rows_, f.row_start, f.row_end); }
@@ -60,19 +60,19 @@ class Fronts {
   std::span<const Entry> diagonal(const Front& f) const {
     return part(diagonal_, f.diagonal_start, f.diagonal_end);
   }
-  // Where the rows of its update stand in its parent.
+  // The rows of the front's update as rows of its parent.
   std::span<const Run> runs(const Front& f) const { return part(runs_, f.run_start, f.run_end); }
   std::span<const int> children(const Front& f) const {
     return part(children_, f.child_start, f.child_end);
   }
 
-  // The memory of fronts worked on one after the other: doubles of the updates alive at once,
-  // doubles of the largest columns of pivots, rows of the highest front.
+  // The memory of fronts that are eliminated one after the other: doubles of the updates that exist
+  // at once, doubles of the largest columns of pivots, rows of the highest front.
   struct Sizes {
     Index updates = 0, pivot_columns = 0;
     int height = 0;
   };
-  // Those of any branch, without kept updates, and of the fronts above, with them.
+  // The sizes of any branch, without kept updates, and of the fronts above, with them.
   Sizes branch_sizes, top_sizes;
   Index factor_size = 0;  // doubles of L
 
@@ -81,7 +81,7 @@ class Fronts {
   static std::span<const T> part(const std::vector<T>& all, int start, int end) {
     return std::span(all).subspan(start, end - start);
   }
-  // An entry of K, which stands in the column of `unknown`, in the order of elimination.
+  // An entry of K in the order of elimination, in the column of `unknown`.
   struct Placed {
     int source, unknown, column, row;
   };

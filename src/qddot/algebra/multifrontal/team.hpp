@@ -5,17 +5,17 @@
 
 namespace qddot::multifrontal {
 
-// What the threads of a team have in common.
+// The state that the threads of a team share.
 class Barrier {
  public:
   explicit Barrier(int threads) : threads_(threads) {}
 
   int threads() const { return threads_; }
-  // 0, 1, 2, ..., each once.
+  // Returns 0, 1, 2, ..., each number once.
   int draw() { return next_.fetch_add(1, std::memory_order_relaxed); }
 
-  // Returns when all threads have come. If others take the processor from one of them, waiting for
-  // it in a loop would keep it away for longer: the rest sleep after some microseconds.
+  // Returns when all threads have come. A loop of waiting would keep the processor from a thread
+  // that other programs have interrupted. So the others sleep after some microseconds.
   void wait() {
     const int round = round_.load();
     if (come_.fetch_add(1) + 1 == threads_) {
@@ -35,8 +35,8 @@ class Barrier {
   alignas(64) std::atomic<int> round_ = 0;
 };
 
-// One thread's view of a team of threads that run the same code together and share its loops. If a
-// thread is by itself, all of this is plain loops.
+// One thread's view of a team of threads that run the same code together and share its loops. For a
+// single thread, all of this is plain loops.
 class Team {
  public:
   Team() = default;
@@ -44,8 +44,8 @@ class Team {
 
   bool alone() const { return threads_ == 1; }
 
-  // work(i) for i = 0, ..., count - 1, each by whichever thread is free. All threads must come
-  // here; none leaves before all is done.
+  // Runs work(i) for i = 0, ..., count - 1, each on any free thread. All threads must call this;
+  // none returns before all is done.
   template <class Work>
   void share(int count, const Work& work) {
     if (alone()) {
@@ -53,12 +53,12 @@ class Team {
       return;
     }
     for (int i = meeting_->draw() - first_; i < count; i = meeting_->draw() - first_) work(i);
-    first_ += count + threads_;  // every thread has drawn one too many
+    first_ += count + threads_;  // every thread has drawn one number too many
     meeting_->wait();
   }
 
-  // work(from, end) for parts of [0, count) that begin at multiples of `part`; all at once for a
-  // thread alone.
+  // Runs work(from, end) for parts of [0, count) that begin at multiples of `part`; a single thread
+  // takes all at once.
   template <class Work>
   void share_parts(int count, int part, const Work& work) {
     if (alone()) {
@@ -72,7 +72,7 @@ class Team {
  private:
   int threads_ = 1;
   Barrier* meeting_ = nullptr;
-  int first_ = 0;  // what is drawn for the next loop's first turn
+  int first_ = 0;  // the number of the next loop's first turn
 };
 
 }  // namespace qddot::multifrontal

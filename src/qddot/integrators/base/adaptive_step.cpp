@@ -13,8 +13,8 @@ namespace {
 // The controller aims at this fraction of the step that would just be accepted, and changes a step
 // by no more than these factors at once.
 constexpr double safety = 0.9, smallest_factor = 0.2, largest_factor = 5;
-// The exponents of the last error and of the one before it, times the order of the errors; errors
-// smaller than this are as good as none.
+// The exponents of the last error and of the one before it, times the order of the errors; smaller
+// errors than the third number count as that.
 constexpr double proportional = 0.7, integral = 0.4, smallest_error = 1e-4;
 // The factor after an attempt without an error estimate.
 constexpr double factor_of_failure = 0.25;
@@ -22,7 +22,8 @@ constexpr double factor_of_failure = 0.25;
 constexpr double stretch = 1.01;
 // The first step, as a fraction of the run, if the start and its rate of change say nothing.
 constexpr double blind_step = 1e-6;
-// A step ends before a jump by this part of it; a step over a jump takes so many roundings.
+// A step ends before a jump by the first part of its length. A step over a jump may be this many
+// times shorter.
 constexpr double short_of_jump = 1e-6, slowest_over_jump = 1e-6;
 constexpr double roundings_over_jump = 8 * machine_epsilon;
 
@@ -102,8 +103,8 @@ Outcome AdaptiveStep::run_to(State& state, double t_stop) {
   return show(t_stop, state);
 }
 
-// Whether the kept instants tell the state at t. Their polynomial is most accurate in their middle;
-// at the end of the run no more instants come.
+// Whether the kept instants determine the state at t. Their polynomial is most accurate in its
+// middle; at the end of the run no more instants come.
 bool AdaptiveStep::can_show(double t) {
   if (last().state.t == t_end()) return true;
   if (accuracy_.instants == 0) return last().state.t >= t;
@@ -134,7 +135,7 @@ Outcome AdaptiveStep::show(double t, State& state) {
 
 double AdaptiveStep::step_size(double t, double longest) const {
   const double h = std::min(h_, longest), left = t_end() - t;
-  if (h_before_jump_ > 0) return std::min(h, left);  // h_ ends where the jump is
+  if (h_before_jump_ > 0) return std::min(h, left);  // h_ ends just before the jump
   if (left <= stretch * h) return left;
   // Two equal steps to the end are better than one and a short rest.
   return left < 2 * h ? left / 2 : h;
@@ -149,7 +150,7 @@ Outcome AdaptiveStep::take_step() {
     if (must_stop()) return Outcome::over_budget;
     const double planned = step_size(t, longest);
     next.state.t = planned == t_end() - t ? t_end() : t + planned;
-    const double h = next.state.t - t;  // as rounding lets it be
+    const double h = next.state.t - t;  // as rounded
 
     Outcome outcome = h > 0 ? attempt(now, h, next, error_q_, error_v_) : Outcome::step_too_small;
     double error = INFINITY;

@@ -19,8 +19,8 @@ namespace qddot {
 // Norsett and Wanner, Solving ODEs I, II.4. Only the end of the run is met exactly by a step.
 // States between steps are interpolated, or are ends of separate attempts.
 //
-// Where the force jumps (see Kinks), a step ends just before, whatever its error estimate says. A
-// step of some roundings of the time leads over the jump, and the next begins on the other side.
+// If the force jumps (see Kinks), a step ends just before the jump, whatever its error estimate. A
+// step of some roundings of the time crosses it, and the next begins on the other side.
 class AdaptiveStep : public Integrator {
  protected:
   // Errors are of order h^(error_order + 1). States between steps are interpolated through
@@ -64,8 +64,8 @@ class AdaptiveStep : public Integrator {
   double step_size(double t, double longest) const;
   Outcome take_step();
   void accept(bool is_limited);
-  // What a step of h to `next` does with jumps of the force. It meets none or leads over one; or
-  // one is ahead, and the step is tried again with h_.
+  // The relation of a step of h to `next` with jumps of the force: it crosses none, it may cross
+  // one, or a jump is ahead and the step is tried again with h_.
   enum class Jump { none, over, ahead };
   Jump jump(const Instant& now, const Instant& next, double h);
   // The weighted root mean square of a pair of vectors.
@@ -83,7 +83,7 @@ class AdaptiveStep : public Integrator {
   double h_before_jump_ = 0, over_jump_ = 0;
   double h_ = 0, last_error_ = 1;
   bool was_rejected_ = false;
-  Outcome ended_ = Outcome::reached_end;  // why there is no next step
+  Outcome ended_ = Outcome::reached_end;  // the reason why there is no next step
   Creep creep_;
 };
 

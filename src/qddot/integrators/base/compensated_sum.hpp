@@ -38,7 +38,7 @@ class CompensatedSum {
     }
   }
 
-  Vec rest_;  // empty where it is off
+  Vec rest_;  // empty if it is off
 };
 
 }  // namespace qddot

@@ -4,14 +4,14 @@
 
 namespace qddot {
 
-// The share of the sideways push of compressed springs that a matrix M - s K keeps
-// (Integrator::weighted_stiffness) and is still positive definite. It is all if that works, else a
-// half, a quarter, ... down to a 64th, or none.
+// The share of the sideways push of compressed springs (Integrator::weighted_stiffness) with which
+// a matrix M - s K is still positive definite. It is all if that works, else a half, a quarter, ...
+// down to a 64th, or none.
 class Compression {
  public:
   void start() { kept_ = 1; }
   double kept() const { return kept_; }
-  // Doubles the share, to begin the next search with.
+  // Doubles the share for the next search.
   void harden() { kept_ = std::clamp(2 * kept_, least, 1.0); }
   // Halves the share; false if it is 0 already.
   bool soften() {

@@ -10,7 +10,7 @@ class Creep {
  public:
   explicit Creep(double t = 0) : t_mark_(t) {}
 
-  // Ask after each step, which ended at t [s].
+  // To be called after each step, which ended at t [s].
   bool is_found(double t, double t_end) {
     if (++steps_ % steps_in_a_row != 0) return false;
     const bool result = t - t_mark_ < steps_in_a_row * smallest_mean_step * (t_end - t_mark_);
@@ -23,7 +23,7 @@ class Creep {
   static constexpr double smallest_mean_step = 1e-12;
 
   std::int64_t steps_ = 0;
-  double t_mark_;  // where the present thousand steps began
+  double t_mark_;  // start of the present thousand steps
 };
 
 }  // namespace qddot

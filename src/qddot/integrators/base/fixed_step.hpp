@@ -11,11 +11,11 @@ namespace qddot {
 
 // A method of constant step size h = options.step_size; a derived class gives one step. The steps
 // of a run are the same whatever is observed. A state between two steps is the end of a shorter
-// step from the first. Another object of the same method takes it, so that this one's memory of its
-// steps does not change.
+// step from the first of them. Another object of the same method takes that step, so that this
+// one's memory of its steps does not change.
 //
-// Some methods go from step to step by other numbers than q and v. They leave the end of a step
-// incomplete and complete it when somebody looks at it.
+// Some methods advance other numbers than q and v. They leave the end of a step incomplete and
+// complete it when it is observed.
 class FixedStep : public Integrator {
  public:
   FixedStep(const Method& method, const System& system, const Options& options);
@@ -27,7 +27,7 @@ class FixedStep : public Integrator {
 
   // Call in step() if q and v of its end are incomplete.
   void leave_incomplete() { next_is_complete_ = false; }
-  // Whether the state at which a step begins is complete.
+  // Whether the state at the start of the step is complete.
   bool is_complete() const { return is_complete_; }
 
  private:

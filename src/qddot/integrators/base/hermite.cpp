@@ -16,11 +16,11 @@ Jet operator*(Jet a, Jet b) { return {a.value * b.value, a.slope * b.value + a.v
 
 // Let l_i be Lagrange's polynomials, 1 at t_i and 0 at the other t_j, and s = t - t_i. Then
 //   p = sum_i l_i^3 [(1 - 3 l' s + (6 l'^2 - 3/2 l'') s^2) q_i + (1 - 3 l' s) s v_i + s^2/2 a_i]
-// with l' and l'' of l_i at t_i. Each bracket undoes what l_i^3 does to the first two derivatives
-// there.
+// with l' and l'' of l_i at t_i. Each bracket cancels the first two derivatives of l_i^3 there.
 void interpolate(std::span<const Instant* const> instants, double t, State& at) {
   assert(instants.size() >= 2 && instants.size() <= most_instants);
-  // Positions may be large where a motion is small: their differences from one are interpolated.
+  // Positions may be large beside the motion, so their differences from one of them are
+  // interpolated.
   const Vec& origin = instants.front()->state.q;
   at.t = t;
   at.q = origin;

@@ -10,15 +10,15 @@
 namespace qddot {
 namespace {
 
-// Newton's method takes some ten where it converges at all.
+// The most iterations of Newton's method. It takes some ten if it converges.
 constexpr int most_iterations = 100;
-// Less than 2^-30 of a correction moves the energy by rounding alone.
+// The most halvings of a correction: 2^-30 of it changes the energy by rounding only.
 constexpr int most_halvings = 30;
-// Corrections that shrink more slowly than this are worth new factors, which cost as much as some
-// ten solves.
+// The rate of convergence above which K is factorised anew. New factors cost as much as some ten
+// solves.
 constexpr double slowest_rate = 0.3;
-// The part of a stage's tolerance that an iterative solve for one correction may leave of the
-// residual: where all is linear, one correction is all there is.
+// The part of a stage's tolerance that an iterative solve for one correction may leave as residual.
+// In a linear stage, one correction is all.
 constexpr double linear_share = 0.1;
 // Corrections that no longer shrink and are below this part of the positions are rounding.
 constexpr double rounding = 1e-12;
@@ -59,12 +59,12 @@ void ImplicitStep::acceleration(const Vec& q, Vec& a) {
   a.array() /= system().mass().array();
 }
 
-// What the iteration of a stage knows about its factors and corrections.
+// The state of a stage's iteration.
 struct ImplicitStep::Iteration {
   bool wants_factors;             // before the next correction
   bool has_new_factors = false;   // made in this stage,
-  bool has_factors_of_u = false;  // and for the u at hand
-  double last = 0;  // the size of the correction before, if with these factors and of full length
+  bool has_factors_of_u = false;  // and for the present u
+  double last = 0;  // size of the last correction, if it had these factors and full length; else 0
   double least = std::numeric_limits<double>::infinity();  // of all corrections so far
 
   void note_factors() {
@@ -87,8 +87,8 @@ Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
     if (is_exact(q) || is_solved || is_rounding(q, size, now.least)) {
       u_ += p_;
       last_missed_ = missed;
-      // A rate that was not seen this time is trusted less next time; new factors have shown none
-      // yet.
+      // The rate is unknown with new factors, and less certain after a stage that needed one
+      // correction only.
       last_rate_ = now.has_new_factors ? 1 : (iteration == 0 ? 2 * rate : rate);
       return Outcome::reached_end;
     }
@@ -121,9 +121,9 @@ Outcome ImplicitStep::correct(const Vec& q, double s, Iteration& now) {
   return outcome;
 }
 
-// The expected ratio of the next correction to this one of that size: that of this one to the last.
-// The first correction tells only whether the last stage was like this one, which no stage is
-// beyond a kink.
+// The expected ratio of the next correction to this one, from the ratio of this one to the last.
+// The first correction has no ratio: it may take that of the last stage, unless a kink lies
+// between.
 double ImplicitStep::rate_of(const Iteration& now, const Vec& q, double size, bool is_first) {
   if (now.last > 0) return size / now.last;
   const bool may_be_like_last = is_first && !now.has_new_factors && size <= 2 * last_missed_;
@@ -132,7 +132,7 @@ double ImplicitStep::rate_of(const Iteration& now, const Vec& q, double size, bo
   return is_like_last ? last_rate_ : 1;
 }
 
-// Whether no correction is left to make after this one.
+// Whether this correction is the exact solution.
 bool ImplicitStep::is_exact(const Vec& q) {
   return system().stiffness_is_constant() && compression_.kept() == 1 && is_linear_along(q);
 }
@@ -142,7 +142,7 @@ bool ImplicitStep::is_rounding(const Vec& q, double size, double least) const {
   return size <= 4 * machine_epsilon * place || (2 * size > least && size <= rounding * place);
 }
 
-// Whether f is linear at the place of the residual and where the correction leads to.
+// Whether f is linear at the place of the residual and at the place that the correction leads to.
 bool ImplicitStep::is_linear_along(const Vec& q) {
   if (!pieces_) return system().stiffness_is_constant();
   if (knows_start() && !pieces_->is_linear_at(q)) return false;
@@ -193,7 +193,7 @@ Outcome ImplicitStep::factorize_softened(const Vec& q, double s) {
   const bool is_positive = compression_.find([&](double kept) {
     stage_stiffness(q, u_, kept, k_);
     is_finite = k_.coeffs().allFinite();
-    if (!is_finite) return true;  // no factor of it helps
+    if (!is_finite) return true;  // factors cannot make it positive
     ++counts().factorizations;
     const Stopwatch watch(seconds(), &Seconds::factorization);
     return matrix_.factorize_positive(1, s, k_);
@@ -213,14 +213,14 @@ Outcome ImplicitStep::correction() {
     return outcome;
   }
   p_ = -p_;
-  // Squares overflow where numbers do not.
+  // Squares of finite numbers may overflow.
   const bool is_finite = std::isfinite(squared_norm(p_)) || p_.allFinite();
   return is_finite ? Outcome::reached_end : Outcome::not_finite;
 }
 
 // Moves u along p by the first of 1, 1/2, 1/4, ... of it that halves the residual or decreases g by
 // Armijo's rule. The first test costs nothing, since the next iteration needs that residual. If
-// there is no g, it moves by all of p. Returns that part, or 0, with u as it was, if there is none.
+// there is no g, it moves by all of p. Returns that part; 0, with u unchanged, if there is none.
 double ImplicitStep::search(const Vec& q, double s) {
   const double norm = std::sqrt(squared_norm(r_)), slope = r_.dot(p_);
   double g = std::numeric_limits<double>::quiet_NaN();
@@ -238,7 +238,7 @@ double ImplicitStep::search(const Vec& q, double s) {
       g = objective(q, s);
       u_.swap(before_);
     }
-    // Near the minimum rounding decides which g is less.
+    // Near the minimum, rounding decides which g is smaller.
     if (g_there <= g + 1e-4 * length * slope + 8 * machine_epsilon * std::abs(g)) return length;
   }
   u_ = before_;

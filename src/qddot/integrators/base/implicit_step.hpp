@@ -15,14 +15,14 @@ namespace qddot {
 // stationary, and a minimum is sought (Martin, Thomaszewski, Grinspun, Gross, SIGGRAPH 2011,
 // section 4). The acceleration of the stage is (u - u*)/s: it costs no force.
 //
-// Newton's method uses the last factors of M - s K as long as they converge, and else a new K. If
-// M - s K is not positive definite, only some of the compression is kept (see compression.hpp). So
+// Newton's method uses the last factors of M - s K as long as it converges, and else a new K. If M
+// - s K is not positive definite, only a part of the compression is kept (see compression.hpp). So
 // directions descend, and a step that does not decrease g is halved until it does. A system without
 // V has no g, and its steps are whole.
 class ImplicitStep : public FixedStep {
  public:
-  // Solving far below the step's own error gains nothing. But a method that keeps an invariant
-  // keeps it only as well as its stages are solved.
+  // Default parts of a prediction's error that a stage's solve leaves. Less gains nothing for most
+  // methods, but invariants are conserved only as well as stages are solved.
   static constexpr double usual_tolerance = 1e-4, tolerance_for_invariants = 1e-9;
 
   // `solve_tolerance`: used if the options give none.
@@ -30,9 +30,9 @@ class ImplicitStep : public FixedStep {
                double solve_tolerance = usual_tolerance);
 
  protected:
-  // Solves the stage at q = q_n for u_, which holds its prediction, with u* in free_. It leaves the
-  // tolerance times the prediction's error, which is of the size of the step's own error. Returns
-  // reached_end, newton_failed, indefinite_matrix, not_finite or over_budget.
+  // Solves the stage at q = q_n for u_, which holds its prediction, with u* in free_. The remaining
+  // error is the tolerance times the prediction's error, which is of the size of the step's own
+  // error. Returns reached_end, newton_failed, indefinite_matrix, not_finite or over_budget.
   Outcome solve_stage(const Vec& q, double s);
 
   void start(const State&) override;
@@ -46,7 +46,7 @@ class ImplicitStep : public FixedStep {
   virtual void stage_force(const Vec& q, const Vec& u, Vec& f);
   virtual void stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                                SymmetricMatrix& k);
-  // Whether a stage's f is the gradient of a potential, so that there is a g to decrease.
+  // Whether a stage's f is the gradient of a potential, so that g exists.
   virtual bool is_minimisation() const { return true; }
   // Whether a stage's f uses forces at q itself, which then have to be linear as well.
   virtual bool knows_start() const { return false; }
@@ -61,7 +61,7 @@ class ImplicitStep : public FixedStep {
   // correction leads to.
   bool crosses_kink(const Vec& q);
   void residual(const Vec& q, double s);
-  // Factorises with up to twice the compression of the last factors, or less until it works.
+  // Factorises with up to twice the compression of the last factors, or with less if that fails.
   Outcome factorize(const Vec& q, double s);
   Outcome factorize_softened(const Vec& q, double s);
   // May also return indefinite_matrix: conjugate gradients detect it only while solving.
@@ -71,13 +71,13 @@ class ImplicitStep : public FixedStep {
 
   const double tolerance_;
   const Kinks* kinks_;             // nullptr if f has no kinks
-  const PiecewiseLinear* pieces_;  // nullptr if a constant K says all
+  const PiecewiseLinear* pieces_;  // nullptr if a constant K implies a linear f
   Vec x_, f_, r_, p_, before_, start_, length_, other_length_;
   SymmetricMatrix k_;
   EffectiveMass matrix_;
-  double factorized_s_ = 0;  // of the factors at hand; 0: none
-  Compression compression_;  // with which they were made
-  // The error of the last stage's prediction, and the rate at which its corrections shrank.
+  double factorized_s_ = 0;  // s of the present factors; 0: none
+  Compression compression_;  // of the present factors
+  // The error of the last stage's prediction, and the rate of convergence of its corrections.
   double last_missed_ = 0, last_rate_ = 1;
 };
 

@@ -9,18 +9,18 @@
 namespace qddot {
 
 // A step of alternating kicks v += y h M^-1 f(q) and drifts q += x h v. Each is the exact motion of
-// a part of H = T(v) + V(q), so the step is symplectic. It is time-reversible if both lists are the
-// same read backwards. The longer list comes first and last.
+// a part of H = T(v) + V(q), so the step is symplectic. It is time-reversible if both lists are
+// palindromes. The longer list comes first and last.
 struct Splitting {
   int order;
   std::vector<double> kicks, drifts;  // y and x, each of sum 1
 };
 
-// The list of `size` numbers that is the same read backwards, given its first half and middle.
+// The palindrome of `size` numbers with the given first half and middle.
 std::vector<double> mirrored(std::vector<double> half, std::size_t size);
 
 // The steps of a splitting. If a kick is first, the last force of a step is the first of the next:
-// one evaluation a drift, and one to begin. Otherwise one evaluation a kick.
+// one evaluation for each drift, and one at the start. Otherwise each kick takes one evaluation.
 class KickDrift final : public FixedStep {
  public:
   KickDrift(const Method& method, const System& system, const Options& options,
@@ -35,7 +35,7 @@ class KickDrift final : public FixedStep {
   const Splitting& splitting_;
   bool kicks_first_;
   CompensatedSum q_, v_;
-  Vec f_;  // where the last kick was, or where the next one is
+  Vec f_;  // at the last kick, or at the next one
 };
 
 // Makes the integrator of a splitting; for Method::make.

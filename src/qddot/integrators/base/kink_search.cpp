@@ -6,7 +6,7 @@
 namespace qddot {
 namespace {
 
-// A length may change its sign twice within a step; so it is looked at this often.
+// The number of looks at a length within a step, as it may change its sign twice.
 constexpr int looks = 8;
 constexpr int bisections = 60;
 
@@ -19,7 +19,7 @@ struct Cubic {
     return r * r * ((1 + 2 * s) * value[0] + s * slope[0]) +
            s * s * ((1 + 2 * r) * value[1] - r * slope[1]);
   }
-  // The first place of another sign than that at 0, or none.
+  // The first place with another sign than that at 0, or none.
   std::optional<double> first_change() const {
     const auto differs = [&](double s) { return at(s) * value[0] <= 0; };
     for (int look = 1; look <= looks; ++look) {

@@ -6,9 +6,8 @@
 
 namespace qddot {
 
-// Finds where the force jumps between two states (see Kinks). No error estimate of a formula sees
-// that everywhere. If the jump is passed before all stages but the first, or after the last one,
-// the weights of the two formulas may agree.
+// Finds jumps of the force between two states (see Kinks). Error estimates do not always see them:
+// if a jump is before all stages but the first, or after the last one, both formulas may agree.
 class KinkSearch {
  public:
   // A system without kinks costs nothing.

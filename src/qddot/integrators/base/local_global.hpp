@@ -44,9 +44,9 @@ class LocalGlobal : public FixedStep {
   int iterations_;
   bool descends_;
   LaplacianMass matrix_;
-  const State* now_ = nullptr;  // where the step at hand begins
+  const State* now_ = nullptr;  // the start of the present step
   double h_ = 0, factorized_h_ = 0;
-  bool is_finite_ = true;  // the last direction
+  bool is_finite_ = true;  // whether the last direction is finite
   Vec q_{system().size()}, f_{system().size()}, trial_{system().size()};
 };
 

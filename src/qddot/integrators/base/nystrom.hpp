@@ -11,8 +11,8 @@ namespace qddot {
 // Steps of an embedded pair; the higher order is propagated. Each attempt takes s - 1 forces; an
 // accepted one takes another at its end unless that is its last stage. The error test does not see
 // an instability of modes that hardly move yet. So steps are held to h <= stable_hw/w_max, with
-// Gershgorin's bound of w_max, renewed every few steps. Nothing bounds the frequency of a system
-// without K; there the error test has to do.
+// Gershgorin's bound of w_max, renewed every few steps. Without K there is no bound, and the error
+// test is the only limit.
 class Nystrom final : public AdaptiveStep {
  public:
   Nystrom(const Method& method, const System& system, const Options& options,

@@ -16,7 +16,8 @@ class RenewedBound {
       : system_(system), has_k_(system.has_stiffness()), k_(system.stiffness_pattern()) {}
 
   void start() { renewed_at_ = never; }
-  // The bound for step number `step`, 0, 1, ..., of a run; stiffness(k) computes K where it begins.
+  // The bound for step number `step`, 0, 1, ..., of a run; stiffness(k) computes K at the step's
+  // start.
   template <class Stiffness>
   double at(std::int64_t step, const Stiffness& stiffness) {
     if (!has_k_) return 0;

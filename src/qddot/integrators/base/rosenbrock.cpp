@@ -8,13 +8,13 @@
 namespace qddot {
 namespace {
 
-// Interpolation between two ends of steps errs by h^6, a step by h^5.
+// Interpolation between two ends of steps has an error of order h^6, a step one of order h^5.
 constexpr std::size_t instants = 2;
-// The part of a step's allowed error that an iterative solve for a stage may make. Nothing corrects
-// it, later stages multiply it by up to some 30, and it adds up over the steps. The formula's own
-// errors are far below the estimate.
+// The part of a step's allowed error that an iterative solve for a stage may leave. Nothing
+// corrects it, later stages multiply it by up to some 30, and it adds up over the steps. The
+// formula's own errors are far below the estimate.
 constexpr double stage_share = 1e-4;
-// The part of the right-hand side that is within rounding.
+// The smallest relative residual; below it is rounding.
 constexpr double tightest = 1e-15;
 
 }  // namespace
@@ -94,7 +94,7 @@ Outcome Rosenbrock::attempt(const Instant& now, double h, Instant& next, Vec& er
   return Outcome::reached_end;
 }
 
-// Makes the factors of M - g^2 K(q) unless the last ones are these.
+// Factorises M - g^2 K(q) unless the last factors are of this matrix.
 bool Rosenbrock::factorize(const Vec& q, double g) {
   if (has_k_ && g == factorized_g_) return true;
   if (!has_k_) stiffness(q, k_);

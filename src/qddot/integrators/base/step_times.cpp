@@ -8,7 +8,7 @@
 namespace qddot {
 namespace {
 
-// A rest that is a smaller part of h is no step of its own: the last step is that much longer.
+// If the rest of the time is a smaller part of h, the last step is longer by it instead.
 constexpr double sliver = 1e-6;
 
 }  // namespace
@@ -19,8 +19,7 @@ StepTimes::StepTimes(double t_start, double t_end, double h)
   rounding_ = 4 * machine_epsilon * std::max(std::abs(t_start), std::abs(t_end));
   count_ = std::max(1.0, std::ceil((t_end - t_start) / h - sliver - rounding_ / h));
   can_be_taken_ = h > 0 && count_ < most_steps && t_end - h != t_end;
-  // If the last step differs from h by rounding only, it is h, so that factorisations for h serve
-  // it too.
+  // If the last step differs from h by rounding only, it is h, so that factors for h can be used.
   const double last = t_end - (t_start + (count_ - 1) * h);
   last_h_ = std::abs(last - h) <= rounding_ ? h : last;
   rounding_ = std::min(rounding_, h / 4);

@@ -22,7 +22,7 @@ class StiffFlow {
   // The largest step times w_max, with room for changes of w_max along the motion.
   static constexpr double largest_step_times_frequency = order == 2 ? 1.8 : 3.0;
 
-  // `coefficients`: how many p has, at most 7.
+  // `coefficients`: their number in p, at most 7.
   StiffFlow(const Vec& mass, int coefficients)
       : mass_(mass),
         coefficients_(coefficients),

@@ -13,7 +13,7 @@ namespace {
 using Complex = std::complex<double>;
 using Long = long double;
 
-// The palindrome of odd length whose first half, up to the middle, is given.
+// The odd palindrome with the given first half and middle.
 std::vector<double> palindrome(const std::vector<std::int64_t>& half, std::int64_t denominator) {
   std::vector<double> all;
   const auto divisor = static_cast<double>(denominator);
@@ -76,8 +76,8 @@ SymmetricStart symmetric_start(const SymmetricFormula& formula) {
   using Matrix = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
   const std::vector<double> r = formula.cofactor(), beta = formula.all_beta();
   const Eigen::Index m = formula.steps - 2;
-  // Each u and each difference as a combination of the m numbers u_0, u_{-1}, ... and of h^2 g_1,
-  // h^2 g_2, ...: a row of 2m numbers.
+  // Each u and each difference is a row of 2m numbers: a combination of the m numbers u_0, u_{-1},
+  // ... and of h^2 g_1, h^2 g_2, ...
   Matrix u = Matrix::Zero(2 * m, 2 * m);  // u_{1-m} ... u_m
   Matrix difference = Matrix::Zero(m, 2 * m);
   for (Eigen::Index l = 0; l < m; ++l) u(m - 1 - l, l) = 1;

@@ -25,7 +25,7 @@ struct SymmetricFormula {
   std::vector<std::int64_t> rho;  // rho_k ... rho_{k/2}, half of them
   std::int64_t beta_denominator;
   std::vector<std::int64_t> beta;       // beta_{k-1} ... beta_{k/2}
-  const NystromPair& (*single_step)();  // a step of another length, of order k at least
+  const NystromPair& (*single_step)();  // a step of another length, of order k or more
 
   // All coefficients as numbers, rho_k ... rho_0 and beta_{k-1} ... beta_1.
   std::vector<double> all_rho() const;

@@ -47,13 +47,13 @@ class SymmetricMultistep final : public FixedStep {
   SymmetricStart symmetric_start_;
   NystromStages stages_;
   Vec h2_by_mass_;
-  double h_ = 0;  // of all steps but a last one [s]
+  double h_ = 0;  // of all steps but the last [s]
   DeferredCorrection first_;
   Index begun_ = 0;            // steps since the start, k - 1 at most
   std::vector<Vec> u_;         // a ring buffer, with a place for the next
-  std::ptrdiff_t newest_ = 0;  // that place
+  std::ptrdiff_t newest_ = 0;  // the place of the next
   Vec d_, d_next_, f_, a_;
-  bool force_is_known_ = false;  // f_ is that of the history's last q
+  bool force_is_known_ = false;  // whether f_ is the force at the history's last q
   bool has_history_ = false;
   std::vector<const double*> past_;
   std::vector<double> weights_;
