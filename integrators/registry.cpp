@@ -86,8 +86,8 @@ const std::vector<Method>& methods() {
 
 namespace {
 
-// Replaces a method if there is nothing to step. If there are no unknowns, advance() lets time
-// pass. If the method does not fit the system, advance() refuses before it would run.
+// Replaces the integrator of a method that cannot step. Without unknowns, advance() lets time pass.
+// If the method does not fit the system, advance() refuses.
 class Rest final : public Integrator {
  public:
   using Integrator::Integrator;

@@ -52,7 +52,7 @@ class EnergyMomentum final : public ImplicitStep {
   bool is_minimisation() const override { return false; }
   bool knows_start() const override { return true; }
 
-  Vec a_{system().size()};  // the mean of the last step, which predicts the next
+  Vec a_{system().size()};  // the mean of the last step; predicts the next
   Vec x_{system().size()};
 };
 

@@ -115,7 +115,8 @@ namespace {
 
 std::unique_ptr<Integrator> make_dprkn12(const Method& method, const System& system,
                                          const Options& options) {
-  // Steps are so long that no polynomial through their ends is as accurate as they are.
+  // Its steps are too long for interpolation: no polynomial through their ends is as accurate as
+  // they are.
   return std::make_unique<Nystrom>(method, system, options, dprkn12_pair(), 0);
 }
 

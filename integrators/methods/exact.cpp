@@ -16,7 +16,7 @@
 namespace qddot::registered {
 namespace {
 
-// A dense eigenproblem of about ten seconds; n^2 numbers of memory.
+// The most unknowns: a dense eigenproblem of about ten seconds, and n^2 numbers of memory.
 constexpr Index largest_size = 2000;
 
 class Exact final : public FixedStep {

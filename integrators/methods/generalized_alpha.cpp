@@ -20,7 +20,7 @@ struct Alphas {
   double m, f;
 };
 
-// Eq. 25: of all with that rho, those that damp low frequencies least.
+// Eq. 25: the alphas for this rho that damp low frequencies least.
 Alphas least_damping(double rho) { return {(2 * rho - 1) / (rho + 1), rho / (rho + 1)}; }
 
 // Hilber, Hughes, Taylor (Earthquake Engineering and Structural Dynamics 5 (1977) 283-292):
@@ -51,13 +51,13 @@ class GeneralizedAlpha : public ImplicitStep {
     last_h_ = other.last_h_;
   }
 
-  // The equation of motion holds between the steps, so that a_n is the acceleration at
-  // t_n + (alpha_m - alpha_f) h, to second order. A step h' after a step h needs the acceleration
-  // at t_n + (alpha_m - alpha_f) h'. It is taken on the line through the last two:
+  // The equation of motion holds between the steps, so that a_n is the acceleration at t_n +
+  // (alpha_m - alpha_f) h, to second order. A step h' after a step h needs the acceleration at t_n
+  // + (alpha_m - alpha_f) h'. It is taken on the line through the last two:
   //   a_n + (alpha_m - alpha_f) (h'/h - 1) (a_n - a_{n-1})
-  // Without that, each change of h would leave an error of first order in it. Steps only ever
-  // shorten (the last one, and those to what is observed between two), so that the line is not
-  // followed far.
+  // Without that, each change of h would leave an error of first order in it. Steps only become
+  // shorter (the last one, and those to observed times between two), so that the line is not
+  // extended far.
   Outcome step(const State& now, double h, State& next) override {
     if (last_h_ > 0 && h != last_h_) {
       a_ += (alpha_.m - alpha_.f) * (h / last_h_ - 1) * (a_ - last_a_);

@@ -34,7 +34,7 @@ class ImplicitMidpoint final : public ImplicitStep {
     return Outcome::reached_end;
   }
 
-  Vec a_{system().size()};  // of the last step's middle, which predicts the next
+  Vec a_{system().size()};  // at the last step's midpoint; predicts the next
 };
 
 }  // namespace

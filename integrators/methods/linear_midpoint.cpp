@@ -35,22 +35,22 @@
 namespace qddot::registered {
 namespace {
 
-// Implicit midpoint steps by v' = v + h M^-1 f(q_mid), q_mid = q + h/4 (v + v'). From x, to which
-// the velocity of the start leads, q_mid is x + h/4 (v' - v). With f linear on that way this is
-// A (v' - v) = h f(x).
+// An implicit midpoint step is v' = v + h M^-1 f(q_mid) with q_mid = q + h/4 (v + v'). The velocity
+// at the start leads to x, and q_mid is x + h/4 (v' - v). If f is linear between x and q_mid, this
+// is A (v' - v) = h f(x).
 //
-// Motion across stiff springs does not notice their stiffness k: at x they are too long by O(h^2),
-// and what k makes of that in f it makes in A too. This leaves a displacement of O(h^2), and rods
-// in the limit. Tension is no part of A. There h^2 k O(h^2) of it would weigh as mass across the
-// springs, and with the other sign make A indefinite.
+// Motion across stiff springs does not depend on their stiffness k. At x they are too long by
+// O(h^2), and k enters f and A alike. This leaves a displacement of O(h^2), and rods in the limit.
+// A has no tension: that would add h^2 k O(h^2) to the mass across the springs, which with the
+// other sign makes A indefinite.
 //
 // Stern and Grinspun, Multiscale Modeling and Simulation 7:4 (2009) 1779-1794, solve the implicit
-// midpoint of the stiff part to the end. This is a first iteration towards that, and as exact where
-// three factorisations a step bring that to its end.
+// midpoint rule for the stiff part exactly. This is the first iteration of their solve. It is as
+// accurate where three factorisations a step make that solve converge.
 //
-// Each of the five steps of order 4 turns stiff vibrations in the norm of their energy, whatever
-// the step's size, so that the one back in time does no harm. Kick, drift, kick with the same A
-// keeps another norm at each size and blows up.
+// Each of the five steps of order 4 turns stiff vibrations in the norm of their energy, at any
+// size. So the step back in time does no harm. Kick, drift, kick with the same A
+// conserves another norm at each size, and blows up.
 constexpr std::array<double, 1> plain = {1};
 constexpr std::array<double, 5> suzuki = [] {
   constexpr double p = 0.41449077179437573714;
@@ -92,7 +92,7 @@ class LinearMidpoint final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // v += h A^-1 f; A is M for the unknowns that are not implicit.
+  // v += h A^-1 f; A is M for the explicit unknowns.
   Outcome kick(double h, State& next) {
     if (!split_) {
       Outcome outcome = factorize(h, next.q);
@@ -117,7 +117,8 @@ class LinearMidpoint final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // A at x, the positions of the implicit part; where K is constant, only for another |h|.
+  // Factorises A at x, the positions of the implicit part. With a constant K this is done for
+  // another |h| only.
   Outcome factorize(double h, const Vec& x) {
     if (implicit_.stiffness_is_constant() && std::abs(h) == factorized_h_) {
       return Outcome::reached_end;
@@ -145,10 +146,10 @@ class LinearMidpoint final : public FixedStep {
     return check_solve(matrix_->solve(b, x));
   }
 
-  const Split* split_;                     // none: every spring is in the matrix
-  const System& implicit_;                 // whose stiffness is, by its
-  const SplitStiffness* split_stiffness_;  // material part, where it has one
-  std::unique_ptr<EffectiveMass> matrix_;  // none where that has no unknowns
+  const Split* split_;                     // nullptr: every spring is in the matrix
+  const System& implicit_;                 // the system of the matrix's stiffness
+  const SplitStiffness* split_stiffness_;  // its material part; nullptr if it has none
+  std::unique_ptr<EffectiveMass> matrix_;  // empty if the implicit part has no unknowns
   SymmetricMatrix k_;
   Vec f_, change_, own_, own_change_;
   double factorized_h_ = 0;

@@ -53,7 +53,7 @@ class Anderson final : public LocalGlobal {
     ++iteration_;
   }
 
-  // The newest differences take the place of the oldest.
+  // The newest differences replace the oldest.
   void remember() {
     const int at = (iteration_ - 1) % window;
     dp_[at] = p_ - last_p_;
@@ -63,7 +63,8 @@ class Anderson final : public LocalGlobal {
 
   int remembered() const { return std::min(iteration_, window); }
 
-  // Differences that almost agree would be weighed by what rounding leaves of them.
+  // Computes the weights of the differences. A term on the diagonal keeps rounding from deciding
+  // those of almost parallel ones.
   void combine() {
     const int m = remembered();
     for (int i = 0; i < m; ++i) theta_[i] = dp_[i].dot(p_);

@@ -37,8 +37,8 @@ class Chebyshev final : public LocalGlobal {
   }
 
  private:
-  // What is outside of a narrower interval grows no less slowly in a few iterations, while what is
-  // inside shrinks faster: the widest one in which k iterations gain a digit.
+  // Takes the widest interval in which k iterations gain a digit. A narrower one makes errors
+  // inside shrink faster, and errors outside grow faster in a few iterations.
   void begin_step() override {
     const double hw = step_size() * frequency_;
     const double widest = hw * hw / (1 + hw * hw);
@@ -79,8 +79,8 @@ class Chebyshev final : public LocalGlobal {
   }
 
   double frequency_, sigma_squared_ = 0, gamma_ = 1;
-  double omega_ = 0;  // the last one; 0 at the start of a step, -1 after a plain iteration
-  double size_ = 0;   // the last r'p
+  double omega_ = 0;  // of the last iteration; 0 at the start of a step, -1 after a plain one
+  double size_ = 0;   // r'p of the last iteration
   Vec r_{system().size()}, p_{system().size()}, trial_{system().size()}, before_{system().size()};
 };
 

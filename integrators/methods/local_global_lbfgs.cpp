@@ -20,7 +20,7 @@ namespace qddot::registered {
 namespace {
 
 constexpr int most_pairs = 5;
-// A decrease of the energy that is a smaller part of it cannot be told from rounding.
+// A decrease of the energy by less than this fraction is rounding.
 constexpr double hidden = 100 * machine_epsilon;
 
 class Lbfgs final : public LocalGlobal {
@@ -69,8 +69,8 @@ class Lbfgs final : public LocalGlobal {
     search(v, p_, slope, energy_);
   }
 
-  // A pair without curvature would make the metric indefinite; it is left out, and so is the
-  // oldest, whose place it has taken.
+  // A pair without curvature would make the metric indefinite. It is left out, and so is the oldest
+  // pair, whose place it has taken.
   void remember(const Vec& v) {
     Pair& pair = pairs_[pairs_seen_ % most_pairs];
     pair.s = v - last_v_;

@@ -30,12 +30,12 @@
 namespace qddot::registered {
 namespace {
 
-// In a step; more of them than anyone would wait for.
+// The most short steps in a step, far more than any run has time for.
 constexpr double most_short_steps = 1e6;
 
 template <int k>
 class MultirateAdams final : public FixedStep {
-  using Row = Eigen::Matrix<double, k, 1>;  // a number for each of the k points, the newest first
+  using Row = Eigen::Matrix<double, k, 1>;  // one number for each of the k points, the newest first
 
   static constexpr int stiff_order = k <= 3 ? 2 : 4;
   using Flow = StiffFlow<stiff_order>;
@@ -88,8 +88,8 @@ class MultirateAdams final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // The first step is divided in k - 1, whose forces are found together. Each iteration follows the
-  // polynomial through the last forces, beginning with a constant, and gains two orders.
+  // The first step is divided into k - 1 steps, whose forces are found together. Each iteration
+  // integrates the polynomial through the last forces, from a constant on, and gains two orders.
   Outcome first_step(const State& now, double h, State& next) {
     const double part = h / (k - 1);
     for (int j = 1; j < k; ++j) {
@@ -112,18 +112,18 @@ class MultirateAdams final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // The column of a_ that is so many points after the newest.
+  // The column of a_ of the point that is `after` points after the newest.
   Index column(int after) const { return (newest_ + after + 2 * (k + 1)) % (k + 1); }
   double& time(Index column) { return at_[static_cast<std::size_t>(column)]; }
 
-  // a at q, t [s] after the step's start.
+  // Computes a at q, t [s] after the step's start.
   void evaluate(const Vec& q, double t, Index column) {
     force(*split_.soft, q, f_);
     divide(f_, system().mass(), a_.col(column));
     time(column) = t;
   }
 
-  // x_j for a step h from t on.
+  // x_j of the k points for a step h from t on.
   Row points(double t, double h) {
     Row x;
     for (int j = 0; j < k; ++j) x[j] = (time(column(-j)) - t) / h;
@@ -139,14 +139,14 @@ class MultirateAdams final : public FixedStep {
     return powers.inverse();
   }
 
-  // In the order of the columns of a_, 0 for the one that is no point.
+  // The weights in the order of the columns of a_; 0 for the column without a point.
   std::array<double, k + 1> by_column(const Row& weights) const {
     std::array<double, k + 1> all{};
     for (int j = 0; j < k; ++j) all[static_cast<std::size_t>(column(-j))] = weights[j];
     return all;
   }
 
-  // `next` is a step h after `now`, which is t after the step's start, along p.
+  // Advances the state by h from `now`, which is t after the step's start, with soft forces p.
   Outcome follow(const State& now, double t, double h, State& next) {
     const Eigen::Matrix<double, k, k> polynomials = basis(points(t, h));
     Row once = Row::Zero(), twice = Row::Zero();
@@ -159,7 +159,7 @@ class MultirateAdams final : public FixedStep {
     return block_.size() > 0 ? follow_stiff(now, polynomials, h, next) : Outcome::reached_end;
   }
 
-  // The same for the nodes of stiff springs.
+  // Advances the nodes of stiff springs.
   Outcome follow_stiff(const State& now, const Eigen::Matrix<double, k, k>& polynomials, double h,
                        State& next) {
     const std::vector<Index>& stiff = split_.stiff_unknowns;
@@ -193,9 +193,9 @@ class MultirateAdams final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // How many short steps a step needs, where the step times w_max of the stiff forces is x: as few
-  // as are stable, and where that is one, as many as make their error fall as that of the step,
-  // down to where both are rounding.
+  // The number of short steps in a step, x being the step times w_max of the stiff forces. It is
+  // the least stable number. If that is one, it is the number that makes their error fall as that
+  // of the step, until both are rounding.
   static double short_steps(double x) {
     constexpr double most = Flow::largest_step_times_frequency, most_for_order = 1000;
     const double for_order = std::pow(1 / x, (k + 1.0) / stiff_order - 1);
@@ -223,10 +223,10 @@ class MultirateAdams final : public FixedStep {
   const System& block_;
   Flow flow_;
   RenewedBound stiff_bound_;
-  Eigen::MatrixXd a_;               // a column for each of the points, and one for the next
-  std::array<double, k + 1> at_{};  // [s], when these are, from where the run is on
-  Index newest_ = 0;                // column
-  bool is_known_ = false;           // a at k points
+  Eigen::MatrixXd a_;               // a column for each point, and one for the next
+  std::array<double, k + 1> at_{};  // [s], times of the columns relative to the run's present time
+  Index newest_ = 0;                // column of the newest point
+  bool is_known_ = false;           // whether a is known at k points
   Vec f_, x_, u_;                   // x_, u_: of the stiff block
   State from_;
 };

@@ -38,7 +38,7 @@ class Rk4 final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // a_i at a stage, and so much of the stage's rate into `next`.
+  // Computes a_i at a stage and adds `weight` times the stage's rate to `next`.
   void add_stage(const Vec& q, const Vec& v, double weight, State& next) {
     force(q, a_);
     divide(a_, system().mass(), a_);

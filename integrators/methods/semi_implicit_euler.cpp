@@ -34,7 +34,7 @@ class SemiImplicitEuler final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // Makes the factors of M - h^2 K(q) unless the last ones are these.
+  // Factorises M - h^2 K(q) unless the last factors are of this matrix.
   bool factorize(const Vec& q, double h) {
     if (system().stiffness_is_constant() && h == factorized_h_) return true;
     stiffness(q, k_);

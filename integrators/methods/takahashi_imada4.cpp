@@ -17,15 +17,14 @@
 namespace qddot::registered {
 namespace {
 
-// Undoing the change of coordinates asks for no forces of its own. The steps before and after a
-// state (q, v) have their forces at q - h/2 v and q + h/2 v: F- and F+, and the shifted G- and G+.
-// So
+// The change of coordinates is undone without forces of its own. The steps before and after a state
+// (q, v) have their forces at q - h/2 v and q + h/2 v: F- and F+, and the shifted G- and G+. So
 //   f = (F- + F+)/2,   K v = (F+ - F-)/h,   2 s K M^-1 f = (G- - F- + G+ - F+)/2,
 // exactly where f is linear and but for terms of h^2 elsewhere. The series of the inverse begins
 // with
 //   q - s M^-1 f + s^2 M^-1 K M^-1 f = q - s/4 M^-1 (3 (F- + F+) - (G- + G+)),
 //   v + s M^-1 K v = v + s/h M^-1 (F+ - F-).
-// Its next term for v makes energies no better.
+// Its next term for v does not make energies more accurate.
 class TakahashiImada4 final : public FixedStep {
  public:
   using FixedStep::FixedStep;
@@ -43,7 +42,7 @@ class TakahashiImada4 final : public FixedStep {
   void start(const State&) override { has_begun_ = ahead_is_known_ = false; }
 
   Outcome step(const State& now, double h, State& next) override {
-    if (h != options().step_size) {  // the last, or to a time between steps
+    if (h != options().step_size) {  // the last step, or one to a time between steps
       enter(now, h, now_);
       has_begun_ = ahead_is_known_ = false;
       advance(h);
@@ -72,7 +71,7 @@ class TakahashiImada4 final : public FixedStep {
     if (may_evaluate) leave(options().step_size, now);
   }
 
-  // The forces of the step h from now_; the position of the first is left in next_.q.
+  // Computes the forces of a step h from now_; leaves the position of the first one in next_.q.
   void look_ahead(double h) {
     add_scaled(now_.q, h / 2, now_.v, next_.q);
     if (ahead_is_known_) return;
@@ -82,7 +81,7 @@ class TakahashiImada4 final : public FixedStep {
     ahead_is_known_ = true;
   }
 
-  // From now_ to next_.
+  // Advances from now_ to next_.
   void advance(double h) {
     look_ahead(h);
     add_quotient(now_.v, h, ahead_.shifted, system().mass(), next_.v);
@@ -103,7 +102,7 @@ class TakahashiImada4 final : public FixedStep {
     add_quotient(from.q, s, ahead_.f, mass, to.q);
   }
 
-  // now_, which a step h has come to, in the motion's own coordinates.
+  // Transforms now_, which a step h has reached, to the motion's own coordinates.
   void leave(double h, State& to) {
     look_ahead(h);
     const double s = h * h / 24;
@@ -117,7 +116,7 @@ class TakahashiImada4 final : public FixedStep {
   Kernel now_ = two_vectors<Kernel>(), next_ = two_vectors<Kernel>();
   Kick behind_ = two_vectors<Kick>(), ahead_ = two_vectors<Kick>();
   bool has_begun_ = false;
-  bool ahead_is_known_ = false;  // ahead_ is that of now_
+  bool ahead_is_known_ = false;  // whether ahead_ belongs to now_
   Vec x_{system().size()};
 
   template <class T>

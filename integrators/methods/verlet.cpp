@@ -12,8 +12,8 @@
 namespace qddot::registered {
 namespace {
 
-// The second kick of a step and the first of the next are done in one pass over the vectors, with
-// the drift: a step ends with v_{n+1/2} until somebody looks.
+// The second kick of a step, the first of the next and the drift are done in one pass over the
+// vectors: a step ends with v_{n+1/2} until it is observed.
 class Verlet final : public FixedStep {
  public:
   using FixedStep::FixedStep;
@@ -57,8 +57,8 @@ class Verlet final : public FixedStep {
 
   CompensatedSum q_{options().compensated, system().size()};
   CompensatedSum v_{options().compensated, system().size()};
-  Vec f_{system().size()}, f_next_{system().size()};  // at the state that a step begins and ends at
-  double half_ = 0, half_next_ = 0;  // the last kick of the step that led there [s]
+  Vec f_{system().size()}, f_next_{system().size()};  // at the start and at the end of the step
+  double half_ = 0, half_next_ = 0;                   // last kick of the step that led there [s]
 };
 
 }  // namespace

@@ -36,12 +36,12 @@ Arkode::Arkode(const Method& method, const System& system, const Options& option
   newton_ = std::make_unique<NewtonTest>(y(), context());
   check(ARKStepSetNonlinearSolver(memory(), newton_->solver()), "ARKStepSetNonlinearSolver");
   newton_->attach();
-  // The rate at a stage is (z - what is known)/(h a_ii), not f of its solution z. f multiplies what
-  // Newton's iteration has left on stiff modes by (h w)^2. The error test would take that for an
-  // error of the formula (Hairer and Wanner, Solving ODEs II, section IV.8).
+  // The rate at a stage is computed as (z - known part)/(h a_ii), not as f of its solution z. f
+  // multiplies what Newton's iteration has left on stiff modes by (h w)^2. The error test would
+  // take that for an error of the formula (Hairer and Wanner, Solving ODEs II, section IV.8).
   check(ARKStepSetDeduceImplicitRhs(memory(), 1), "ARKStepSetDeduceImplicitRhs");
-  // K is made anew with the factors, and these at least every few steps. The iteration then takes
-  // half as many rounds as with ARKODE's own policy (K every 50 steps, a start at y_n).
+  // K is recomputed with the factors, at least every few steps. The iteration then takes half as
+  // many rounds as with ARKODE's own policy (K every 50 steps, a start at y_n).
   check(ARKStepSetJacEvalFrequency(memory(), 1), "ARKStepSetJacEvalFrequency");
   check(ARKStepSetLSetupFrequency(memory(), steps_with_one_matrix), "ARKStepSetLSetupFrequency");
   // Each stage starts on the parabola through the last step, which costs no force of its own.

@@ -61,7 +61,7 @@ class Arkode : public Stepper {
   std::unique_ptr<void, FreeMemoryBy<ARKStepFree>> memory_;
 };
 
-// ARKODE's flags are the same for all of its steppers.
+// The cause of a flag, which all ARKODE steppers share.
 Cause cause_of_arkode(int flag);
 
 }  // namespace qddot::sundials

@@ -4,13 +4,13 @@
 
 namespace qddot::sundials {
 
-// Why a library of SUNDIALS gave up, whatever its own flag for it is.
+// The reason why a library of SUNDIALS failed, whatever its own flag for it.
 enum class Cause {
   error_test,        // the estimated error of a step stayed too large however short the step
   accuracy,          // the tolerances ask for more than rounding allows
   convergence,       // Newton's iteration did not converge however short the step
   setup,             // no factors could be made
-  force,             // f or K is not finite within the next step, a shorter one where that is tried
+  force,             // f or K is not finite within the next step, even a shorter one
   first_force,       // f is not finite at the start
   consistent_start,  // no positions of massless nodes were found that balance them
   loose_massless,    // springs no longer hold a massless node
@@ -20,7 +20,7 @@ enum class Cause {
 };
 
 Outcome outcome_of(Cause cause);
-// What happened, as the beginning of a sentence, and what to turn, as the end of it.
+// The event as the beginning of a sentence, and the remedy as its end.
 const char* what_happened(Cause cause);
 const char* what_to_turn(Cause cause, bool has_fixed_step);
 

@@ -25,7 +25,7 @@ namespace {
 
 using namespace sundials;
 
-// Rows of A, full; the last one is b as well unless another is given.
+// The full rows of A; b is the last row unless another is given.
 ButcherTable table_of(int order, std::vector<double> c, std::vector<double> a,
                       std::vector<double> b) {
   return ButcherTable(check(ARKodeButcherTable_Create(static_cast<int>(b.size()), order, 0,

@@ -39,9 +39,9 @@ namespace {
 
 using namespace sundials;
 
-// How many times as far as errors of the tolerance alone may move massless nodes.
+// The largest motion of massless nodes, in units of the motion that errors of the tolerance cause.
 constexpr double most_moved_by_errors = 2;
-// A massless node that moves so many times as fast as those with mass is hardly held by anything.
+// A massless node that is this many times as fast as nodes with mass is hardly held by its springs.
 constexpr double most_times_as_fast = 1e8;
 
 template <MakeMatrix make_matrix>
@@ -82,7 +82,7 @@ class Ida final : public Stepper {
     check(IDAReInit(ida(), state.t, y(), rate_.get()), "IDAReInit");
   }
 
-  // y' = (v, M^-1 f), where there is mass.
+  // Sets y' = (v, M^-1 f) of unknowns with mass.
   void set_rate_of_masses() {
     const Halves at(y());
     Halves rate(rate_.get());
@@ -109,11 +109,11 @@ class Ida final : public Stepper {
     int flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
     const auto has_failed = [&] { return flag == IDA_CONV_FAIL || flag == IDA_ERR_FAIL; };
     if (massless_ && has_failed()) {
-      // Where springs hardly hold a massless node, Newton's iteration may fail from positions that
-      // are good to the tolerance, however short the step. About to lose its balance, a node is
-      // held along one direction s by a force like k L (m - (s/L)^2): it stands at s = L m^(1/2),
-      // and positions that are off by rtol L change m by rtol. If it is to move farther, then the
-      // balance is another one, to which it would jump.
+      // If springs hardly hold a massless node, Newton's iteration may fail from positions that are
+      // right to the tolerance, however short the step. Near the loss of its balance, a node is
+      // held along one direction s by a force like k L (m - (s/L)^2). It stands at s = L m^(1/2),
+      // and an error of rtol L in positions changes m by rtol. If the node must move farther, it
+      // would jump to another balance.
       is_lost_ = make_consistent(t, farthest_by_errors()) < 0;
       if (is_lost_) return flag;
       flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
@@ -124,14 +124,14 @@ class Ida final : public Stepper {
     set_massless(Halves(y()).v, Halves(rate_.get()).q);
     is_lost_ = !(massless_speed() < most_times_as_fast * (moving_speed() + options().speed));
     if (is_lost_) return IDA_CONV_FAIL;
-    // A last step that is short leaves q' as a difference of positions which are all good to the
+    // After a short last step, q' would be the difference of two positions, each only right to the
     // tolerance.
     if (t == t_stop) set_massless_velocities();
     return flag;
   }
 
-  // Brings massless nodes to where their forces balance, with y' as it is then: 0, or a flag where
-  // they do not, or only farther away than this along some axis [m].
+  // Moves massless nodes to where their forces balance, and sets y' there. Returns 0, or a flag if
+  // they do not balance or only farther away than `farthest` along some axis [m].
   int make_consistent(double t_start, double farthest = std::numeric_limits<double>::infinity()) {
     Halves at(y());
     const Equilibrium balance = find_equilibrium(*massless_, at.q, options().length);
@@ -147,7 +147,7 @@ class Ida final : public Stepper {
     return 0;
   }
 
-  // The largest speeds along an axis [m/s].
+  // The largest speed of massless nodes along an axis [m/s].
   double massless_speed() const {
     return (system().mass().array() > 0)
         .select(0, Halves(y()).v)
@@ -159,27 +159,26 @@ class Ida final : public Stepper {
         .template lpNorm<Eigen::Infinity>();
   }
 
-  // Whether springs do not hold all massless nodes where they are, as they fold up where
-  // compressed.
+  // Whether springs fail to hold a massless node in place, as compressed ones do.
   bool is_loose() const {
     const CurvatureSigns signs = curvature_signs(*massless_, Halves(y()).q);
     return signs.negative + signs.flat > (system().mass().array() > 0).count();
   }
 
-  // Factors a M - K with so large an a [1/s^2] that in a solution the other nodes keep what is
-  // given for them to rounding; NaN where that is singular.
+  // Factors a M - K with an a [1/s^2] so large that nodes with mass keep their given values to
+  // rounding. Returns a; NaN if the matrix is singular.
   double hold_masses(EffectiveMass& heavy, const SymmetricMatrix& k) const {
     const double stiffest = k.coeffs().cwiseAbs().maxCoeff();
-    const double heaviest = system().mass().maxCoeff();  // 0 where there are no other nodes
+    const double heaviest = system().mass().maxCoeff();  // 0 without other nodes
     const double a = heaviest > 0 ? 1e18 * stiffest / heaviest : 0;
     const bool is_singular = heavy.factorize(a, 1, k) == EffectiveMass::Definiteness::singular;
     return is_singular ? std::numeric_limits<double>::quiet_NaN() : a;
   }
 
-  // Gives massless nodes the velocity in which their forces stay balanced, (a M - K) x = a M v.
+  // Sets the velocities of massless nodes that keep their forces balanced, (a M - K) x = a M v.
   void set_massless_velocities() {
     Halves at(y());
-    SymmetricMatrix k = system().stiffness_pattern();  // for Newton's matrix keeps the one it is of
+    SymmetricMatrix k = system().stiffness_pattern();  // Newton's matrix still needs its own K
     stiffness(at.q, k);
     EffectiveMass heavy(system());
     const double a = hold_masses(heavy, k);
@@ -189,19 +188,19 @@ class Ida final : public Stepper {
     set_massless(at.v, x);
   }
 
-  // How far errors of the tolerance alone may move a massless node [m].
+  // The distance [m] that errors of the tolerance may move a massless node.
   double farthest_by_errors() const {
     return most_moved_by_errors * std::sqrt(rtol()) * options().length;
   }
 
-  // Two places at the bottom of a potential that are nearer to each other than this [m] differ in
-  // it by its rounding: k s^2 = eps k L^2.
+  // The distance [m] of two places near a minimum of the potential below which their potentials
+  // differ by rounding only: k s^2 = eps k L^2.
   double most_rounded() const { return std::sqrt(machine_epsilon) * options().length; }
 
-  // Positions of massless nodes are known no better than to where forces that are off by rounding
-  // balance, (a M - K) x = +-rounding. Where springs hardly hold a node at the start, that may be
-  // more than the tolerance, and no step would be short enough: so it is tolerated, and less and
-  // less as they come to hold it.
+  // Adds the effect of rounding to the tolerance of massless nodes. Rounding of the forces moves
+  // their balance, (a M - K) x = +-rounding. If springs hardly hold a node at the start, this may
+  // exceed the tolerance, and no step would be short enough. The tolerance shrinks as they come to
+  // hold the node.
   void tolerate_rounding() {
     constexpr double roundings = 4 * machine_epsilon;
     const Vec q = Halves(y()).q;
@@ -231,7 +230,7 @@ class Ida final : public Stepper {
     }
   }
 
-  // What IDA divides errors by, 1/w = rtol |y| + what is tolerated.
+  // The weights of IDA's error norm, 1/w = rtol |y| + tolerated error.
   static int weights(N_Vector y, N_Vector w, void* user) {
     const auto& self = *static_cast<const Ida*>(static_cast<const Stepper*>(user));
     N_VAbs(y, w);
@@ -313,7 +312,7 @@ class Ida final : public Stepper {
       case IDA_RES_FAIL:
       case IDA_REP_RES_ERR:
         return Cause::force;
-      case IDA_ILL_INPUT:  // of all that it can mean the one that a run comes to
+      case IDA_ILL_INPUT:  // the only cause of this flag that runs meet
         return Cause::end_too_close;
       default:
         return Cause::other;
@@ -327,13 +326,13 @@ class Ida final : public Stepper {
 
   Orders orders_;
   Vector rate_;                      // y'
-  std::optional<Vector> tolerated_;  // absolutely, with massless nodes
-  // The system with all but the massless nodes held; none without such nodes.
+  std::optional<Vector> tolerated_;  // absolute tolerance, with that of massless nodes
+  // The system with all unknowns held but the massless ones; empty without massless nodes.
   std::optional<ConstrainedSystem> massless_;
   bool is_consistent_ = true;
   bool is_lost_ = false;   // whether no balance is left near the massless nodes
   bool is_rough_ = false;  // whether rounding moves a massless node by more than the tolerance
-  OwnCounts earlier_{};    // before IDA was started anew, which forgets them
+  OwnCounts earlier_{};    // before the last start of IDA, which clears its counts
   std::unique_ptr<void, FreeMemoryBy<IDAFree>> memory_;
 };
 

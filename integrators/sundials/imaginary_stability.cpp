@@ -20,7 +20,7 @@ double amplification(const ARKodeButcherTableMem& table, double y) {
 
 double imaginary_stability(const ARKodeButcherTableMem& table) {
   constexpr double growth = 1e-3, resolution = 1e-3;
-  // The leading term alone is too large beyond y = 2 s.
+  // Beyond y = 2 s the leading term alone exceeds the bound.
   for (double y = resolution; y < 2 * table.stages; y += resolution) {
     if (amplification(table, y) > 1 + growth) return y - resolution;
   }

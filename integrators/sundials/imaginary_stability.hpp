@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdio>  // which ARKODE's header forgets
+#include <cstdio>  // missing in ARKODE's header
 
 #include <arkode/arkode_butcher.h>
 

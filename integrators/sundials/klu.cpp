@@ -54,8 +54,8 @@ class Klu final : public NewtonMatrix {
     return flag;
   }
 
-  // SUNDIALS keeps the pivots of its first factors. Those belong to the step sizes of their run and
-  // may not do for the small steps that start the next one; the symbolic analysis does for all.
+  // SUNDIALS keeps the pivots of its first factors. They suit the step sizes of that run and may
+  // not suit the small steps at the start of the next. The symbolic analysis is the same for all.
   int choose_pivots() {
     sun_klu_free_numeric(&content().numeric, &content().common);
     content().numeric =

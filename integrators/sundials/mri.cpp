@@ -34,7 +34,7 @@ constexpr Pair pairs[] = {
     {3, ARKODE_MRI_GARK_ERK33a, ARKODE_BOGACKI_SHAMPINE_4_2_3, "MRI_GARK_ERK33a"},
     {4, ARKODE_MRI_GARK_ERK45a, ARKODE_ZONNEVELD_5_3_4, "MRI_GARK_ERK45a"}};
 
-// Far more than the ratio of any two springs asks for.
+// The most fast steps, far above the ratio of any two springs.
 constexpr double most_fast_steps = 1e6;
 
 struct FreeInner {
@@ -90,7 +90,7 @@ class Mri final : public Stepper {
   void set_stop_time(double) override {}
 
   int take_step(double t_stop, double& t) override {
-    // Small steps below the spacing of times there would be taken for ever.
+    // Small steps below the spacing of times would never end.
     const double furthest = std::max(std::abs(t), std::abs(t_stop));
     if (!(furthest + fast_step_ / 2 > furthest)) return ARK_INNERSTEP_FAIL;
     return MRIStepEvolve(slow_.get(), t_stop, y(), &t, ARK_ONE_STEP);
@@ -124,7 +124,7 @@ class Mri final : public Stepper {
   }
 
   const System &stiff_, &soft_;
-  double fast_steps_ = 1;  // of each step
+  double fast_steps_ = 1;  // in each step
   double fast_step_ = 0;   // [s]
   std::unique_ptr<void, FreeMemoryBy<ARKStepFree>> fast_;
   InnerStepper inner_;

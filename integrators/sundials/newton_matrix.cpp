@@ -8,7 +8,7 @@ int nothing_to_zero(SUNMatrix) { return 0; }
 SUNLinearSolver_Type direct(SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; }
 SUNLinearSolver_ID custom_solver(SUNLinearSolver) { return SUNLINEARSOLVER_CUSTOM; }
 int free_shell(SUNLinearSolver solver) {
-  SUNLinSolFreeEmpty(solver);  // what is behind it belongs to its owner
+  SUNLinSolFreeEmpty(solver);  // its content belongs to its owner
   return 0;
 }
 

@@ -10,9 +10,9 @@
 namespace qddot::sundials {
 
 // The matrix of SUNDIALS' Newton iterations on y = (q, v), and its solver. SUNDIALS decides when it
-// is made anew and from which K. SUNDIALS itself sees a SUNMatrix without entries and a
-// SUNLinearSolver that knows them. K is borrowed and must not change between set_... and the last
-// solve with its factors, which may compute a residual.
+// is set up anew and from which K. SUNDIALS itself has a SUNMatrix without entries and a
+// SUNLinearSolver that refers to this. K is borrowed and must not change between set_... and the
+// last solve with its factors, which may compute a residual.
 class NewtonMatrix {
  public:
   explicit NewtonMatrix(SUNContext context);
@@ -29,13 +29,13 @@ class NewtonMatrix {
   SUNMatrix matrix() const { return matrix_.get(); }
   SUNLinearSolver solver() const { return solver_.get(); }
 
-  // Where to add the time that it takes; nullptr for nowhere.
+  // Sets the record that its time is added to, or nullptr.
   void time_into(Seconds* seconds) { seconds_ = seconds; }
   // The number of indefinite matrices so far: compressed springs outweighed the mass.
   std::int64_t indefinite() const { return indefinite_; }
-  // Forgets what the last run made, such as counts and KLU's pivots.
+  // Clears the state of the last run, such as counts and KLU's pivots.
   virtual void begin_run() { indefinite_ = 0; }
-  // Throws what was thrown behind SUNDIALS' back since the last call.
+  // Rethrows an exception that was caught in a C callback since the last call.
   void rethrow() {
     if (parked_) std::rethrow_exception(std::exchange(parked_, nullptr));
   }
@@ -44,11 +44,11 @@ class NewtonMatrix {
   void count_indefinite() { ++indefinite_; }
 
  private:
-  // Both return 0, or 1 where a smaller step may help.
+  // Both return 0, or 1 if a smaller step may help.
   virtual int factorize() = 0;
   virtual int solve(N_Vector b, N_Vector x) = 0;
 
-  // Runs the body of a C callback, across which no exception passes: -1 with it parked.
+  // Runs the body of a C callback. No exception may pass C code: it is stored, and -1 returned.
   template <class Body>
   int guarded(Body body) noexcept {
     try {
@@ -72,7 +72,7 @@ class NewtonMatrix {
 // M - gamma^2 K, gamma = 1/c (derivation in structured.cpp).
 std::unique_ptr<NewtonMatrix> make_structured(const System& system, SUNContext context,
                                               Solver solver);
-// The stock way: KLU on all 2n x 2n entries.
+// KLU on all 2n x 2n entries, as SUNDIALS' users do.
 std::unique_ptr<NewtonMatrix> make_klu(const System& system, SUNContext context, Solver);
 
 }  // namespace qddot::sundials

@@ -5,11 +5,11 @@
 namespace qddot::sundials {
 namespace {
 
-// Fractions of the tolerance for the error of a step: what may be left, and a first correction that
-// is negligible.
+// Fractions of the tolerance for the error of a step: the error that may be left, and a first
+// correction that is negligible.
 constexpr double largest_rest = 3e-3;
 constexpr double negligible = 1e-3;
-// Two or three corrections are enough unless the factors are too old; so many mean that they are.
+// More corrections than this show that the factors are too old; two or three are usual.
 constexpr int most_corrections = 10;
 
 }  // namespace

@@ -4,17 +4,17 @@
 
 namespace qddot::sundials {
 
-// ARKODE's Newton iteration with a test that trusts only the rate of convergence that it sees. The
-// last two corrections give theta = |d_m| / |d_m-1|; then about theta/(1 - theta) |d_m| is left
-// (Hairer and Wanner, Solving ODEs II, section IV.8). SUNDIALS' own test remembers the rate of
-// earlier solves, lowered by 0.3 each time. If the factors are up to 20 % off in gamma, it stops
+// ARKODE's Newton iteration with a test that uses only the observed rate of convergence. The last
+// two corrections give theta = |d_m| / |d_m-1|; the remaining error is about theta/(1 - theta)
+// |d_m| (Hairer and Wanner, Solving ODEs II, section IV.8). SUNDIALS' own test remembers the rate
+// of earlier solves, lowered by 0.3 each time. If the factors are up to 20 % off in gamma, it stops
 // after one iteration on vibrations, with errors of 1e4 and more times the tolerance.
 class NewtonTest {
  public:
   NewtonTest(N_Vector y, SUNContext context);
 
   SUNNonlinearSolver solver() const { return solver_.get(); }
-  // Call when the solver is ARKODE's, which gives it a test of its own.
+  // To be called after ARKODE has taken the solver and given it a test of its own.
   void attach();
 
  private:

@@ -11,8 +11,8 @@
 namespace qddot::sundials {
 namespace {
 
-// Constant steps have no error test. The tolerance is that of Newton's iteration alone, which is to
-// leave no error of its own.
+// The tolerance of constant steps is for Newton's iteration alone, whose error should be
+// negligible.
 constexpr double newton_rtol = 1e-10;
 
 }  // namespace
@@ -90,7 +90,7 @@ int Stepper::set_matrix(N_Vector y, bool jok, int* jcur, double gamma) noexcept 
 void Stepper::keep_message(int, const char*, const char*, char* message, void* self) {
   try {
     static_cast<Stepper*>(self)->said_ = message;
-  } catch (...) {  // out of memory for a message: the flag alone has to do
+  } catch (...) {  // no memory for a message: the flag alone is kept
   }
 }
 
@@ -138,7 +138,7 @@ Outcome Stepper::take_fixed_steps(State& state, double t_stop) {
   if (!times.can_be_taken()) return Outcome::step_too_small;
   for (const double last = times.last_by(t_stop); taken_ < last;) {
     const double i = taken_ + 1;
-    // No stop time: a first step that ends on one is returned by ARKODE 6.4.1 as its half.
+    // No stop time is set: ARKODE 6.4.1 halves a first step that ends on one.
     set_step_size(times.length(i));
     const Outcome outcome = take_one(now_, times.after(i));
     if (outcome == Outcome::reached_end) now_.t = times.after(i);
@@ -173,7 +173,7 @@ Outcome Stepper::step_aside(State& state, double t) {
   }
   aside_->counts().steps = 0;
   beside_ += aside_->counts();
-  beside_.force_evaluations = beside_.stiffness_evaluations = 0;  // which nobody else counts
+  beside_.force_evaluations = beside_.stiffness_evaluations = 0;  // counted nowhere else
   take_over(*aside_);
   return outcome;
 }

@@ -17,7 +17,7 @@ namespace qddot::sundials {
 // Makes the matrix of Newton's iteration; nullptr if there is no such iteration.
 using MakeMatrix = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext, Solver);
 
-// The stiff or soft part of a system's forces. An undivided system stands for both, so that a
+// The stiff or soft part of a system's forces. For an undivided system it is the whole, so that a
 // method can be made for it; it is never run.
 inline const System& stiff_of(const System& system) {
   const Split* split = split_of(system);
@@ -61,20 +61,22 @@ class Stepper : public Integrator {
   bool has_matrix() const { return matrix_ != nullptr; }
   bool has_fixed_step() const { return method().knob == Knob::step_size; }
   double rtol() const;
-  // Per entry of y: rtol times the size of positions and velocities, or what the user gave.
+  // The absolute tolerance of each entry of y: rtol times the size of positions and velocities, or
+  // the user's.
   N_Vector atol() const { return atol_.get(); }
   void load(const State& state);
 
-  // What SUNDIALS counts by itself; forces and stiffnesses are counted where they are evaluated.
+  // SUNDIALS' own counts; forces and stiffnesses are counted where they are evaluated.
   struct OwnCounts {
     long steps, failed_tests, failed_solves, setups, iterations;
   };
   // Sets counts(): each iteration of Newton's method is one solve, each set-up one factorisation.
   void set_counts(const OwnCounts& own);
 
-  // Runs the body of a C callback. Returns 0 for done, 1 for recoverable (a result is not finite,
-  // and SUNDIALS tries a smaller step), or -1 with the exception parked until SUNDIALS has
-  // returned. Until then nothing is run again, though a fixed-point iteration tries to.
+  // Runs the body of a C callback. Returns 0 for success, 1 for a result that is not finite
+  // (SUNDIALS then tries a smaller step), or -1 after an exception. The exception is stored until
+  // SUNDIALS has returned. Until then no body is run again, though a fixed-point iteration tries
+  // to.
   template <class Body>
   int guarded(Body body) noexcept {
     if (parked_) return -1;
@@ -90,7 +92,7 @@ class Stepper : public Integrator {
 
   // f(q) of a part of the system into a scratch vector; counted.
   const Vec& force_at(const System& part, const Eigen::Map<Vec>& q);
-  // y' = (v, M^-1 f(q)); false where that is not finite.
+  // Sets y' = (v, M^-1 f(q)); false if that is not finite.
   bool set_rate(const System& part, N_Vector y, N_Vector rate);
   // K(q) of the implicit part, kept until the next; counted.
   const SymmetricMatrix& stiffness_at(const Eigen::Map<Vec>& q);
@@ -99,11 +101,11 @@ class Stepper : public Integrator {
   // system, and Newton's matrix I - gamma J of the implicit part, with a new K unless `jok`.
   static int right_hand_side(double t, N_Vector y, N_Vector rate, void* self);
   int set_matrix(N_Vector y, bool jok, int* jcur, double gamma) noexcept;
-  // SUNDIALS' error handler: keeps the words for the summary instead of printing them.
+  // SUNDIALS' error handler: stores the words for the summary instead of printing them.
   static void keep_message(int code, const char* module, const char* function, char* message,
                            void* self);
 
-  // The run ends at t [s] because of what the library's flag says, or for this reason.
+  // Ends the run at t [s] with the cause of the library's flag, or with this cause.
   Outcome failure(int flag, double t) { return failure(named_cause(flag, t), flag_name(flag), t); }
   Outcome failure(Cause cause, const std::string& flag, double t);
 
@@ -128,12 +130,12 @@ class Stepper : public Integrator {
   Vec f_;
   SymmetricMatrix k_;
   State now_, next_;
-  std::optional<StepTimes> times_;  // where they are fixed
-  double taken_ = 0;                // of these steps
+  std::optional<StepTimes> times_;  // only for constant steps
+  double taken_ = 0;                // number of these steps taken
   std::unique_ptr<Stepper> aside_;
-  Counts beside_;  // what the library counted of the steps aside
+  Counts beside_;  // the library's counts of steps aside
   std::exception_ptr parked_;
-  double t_stop_ = 0;      // [s] of the step at hand
+  double t_stop_ = 0;      // [s] of the present step
   bool is_finite_ = true;  // all that callbacks have computed in the step at hand
   std::string said_;
 };

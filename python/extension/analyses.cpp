@@ -23,8 +23,7 @@ std::shared_ptr<const ReducedScene> all_directions(const Model& model) {
   return std::make_shared<const ReducedScene>(*model.start, Reductions::all_directions());
 }
 
-// Where the model comes to rest, downhill from its start; `length` [m] is the size of an own
-// system.
+// The equilibrium downhill from the model's start; `length` [m] is the size of an own system.
 py::dict equilibrium(const Model& model, double length) {
   std::shared_ptr<const ReducedScene> scene;
   Equilibrium rest;
@@ -44,7 +43,7 @@ py::dict equilibrium(const Model& model, double length) {
                   arg("iterations") = rest.iterations);
 }
 
-// The lowest modes about the start: w^2 and, as displacements of all nodes, their shapes.
+// The lowest modes about the start: w^2 and their shapes as displacements of all nodes.
 py::dict modes(const Model& model, Index count) {
   std::shared_ptr<const ReducedScene> scene;
   NaturalModes lowest;
@@ -57,7 +56,7 @@ py::dict modes(const Model& model, Index count) {
   const int d = scene->dimension();
   py::list shapes;
   for (Index j = 0; j < lowest.shapes.cols(); ++j) {
-    // A displacement goes through the reduction as a velocity does.
+    // A displacement is expanded as a velocity.
     const auto nodes = scene->expand({0, scene->initial().q, lowest.shapes.col(j)});
     shapes.append(array_of(nodes, &Node::velocity, d));
   }
@@ -79,7 +78,7 @@ void add_analyses(py::module_& module) {
   module.def("equilibrium", &equilibrium);
   module.def("modes", &modes);
   module.def("linear_step", &linear_step);
-  // The largest h w at which a method does not let an oscillation grow, by theory and as it is.
+  // The largest h w at which a method does not let an oscillation grow, by theory and as measured.
   module.def("stability_limit", [](const std::string& name) {
     const Method& chosen = method(name);
     if (chosen.knob != Knob::step_size)

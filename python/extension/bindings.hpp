@@ -24,19 +24,19 @@ struct Model {
   std::shared_ptr<const Scene> start{};
 };
 
-// A certified motion, and the model that it is of.
+// A certified motion and its model.
 struct HeldReference {
   Model model;
   measure::Reference reference;
 };
 
-// The options of that dictionary, whose keys are those of Options; `solver` is a name.
+// The options of a dictionary, whose keys are those of Options; `solver` is a name.
 Options options_of(const py::dict& given);
 
 // "positions", "path" or "energy"; throws std::invalid_argument for anything else.
 measure::AccuracyOf accuracy_of(const std::string& of);
 
-// A summary, an error, a point of a chart as dictionaries.
+// A summary, an error or a point of a chart as a dictionary.
 py::dict record_of(const Counts& counts);
 py::dict record_of(const Summary& summary);
 py::dict record_of(const measure::Errors& errors);

@@ -13,7 +13,7 @@ namespace {
 
 namespace py = pybind11;
 
-// Whether Python's own handler answers SIGINT, so that it can be called by another.
+// Whether Python's own handler answers SIGINT, so that another handler can call it.
 bool is_handled(const struct sigaction& action) {
   return !(action.sa_flags & SA_SIGINFO) && action.sa_handler != SIG_DFL &&
          action.sa_handler != SIG_IGN;
@@ -26,8 +26,8 @@ bool is_main_thread() {
 
 }  // namespace
 
-// The thread that a handler of SIGINT wakes, as that itself may call next to nothing. There is one
-// a process, and it never ends: to start one takes as long as a short run.
+// The thread that the handler of SIGINT wakes, since a handler itself may call almost nothing. Each
+// process has one, which never ends: starting a thread takes as long as a short run.
 class Watcher {
  public:
   static Watcher& here() {
@@ -35,10 +35,10 @@ class Watcher {
     return *only.load();
   }
 
-  // A process that was forked has no such thread.
+  // A forked process does not have the thread.
   static void forget() { only = nullptr; }
 
-  // Which one is stopped from now on; may be none. What came before stops nothing any more.
+  // Sets the run that is stopped from now on, or nullptr. Earlier signals stop nothing any more.
   void watch(ControlC* run) {
     const std::lock_guard lock(mutex_);
     run_ = run;
@@ -46,13 +46,13 @@ class Watcher {
   }
   ControlC* watched() const { return run_; }
 
-  // Takes the place of Python's handler, or gives it back.
+  // Replaces Python's handler, or restores it.
   void stand_before(const struct sigaction& action) {
     pythons = action;
     struct sigaction own = action;
     own.sa_handler = [](int signal) {
       const int error = errno;
-      if (Watcher* watcher = only.load()) {  // none in a process that was forked meanwhile
+      if (Watcher* watcher = only.load()) {  // nullptr in a forked process
         watcher->has_come_ = true;
         sem_post(&watcher->wake_);
       }

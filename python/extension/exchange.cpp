@@ -18,7 +18,7 @@ py::array_t<double> energies_of(const EnergyCourse& course) {
   return array;
 }
 
-// A run beside the reference `exact`, which compared with itself gave `own`.
+// A run compared with the reference `exact`; `own` is the reference compared with itself.
 py::dict run_record(const std::string& method, double h, double h_omega, const ExchangeRun& run,
                     const EnergyCourse& exact, const ExchangeComparison& own, double window) {
   py::dict record(arg("method") = method, arg("step_size") = h, arg("h_omega") = h_omega,

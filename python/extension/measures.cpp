@@ -22,7 +22,7 @@ HeldReference reference_of(const Model& model, double until, double seconds) {
   return held;
 }
 
-// What a picture and a reader want to know of a reference.
+// The numbers of a reference that pictures and readers need.
 py::dict reference_record(const HeldReference& held) {
   const Reference& r = held.reference;
   py::list parts;
@@ -49,7 +49,7 @@ py::dict end_of(const HeldReference& held) {
                   arg("v") = array_of(nodes, &Node::velocity, d));
 }
 
-// Errors of positions and velocities of all nodes at the reference's end, whoever computed them.
+// Errors of positions and velocities of all nodes at the reference's end, for any method's result.
 py::tuple errors_of(const HeldReference& held, const Doubles& q, const Doubles& v) {
   const ReducedScene& scene = *held.model.reduced;
   const auto exact = scene.expand(held.reference.end);
@@ -77,8 +77,8 @@ std::vector<const Method*> methods_named(const Names& names) {
   return chosen;
 }
 
-// The points of all methods, and the rows of the front by their numbers. `report` is a callable
-// that sees each point, or None.
+// The points of all methods, and the rows of the front with the points' numbers. `report`: None, or
+// a callable that is called with each point.
 py::dict work_precision_of(const HeldReference& held, const Names& names, double seconds,
                            int repeats, const py::dict& given, const py::object& report) {
   const Effort effort{
@@ -99,7 +99,7 @@ py::dict work_precision_of(const HeldReference& held, const Names& names, double
   outside(1, [&](const std::stop_token&) {
     std::optional<Watch> watch;
     Effort watched = effort;
-    if (held.model.start) {  // momenta are those of springs
+    if (held.model.start) {  // only springs have momenta
       watch.emplace(*held.model.start, *held.model.reduced, held.reference.end.t, held.reference);
       watched.watch = &*watch;
     }
@@ -165,7 +165,7 @@ py::dict trend_record(const Trend& t, const TrendScales& scales) {
                   arg("walk") = t.walk, arg("needed") = t.needed);
 }
 
-// Where the energy of a scene goes in a run of a method.
+// The trend of a scene's energy in a run of a method.
 py::dict energy_trend_of(const Model& model, const std::string& name, const py::dict& given,
                          double until, double seconds) {
   DriftRun run;

@@ -49,8 +49,8 @@ OwnForces::Potential potential_of(const py::object& given) {
   return given;
 }
 
-// A system of the caller's own. `pattern`: rows and columns of K, which is differences of f where
-// there is no `stiffness`.
+// A system of the caller's own. `pattern`: rows and columns of K, which is made of differences of f
+// without `stiffness`.
 Model own_model(const Doubles& mass, const std::vector<py::ssize_t>& shape, const py::object& force,
                 const py::object& potential, const py::object& stiffness,
                 const std::optional<std::pair<Indices, Indices>>& pattern, double length,
@@ -78,7 +78,7 @@ Vec unknowns(const Model& model, const Doubles& q) {
   return vec_of(q);
 }
 
-// What a force does not write stays no number.
+// Entries that a force does not write stay NaN.
 py::array_t<double> force_at(const Model& model, const Doubles& q) {
   const Vec x = unknowns(model, q);
   Vec f = Vec::Constant(x.size(), std::numeric_limits<double>::quiet_NaN());
@@ -149,7 +149,7 @@ void add_models(py::module_& module) {
     inside_python([&] { v = self.reduced->system().potential(x); });
     return v;
   });
-  // All nodes of the scene where the unknowns are q and v: positions and velocities.
+  // The positions and velocities of all nodes of the scene, from the unknowns q and v.
   model.def("nodes_at", [](const Model& self, const Doubles& q, const Doubles& v, double t) {
     const auto nodes = self.reduced->expand({t, unknowns(self, q), unknowns(self, v)});
     const int d = self.reduced->dimension();

@@ -1,5 +1,5 @@
-// The private module _qddot: what the typed layer in python/qddot calls. It takes and gives plain
-// data and NumPy arrays; scenes, models and references are held by it.
+// The private module _qddot for the typed layer in python/qddot. It takes and returns plain data
+// and NumPy arrays, and holds scenes, models and references.
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
 #include "python/extension/words.hpp"
@@ -38,7 +38,7 @@ PYBIND11_MODULE(_qddot, module) {
   python::add_exception<measure::NoReference>(module, "NoReference", PyExc_RuntimeError,
                                               "No reference can be made of a motion; says why.");
   python::prepare_for_forks();
-  // Before the interpreter exits, work ends: no thread that does some would get the GIL back.
+  // Before the interpreter exits, work ends: a thread with work would not get the GIL back.
   py::module_::import("atexit").attr("register")(py::cpp_function(&python::close_outside));
   python::add_methods(module);
   python::add_scenes(module);

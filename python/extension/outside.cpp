@@ -20,10 +20,10 @@ namespace py = pybind11;
 
 thread_local std::exception_ptr* raised = nullptr;
 
-// All work that goes on outside Python.
+// All work outside Python.
 class Work {
  public:
-  // Throws std::runtime_error where the interpreter is about to exit.
+  // Throws std::runtime_error if the interpreter is about to exit.
   explicit Work(const std::stop_source& source) : source_(source) {
     const std::lock_guard lock(mutex);
     if (is_closed) throw std::runtime_error("the interpreter exits, and no more work begins");
@@ -37,13 +37,13 @@ class Work {
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  // A process that was forked has none of the other threads, which may have held the lock.
+  // A forked process has no other threads, one of which may have held the lock.
   static void forget() {
     new (&mutex) std::mutex;
     going_on.clear();
   }
 
-  // Waits some seconds for all of it.
+  // Waits some seconds until all work has ended.
   static void end_all() {
     std::unique_lock lock(mutex);
     is_closed = true;
@@ -117,10 +117,10 @@ void outside(int threads, const std::function<void(std::stop_token)>& work) {
     throw;
   } catch (const measure::Interrupted&) {
     ControlC::raise_what_came();
-    // A handler of the user's own that raises nothing cannot have the work back.
+    // The work was stopped, even if the user's own handler of SIGINT raises nothing.
     PyErr_SetNone(PyExc_KeyboardInterrupt);
     throw py::error_already_set();
-  } catch (...) {  // which may be what an interrupted run came to
+  } catch (...) {  // perhaps the failure of an interrupted run
     ControlC::raise_what_came();
     throw;
   }

@@ -25,10 +25,10 @@ class Threads {
 void prepare_for_forks();
 
 // Ends all work outside Python and waits for its end; no more work begins. Must be called before
-// the interpreter exits, since nobody gets the GIL back after that.
+// the interpreter exits, after which no thread gets the GIL back.
 void close_outside();
 
-// Keeps the exception of a callable within outside(). It is raised again at the end, even if a
+// Stores the exception of a callable within outside(). It is raised again at the end, even if a
 // library took it for a failure of its own.
 void remember(std::exception_ptr thrown);
 

@@ -9,10 +9,10 @@
 namespace qddot::python {
 namespace {
 
-// More places than a method has vectors of q and f that it asks with.
+// More places than a method has vectors q and f for forces.
 constexpr std::size_t most_spare = 64;
 
-// Does what calls Python with the GIL, and keeps what that raises.
+// Calls Python with the GIL, and stores the exception that it raises.
 template <class Work>
 void inside(const Work& work) {
   try {
@@ -24,7 +24,7 @@ void inside(const Work& work) {
   }
 }
 
-// Puts entry (i, j) of K where the pattern has it.
+// Writes entries (i, j) of K to their places in the pattern.
 class Filling {
  public:
   explicit Filling(SymmetricMatrix& k) : k_(k) { k.coeffs().setZero(); }
@@ -100,7 +100,7 @@ py::object Views::show(const double* place, bool may_write) {
     spare_.pop_back();
     return view;
   }
-  py::array view(py::dtype::of<double>(), shape_, place, py::none());  // its memory is the solver's
+  py::array view(py::dtype::of<double>(), shape_, place, py::none());  // the solver's memory
   if (!may_write) view.attr("setflags")(py::arg("write") = false);
   return view;
 }
@@ -133,7 +133,7 @@ OwnForces::OwnForces(Vec mass, std::vector<py::ssize_t> shape, Force force, Pote
       views_(std::move(shape)) {}
 
 OwnForces::~OwnForces() {
-  // A run may be the last to hold them.
+  // The end of a run may free the last references.
   const py::gil_scoped_acquire acquired;
   force_ = CForce{};
   potential_ = {};
@@ -160,7 +160,7 @@ void OwnForces::force(const ConstVec& q, MutableVec f) const {
     call(std::get<py::object>(force_), "force", q, [&](const py::object& callable, py::object& x) {
       py::object view = views_.show(f.data(), true);
       try {
-        // NumPy's functions return what they wrote into.
+        // A force may return the array that it was given, as NumPy's functions do.
         if (const py::object result = callable(x, view); !result.is_none() && !result.is(view))
           throw std::invalid_argument(
               "force: it returned something else than f; it writes into f, as np.copyto(f, -q) "

@@ -23,10 +23,10 @@ class Views {
 
   // An array whose numbers are those at `place`, for one call.
   py::object show(const double* place, bool may_write);
-  // Ends that call. Throws std::runtime_error if somebody has kept the array, whose memory is the
+  // Ends the call. Throws std::runtime_error if somebody has kept the array, as its memory is the
   // solver's.
   void take_back(py::object view, const char* callable, const char* argument);
-  // Gives an array that a traceback may hold memory of its own.
+  // Copies the memory of an array that a traceback may hold.
   static void part(const py::object& view);
 
  private:
@@ -46,7 +46,7 @@ class OwnForces final : public System {
   using Force = std::variant<CForce, py::object>;
   using Potential = std::variant<std::monostate, CPotential, py::object>;
 
-  // `pattern`: of K; 0 x 0 without a stiffness.
+  // `pattern`: the pattern of K; 0 x 0 without a stiffness.
   OwnForces(Vec mass, std::vector<py::ssize_t> shape, Force force, Potential potential,
             py::object stiffness, SymmetricMatrix pattern);
   ~OwnForces() override;

@@ -12,8 +12,8 @@ namespace qddot::python {
 namespace {
 using py::arg;
 
-// Arrays of the caller's that a run fills at the times that it is looked at: positions and
-// velocities (2, times, nodes, dimension), energies (3, times).
+// The caller's arrays that a run fills at the observed times: positions and velocities (2, times,
+// nodes, dimension), energies (3, times).
 class Frames {
  public:
   Frames(const ReducedScene& model, std::vector<double> times, py::array_t<double>& motion,
@@ -61,7 +61,7 @@ py::dict end_of(const ReducedScene& model, const State& state) {
                   arg("v") = array_of(nodes, &Node::velocity, d));
 }
 
-// Kinetic, potential and their sum [J]; None of a system without V.
+// The kinetic energy, the potential energy and their sum [J]; None for a system without V.
 py::object energies_of(const ReducedScene& model, const State& state) {
   if (!model.system().has_potential()) return py::none();
   const double kinetic = model.kinetic(state);
@@ -70,7 +70,7 @@ py::object energies_of(const ReducedScene& model, const State& state) {
   return py::make_tuple(kinetic, potential, kinetic + potential);
 }
 
-// One run of a method. The arrays are as Frames has them.
+// A run of a method, which fills the arrays of Frames.
 py::dict run(const Model& model, const std::string& name, const py::dict& given, double until,
              const std::vector<double>& times, py::array_t<double> motion,
              std::optional<py::array_t<double>> energies, std::optional<double> most_seconds,

@@ -113,7 +113,7 @@ void add_scenes(py::module_& module) {
                      validate(made, name);
                      return shared(std::move(made));
                    });
-  // The scene as its motion starts: with its nodes at rest where it asks for that.
+  // The scene as its motion starts: with its nodes at equilibrium if it starts there.
   scene.def("started", [=](const Shared& self) {
     return self->starts_at_equilibrium ? shared(settled(*self, self->name)) : self;
   });

@@ -4,8 +4,8 @@
 
 namespace qddot::python {
 
-// A sentence with the programs' options as Python spells them: step_size for --step-size, and keep
-// for --no-reduce.
+// The sentence with the programs' options as Python spells them: step_size for --step-size, and
+// keep for --no-reduce.
 std::string in_python(const std::string& sentence);
 
 }  // namespace qddot::python

@@ -48,7 +48,7 @@ class Reference:
     beyond_horizon: bool
     divided_by: str
     _held: _qddot.Reference = field(repr=False, compare=False)
-    _of: Scene | System = field(repr=False, compare=False)  # whose callables it may call
+    _of: Scene | System = field(repr=False, compare=False)  # its callables are called
     _motion: tuple[Any, ...] = field(repr=False, compare=False)
     _record: dict[str, Any] = field(repr=False, compare=False)
 

@@ -245,7 +245,7 @@ class Scene:
     def _model(
         self, method: str | None = None, accepts_massless: bool = False, keep: Sequence[str] = ()
     ) -> _qddot.Model:
-        # The reductions that a method allows depend on these of its properties alone.
+        # The reductions that a method allows depend on these properties alone.
         key = (accepts_massless, *sorted(keep))
         if key not in self._models:
             name = method if accepts_massless else None

@@ -109,7 +109,7 @@ class Solution:
         return self._diagnose(seconds) if self._diagnose else ""
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_diagnose": None}  # which holds a model, for this process alone
+        return {**self.__dict__, "_diagnose": None}  # it holds a model, which no other process has
 
     def __repr__(self) -> str:
         words = [f"{self.method} at {self.knob} = {self.value:.4g}: {self.outcome}"]

@@ -150,7 +150,7 @@ def _diagnosis(
     def diagnose(seconds: float) -> str:
         of = start.of
         if isinstance(of, System) and not (of.has_potential and of.has_stiffness):
-            return ""  # limits of steps are those of K, and energies tell where a run went wrong
+            return ""  # limits of steps come from K, and energies show where a run went wrong
         return _qddot.why_it_failed(start.model(chosen), chosen.name, options, end, seconds)
 
     return diagnose
@@ -176,7 +176,7 @@ def _solution(
     end: State,
     about: dict[str, Any],
 ) -> Solution:
-    if isinstance(of, System) and of.dimension is None:  # which has unknowns, and no nodes
+    if isinstance(of, System) and of.dimension is None:  # it has unknowns, and no nodes
         motion = motion.reshape(2, len(times), of.mass.size)
         end = State(end.t, end.q.reshape(-1), end.v.reshape(-1))
     summary = record["summary"]
@@ -226,8 +226,8 @@ def _answer(
     if times is None:
         about["_diagnose"] = _diagnosis(start, chosen, options, end)
         return _at_end(start.of, record, State(**record["end"]), about)
-    # Repeats the chosen run and looks at these times. It ends in the same state, except with
-    # methods that end steps at the times.
+    # Repeats the chosen run and records these times. It ends in the same state, except with methods
+    # that end steps at the times.
     left = None if seconds is None else max(seconds - record["seconds_in_all"], 1e-3)
     run = _run(start, chosen, options, end, times, left, threads)
     message = record["why"] or run.message

@@ -110,7 +110,7 @@ class WorkPrecision:
                 try:
                     self.draw(path)
                 except RuntimeError:
-                    return None  # the table is there without matplotlib, too
+                    return None  # the table works without matplotlib, too
                 with open(path, "rb") as file:
                     drawn = file.read()
             object.__setattr__(self, "_png", drawn)
