@@ -61,7 +61,19 @@ def _is_output_alone(name, argv, sandbox):
     return name.endswith(".toml") and named.count(own) == 1
 
 
-def _of_files(argv, run, sandbox):
+def _of_scarcity(run, err, scarce):
+    last = err.rstrip("\n").rpartition("\n")[2]
+    if (
+        scarce == "memory"
+        and run.status in (2, 3)
+        and not re.search(r"memory.*\d|\d.*memory", last)
+    ):
+        yield "no sentence on how much memory", last[:200]
+    if scarce == "disk" and run.status in (2, 3) and "results" not in last:
+        yield "no sentence that names the file without room", last[:200]
+
+
+def _of_files(argv, run, sandbox, scarce):
     files, folders, changed = sandbox.changes()
     forced = "--force" in argv
     for name in changed:
@@ -78,7 +90,7 @@ def _of_files(argv, run, sandbox):
     for name in files + folders:
         if name.startswith("home"):  # beside "here" is where "--out .." points to
             yield "something outside the folder was written", name
-    if run.status == 2 and files:
+    if run.status == 2 and files and not scarce:
         yield "status 2, and files are left", ", ".join(sorted(files))[:200]
     if run.status in (0, 2, 3, 130):
         written = [n for n in files + changed if "/mine/" not in n or n in files]
@@ -87,13 +99,15 @@ def _of_files(argv, run, sandbox):
                 yield "a file is not whole", fault
 
 
-def verdict(program, argv, run, sandbox):
-    """Pairs of a fault's kind and its detail; none if the run was as documented."""
+def verdict(program, argv, run, sandbox, scarce=""):
+    """Pairs of a fault's kind and its detail; none if the run was as documented. `scarce`: "disk" or
+    "memory" for a run with little of it."""
     err, out = (text.decode(errors="backslashreplace") for text in (run.err, run.out))
     found = (
         list(_of_time(argv, run))
         + list(_of_status(program, run, err))
-        + list(_of_files(argv, run, sandbox))
+        + list(_of_files(argv, run, sandbox, scarce))
+        + list(_of_scarcity(run, err, scarce))
     )
     for name, text in [("stdout", out), ("stderr", err)]:
         control = _CONTROL.search(text)

@@ -7,8 +7,9 @@ lose.
 
 Documented are the statuses 0, 2 (one sentence, no file written), 3 and, after a signal, 130.
 Inputs and files of the user's stay as they are, tables are whole, no control character is printed.
-A run that takes longer than the limit is sent SIGINT and must end in order. Status 1: something
-was found.
+A run that takes longer than the limit is sent SIGINT and must end in order. Some runs find results
+that they wrote before, whole or spoiled, some of these with little memory or room for files. Status 1:
+something was found.
 """
 
 import argparse
@@ -23,7 +24,7 @@ import time
 
 from command_options import methods_of, options_of
 from command_verdict import signature, verdict
-from earlier_results import earlier_results, spoil_one
+from earlier_results import again, earlier_results
 from limited_run import become_nobody, limit_this_process, run, spelled
 from random_commands import Commands
 from random_scenes import random_scene
@@ -107,9 +108,9 @@ class Campaign:
         root = os.path.join(self.place, f"run{number}")
         known = self.earlier.get(name)
         sandbox = Sandbox(root, files, known and known.folder)
-        if known and dice.random() < 0.1:
-            arguments = known.again(dice)
-            spoil_one(dice, sandbox)
+        program, before, scarce = os.path.join(self.bin, name), [], ""
+        if known and dice.random() < 0.15:
+            arguments, before, scarce = again(dice, program, known, sandbox)
         if self.a.keep:
             kept = os.path.join(self.place, f"kept{number}")
             shutil.copytree(
@@ -120,9 +121,9 @@ class Campaign:
             )
         found = [("the fuzzer could not run it", "")]
         try:
-            argv = [os.path.join(self.bin, name)] + arguments
+            argv = [*before, program, *arguments]
             ended = run(argv, sandbox.here, sandbox.environment, self.a.limit, 3 * self.a.limit)
-            found = verdict(name, arguments, ended, sandbox)
+            found = verdict(name, arguments, ended, sandbox, scarce)
         finally:
             sandbox.remove()
             if self.a.keep and not found:

@@ -3,13 +3,15 @@
 disturbed.
 
   tests/fuzz/fuzz_kills.py --bin build/bin --kills 200 --jobs 2
-  tests/fuzz/fuzz_kills.py --bin build/bin --kills 3 --study convergence,energy_drift
+  tests/fuzz/fuzz_kills.py --bin build/bin --kills 3 --study convergence,sweep
 
 A trial sends SIGKILL, SIGINT or SIGTERM one to three times, at moments that are uniform in the
 study's duration. Then it runs the same command with --resume until it ends. All columns but
 measured times must be equal, to the digit; no .part file may be left at the end. After SIGINT and
-SIGTERM the status is 130, all tables are whole, and each sidecar says "interrupted". Status 1:
-something was found.
+SIGTERM the status is 130, all tables are whole, and each sidecar says "interrupted". Of a sweep,
+several shards run at once while they, their programs and their files are disturbed. No complete task
+may change meanwhile, and all points must be those of an undisturbed sweep. Status 1: something was
+found.
 """
 
 import argparse
@@ -23,7 +25,8 @@ import sys
 import tempfile
 import time
 
-from limited_run import limit_this_process, run, spelled
+import killed_sweeps
+from limited_run import environment_of, limit_this_process, run, spelled
 from studies import LONG_STUDIES, REFERENCES_BY_THE_CLOCK, write_scenes
 from written_tables import differences, faults, json_of
 
@@ -73,22 +76,9 @@ class Study:
         folder = os.path.join(self.place, where, "here")
         os.makedirs(folder, exist_ok=True)
         write_scenes(folder)
-        environment = {
-            "PATH": "/usr/bin:/bin",
-            "HOME": folder,
-            "LC_ALL": "C.UTF-8",
-            "OMP_NUM_THREADS": "1",
-            "OPENBLAS_NUM_THREADS": "1",
-        }
+        stop = {"stop_after": stop_after, "stop_signal": stop_signal}
         return run(
-            self.argv + list(more),
-            folder,
-            environment,
-            600,
-            600,
-            patience=10,
-            stop_after=stop_after,
-            stop_signal=stop_signal,
+            self.argv + list(more), folder, environment_of(folder), 600, 600, patience=10, **stop
         )
 
     def trial(self, number):
@@ -186,17 +176,40 @@ def campaign(a, name, place):
     return len(bad)
 
 
+def sweep_campaign(a, place):
+    """The same of sweeps."""
+    expected = killed_sweeps.undisturbed(a.bin, os.path.join(place, "undisturbed"))
+    if isinstance(expected, str) or not expected:
+        print(f"sweep            cannot be tried: {expected}")
+        return 1
+    bad = 0
+    for number in range(a.first, a.first + a.kills):
+        seed, folder = f"{a.seed}/{number}", os.path.join(place, f"sweep{number}")
+        found = killed_sweeps.trial(a.bin, folder, seed, expected)
+        bad += bool(found)
+        for fault in found:
+            print(
+                f"    {fault}\n        again: {sys.argv[0]} --bin {a.bin} --seed {a.seed} "
+                f"--study sweep --first {number} --kills 1"
+            )
+    print(f"sweep           {a.kills:>18} trials{bad:>6} bad of {len(expected)} points", flush=True)
+    return bad
+
+
 def main(caller=None):
     a = arguments_of(caller)
     limit_this_process()
-    names = a.study.split(",") if a.study else sorted(LONG_STUDIES)
+    names = a.study.split(",") if a.study else [*sorted(LONG_STUDIES), "sweep"]
     present = [name for name in names if os.access(os.path.join(a.bin, name), os.X_OK)]
     if not present:
         sys.exit(f"fuzz_kills: {a.bin}: none of {', '.join(names)} is there")
     shared = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
     place, started = tempfile.mkdtemp(prefix="fuzz_kills.", dir=shared), time.monotonic()
     try:
-        bad = sum(campaign(a, name, place) for name in present if name in LONG_STUDIES)
+        bad = sum(
+            sweep_campaign(a, place) if name == "sweep" else campaign(a, name, place)
+            for name in present
+        )
     finally:
         shutil.rmtree(place, ignore_errors=True)
     print(

@@ -54,6 +54,13 @@ def become_nobody(reachable):
     os.setuid(65534)
 
 
+def environment_of(home):
+    """The variables that programs are run with."""
+    names = {name: home for name in ("HOME", "TMPDIR", "XDG_CACHE_HOME")}
+    threads = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    return {"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8"} | names | threads
+
+
 def spelled(argv):
     """The command line for a shell, bytes that are no text escaped."""
     return " ".join(

@@ -1,36 +1,57 @@
-"""Random small scenes as files: generators with parameters, networks, meshes; whole or spoiled."""
+"""Random small scenes as files: samples whose numbers and names are changed; whole or spoiled.
+
+Which scene files are refused, and how, is tried by fuzz_scenes; here programs get them.
+"""
 
 import math
+import re
 
 from hostile_values import EXTREMES, HOSTILE_NAMES
 
-GENERATORS = {
-    "oscillator": ["mass", "stiffness", "position", "velocity"],
-    "orbit": ["mass", "stiffness", "rest_length", "radius", "speed"],
-    "pair": ["mass_1", "mass_2", "stiffness", "rest_length", "stretch", "spin"],
-    "pendulum": ["mass", "stiffness", "rest_length", "length", "angle", "speed", "gravity"],
-    "chain": ["length", "mass", "stiffness", "gravity"],
-    "cloth": [
-        "side",
-        "mass",
-        "structural_stiffness",
-        "shear_stiffness",
-        "bending_stiffness",
-        "gravity",
-    ],
-    "framed_cloth": ["side", "mass", "structural_stiffness", "frame_stiffness", "gravity"],
-    "lattice": ["length", "mass", "stiffness", "gravity"],
-    "fpu": ["frequency"],
-    "strut": ["length", "mass", "stiffness", "compression", "bend"],
+GENERATED = [
+    'kind = "oscillator"',
+    'kind = "orbit"\nrest_length = 0.5\nspeed = 2.5',
+    'kind = "pair"\nmass_1 = 2.5\nspin = 1.5',
+    'kind = "pendulum"\nstiffness = 40.5\nangle = 1.5\ngravity = 9.5',
+    'kind = "chain"\nnodes = 5\nlength = 1.5\nstiffness = 30.5',
+    'kind = "cloth"\nnodes = 4\nside = 1.5\nbending_stiffness = 3.5',
+    'kind = "framed_cloth"\nnodes = 3\nframe_stiffness = 3000.5',
+    'kind = "lattice"\nnodes_x = 3\nnodes_y = 2\nnodes_z = 2\nmass = 2.5',
+    'kind = "fpu"\nstiff_springs = 2\nfrequency = 20.5',
+    'kind = "strut"\nnodes = 5\ncompression = 0.9\nbend = 0.01',
+]
+NETWORKS = [
+    """dimension = 1
+nodes = [{position = [0.0], pinned = true}, {position = [1.5], mass = 0.5, velocity = [0.1]}]
+springs = [{nodes = [0, 1], stiffness = 100.5, rest_length = 1.2, quartic = 50.5}]
+""",
+    """dimension = 2
+gravity = [0.1, -9.5]
+nodes = [{position = [0.0, 0.0], pinned = true}, {position = [0.5, 0.1], mass = 0.1},
+         {position = [1.1, 0.0], mass = 0.3}, {position = [1.1, 0.0], mass = 0}, {position = [2.5, 1.5]}]
+springs = [{nodes = [0, 1], stiffness = 1000.5}, {nodes = [1, 2], stiffness = 90.5},
+           {nodes = [1, 2], stiffness = 10.5}, {nodes = [2, 3], stiffness = 40.5}]
+""",
+    """dimension = 3
+nodes = [{position = [0.1, 0.2, 0.3], velocity = [0.5, -0.1, 0.2], mass = 1.5},
+         {position = [1.1, 0.2, 0.1], mass = 0.5}, {position = [0.3, 1.2, 0.5], mass = 2.5}]
+springs = [{nodes = [0, 1], stiffness = 500.5}, {nodes = [1, 2], stiffness = 50.5, rest_length = 0.7}]
+""",
+]
+MESHES = {
+    "body.obj": b"v 0 0 0\nv 1 0 0.1\nv 0 1 0\nv 1 1 0.2\nv 9 9 9\nf 1 2 3\nf 2 4 3\n",
+    "body.mesh": b"MeshVersionFormatted 1\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0.1 0\n0 1 0 0\n"
+    b"1 1 0.2 0\nTriangles\n2\n1 2 3 1\n2 4 3 1\nEnd\n",
+    "body.msh": b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0.1\n3 0 1 0\n"
+    b"4 1 1 0.2\n$EndNodes\n$Elements\n2\n1 2 2 0 1 1 2 3\n2 2 2 0 1 2 4 3\n$EndElements\n",
 }
-COUNTS = {
-    "chain": [("nodes", 2, 9)],
-    "cloth": [("nodes", 2, 4)],
-    "framed_cloth": [("nodes", 3, 4)],
-    "lattice": [("nodes_x", 2, 3), ("nodes_y", 2, 2), ("nodes_z", 2, 2)],
-    "fpu": [("stiff_springs", 1, 3)],
-    "strut": [("nodes", 3, 7)],
-}
+PATHS_OF_NO_MESH = [
+    "fifo.obj", "folder.mesh", "none.obj", "locked.obj", "zero.obj", "zero.msh", "scene.toml", "loop.mesh",
+]  # fmt: skip
+JUNK = [
+    b"\0", b"\r", b"\x1b[2J", b"\xff", b"\xc3", b"\xef\xbb\xbf", b'"', b"[", b"=", b"-", b"e", b"9" * 400,
+]  # fmt: skip
+WORDS = b"0 -1 1e300 1e400 nan inf 99999999999 1e-320 x true {}".split()
 
 
 def quoted(text):
@@ -41,192 +62,67 @@ def quoted(text):
     return f'"{escaped}"'
 
 
-def number(random, low, high, extremes):
-    """A number between, logarithmically, or with the chance `extremes` one that is anything."""
-    if random.random() < extremes:
-        return repr(random.choice(EXTREMES)).replace("+", "")
-    return f"{math.exp(random.uniform(math.log(low), math.log(high))):.6g}"
+def varied(random, text, extremes):
+    """The text with some of its numbers (those with a point) multiplied or, with the chance `extremes`,
+    replaced by any."""
 
+    def another(number):
+        if random.random() < extremes:
+            return repr(random.choice(EXTREMES)).replace("+", "")
+        if random.random() < 0.7:
+            return number[0]
+        return f"{float(number[0]) * math.exp(random.gauss(0, 1)):.6g}"
 
-def _generator(random, extremes):
-    kind = random.choice(sorted(GENERATORS))
-    lines = ["[generator]", f'kind = "{kind}"', f"until = {number(random, 1e-3, 2e-2, extremes)}"]
-    lines += [f"{name} = {random.randint(low, high)}" for name, low, high in COUNTS.get(kind, [])]
-    for name in GENERATORS[kind]:
-        if random.random() < 0.2:
-            lines.append(f"{name} = {number(random, 0.5, 50, extremes)}")
-    return lines
-
-
-def _network(random, extremes):
-    d, n = random.randint(1, 3), random.randint(1, 9)
-    where = lambda: "[" + ", ".join(f"{random.uniform(-1, 1):.3f}" for _ in range(d)) + "]"
-    lines = [f"dimension = {d}", f"until = {number(random, 1e-3, 2e-2, extremes)}"]
-    if random.random() < 0.6:
-        lines.append(f"gravity = {where()}")
-    places = []
-    for i in range(n):
-        places.append(random.choice(places) if places and random.random() < 0.03 else where())
-        mass = 0 if random.random() < 0.04 else number(random, 0.05, 5, extremes)
-        lines += ["[[nodes]]", f"position = {places[-1]}", f"mass = {mass}"]
-        if i == 0 and random.random() < 0.7 or random.random() < 0.1:
-            lines.append("pinned = true")
-        if random.random() < 0.3:
-            lines.append(f"velocity = {where()}")
-    ends = [(i, random.randrange(i)) for i in range(1, n) if random.random() < 0.9]
-    ends += [(random.randrange(n), random.randrange(n)) for _ in range(random.randint(0, n))]
-    for i, j in ends:
-        if i == j and random.random() < 0.95:
-            continue
-        lines += [
-            "[[springs]]",
-            f"nodes = [{i}, {j}]",
-            f"stiffness = {number(random, 10, 1e4, extremes)}",
-        ]
-        if random.random() < 0.4:
-            lines.append(f"rest_length = {number(random, 0.1, 2, extremes)}")
-        if random.random() < 0.1:
-            lines.append(f"quartic = {number(random, 1, 1e3, extremes)}")
-    return lines
-
-
-def _grid(random):
-    n, m = random.randint(2, 3), random.randint(2, 3)
-    points = [(i, j, round(random.uniform(-0.1, 0.1), 3)) for i in range(n) for j in range(m)]
-    if random.random() < 0.2:
-        points.append((9, 9, 9))  # no element uses it
-    cells = [
-        (i * m + j, i * m + j + 1, (i + 1) * m + j) for i in range(n - 1) for j in range(m - 1)
-    ]
-    cells += [(b, c + 1, c) for a, b, c in cells]
-    return points, cells
-
-
-def _mesh_text(kind, points, cells):
-    rows = lambda items, lead, tail, base: "".join(
-        lead(k) + " ".join(str(x + base) for x in item) + tail for k, item in enumerate(items)
-    )
-    if kind == "obj":
-        return rows(points, lambda k: "v ", "\n", 0) + rows(cells, lambda k: "f ", "\n", 1)
-    if kind == "mesh":
-        return (
-            f"MeshVersionFormatted 1\nDimension 3\nVertices\n{len(points)}\n"
-            + rows(points, lambda k: "", " 0\n", 0)
-            + f"Triangles\n{len(cells)}\n"
-            + rows(cells, lambda k: "", " 0\n", 1)
-            + "End\n"
-        )
-    return (
-        f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(points)}\n"
-        + rows(points, lambda k: f"{k + 1} ", "\n", 0)
-        + f"$EndNodes\n$Elements\n{len(cells)}\n"
-        + rows(cells, lambda k: f"{k + 1} 2 2 0 1 ", "\n", 1)
-        + "$EndElements\n"
-    )
-
-
-def _mesh(random, extremes):
-    kind = random.choice(["obj", "mesh", "msh"])
-    file = random.choice(
-        (["body." + kind] * 6 + ["./body." + kind, "sub/../body." + kind]) * 3
-        + [
-            "fifo.obj",
-            "folder.mesh",
-            "none.obj",
-            "locked.obj",
-            "zero.obj",
-            "zero.msh",
-            "scene.toml",
-            "loop.mesh",
-        ]
-    )
-    lines = [
-        "gravity = [0.0, 0.0, -9.81]",
-        f"until = {number(random, 1e-3, 2e-2, extremes)}",
-        "[mesh]",
-        f"file = {quoted(file)}",
-        f"stiffness = {number(random, 10, 1e4, extremes)}",
-        f"{random.choice(['node_mass', 'total_mass'])} = {number(random, 0.1, 5, extremes)}",
-    ]
-    for key in ["scale", "bending_stiffness"]:
-        if random.random() < 0.3:
-            lines.append(f"{key} = {number(random, 0.1, 10, extremes)}")
-    if random.random() < 0.7:
-        lines += ["[[mesh.pin]]", "min = [-0.1, -0.1, -9]", "max = [0.5, 0.5, 9]"]
-    return lines, {"body." + kind: _mesh_text(kind, *_grid(random)).encode()}
+    return re.sub(r"-?\d+\.\d+", another, text)
 
 
 def spoiled(random, data):
     """The bytes with one thing wrong: bits, lines, numbers, line ends, marks or the end."""
-    at = random.randrange(len(data) + 1)
-    lines = data.split(b"\n")
+    at, lines = random.randrange(len(data) + 1), data.split(b"\n")
     line = random.randrange(len(lines))
-    junk = [
-        b"\0",
-        b"\r",
-        b"\x1b[2J",
-        b"\xff",
-        b"\xc3",
-        b"\xef\xbb\xbf",
-        b'"',
-        b"[",
-        b"=",
-        b"-",
-        b"e",
-        b"9" * 400,
-    ]
-    match random.randrange(9):
-        case 0:
-            return data[:at] + bytes([random.randrange(256)]) + data[at + 1 :]
-        case 1:
-            return data[:at] + random.choice(junk) + data[at:]
-        case 2:
-            return data[:at]
-        case 3:
-            return b"\n".join(lines[:line] + lines[line + 1 :])
-        case 4:
-            return b"\n".join(lines[:line] + [lines[line]] * 2 + lines[line + 1 :])
-        case 5:
-            return data.replace(b"\n", random.choice([b"\r", b"\r\n"]))
-        case 6:
-            return b"\xef\xbb\xbf" + data
-        case 7:
-            return data[:at] + data[at + random.randrange(1, 20) :]
     words = lines[line].split(b" ")
-    words[random.randrange(len(words))] = random.choice(
+    words[random.randrange(len(words))] = random.choice(WORDS)
+    return random.choice(
         [
-            b"0",
-            b"-1",
-            b"1e300",
-            b"1e400",
-            b"nan",
-            b"inf",
-            b"99999999999",
-            b"1e-320",
-            b"x",
-            b"true",
-            b"{}",
+            data[:at] + bytes([random.randrange(256)]) + data[at + 1 :],
+            data[:at] + random.choice(JUNK) + data[at:],
+            data[:at],
+            data[:at] + data[at + random.randrange(1, 20) :],
+            b"\n".join(lines[:line] + lines[line + 1 :]),
+            b"\n".join(lines[:line] + [lines[line]] * 2 + lines[line + 1 :]),
+            b"\n".join(lines[:line] + [b" ".join(words)] + lines[line + 1 :]),
+            data.replace(b"\n", random.choice([b"\r", b"\r\n"])),
+            b"\xef\xbb\xbf" + data,
         ]
     )
-    return b"\n".join(lines[:line] + [b" ".join(words)] + lines[line + 1 :])
 
 
 def random_scene(random):
     """Files of one scene, name to bytes; "scene.toml" is the one to give to --scene."""
     extremes = random.choice([0, 0, 0, 0.01, 0.1])
-    kind, files = random.random(), {}
+    until, kind, files = f"until = {random.uniform(1e-3, 2e-2):.5f}\n", random.random(), {}
     if kind < 0.4:
-        lines = _generator(random, extremes)
+        text = f"[generator]\n{random.choice(GENERATED)}\n{until}"
     elif kind < 0.7:
-        lines = _network(random, extremes)
+        text = until + random.choice(NETWORKS)
     else:
-        lines, files = _mesh(random, extremes)
-    for key, value, chance in [("stiff_above", "300", 0.2), ("start", '"equilibrium"', 0.1)]:
+        name = random.choice(sorted(MESHES))
+        paths = [name] * 12 + [f"./{name}", f"sub/../{name}"] * 3 + PATHS_OF_NO_MESH
+        files[name] = MESHES[name]
+        text = (
+            f"gravity = [0.0, 0.0, -9.81]\n{until}[mesh]\nfile = {quoted(random.choice(paths))}\n"
+            f"stiffness = 1000.5\n{random.choice(['node_mass', 'total_mass'])} = 0.5\n"
+            "[[mesh.pin]]\nmin = [-0.1, -0.1, -9.0]\nmax = [0.5, 0.5, 9.0]\n"
+        )
+    text = varied(random, text, extremes)
+    for line, chance in [
+        ("stiff_above = 300\n", 0.2),
+        ('start = "equilibrium"\n', 0.1),
+        (f"name = {quoted(random.choice(HOSTILE_NAMES))}\n", 0.25),
+    ]:
         if random.random() < chance:
-            lines.insert(0, f"{key} = {value}")
-    if random.random() < 0.25:
-        lines.insert(0, f"name = {quoted(random.choice(HOSTILE_NAMES))}")
-    files["scene.toml"] = ("\n".join(lines) + "\n").encode()
+            text = line + text
+    files["scene.toml"] = text.encode()
     if random.random() < 0.25:
         for _ in range(random.choice([1, 1, 1, 2, 5])):
             name = random.choice(sorted(files))

@@ -5,6 +5,8 @@ import os
 import shutil
 import stat
 
+from limited_run import environment_of
+
 OWN = {
     "end.json": b'{"mine": true}\n',
     "end.csv": b"my,own\n1,2\n",
@@ -61,16 +63,7 @@ class Sandbox:
 
     @property
     def environment(self):
-        home = os.path.join(self.root, "home")
-        return {
-            "PATH": "/usr/bin:/bin",
-            "HOME": home,
-            "TMPDIR": home,
-            "XDG_CACHE_HOME": home,
-            "LC_ALL": "C.UTF-8",
-            "OMP_NUM_THREADS": "1",
-            "OPENBLAS_NUM_THREADS": "1",
-        }
+        return environment_of(os.path.join(self.root, "home"))
 
     def _state(self):
         state = {}

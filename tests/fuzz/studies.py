@@ -33,6 +33,15 @@ STUDIES = {
     "bench": "steady.toml@0.01 --methods verlet --repeats 1 --point-limit 100 --peers odeint",
 }
 
+# What else writes files, and the studies into the folder "results".
+COMMANDS = {name: f"{words} --out results" for name, words in STUDIES.items()} | {
+    "simulate": "--scene steady.toml --method verlet --step-size 1e-4 --until 0.02"
+    " --final results/final.csv --trajectory results/trajectory.csv --energy results/energy.csv"
+    " --motion results/motion.vtkhdf --every 1e-4 --write-scene results/scene.toml",
+    "equilibrium": "--scene steady.toml --final results/rest.csv",
+    "advise": "--scene steady.toml --accuracy 1e-3 --out results",
+}
+
 # A second or so:
 LONG_STUDIES = {
     "work_precision": "--scene steady.toml"
