@@ -63,12 +63,9 @@ def _is_output_alone(name, argv, sandbox):
 
 def _of_scarcity(run, err, scarce):
     last = err.rstrip("\n").rpartition("\n")[2]
-    if (
-        scarce == "memory"
-        and run.status in (2, 3)
-        and not re.search(r"memory.*\d|\d.*memory", last)
-    ):
-        yield "no sentence on how much memory", last[:200]
+    if scarce == "memory" and run.status in (2, 3):
+        if "memory" not in last or not re.search(r"\d|results/", last):
+            yield "no sentence on how much memory, or for which file", last[:200]
     if scarce == "disk" and run.status in (2, 3) and "results" not in last:
         yield "no sentence that names the file without room", last[:200]
 
