@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "experiments/kit/program.hpp"
 #include "qddot/integrators/base/step_times.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -18,6 +17,24 @@ constexpr double least_step = 1e-150, largest_step = 1e150;
 constexpr double least_part_of_scale = 1e-30;
 
 }  // namespace
+
+void require_positive(double value, const std::string& option, const std::string& meaning) {
+  if (std::isfinite(value) && value > 0) return;
+  throw InvalidInput(fmt::format("{} {} is not allowed; it is {}, finite and greater than 0",
+                                 option, value, meaning));
+}
+
+void require_within(int value, int low, int high, const std::string& option) {
+  if (value >= low && value <= high) return;
+  throw InvalidInput(fmt::format("{} {} is not allowed; it is a whole number from {} to {}", option,
+                                 value, low, high));
+}
+
+void require_repeats(int repeats) { require_within(repeats, 1, 1000, "--repeats"); }
+
+void require_given(const std::string& text, const std::string& option, const std::string& meaning) {
+  if (text.empty()) throw InvalidInput(fmt::format("{} is missing; it is {}", option, meaning));
+}
 
 void require_rtol(double rtol, const std::string& option) {
   require_positive(rtol, option, "a relative tolerance");

@@ -6,6 +6,18 @@
 
 namespace qddot::inline kit {
 
+// Throws InvalidInput unless `value` is finite and greater than zero.
+void require_positive(double value, const std::string& option, const std::string& meaning);
+
+// Throws InvalidInput unless `value` is from `low` to `high`.
+void require_within(int value, int low, int high, const std::string& option);
+
+// Throws InvalidInput unless --repeats, the number of timed runs of a point, is 1 to 1000.
+void require_repeats(int repeats);
+
+// Throws InvalidInput, naming what is missing, if `text` is empty.
+void require_given(const std::string& text, const std::string& option, const std::string& meaning);
+
 // Throws InvalidInput unless the relative tolerance is from 1e-15 to below 1. Errors below 1e-15
 // cannot be told from the several roundings of 2.2e-16 in a step. A tolerance of 1 allows an error
 // as large as the motion.

@@ -16,11 +16,11 @@ template <class Source>
 class Columns {
  public:
   struct Column {
-    // value(source): a number or text.
+    // value: a member of Source, or a function of one; it gives a number or text.
     template <class Value>
     Column(std::string_view its_name, Value value)
         : name(its_name), write([value = std::move(value)](Csv& csv, const Source& source) {
-            csv.field(value(source));
+            csv.field(std::invoke(value, source));
           }) {}
 
     std::string name;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/kit/progress.hpp"
 #include "experiments/kit/summary_record.hpp"
 #include "qddot/integrators/registry.hpp"
 
@@ -46,9 +47,12 @@ Point point_of(const nlohmann::json& record) {
 }
 
 std::function<Point(const Method&, double, const Effort::Take&)> points_of(Study& study,
-                                                                           std::string prefix) {
-  return [&study, prefix = std::move(prefix)](const Method& method, double value,
-                                              const Effort::Take& take) {
+                                                                           std::string prefix,
+                                                                           std::string shown) {
+  return [&study, prefix = std::move(prefix), shown = std::move(shown)](
+             const Method& method, double value, const Effort::Take& take) {
+    progress().now_at(fmt::format("{}{} {} = {:.3g}", shown, method.name,
+                                  method.knob == Knob::step_size ? "h" : "rtol", value));
     const std::string name = fmt::format("{}{} {:.17g}", prefix, method.name, value);
     return point_of(study.piece(name, [&] { return record_of(take()); }));
   };

@@ -1,6 +1,5 @@
 #include "experiments/kit/program.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <omp.h>
@@ -12,8 +11,10 @@
 #include "experiments/kit/command_line.hpp"
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/memory.hpp"
+#include "experiments/kit/method_options.hpp"
 #include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/progress.hpp"
+#include "experiments/kit/provenance.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/measure/reference/no_reference.hpp"
 #include "qddot/model/kernels/level.hpp"
@@ -111,6 +112,191 @@ int run_program(CommandLine& line, int argc, char** argv, const std::function<in
   }
 }
 
+Program::Program(const About& about) : about_(about), line_(about.summary, about.name) {}
+
+template <class T>
+T& Program::keep(T value) {
+  auto kept = std::make_shared<T>(std::move(value));
+  T& place = *kept;
+  values_.push_back(std::move(kept));
+  return place;
+}
+
+template <class T>
+Argument<T> Program::declare(const std::string& name, T value, const std::string& text,
+                             bool is_shown) {
+  T& place = keep(std::move(value));
+  auto taken = line_.add_option(name, place, text);
+  if constexpr (requires { typename T::value_type; } && !std::same_as<T, std::string>)
+    taken.delimiter(',');
+  if (is_shown) taken.capture_default_str();
+  return {*this, name, place, {taken}};
+}
+
+Argument<double> Program::number(const std::string& name, const std::string& text) {
+  return declare(name, 0., text, false);
+}
+Argument<double> Program::number(const std::string& name, double value, const std::string& text) {
+  return declare(name, value, text, true);
+}
+Argument<int> Program::whole(const std::string& name, const std::string& text) {
+  return declare(name, 0, text, false);
+}
+Argument<int> Program::whole(const std::string& name, int value, const std::string& text) {
+  return declare(name, value, text, true);
+}
+Argument<std::string> Program::word(const std::string& name, const std::string& text) {
+  return declare(name, std::string(), text, false);
+}
+Argument<std::string> Program::word(const std::string& name, const std::string& value,
+                                    const std::string& text) {
+  return declare(name, value, text, true);
+}
+Argument<std::vector<double>> Program::numbers(const std::string& name, const std::string& text) {
+  return declare(name, std::vector<double>(), text, false);
+}
+Argument<std::vector<double>> Program::numbers(const std::string& name, std::vector<double> values,
+                                               const std::string& text) {
+  return declare(name, std::move(values), text, true);
+}
+Argument<std::vector<int>> Program::wholes(const std::string& name, std::vector<int> values,
+                                           const std::string& text) {
+  return declare(name, std::move(values), text, true);
+}
+Argument<std::vector<std::string>> Program::words(const std::string& name,
+                                                  const std::string& text) {
+  return declare(name, std::vector<std::string>(), text, false);
+}
+Argument<std::vector<std::string>> Program::words(const std::string& name,
+                                                  std::vector<std::string> values,
+                                                  const std::string& text) {
+  return declare(name, std::move(values), text, true);
+}
+Argument<bool> Program::flag(const std::string& name, const std::string& text) {
+  bool& place = keep(false);
+  line_.add_flag(name, place, text);
+  return {*this, name, place, {}};
+}
+
+Argument<SceneChoice> Program::scene() {
+  SceneChoice& choice = keep(SceneChoice());
+  add_scene_options(line_, choice);
+  return {*this, "--scene", choice, {}};
+}
+
+Argument<double> Program::until(const std::string& text) { return number("--until", text); }
+
+Argument<std::vector<std::string>> Program::methods(const std::string& text) {
+  return words("--methods", text);
+}
+
+Argument<std::vector<double>> Program::steps(std::vector<double> usual) {
+  return numbers("--steps", std::move(usual), "a,b,...: the step sizes in s")
+      .check_each([](double h, const std::string& name) { require_step_size(h, name); });
+}
+
+Argument<Effort> Program::effort(const Effort& usual) {
+  Effort& effort = keep(usual);
+  Argument<int>(*this, "--repeats", effort.repeats,
+                {line_.add_option("--repeats", effort.repeats, "timed runs of each point")
+                     .take_last()
+                     .capture_default_str()})
+      .within(1, 1000);
+  Argument<double>(
+      *this, "--point-limit", effort.seconds,
+      {line_
+           .add_option("--point-limit", effort.seconds,
+                       "seconds that one run of a point may take; slower ones become over_budget")
+           .take_last()
+           .capture_default_str()})
+      .positive("the seconds a run may take");
+  return {*this, "--repeats", effort, {}};
+}
+
+Argument<Options> Program::method_options(const Options& usual) {
+  Options& options = keep(usual);
+  add_method_options(line_, options);
+  return {*this, "--max-order", options, {}};
+}
+
+void Program::out(const std::string& text, const std::string& meaning) {
+  meaning_of_folder_ = meaning;
+  line_.add_option("--out", folder_, text);
+}
+
+Table& Program::table(const std::string& file, const std::vector<std::string>& header) {
+  tables_.push_back(std::make_unique<Table>(file, header));
+  return *tables_.back();
+}
+
+int Program::run(int argc, char** argv, const std::function<int()>& work) {
+  if (meaning_of_folder_.empty() && !tables_.empty()) {
+    std::string files;
+    for (const auto& table : tables_) files += (files.empty() ? "" : ", ") + table->file_;
+    out("the folder for " + files);
+  }
+  if (about_.has_threads) add_threads_option(line_);
+  if (about_.has_resume) add_resume_option(line_);
+  if (about_.has_shares) add_share_options(line_);
+  command_line_.assign(argv, argv + argc);
+  return run_program(line_, argc, argv, [&] {
+    if (!meaning_of_folder_.empty()) require_given(folder_, "--out", meaning_of_folder_);
+    for (const auto& check : checks_) check();
+    return work();
+  });
+}
+
+void Program::open_tables() {
+  require_folder(folder_);
+  for (const auto& table : tables_)
+    table->csv_ = std::make_unique<CsvFile>(folder_ + "/" + table->file_, table->header_);
+}
+
+int Program::study(const nlohmann::json& about, const Shares& shares,
+                   const std::function<void(Study&)>& measure,
+                   const std::function<nlohmann::json()>& report) {
+  std::vector<std::string> files;
+  for (const auto& table : tables_) files.push_back(table->file_);
+  Study study(line_, folder_, files, about, shares);
+  if (const auto status = study.completed()) return *status;
+  open_tables();
+  study.measure([&] { measure(study); });
+  if (study.is_share()) return study.conclude(study.falls_short() ? end_not_reached : done);
+  const nlohmann::json origin = report();
+  const int status = study.falls_short() ? end_not_reached : done;
+  for (const auto& table : tables_) {
+    nlohmann::json own = origin;
+    own.update(table->notes_);
+    study.complete(**table, std::move(own), status);
+  }
+  return study.conclude(status);
+}
+
+int Program::write(const std::function<nlohmann::json()>& fill) {
+  open_tables();
+  const nlohmann::json origin = fill();
+  for (const auto& table : tables_) {
+    nlohmann::json own = origin;
+    own.update(table->notes_);
+    (*table)->commit(own);
+  }
+  return done;
+}
+
+nlohmann::json Program::origin() const { return provenance(command_line_); }
+
+nlohmann::json Program::origin(const Subject& subject) const {
+  return provenance(command_line_, subject.drawn, subject.start, subject.reduced);
+}
+
+Subject subject_of(const SceneChoice& choice, const Argument<double>& until) {
+  Scene drawn = load(choice);
+  const double end = end_time(until, until.is_given(), drawn);
+  Scene start = started(drawn, choice);
+  ReducedScene reduced(start, reductions_of(choice));
+  return {choice.name, std::move(drawn), std::move(start), std::move(reduced), end};
+}
+
 void add_threads_option(CommandLine& line) {
   omp_set_num_threads(1);
   line.add_option_function(
@@ -121,38 +307,6 @@ void add_threads_option(CommandLine& line) {
           },
           "number of cores that a run of a large scene may use (default: 1)")
       .take_last();
-}
-
-void require_positive(double value, const std::string& option, const std::string& meaning) {
-  if (std::isfinite(value) && value > 0) return;
-  throw InvalidInput(fmt::format("{} {} is not allowed; it is {}, finite and greater than 0",
-                                 option, value, meaning));
-}
-
-void require_within(int value, int low, int high, const std::string& option) {
-  if (value >= low && value <= high) return;
-  throw InvalidInput(fmt::format("{} {} is not allowed; it is a whole number from {} to {}", option,
-                                 value, low, high));
-}
-
-void require_repeats(int repeats) { require_within(repeats, 1, 1000, "--repeats"); }
-
-void require_given(const std::string& text, const std::string& option, const std::string& meaning) {
-  if (text.empty()) throw InvalidInput(fmt::format("{} is missing; it is {}", option, meaning));
-}
-
-double end_time(double asked, bool is_asked, const Scene& scene) {
-  if (is_asked) {
-    require_positive(asked, "--until", "the time to run to in s");
-    return asked;
-  }
-  if (!scene.until) {
-    throw InvalidInput(fmt::format(
-        "--until is missing, and scene {} has no end time of its own; it is the time to "
-        "run to in s, greater than 0",
-        scene.name));
-  }
-  return *scene.until;
 }
 
 void require_folder(const std::string& folder) {

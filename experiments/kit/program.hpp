@@ -1,9 +1,21 @@
 #pragma once
 
+#include <concepts>
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/columns.hpp"
 #include "experiments/kit/command_line.hpp"
+#include "experiments/kit/progress.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
+#include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot::inline kit {
@@ -18,37 +30,262 @@ std::string in_one_line(const std::string& text);
 // be written (fmt::print does, on a full disk).
 void say(const std::string& line);
 
-// Parses the command line, with --force, --time-limit, --progress and --version besides the options
-// of `line`, and runs `body`. SIGINT, SIGTERM and the time limit interrupt it (see
-// interruptible.hpp). Returns the exit status: that of `body`, or after one sentence, "program:
-// ...", on stderr:
-// - bad_input for a wrong option or an InvalidInput,
-// - end_not_reached if a result cannot be written (CannotWrite) or there is no reference,
-// - 130 for a signal,
-// - failed for any other exception.
+class Program;
+
+// The value of an option that a Program declares: its default until the program runs, then the
+// user's. A copy is of the same option.
+template <class T>
+class Argument {
+ public:
+  Argument(Program& program, std::string name, T& value, std::vector<CommandLine::Taken> options)
+      : program_(&program), name_(std::move(name)), value_(&value), options_(std::move(options)) {}
+
+  const T& operator*() const { return *value_; }
+  const T* operator->() const { return value_; }
+  operator const T&() const { return *value_; }
+  bool is_given() const;
+
+  // Lets the last value count if the option is given more than once, which is refused otherwise.
+  Argument& last() {
+    for (auto& option : options_) option.take_last();
+    return *this;
+  }
+  // Calls check(value, name of the option) before the program's work, if the option is given. It
+  // may throw InvalidInput.
+  template <class Check>
+  Argument& check(Check check);
+  // The same for each entry of a list.
+  template <class Check>
+  Argument& check_each(Check check) {
+    return this->check([check](const T& values, const std::string& name) {
+      for (const auto& value : values) check(value, name);
+    });
+  }
+  // Refuses all but finite numbers above zero; `meaning` says what the number is.
+  Argument& positive(const std::string& meaning);
+  // Refuses all but whole numbers from `low` to `high`.
+  Argument& within(int low, int high);
+
+ private:
+  Program* program_;
+  std::string name_;
+  T* value_;
+  std::vector<CommandLine::Taken> options_;
+};
+
+// A table X.csv in the folder of a program (--out), with its sidecar X.json. It can be written
+// while Program::study or Program::write works.
+class Table {
+ public:
+  Table(std::string file, std::vector<std::string> header)
+      : file_(std::move(file)), header_(std::move(header)) {}
+  CsvFile& operator*() { return *csv_; }
+  CsvFile* operator->() { return csv_.get(); }
+  // Adds entries to the sidecar of this table alone.
+  void note(const nlohmann::json& notes) { notes_.update(notes); }
+
+ private:
+  friend class Program;
+  std::string file_;
+  std::vector<std::string> header_;
+  std::unique_ptr<CsvFile> csv_;
+  nlohmann::json notes_ = nlohmann::json::object();
+};
+
+// The same with columns, each made from a Row.
+template <class Row>
+class RowTable : public Table {
+ public:
+  RowTable(std::string file, Columns<Row> columns)
+      : Table(std::move(file), columns.header()), columns_(std::move(columns)) {}
+  void add(const Row& row) { columns_.write_row(**this, row); }
+  const Columns<Row>& columns() const { return columns_; }
+
+ private:
+  Columns<Row> columns_;
+};
+
+// A program: its options, its tables and its work. In main(), declare the options and tables, and
+// return run(). Every program takes --force, --time-limit, --progress and --version.
+class Program {
+ public:
+  struct About {
+    std::string name, summary;  // for --help
+    bool has_threads = false;   // --threads: cores of one run; results do not depend on it
+    bool has_resume = false;    // --resume, see Study
+    bool has_shares = false;    // --list-shares, --share, --journal and --kept, see Study
+  };
+  explicit Program(const About& about);
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  // Options, with their texts in --help. A default that is given is shown there. A name without
+  // dashes is a positional argument. Lists are written a,b,...
+  Argument<double> number(const std::string& name, const std::string& text);
+  Argument<double> number(const std::string& name, double value, const std::string& text);
+  Argument<int> whole(const std::string& name, const std::string& text);
+  Argument<int> whole(const std::string& name, int value, const std::string& text);
+  Argument<std::string> word(const std::string& name, const std::string& text);
+  Argument<std::string> word(const std::string& name, const std::string& value,
+                             const std::string& text);
+  Argument<std::vector<double>> numbers(const std::string& name, const std::string& text);
+  Argument<std::vector<double>> numbers(const std::string& name, std::vector<double> values,
+                                        const std::string& text);
+  Argument<std::vector<int>> wholes(const std::string& name, std::vector<int> values,
+                                    const std::string& text);
+  Argument<std::vector<std::string>> words(const std::string& name, const std::string& text);
+  Argument<std::vector<std::string>> words(const std::string& name, std::vector<std::string> values,
+                                           const std::string& text);
+  Argument<bool> flag(const std::string& name, const std::string& text);
+
+  // Options that several programs share: --scene and --no-reduce; --until; --methods; --repeats and
+  // --point-limit; those of the methods (see method_options.hpp).
+  Argument<SceneChoice> scene();
+  Argument<double> until(
+      const std::string& text = "the time to run to in s (default: the scene's own)");
+  Argument<std::vector<std::string>> methods(
+      const std::string& text = "a,b,...: the methods (default: all)");
+  // --steps, step sizes [s].
+  Argument<std::vector<double>> steps(std::vector<double> usual);
+  Argument<Effort> effort(const Effort& usual = {});
+  Argument<Options> method_options(const Options& usual = {});
+
+  // --out, the folder for the tables, which must be given. Tables declare it if this does not.
+  void out(const std::string& text, const std::string& meaning = "the folder for the results");
+  const std::string& folder() const { return folder_; }
+  // A table with this header, or with these columns.
+  Table& table(const std::string& file, const std::vector<std::string>& header);
+  template <class Row>
+  RowTable<Row>& table(const std::string& file, Columns<Row> columns);
+
+  // Parses the command line, checks the values and runs `work`. SIGINT, SIGTERM and the time limit
+  // interrupt it (see interruptible.hpp). Returns the exit status: that of `work`, or after one
+  // sentence, "program: ...", on stderr:
+  // - bad_input for a wrong option or an InvalidInput,
+  // - end_not_reached if a result cannot be written (CannotWrite) or there is no reference,
+  // - 130 for a signal,
+  // - failed for any other exception.
+  int run(int argc, char** argv, const std::function<int()>& work);
+
+  // Runs a study with these tables, which may be interrupted and divided (see Study): measure()
+  // makes its pieces, then report() fills the tables, unless one share is measured, and returns how
+  // they were made. `about`: all that decides the results beside options and code. Returns the exit
+  // status.
+  int study(const nlohmann::json& about, const Shares& shares,
+            const std::function<void(Study&)>& measure,
+            const std::function<nlohmann::json()>& report);
+  int study(const nlohmann::json& about, const std::function<void(Study&)>& measure,
+            const std::function<nlohmann::json()>& report) {
+    return study(about, {}, measure, report);
+  }
+  // The simplest study: a table with the row make(method, value) for each method and value of its
+  // knob. Each row is a piece, and each method a share where the program has shares.
+  template <class Row, class Make>
+  int each(const Subject& subject, const std::vector<const Method*>& methods,
+           const std::vector<double>& values, RowTable<Row>& table, const Make& make);
+  // Opens the tables, calls fill(), which returns how they were made, and gives them their names.
+  int write(const std::function<nlohmann::json()>& fill);
+
+  // The record of how a result is made (see provenance.hpp).
+  nlohmann::json origin() const;
+  nlohmann::json origin(const Subject& subject) const;
+
+  // The command line as given.
+  const std::vector<std::string>& command_line() const { return command_line_; }
+  const CommandLine& line() const { return line_; }
+  CommandLine& line() { return line_; }
+
+ private:
+  template <class T>
+  friend class Argument;
+
+  template <class T>
+  T& keep(T value);
+  template <class T>
+  Argument<T> declare(const std::string& name, T value, const std::string& text, bool is_shown);
+  void open_tables();
+
+  About about_;
+  CommandLine line_;
+  std::vector<std::shared_ptr<void>> values_;
+  std::vector<std::function<void()>> checks_;
+  std::vector<std::unique_ptr<Table>> tables_;
+  std::string folder_, meaning_of_folder_;
+  std::vector<std::string> command_line_;
+};
+
+// The same for a command line whose options are declared already.
 int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& body);
 
 // Adds --threads: the number of cores that forces, stiffness and factorisations of one run may use.
 // The default is 1, so that times of methods compare. Results do not depend on it.
 void add_threads_option(CommandLine& line);
 
-// Throws InvalidInput unless `value` is finite and greater than zero.
-void require_positive(double value, const std::string& option, const std::string& meaning);
-
-// Throws InvalidInput unless `value` is from `low` to `high`.
-void require_within(int value, int low, int high, const std::string& option);
-
-// Throws InvalidInput unless --repeats, the number of timed runs of a point, is 1 to 1000.
-void require_repeats(int repeats);
-
-// Throws InvalidInput, naming what is missing, if `text` is empty.
-void require_given(const std::string& text, const std::string& option, const std::string& meaning);
-
-// The end time [s]: the one the user asked for, else the scene's own. Throws InvalidInput if there
-// is neither or it is not positive.
-double end_time(double asked, bool is_asked, const Scene& scene);
-
 // Creates the folder and its parents; throws InvalidInput if that cannot be done.
 void require_folder(const std::string& folder);
+
+// The scene that was chosen, until the time asked for with --until or the scene's own. Throws
+// InvalidInput.
+Subject subject_of(const SceneChoice& choice, const Argument<double>& until);
+
+template <class T>
+bool Argument<T>::is_given() const {
+  return program_->line().has(name_);
+}
+
+template <class T>
+template <class Check>
+Argument<T>& Argument<T>::check(Check check) {
+  program_->checks_.emplace_back([argument = *this, check] {
+    if (argument.is_given()) check(*argument, argument.name_);
+  });
+  return *this;
+}
+
+template <class T>
+Argument<T>& Argument<T>::positive(const std::string& meaning) {
+  return check(
+      [meaning](double value, const std::string& name) { require_positive(value, name, meaning); });
+}
+
+template <class T>
+Argument<T>& Argument<T>::within(int low, int high) {
+  return check([=](int value, const std::string& name) { require_within(value, low, high, name); });
+}
+
+template <class Row>
+RowTable<Row>& Program::table(const std::string& file, Columns<Row> columns) {
+  auto table = std::make_unique<RowTable<Row>>(file, std::move(columns));
+  RowTable<Row>& made = *table;
+  tables_.push_back(std::move(table));
+  return made;
+}
+
+template <class Row, class Make>
+int Program::each(const Subject& subject, const std::vector<const Method*>& methods,
+                  const std::vector<double>& values, RowTable<Row>& table, const Make& make) {
+  const auto measure = [&](Study& study) {
+    const auto taken = study.taken(methods);
+    progress().begin(taken.size() * values.size());
+    for (const Method* method : taken) {
+      for (const double value : values) {
+        const std::string name = fmt::format("{} {:.17g}", method->name, value);
+        progress().now_at(name);
+        const nlohmann::json row = study.piece(name, [&] {
+          Csv csv;
+          table.columns().write_row(csv, make(*method, value));
+          return nlohmann::json(csv.text());
+        });
+        table->rows(row.get<std::string>());
+        progress().finish(name);
+      }
+    }
+  };
+  return study(subject.about(), {.names = names_of(methods), .chosen_by = {"--methods"}}, measure,
+               [&] {
+                 fmt::print("{} has a row for each run\n", table->path());
+                 return origin(subject);
+               });
+}
 
 }  // namespace qddot::inline kit

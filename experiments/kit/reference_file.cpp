@@ -237,6 +237,16 @@ void require_reference_exists(const ReducedScene& scene, const std::string& sour
       source, massless.front()));
 }
 
+void require_reference_exists(const Subject& subject) {
+  require_reference_exists(subject.reduced, subject.source);
+}
+
+Reference reference_for(const Subject& subject, const std::string& folder,
+                        const nlohmann::json& origin) {
+  return reference_for(subject.drawn, subject.start, subject.reduced, subject.until, folder,
+                       origin);
+}
+
 Reference reference_for(const Scene& drawn, const Scene& start, const ReducedScene& scene,
                         double until, const std::string& folder, const nlohmann::json& origin,
                         std::optional<double> needed) {
@@ -279,6 +289,10 @@ Reference kept_reference(const Scene& drawn, const ReducedScene& scene, double u
   throw InvalidInput(fmt::format(
       "{}: it is missing or not the reference of this scene to {} s; the share {} makes it",
       file_in(folder), until, reference_share));
+}
+
+Reference kept_reference(const Subject& subject, const std::string& folder) {
+  return kept_reference(subject.drawn, subject.reduced, subject.until, folder);
 }
 
 }  // namespace qddot::inline kit

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "experiments/kit/scene_choice.hpp"
 #include "qddot/measure/reference/reference.hpp"
 
 namespace qddot::inline kit {
@@ -18,6 +19,8 @@ Reference reference_from_json(const nlohmann::json& json);
 // Throws InvalidInput if no reference can be made of the scene, since a free node has no mass.
 void require_reference_exists(const ReducedScene& scene, const std::string& source);
 
+void require_reference_exists(const Subject& subject);
+
 // The reference of the scene at the time `until` [s]. It is read from `folder`/reference.json if
 // the same code made it of the same scene, its checksum is right and its end has the energy of the
 // start. Else it is made and written there with `origin`; a message on stderr says if the file was
@@ -27,8 +30,12 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
                         double until, const std::string& folder, const nlohmann::json& origin,
                         std::optional<double> needed = {});
 
+Reference reference_for(const Subject& subject, const std::string& folder,
+                        const nlohmann::json& origin);
+
 // The reference that reference_for would read. Throws InvalidInput if there is none.
 Reference kept_reference(const Scene& drawn, const ReducedScene& scene, double until,
                          const std::string& folder);
+Reference kept_reference(const Subject& subject, const std::string& folder);
 
 }  // namespace qddot::inline kit

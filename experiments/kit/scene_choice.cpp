@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
+#include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/catalogue.hpp"
 #include "experiments/kit/command_line.hpp"
 #include "experiments/kit/memory.hpp"
@@ -18,6 +20,7 @@
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::inline kit {
+
 void add_scene_options(CommandLine& line, SceneChoice& choice) {
   line.add_option("--scene", choice.name, "a generator's name or a scene file");
   line.add_option(
@@ -50,6 +53,20 @@ Scene started(const Scene& drawn, const SceneChoice& choice) {
   return drawn.starts_at_equilibrium ? settled(drawn, choice.name) : drawn;
 }
 
+double end_time(double asked, bool is_asked, const Scene& scene) {
+  if (is_asked) {
+    require_positive(asked, "--until", "the time to run to in s");
+    return asked;
+  }
+  if (!scene.until) {
+    throw InvalidInput(fmt::format(
+        "--until is missing, and scene {} has no end time of its own; it is the time to "
+        "run to in s, greater than 0",
+        scene.name));
+  }
+  return *scene.until;
+}
+
 Reductions reductions_of(const SceneChoice& choice) {
   Reductions reductions;
   for (const std::string& name : choice.no_reduce) {
@@ -61,6 +78,19 @@ Reductions reductions_of(const SceneChoice& choice) {
     reductions = reductions.without(static_cast<Reduction>(found - reduction_names.begin()));
   }
   return reductions;
+}
+
+nlohmann::json Subject::about() const {
+  nlohmann::json about = {{"scene", content_hash(drawn)}, {"name", drawn.name}};
+  if (until > 0) about["until"] = until;
+  return about;
+}
+
+Subject subject_of(const SceneChoice& choice, double until) {
+  Scene drawn = load(choice);
+  Scene start = started(drawn, choice);
+  ReducedScene reduced(start, reductions_of(choice));
+  return {choice.name, std::move(drawn), std::move(start), std::move(reduced), until};
 }
 
 void require_fit(const Method& method, const ReducedScene& scene, const std::string& source) {
@@ -109,6 +139,27 @@ std::vector<const Method*> select_methods(const std::vector<std::string>& list,
     }
     require_fit(*method, scene, source);
     selected.push_back(method);
+  }
+  return selected;
+}
+
+std::vector<const Method*> select_methods(const std::vector<std::string>& list,
+                                          const Subject& subject) {
+  return select_methods(list, subject.reduced, subject.source);
+}
+
+std::vector<const Method*> select_fixed_step(const std::vector<std::string>& list,
+                                             const Subject& subject) {
+  std::vector<const Method*> selected;
+  for (const Method* method : select_methods(list, subject)) {
+    if (method->knob == Knob::step_size && method->order > 0) {
+      selected.push_back(method);
+    } else if (!list.empty()) {
+      throw InvalidInput(fmt::format("--methods: {} {}; allowed are methods of fixed step",
+                                     method->name,
+                                     method->order > 0 ? "chooses its steps by itself"
+                                                       : "has no error that depends on a step"));
+    }
   }
   return selected;
 }

@@ -30,8 +30,27 @@ Scene load(const SceneChoice& choice);
 // it has none.
 Scene started(const Scene& drawn, const SceneChoice& choice);
 
+// The end time [s]: the one the user asked for, else the scene's own. Throws InvalidInput if there
+// is neither or it is not positive.
+double end_time(double asked, bool is_asked, const Scene& scene);
+
 // All reductions but those in `no_reduce`. Throws InvalidInput for an unknown name.
 Reductions reductions_of(const SceneChoice& choice);
+
+// A scene that a program works on.
+struct Subject {
+  std::string source;    // as the user named it
+  Scene drawn, start;    // start: as its motion starts
+  ReducedScene reduced;  // of start
+  double until = 0;      // [s]; 0 if the program has times of its own
+
+  const System& system() const { return reduced.system(); }
+  // What a study of it depends on: hash, name and time.
+  nlohmann::json about() const;
+};
+
+// The scene that was chosen, to the time `until` [s]. Throws InvalidInput.
+Subject subject_of(const SceneChoice& choice, double until = 0);
 
 // Throws InvalidInput unless the method can run the scene. Some methods need a constant K, others
 // need named stiff springs, and most allow no massless node; the message names the node and the
@@ -42,6 +61,14 @@ void require_fit(const Method& method, const ReducedScene& scene, const std::str
 // InvalidInput for an unknown or repeated name, and as require_fit does.
 std::vector<const Method*> select_methods(const std::vector<std::string>& list,
                                           const ReducedScene& scene, const std::string& source);
+
+std::vector<const Method*> select_methods(const std::vector<std::string>& list,
+                                          const Subject& subject);
+
+// The methods of fixed steps, and of an error that depends on them, among these. Refuses others
+// that are named.
+std::vector<const Method*> select_fixed_step(const std::vector<std::string>& list,
+                                             const Subject& subject);
 
 // The methods' names.
 std::vector<std::string> names_of(const std::vector<const Method*>& methods);

@@ -176,6 +176,11 @@ bool Study::takes(const std::string& share) const {
   return !is_kept_ || kept_.contains(whole_mark(share));
 }
 
+std::vector<const Method*> Study::taken(std::vector<const Method*> methods) const {
+  std::erase_if(methods, [&](const Method* method) { return !takes(method->name); });
+  return methods;
+}
+
 nlohmann::json Study::piece(const std::string& name, const std::function<nlohmann::json()>& make) {
   if (is_kept_) {
     const auto known = kept_.find(name);

@@ -13,6 +13,7 @@
 #include "experiments/kit/csv.hpp"
 #include "experiments/kit/journal.hpp"
 #include "experiments/kit/shares.hpp"
+#include "qddot/integrators/method.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 
 namespace qddot::inline kit {
@@ -52,12 +53,18 @@ class Study {
   bool is_divided() const { return is_share() || is_kept_; }
   // Whether the pieces of that share are available: measured now, or kept.
   bool takes(const std::string& share) const;
+  // Those methods whose shares are.
+  std::vector<const Method*> taken(std::vector<const Method*> methods) const;
   // Whether the share may be measured now.
   bool measures(const std::string& share) const { return !is_kept_ && takes(share); }
 
   // The piece of that name: the kept one, or made now and kept. Throws Interrupted if the program
   // is to end; a piece in progress is discarded then. Thread-safe.
   nlohmann::json piece(const std::string& name, const std::function<nlohmann::json()>& make);
+
+  // Something could not be measured: the exit status will be end_not_reached.
+  void fall_short() { falls_short_ = true; }
+  bool falls_short() const { return falls_short_; }
 
   // Runs `body`, which makes pieces, until its end or an interruption, and removes the line of the
   // progress. Marks a share as complete, even if NoReference was thrown.
@@ -82,7 +89,7 @@ class Study {
   std::string program_, path_;
   nlohmann::json options_, key_;
   std::string share_;  // empty if all are measured
-  bool is_kept_ = false;
+  bool is_kept_ = false, falls_short_ = false;
   std::map<std::string, nlohmann::json> kept_;
   std::optional<int> completed_;
   std::unique_ptr<Journal> journal_;
