@@ -44,7 +44,7 @@ Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
   found.best.outcome = Outcome::over_budget;
   Effort effort{.seconds = longest_run, .repeats = 1};
   const auto is_enough = [&](const Point& point) {
-    return known(judged_error(point, reference), certified(reference)).at_most <= accuracy;
+    return judged(point, reference).is_within(accuracy);
   };
   const auto begin = std::chrono::steady_clock::now();
   for (const Method* method : in_order_of_promise(scene.system())) {

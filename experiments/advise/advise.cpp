@@ -29,6 +29,7 @@
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/scene_choice.hpp"
+#include "qddot/measure/speed/chart_words.hpp"
 #include "qddot/scene/explain.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

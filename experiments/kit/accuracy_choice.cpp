@@ -27,16 +27,4 @@ void require_allowed_accuracy(double accuracy, const std::string& option) {
                   option, accuracy));
 }
 
-std::string knob_in_words(const Method& method, double value) {
-  return method.knob == Knob::step_size ? fmt::format("h = {:.4g} s", value)
-                                        : fmt::format("rtol = {:.2g}", value);
-}
-
-std::string time_in_words(double seconds) {
-  if (seconds < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
-  if (seconds < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
-  if (seconds < 1) return fmt::format("{:.3g} ms", seconds * 1e3);
-  return fmt::format("{:.3g} s", seconds);
-}
-
 }  // namespace qddot::inline kit

@@ -17,8 +17,4 @@ AccuracyOf accuracy_of(const std::string& of);
 // Throws InvalidInput unless the accuracy given to `option` is one that can be reached.
 void require_allowed_accuracy(double accuracy, const std::string& option = "--accuracy");
 
-// A knob with its value, and a time [s], in words: "h = 0.00057 s", "4.2 ms".
-std::string knob_in_words(const Method& method, double value);
-std::string time_in_words(double seconds);
-
 }  // namespace qddot::inline kit

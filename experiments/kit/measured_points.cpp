@@ -88,13 +88,20 @@ void take_options(const nlohmann::json& given, MeasuredPoints& study) {
 
 }  // namespace
 
-MeasuredPoints measured_points(const std::string& folder) {
+std::vector<Point> points_in(const std::string& folder) {
   const std::string path = folder + "/points.csv";
   const WrittenTable table(path, columns);
+  std::vector<Point> points;
+  for (std::size_t row = 0; row < table.size(); ++row) points.push_back(point_of(table, row, path));
+  return points;
+}
+
+MeasuredPoints measured_points(const std::string& folder) {
+  MeasuredPoints study;
+  study.points = points_in(folder);
   const std::string sidecar = folder + "/points.json";
   std::ifstream file(sidecar);
   const auto json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
-  MeasuredPoints study;
   try {
     study.key = json.at("study");
     const auto& about = study.key.at("about");
@@ -110,9 +117,6 @@ MeasuredPoints measured_points(const std::string& folder) {
   if (!(std::isfinite(study.until) && study.until > 0)) {
     throw InvalidInput(fmt::format(
         "{}: study.about.until {} is not allowed; it is finite and above 0", sidecar, study.until));
-  }
-  for (std::size_t row = 0; row < table.size(); ++row) {
-    study.points.push_back(point_of(table, row, path));
   }
   return study;
 }

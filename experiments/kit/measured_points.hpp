@@ -20,6 +20,10 @@ struct MeasuredPoints {
   std::vector<Point> points;           // NaN if not measured; of the counts the steps alone
 };
 
+// The points of points.csv in `folder`. Throws InvalidInput, in a sentence that names the file, if
+// it is missing or not as work_precision writes it.
+std::vector<Point> points_in(const std::string& folder);
+
 // Reads points.csv and its sidecar in `folder`. Throws InvalidInput, in a sentence that names the
 // file, if one is missing or not as work_precision writes it.
 MeasuredPoints measured_points(const std::string& folder);

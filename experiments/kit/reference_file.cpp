@@ -82,6 +82,12 @@ Scales scales_from_json(const nlohmann::json& json) {
   return scales;
 }
 
+// The number of that name; `otherwise` if it is missing or null.
+double number(const nlohmann::json& json, const char* name, double otherwise) {
+  const auto found = json.find(name);
+  return found == json.end() || found->is_null() ? otherwise : found->get<double>();
+}
+
 // Infinity is null.
 double time_or_never(const nlohmann::json& json) {
   return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
@@ -226,6 +232,33 @@ Reference reference_from_json(const nlohmann::json& json) {
           .modal_shares_floor = json.at("modal_shares_floor"),
           .made_by = json.at("made_by"),
           .seconds = json.at("seconds")};
+}
+
+Reference reference_without_end(const nlohmann::json& json) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  Reference reference;
+  reference.end.t = number(json, "until", 0);
+  reference.certified.position = number(json, "certified_position", 0);
+  reference.rounding_effect = number(json, "rounding_effect", 0);
+  reference.perturbation_growth =
+      number(json, "perturbation_growth", json.value("chaotic", false) ? never : 0);
+  reference.horizon = number(json, "horizon", never);
+  reference.lyapunov = number(json, "lyapunov", 0);
+  reference.is_reduced_by_symmetry = json.value("reduced_by_symmetry", false);
+  const auto out = json.find("out_of_symmetry");
+  if (out != json.end() && !out->is_null()) {
+    reference.out_of_symmetry = OutOfSymmetry{.effect = number(*out, "rounding_effect", 0),
+                                              .horizon = number(*out, "horizon", never),
+                                              .lyapunov = number(*out, "lyapunov", 0)};
+  }
+  reference.modal_shares_floor = number(json, "modal_shares_floor", 0);
+  reference.made_by = json.value("made_by", "");
+  const auto scales = json.find("scales");
+  if (scales != json.end() && scales->contains("displacement")) {
+    reference.scales.displacement = number(*scales, "displacement", 0);
+    reference.scales.speed = number(*scales, "speed", 0);
+  }
+  return reference;
 }
 
 void require_reference_exists(const ReducedScene& scene, const std::string& source) {

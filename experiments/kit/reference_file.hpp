@@ -16,6 +16,11 @@ namespace qddot::inline kit {
 nlohmann::json to_json(const Reference& reference);
 Reference reference_from_json(const nlohmann::json& json);
 
+// Reads what a file says of a reference without its end state, as a file that was kept may. It is
+// lenient: what is missing is not known. Throws nlohmann::json::exception for values of other
+// types.
+Reference reference_without_end(const nlohmann::json& json);
+
 // Throws InvalidInput if no reference can be made of the scene, since a free node has no mass.
 void require_reference_exists(const ReducedScene& scene, const std::string& source);
 

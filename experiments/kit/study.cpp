@@ -222,8 +222,18 @@ void Study::complete(CsvFile& table, nlohmann::json origin, int status) {
   complete_.push_back(&table);
 }
 
+void Study::complete(WholeFile& file) {
+  file.complete();
+  files_.push_back(&file);
+}
+
+bool Study::are_times_of_work() const {
+  return is_kept_ && key_.at("machine").value("times", "") == "work";
+}
+
 int Study::conclude(int status) {
   for (CsvFile* table : complete_) table->commit();
+  for (WholeFile* file : files_) file->commit();
   if (!why_) return conclude_whole(status);
   fmt::print(stderr, "{}: interrupted by {}; {} pieces are kept, and {} measures what is missing\n",
              program_, why_->by, journal_ ? journal_->size() : kept_.size(),

@@ -13,6 +13,7 @@
 #include "experiments/kit/csv.hpp"
 #include "experiments/kit/journal.hpp"
 #include "experiments/kit/shares.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/integrators/method.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 
@@ -73,8 +74,14 @@ class Study {
   // Completes a table. Its sidecar names this study, and "interrupted" says what ended it, or null.
   // `status`: exit status of the program if nothing ended it.
   void complete(CsvFile& table, nlohmann::json origin, int status);
-  // Gives all tables their names. Returns `status`, or that of the interruption after a message on
-  // how to go on.
+  // Completes a file that appears together with the tables.
+  void complete(WholeFile& file);
+  // By what measure() was ended early; empty if it was not.
+  std::string interrupted_by() const { return why_ ? why_->by : ""; }
+  // Whether the times in the pieces are counts times costs (see `sweep merge --by work`).
+  bool are_times_of_work() const;
+  // Gives all tables and files their names. Returns `status`, or that of the interruption after a
+  // message on how to go on.
   int conclude(int status);
   // Both, for tables of one origin.
   int finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status);
@@ -96,6 +103,7 @@ class Study {
   std::optional<Interruption> why_;  // if measure() ended early
   nlohmann::json failure_;           // of a share without a reference, in words
   std::vector<CsvFile*> complete_;
+  std::vector<WholeFile*> files_;
 };
 
 }  // namespace qddot::inline kit

@@ -22,7 +22,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/accuracy_choice.hpp"
 #include "experiments/kit/csv.hpp"
 #include "experiments/kit/entry.hpp"
 #include "experiments/kit/interruptible.hpp"
@@ -38,6 +37,7 @@
 #include "experiments/motions/reference_motion.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/speed/chart_words.hpp"
 #include "qddot/measure/speed/front.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

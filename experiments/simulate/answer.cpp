@@ -15,6 +15,7 @@
 #include "experiments/simulate/written_scene.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/speed/chart_words.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

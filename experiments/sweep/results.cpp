@@ -14,8 +14,7 @@
 #include "experiments/kit/measured_points.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/measure/speed/front.hpp"
-#include "qddot/measure/speed/judgement.hpp"
+#include "qddot/measure/speed/chart.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
@@ -26,7 +25,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 using Ranking = std::vector<const Point*>;  // the fastest point of each method, the fastest first
 
 Ranking ranking(const SceneResult& result, double accuracy) {
-  return fastest_of_each_method(result.points, result.reference, accuracy);
+  return fastest_at_each_accuracy(result.points, result.reference, {accuracy}).front().ranked;
 }
 
 // How many times as long the next method takes; no number where there is none.
@@ -76,12 +75,7 @@ struct Crossover {
   double at_low = none, at_high = none;  // ln of the time of the first over that of the second
 
   // Where both take equally long; no number where one of them did not get there at both ends.
-  double crossing() const {
-    const double part = at_low / (at_low - at_high);
-    if (!std::isfinite(part)) return none;
-    if (!(pair.from() > 0)) return pair.from() + (pair.to() - pair.from()) * part;
-    return pair.from() * std::pow(pair.to() / pair.from(), part);
-  }
+  double crossing() const { return equally_long(pair.from(), pair.to(), at_low, at_high); }
   // How many times as long the other takes at either end, at least; no number where that is known
   // at neither.
   double margin() const { return std::exp(std::fmin(-at_low, at_high)); }
@@ -144,7 +138,7 @@ void write_fastest(const std::string& path, const std::vector<SceneResult>& resu
   CsvFile csv(path, {"scene", "until", "accuracy", "method", "knob", "value", "error", "time_s",
                      "runner_up", "margin", "judged_by"});
   for (const SceneResult& result : results) {
-    const char* judge = judged_by(result.reference);
+    const char* judge = name(judge_of(result.reference));
     for (const double accuracy : accuracies) {
       const Ranking ranked = ranking(result, accuracy);
       if (ranked.empty()) {
@@ -153,7 +147,7 @@ void write_fastest(const std::string& path, const std::vector<SceneResult>& resu
       }
       const Point& best = *ranked.front();
       csv.row(result.label, result.until, accuracy, best.method->name, knob_name(best.method->knob),
-              best.value, judged_error(best, result.reference), best.time,
+              best.value, judged(best, result.reference).error, best.time,
               ranked.size() > 1 ? ranked[1]->method->name : "", margin(ranked), judge);
     }
   }

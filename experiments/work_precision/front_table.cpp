@@ -1,33 +1,18 @@
 #include "experiments/work_precision/front_table.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "experiments/kit/accuracy_choice.hpp"
 #include "qddot/measure/reference/reference_words.hpp"
-#include "qddot/measure/speed/judgement.hpp"
+#include "qddot/measure/speed/chart_words.hpp"
 
 namespace qddot::work_precision {
-using kit::time_in_words;
 namespace {
 
-// A step that is nearer to its limit is warned of.
-constexpr double small_margin = 0.15;
-
-std::string knob_in_words(const Point& point) {
-  return kit::knob_in_words(*point.method, point.value);
-}
-
-const char* why_empty(const FrontRow& row, const Reference& reference) {
-  if (certified(reference) > row.accuracy) return "beyond what the reference certifies";
-  return row.may_be_reached ? "no method is known to have reached it" : "no method reached it";
-}
-
-std::string error_in_words(double error, const Reference& reference) {
-  return fmt::format("{:.1e}{}", error, is_uncertain(error, certified(reference)) ? '?' : ' ');
-}
+std::string knob_of(const Point& point) { return knob_in_words(*point.method, point.value); }
 
 // The other family's best, and how many times slower it is.
 std::string rival(const FrontRow& row) {
@@ -43,13 +28,10 @@ std::vector<std::string> small_margins(const std::vector<FrontRow>& front) {
   std::vector<std::string> sentences;
   for (const FrontRow& row : front) {
     if (!(row.stability_margin < small_margin)) continue;
-    const double percent = 100 * row.stability_margin;
     const std::string sentence = fmt::format(
-        "{} at {} is {:.2g} % {} its limit of stability, w_max at the start: motion raises that, "
-        "and "
-        "a longer run may blow up; take half of the step there",
-        row.fastest->method->name, knob_in_words(*row.fastest), std::abs(percent),
-        percent < 0 ? "above" : "below");
+        "{} at {} is {}, w_max at the start: motion raises that, and a longer run may blow up; "
+        "take half of the step there",
+        row.fastest->method->name, knob_of(*row.fastest), margin_in_words(row.stability_margin));
     if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(sentence);
   }
   return sentences;
@@ -57,9 +39,9 @@ std::vector<std::string> small_margins(const std::vector<FrontRow>& front) {
 
 }  // namespace
 
-void print_front(const std::string& scene, double until, const std::vector<FrontRow>& front,
-                 const Reference& reference) {
-  fmt::print("{} to t = {:g} s; reference certified to {:.1e} ({})\n", scene, until,
+void print_front(const std::string& scene, const Chart& chart) {
+  const Reference& reference = chart.reference;
+  fmt::print("{} to t = {:g} s; reference certified to {:.1e} ({})\n", scene, reference.end.t,
              reference.certified.position, reference.made_by);
   fmt::print("{}\n\n", what_divides(reference));
   if (reference.is_beyond_horizon()) {
@@ -79,18 +61,18 @@ void print_front(const std::string& scene, double until, const std::vector<Front
   fmt::print("{:<9} {:<20} {:<16} {:>9}  {:>9}   {}\n", "accuracy", "fastest method", "knob",
              "error ", "time", "fastest of the other family");
   bool has_doubts = false;
-  for (const FrontRow& row : front) {
+  for (const FrontRow& row : chart.front) {
     if (const Point* p = row.fastest) {
-      const double error = judged_error(*p, reference);
-      has_doubts |= is_uncertain(error, certified(reference));
-      fmt::print("{:<9.0e} {:<20} {:<16} {:>9}  {:>9}   {}\n", row.accuracy, p->method->name,
-                 knob_in_words(*p), error_in_words(error, reference), time_in_words(p->time),
+      const Judged& error = chart.judged_view().points[chart.number(p)];
+      has_doubts |= error.is_uncertain;
+      fmt::print("{:<9.0e} {:<20} {:<16} {:>8.1e}{}  {:>9}   {}\n", row.accuracy, p->method->name,
+                 knob_of(*p), error.error, error.is_uncertain ? '?' : ' ', time_in_words(p->time),
                  rival(row));
     } else {
       fmt::print("{:<9.0e} {}\n", row.accuracy, why_empty(row, reference));
     }
   }
-  for (const std::string& warning : small_margins(front)) fmt::print("{}\n", warning);
+  for (const std::string& warning : small_margins(chart.front)) fmt::print("{}\n", warning);
   if (has_doubts)
     fmt::print("? known only to within {:.1e}, the error bound of the reference itself\n",
                certified(reference));

@@ -1,14 +1,12 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "qddot/measure/speed/front.hpp"
+#include "qddot/measure/speed/chart.hpp"
 
 namespace qddot::work_precision {
 
-// Prints the rows as a table for people, with a warning of small stability margins.
-void print_front(const std::string& scene, double until, const std::vector<FrontRow>& front,
-                 const Reference& reference);
+// Prints the rows of a chart as a table for people, with a warning of small stability margins.
+void print_front(const std::string& scene, const Chart& chart);
 
 }  // namespace qddot::work_precision

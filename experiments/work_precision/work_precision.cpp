@@ -15,6 +15,8 @@
 //     from 1e-1 to 1e-9, the fastest method known to reach it. Accuracy is that of the positions at
 //     the end, or of the energy over time if the end is beyond the horizon of a chaotic motion.
 //     --accuracies chooses other accuracies; no method is then measured at finer ones.
+//     chart.json says what the points mean, for pictures and pages (see chart_record.hpp). --judge
+//     makes it anew from the tables of an earlier run.
 #include <algorithm>
 #include <functional>
 #include <optional>
@@ -37,9 +39,9 @@
 #include "experiments/kit/scene_choice.hpp"
 #include "experiments/kit/study.hpp"
 #include "experiments/kit/sweep_progress.hpp"
+#include "experiments/work_precision/chart_file.hpp"
 #include "experiments/work_precision/front_table.hpp"
-#include "qddot/measure/speed/front.hpp"
-#include "qddot/measure/speed/judgement.hpp"
+#include "qddot/measure/speed/chart_words.hpp"
 #include "qddot/measure/speed/ladder_points.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -52,6 +54,7 @@ struct Arguments {
   double until = 0;
   std::vector<std::string> methods;
   std::vector<double> accuracies;
+  std::string judged;
   Effort effort;
 };
 
@@ -71,16 +74,20 @@ void declare(CommandLine& line, Arguments& a) {
       .take_last()
       .capture_default_str();
   add_method_options(line, a.effort.options);
-  line.add_option("--out", a.out, "the folder for points.csv, front.csv and reference.json");
+  line.add_option("--out", a.out,
+                  "the folder for points.csv, front.csv, chart.json and reference.json");
+  line.add_option("--judge", a.judged,
+                  "a folder with points.csv, and front.csv and reference.json if they are there: "
+                  "makes its chart.json anew and measures nothing");
 }
 
 const std::vector<std::string> front_columns = {"scene",  "accuracy",  "method",
                                                 "knob",   "value",     "error_position",
                                                 "time_s", "judged_by", "stability_margin"};
 
-void tabulate(Csv& csv, const std::string& scene, const std::vector<FrontRow>& front,
-              const char* judge) {
-  for (const FrontRow& row : front) {
+void tabulate(Csv& csv, const std::string& scene, const Chart& chart) {
+  const char* judge = name(chart.judge);
+  for (const FrontRow& row : chart.front) {
     if (const Point* p = row.fastest) {
       csv.row(scene, row.accuracy, p->method->name, knob_name(p->method->knob), p->value,
               p->errors.position, p->time, judge, row.stability_margin);
@@ -122,6 +129,15 @@ Shares shares_of(const std::vector<const Method*>& methods) {
 
 int work_precision(const CommandLine& line, const Arguments& a,
                    const std::vector<std::string>& command_line) {
+  if (line.has("--judge")) {
+    for (const auto& [option, values] : line.given()) {
+      if (option != "--judge" && option != "--force" && option != "--progress")
+        throw InvalidInput(
+            fmt::format("{} is not allowed with --judge, which measures nothing", option));
+    }
+    judge(a.judged);
+    return done;
+  }
   require_given(a.out, "--out", "the folder for the results");
   require_positive(a.effort.seconds, "--point-limit", "the seconds a run may take");
   require_repeats(a.effort.repeats);
@@ -140,6 +156,7 @@ int work_precision(const CommandLine& line, const Arguments& a,
   std::erase_if(selected, [&](const Method* method) { return !study.takes(method->name); });
   CsvFile points_csv(a.out + "/points.csv", point_columns().header());
   CsvFile front_csv(a.out + "/front.csv", front_columns);
+  WholeFile chart_json = chart_file(a.out);
 
   nlohmann::json origin = provenance(command_line, drawn, start, scene);
   origin["until"] = until;
@@ -154,9 +171,7 @@ int work_precision(const CommandLine& line, const Arguments& a,
     Effort effort = a.effort;
     effort.watch = &watch;
     const auto is_last = [&](const Point& point) {
-      return line.has("--accuracies") &&
-             known(judged_error(point, *reference), certified(*reference)).at_most <=
-                 accuracies.back();
+      return line.has("--accuracies") && judged(point, *reference).is_within(accuracies.back());
     };
     SweepProgress shown(selected, SweepBound(scene, until, effort));
     effort.recall = shown.seen(points_of(study));
@@ -174,19 +189,26 @@ int work_precision(const CommandLine& line, const Arguments& a,
   });
   if (study.is_share()) return study.conclude(done);
 
+  const std::vector<Point> points = from_coarse_to_fine(taken);
+  const StudyEnd end{.interrupted_by = study.interrupted_by(),
+                     .are_times_of_work = study.are_times_of_work()};
   nlohmann::json origin_of_points = origin;
   if (reference) {
-    const std::vector<Point> points = from_coarse_to_fine(taken);
-    auto front = fastest_at_each_accuracy(points, *reference, accuracies);
-    add_stability_margins(front, scene);
+    const Chart chart = chart_of(points, *reference, accuracies, StabilityMargins(scene));
     for (const Point& point : points)
       point_columns().write_row(points_csv, {drawn.name, point, reference->certified.position});
-    tabulate(front_csv, drawn.name, front, judged_by(*reference));
-    print_front(drawn.name, until, front, *reference);
+    tabulate(front_csv, drawn.name, chart);
+    print_front(drawn.name, chart);
     origin_of_points.update(notes_on(points));
+    write_chart(chart_json, chart, drawn.name, end);
+  } else {
+    Reference unknown;
+    unknown.end.t = until;
+    write_chart(chart_json, chart_of(points, unknown, {}, StabilityMargins(0)), drawn.name, end);
   }
   study.complete(points_csv, origin_of_points, done);
   study.complete(front_csv, origin, done);
+  study.complete(chart_json);
   return study.conclude(done);
 }
 

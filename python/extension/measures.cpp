@@ -105,7 +105,7 @@ py::dict work_precision_of(const HeldReference& held, const Names& names, double
     }
     chart = work_precision(*held.model.reduced, held.reference, methods_named(names), watched, see);
     front = chart.front();
-    add_stability_margins(front, *held.model.reduced);
+    add_stability_margins(front, StabilityMargins(*held.model.reduced));
   });
   py::list points, rows;
   for (const Point& point : chart.points) {

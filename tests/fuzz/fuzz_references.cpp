@@ -43,7 +43,7 @@ double magnitude(Quadruple x) { return std::abs(static_cast<double>(x)); }
 Errors true_errors(const ReducedScene& scene, const Scene& drawn, const Reference& reference,
                    const PlainMotion<Quadruple>& motion, Quadruple energy) {
   const auto nodes = scene.expand(reference.end);
-  Errors errors;
+  Errors errors = no_error;
   const auto distance = [](const Eigen::Vector3d& a, const std::vector<Quadruple>& b,
                            std::size_t i) {
     double squares = 0;

@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(the_margin_of_stability_is_that_of_the_step_against_the_lim
   const std::vector<Point> points = {point("verlet", 5e-2, 1), point("rk4", 5e-4, 2),
                                      point("implicit_midpoint", 5e-6, 3), point("ida", 5e-8, 4)};
   auto rows = front_of(points);
-  add_stability_margins(rows, scene);
+  add_stability_margins(rows, StabilityMargins(scene));
   BOOST_TEST(rows[0].stability_margin == 0.5, boost::test_tools::tolerance(1e-9));
   BOOST_TEST(rows[2].stability_margin == 1 - 1 / std::sqrt(8), boost::test_tools::tolerance(1e-9));
   BOOST_TEST(std::isnan(rows[4].stability_margin));  // implicit,
@@ -134,7 +134,10 @@ BOOST_AUTO_TEST_CASE(an_error_is_known_to_within_what_the_reference_is_off_by) {
   BOOST_TEST(known(3e-9, 1e-9).at_least == 2e-9, boost::test_tools::tolerance(1e-12));
   BOOST_TEST(known(3e-9, 1e-9).at_most == 4e-9, boost::test_tools::tolerance(1e-12));
   BOOST_TEST(known(1e-10, 1e-9).at_least == 0);
-  BOOST_TEST((is_uncertain(3e-9, 1e-9) && !is_uncertain(1e-6, 1e-9)));
+  Reference reference;
+  reference.certified.position = 1e-9;
+  BOOST_TEST(judged(point("verlet", 3e-9, 1), reference).is_uncertain);
+  BOOST_TEST(!judged(point("verlet", 1e-6, 1), reference).is_uncertain);
 }
 
 BOOST_AUTO_TEST_CASE(no_row_claims_more_than_the_reference_certifies) {

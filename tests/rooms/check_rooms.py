@@ -22,7 +22,7 @@ SPEED = REFERENCE | STABILITY | {"src/qddot/measure/speed"}
 ADVICE = SPEED | {"src/qddot/measure/advice"}
 TREND = SPEED | {"src/qddot/measure/trend"}
 EXCHANGE = SPEED | {"src/qddot/measure/exchange"}
-KIT = TREND | ADVICE | EXCHANGE | {"experiments/kit"}
+KIT = TREND | ADVICE | EXCHANGE | {"experiments/record", "experiments/kit"}
 VECTORS = "src/qddot/model/kernels/vectors"
 
 MAY_SEE = {
@@ -41,6 +41,7 @@ MAY_SEE = {
     "src/qddot/measure/trend": TREND,
     "src/qddot/measure/advice": ADVICE,
     "src/qddot/measure/exchange": EXCHANGE,
+    "experiments/record": SPEED,
     "experiments/kit": KIT,
     "python/extension": KIT - {"experiments/kit"},
     # Compiled for more than one processor: seen by each other only, and see what is plain data.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "qddot/scene/reduce/reduced_scene.hpp"
@@ -36,12 +37,14 @@ struct Scales {
 };
 
 // Relative errors of a state against another at the same time, over all nodes of the scene. Each is
-// divided by the scale of the node's part, and absolute if that scale is zero (nothing moves).
+// divided by the scale of the node's part, and absolute if that scale is zero (nothing moves). NaN
+// if not measured.
 struct Errors {
-  double position = 0;  // max over nodes of |x - x_ref|
-  double velocity = 0;  // max over nodes of |v - v_ref|
-  double energy = 0;    // |E - E_ref|
+  double position = std::numeric_limits<double>::quiet_NaN();  // max over nodes of |x - x_ref|
+  double velocity = std::numeric_limits<double>::quiet_NaN();  // max over nodes of |v - v_ref|
+  double energy = std::numeric_limits<double>::quiet_NaN();    // |E - E_ref|
 };
+constexpr Errors no_error = {.position = 0, .velocity = 0, .energy = 0};
 
 // Extends the scales by one more state of the motion from `initial`.
 void extend(Scales& scales, const ReducedScene& scene, const State& state);

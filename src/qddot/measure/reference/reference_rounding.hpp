@@ -35,7 +35,7 @@ class RoundingRun {
   double knob_, steps_;
   State start_;
   std::optional<Solution> moved_;
-  Errors effect_;
+  Errors effect_ = no_error;
   double growth_ = 0;
 };
 

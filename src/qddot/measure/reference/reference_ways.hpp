@@ -17,7 +17,7 @@ struct Solution {
   double knob = 0;
   std::string made_by{};
   std::vector<State> path{};  // at some of the samples, the end included
-  Errors change{};            // change that refinement may still make; zero if not refined
+  Errors change = no_error;   // change that refinement may still make; zero if not refined
 };
 
 // The motion from `initial` by a method with these options. Its scales are taken at the ends of
@@ -47,6 +47,6 @@ std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double
 // all the others have nearly the same error in the same direction, within half of its size. The
 // rounding of the scene's own numbers is common to both; `rounding_effect` stands for it.
 Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other,
-                 const Errors& rounding_effect = {});
+                 const Errors& rounding_effect = no_error);
 
 }  // namespace qddot::inline measure

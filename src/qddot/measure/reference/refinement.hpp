@@ -27,7 +27,7 @@ Solution refined(const ReducedScene& scene, double seconds, const Solve& solve,
                  const IsRounding& is_rounding) {
   const auto start = std::chrono::steady_clock::now();
   std::optional<Solution> best;
-  Errors last;                                              // change
+  Errors last = no_error;                                   // change
   double before = std::numeric_limits<double>::infinity();  // the larger part of the last change
   double share = 1;
   for (int level = 0; level < most_refinements; ++level) {

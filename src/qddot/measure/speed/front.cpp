@@ -3,13 +3,41 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <map>
 
 #include "qddot/analysis/largest_frequency.hpp"
-#include "qddot/measure/speed/judgement.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
 
 namespace qddot::inline measure {
+namespace {
+
+// The stability limit in h w; zero for methods that have none.
+double limit_of(const Method& method) {
+  if (!has_linear_step(method)) return 0;
+  const double limit = linear_limit(method);
+  return std::isfinite(limit) ? limit : 0;
+}
+
+// Enters a point that has reached the accuracy.
+void enter(std::vector<const Point*>& ranked, const Point& point) {
+  const auto own = std::ranges::find(ranked, point.method, &Point::method);
+  if (own == ranked.end()) {
+    ranked.push_back(&point);
+  } else {
+    keep_faster(*own, point);
+  }
+}
+
+const Point* first_of(const std::vector<const Point*>& ranked, Family family) {
+  const auto found = std::ranges::find_if(
+      ranked, [&](const Point* point) { return point->method->family == family; });
+  return found == ranked.end() ? nullptr : *found;
+}
+
+}  // namespace
+
+bool is_timed(const Point& point) {
+  return point.outcome == Outcome::reached_end && point.time > 0 && std::isfinite(point.time);
+}
 
 void keep_faster(const Point*& fastest, const Point& point) {
   if (!fastest || point.time < fastest->time) fastest = &point;
@@ -26,56 +54,54 @@ const std::vector<double>& usual_accuracies() {
 
 std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
                                                const Reference& reference,
-                                               const std::vector<double>& accuracies) {
+                                               const std::vector<double>& accuracies,
+                                               Quantity quantity) {
   std::vector<FrontRow> rows;
   for (const double accuracy : accuracies) {
     FrontRow row{.accuracy = accuracy};
     for (const Point& point : points) {
-      if (point.outcome != Outcome::reached_end) continue;
-      const Known error = known(judged_error(point, reference), certified(reference));
-      row.may_be_reached |= error.at_least <= row.accuracy;
-      if (!(error.at_most <= row.accuracy)) continue;
-      keep_faster(row.fastest, point);
-      keep_faster(point.method->family == Family::sundials ? row.fastest_sundials
-                                                           : row.fastest_hand_written,
-                  point);
+      if (!is_timed(point)) continue;
+      const Judged error = judged(point, reference, quantity);
+      row.may_be_reached |= error.may_be_within(accuracy);
+      if (error.is_within(accuracy)) enter(row.ranked, point);
     }
+    std::ranges::sort(row.ranked, [](const Point* one, const Point* other) {
+      return one->time != other->time ? one->time < other->time : one < other;
+    });
+    row.fastest = row.ranked.empty() ? nullptr : row.ranked.front();
+    row.fastest_hand_written = first_of(row.ranked, Family::hand_written);
+    row.fastest_sundials = first_of(row.ranked, Family::sundials);
     rows.push_back(row);
   }
   return rows;
 }
 
-std::vector<const Point*> fastest_of_each_method(const std::vector<Point>& points,
-                                                 const Reference& reference, double accuracy) {
-  std::map<const Method*, const Point*> fastest;
-  for (const Point& point : points) {
-    if (point.outcome != Outcome::reached_end) continue;
-    if (known(judged_error(point, reference), certified(reference)).at_most <= accuracy)
-      keep_faster(fastest[point.method], point);
-  }
-  std::vector<const Point*> sorted;
-  for (const auto& [method, point] : fastest) sorted.push_back(point);
-  std::ranges::sort(sorted, {}, &Point::time);
-  return sorted;
+std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
+                                               const Reference& reference,
+                                               const std::vector<double>& accuracies) {
+  return fastest_at_each_accuracy(points, reference, accuracies, judge_of(reference));
 }
 
-void add_stability_margins(std::vector<FrontRow>& rows, const ReducedScene& scene) {
-  const System& system = scene.system();
-  const auto has_limit = [](const FrontRow& row) {
-    if (!row.fastest || !has_linear_step(*row.fastest->method)) return false;
-    const double limit = linear_limit(*row.fastest->method);
-    return limit > 0 && std::isfinite(limit);
-  };
-  if (std::ranges::none_of(rows, has_limit)) return;
-  double w = 0;
-  try {
-    w = quick_frequency(system, scene.initial().q);
-  } catch (const std::exception&) {  // it was not found, and so no margin is known
-    return;
+double StabilityMargins::of(const Point& point) {
+  const double limit = limit_of(*point.method);
+  if (!(limit > 0) || !(w_max() > 0)) return std::numeric_limits<double>::quiet_NaN();
+  return 1 - point.value * w_max() / limit;
+}
+
+double StabilityMargins::w_max() {
+  if (!w_max_) {
+    try {
+      w_max_ = quick_frequency(scene_->system(), scene_->initial().q);
+    } catch (const std::exception&) {  // it was not found, and so no margin is known
+      w_max_ = 0;
+    }
   }
+  return *w_max_;
+}
+
+void add_stability_margins(std::vector<FrontRow>& rows, StabilityMargins margins) {
   for (FrontRow& row : rows) {
-    if (!has_limit(row) || w == 0) continue;
-    row.stability_margin = 1 - row.fastest->value * w / linear_limit(*row.fastest->method);
+    if (row.fastest) row.stability_margin = margins.of(*row.fastest);
   }
 }
 

@@ -1,27 +1,32 @@
 #pragma once
 
 #include <limits>
-#include <string>
+#include <optional>
 #include <vector>
 
-#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/measure/speed/judgement.hpp"
 
 namespace qddot::inline measure {
 
 // The fastest points at one accuracy, of all methods and of each family; nullptr if there is none.
-// The error of a point is known to be at most the accuracy if the measured error (see
-// judgement.hpp) and the certified error of the reference together are.
+// A point has reached the accuracy if its error is known to be at most that (see judgement.hpp).
+// Of equally fast points, the first one is the fastest.
 struct FrontRow {
   double accuracy = 0;
-  bool may_be_reached = false;  // by a point whose error is uncertain
+  bool may_be_reached = false;         // by a point whose error is uncertain
+  std::vector<const Point*> ranked{};  // the fastest point of each method, the fastest first
   const Point* fastest = nullptr;
   const Point* fastest_hand_written = nullptr;
   const Point* fastest_sundials = nullptr;
-  // The distance of the fastest point's step to its stability limit: 1 - h / (limit / w_max), w_max
-  // at the start. It is for explicit methods of fixed steps, and NaN for others. Motion may raise
-  // w_max, so that a longer run blows up if the margin is small.
+  // The stability margin of the fastest point (see StabilityMargins); NaN if it has none.
   double stability_margin = std::numeric_limits<double>::quiet_NaN();
+
+  // The fastest point of any other method than the fastest one's; nullptr if there is none.
+  const Point* runner_up() const { return ranked.size() > 1 ? ranked[1] : nullptr; }
 };
+
+// Whether the run reached the end and its time is known.
+bool is_timed(const Point& point);
 
 // Replaces `fastest`, which may be nullptr, by `point` if `point` takes less time.
 void keep_faster(const Point*& fastest, const Point& point);
@@ -29,17 +34,36 @@ void keep_faster(const Point*& fastest, const Point& point);
 // 1e-1, 1e-2, ... 1e-9.
 const std::vector<double>& usual_accuracies();
 
-// The front: one row for each accuracy, with pointers into `points`.
+// The front: one row for each accuracy, with pointers into `points`, by the quantity that decides.
 std::vector<FrontRow> fastest_at_each_accuracy(
     const std::vector<Point>& points, const Reference& reference,
     const std::vector<double>& accuracies = usual_accuracies());
+// The front by another quantity.
+std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
+                                               const Reference& reference,
+                                               const std::vector<double>& accuracies,
+                                               Quantity quantity);
 
-// The fastest point of each method with an error that is known to be at most the accuracy; the
-// fastest method first. Pointers into `points`.
-std::vector<const Point*> fastest_of_each_method(const std::vector<Point>& points,
-                                                 const Reference& reference, double accuracy);
+// The distance of a point's step to its stability limit: 1 - h / (limit / w_max), w_max at the
+// start. Motion may raise w_max, so that a longer run blows up if the margin is small.
+class StabilityMargins {
+ public:
+  // `w_max` [rad/s]; 0 if it is not known.
+  explicit StabilityMargins(double w_max) : w_max_(w_max) {}
+  // With the largest frequency of the scene, which is computed when a point asks for it.
+  explicit StabilityMargins(const ReducedScene& scene) : scene_(&scene) {}
 
-// Computes the stability margins of the rows, from the largest frequency of the scene.
-void add_stability_margins(std::vector<FrontRow>& rows, const ReducedScene& scene);
+  // NaN for methods without fixed steps or without a limit, and if w_max is unknown.
+  double of(const Point& point);
+
+ private:
+  double w_max();
+
+  const ReducedScene* scene_ = nullptr;
+  std::optional<double> w_max_;
+};
+
+// Computes the stability margins of the rows' fastest points.
+void add_stability_margins(std::vector<FrontRow>& rows, StabilityMargins margins);
 
 }  // namespace qddot::inline measure

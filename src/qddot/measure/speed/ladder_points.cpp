@@ -44,6 +44,12 @@ class KnobValues {
   double until_, steps_;
 };
 
+// The judged error of a run; infinite if it is another motion than the reference's.
+double error_of(const Point& point, const Reference& reference) {
+  const Judged error = judged(point, reference);
+  return error.may_count ? error.error : std::numeric_limits<double>::infinity();
+}
+
 // Detects that a finer knob no longer reduces the error.
 class Stagnation {
  public:
@@ -53,7 +59,7 @@ class Stagnation {
     if (point.outcome != Outcome::reached_end) return false;
     // Steps that are limited by stability do not follow the tolerance yet.
     if (2 * point.counts.stability_limited_steps > point.counts.steps) return false;
-    const double error = judged_error(point, reference_);
+    const double error = error_of(point, reference_);
     idle_ = error > 0.8 * best_ ? idle_ + 1 : 0;
     best_ = std::min(best_, error);
     return idle_ >= 3 && best_ < 1e-4;
@@ -74,7 +80,7 @@ bool takes_too_long(const Method& method, const Point& last, double value, const
 }
 
 bool is_good(const Point& point, const Reference& reference) {
-  return point.outcome == Outcome::reached_end && judged_error(point, reference) < 1;
+  return point.outcome == Outcome::reached_end && error_of(point, reference) < 1;
 }
 
 // Whether coarse steps end at a stability limit: those of explicit methods do, and implicit ones
@@ -96,7 +102,7 @@ std::vector<Rung> rungs(const std::vector<Point>& points, double until, const Re
     const bool reached = point.outcome == Outcome::reached_end;
     ladder.push_back(
         {std::round(until / point.value),
-         reached ? judged_error(point, reference) : std::numeric_limits<double>::infinity()});
+         reached ? error_of(point, reference) : std::numeric_limits<double>::infinity()});
     if (reached && is_enough(point)) break;
   }
   return ladder;
@@ -110,7 +116,7 @@ std::vector<Point> measure_ladder(const Method& method, const ReducedScene& scen
                                   const std::function<bool(const Point&)>& is_last) {
   const KnobValues values(method, scene, until);
   const auto is_enough = [&](const Point& point) {
-    return judged_error(point, reference) <= certified(reference) || (is_last && is_last(point));
+    return error_of(point, reference) <= certified(reference) || (is_last && is_last(point));
   };
   std::vector<Point> points;
   const auto take = [&](double value) -> const Point& {
