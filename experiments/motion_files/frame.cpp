@@ -19,16 +19,16 @@ inline std::uint32_t overflow(float value) {
   return (std::bit_cast<std::uint32_t>(value) & exponent) + last_of_exponent;
 }
 
-// These make a number a float and put into `overflows` whether there is none.
+// These convert a number to a float and record in `overflows` if it does not fit.
 inline float whole(double value, std::uint32_t& overflows) {
   const auto result = static_cast<float>(value);
   overflows |= overflow(result);
   return result;
 }
 
-// The nearest with kept_bits; halves go to the even one.
+// The nearest number with kept_bits; halves go to the even one.
 inline float short_form(double value, std::uint32_t& overflows) {
-  constexpr int dropped = 23 - kept_bits;  // of the 23 that a float has behind the first
+  constexpr int dropped = 23 - kept_bits;  // of the 23 bits behind the first one
   constexpr std::uint32_t mask = (std::uint32_t(1) << dropped) - 1;
   auto bits = std::bit_cast<std::uint32_t>(whole(value, overflows));
   bits += (mask >> 1) + (bits >> dropped & 1);
@@ -56,7 +56,7 @@ std::uint32_t fill(float* floats, std::size_t first, std::size_t end, const Fetc
   return overflows;
 }
 
-// Items that one core does at a time.
+// The number of items that one core converts at a time.
 constexpr std::size_t slab = 1 << 15;
 
 std::size_t slabs(std::size_t items) { return (items + slab - 1) / slab; }

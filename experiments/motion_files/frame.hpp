@@ -15,7 +15,7 @@ constexpr int kept_bits = 7;
 struct Frame {
   double time = 0;               // [s]
   std::vector<float> positions;  // [m], to the last bit of a 32-bit float
-  // Rounded to kept_bits; empty where they are not asked for.
+  // Rounded to kept_bits; empty if not requested.
   std::vector<float> velocities;        // [m/s]
   std::vector<float> kinetic_energies;  // [J]
   std::vector<float> distances;         // [m], to the reference
@@ -25,19 +25,19 @@ struct Frame {
 // Makes the frames of one scene.
 class Framing {
  public:
-  // `scene` must outlive it. `wanted`: what frames have beside positions.
+  // `scene` must outlive it. `wanted`: the fields of frames beside positions.
   Framing(const Scene& start, const ReducedScene& scene, const Fields& wanted);
 
-  // The frame of that state, with distances where there is a reference; it is overwritten by the
-  // next. None where a number is not finite or beyond 32-bit floats.
+  // The frame of the state, with distances if there is a reference; the next call overwrites it.
+  // nullptr if a number is not finite or beyond 32-bit floats.
   const Frame* of(const State& state, const State* reference);
   const Fields& wanted() const { return wanted_; }
   // All nodes of the last frame.
   const std::vector<Node>& nodes() const { return nodes_; }
 
  private:
-  // These fill the fields of nodes and of springs, from number `first` to `end`. Bit 31 is set
-  // where one of the numbers is not finite or beyond 32-bit floats.
+  // These fill the fields of nodes and of springs, from number `first` to `end`. Bit 31 of the
+  // result is set if a number is not finite or beyond 32-bit floats.
   std::uint32_t take_nodes(std::size_t first, std::size_t end);
   std::uint32_t take_strains(std::size_t first, std::size_t end);
 

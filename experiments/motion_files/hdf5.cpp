@@ -27,7 +27,7 @@ std::string reason() {
   return found.substr(first, found.find('\'', first) - first);
 }
 
-// Rows of a chunk; smaller sets are left as they are.
+// The number of rows in a chunk; smaller sets have no chunks.
 constexpr std::size_t chunk_rows = 1 << 14;
 
 template <class Value>
@@ -78,7 +78,7 @@ Failure::Failure() : std::runtime_error(reason()) {}
 Handle new_properties(hid_t kind) { return {H5Pcreate(kind), H5Pclose}; }
 
 void be_quiet() {
-  // HDF5 would try again at the process's end to write data that a full disk did not take.
+  // Without this, HDF5 retries at the process's end to write data that a full disk refused.
   H5dont_atexit();
   checked(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
 }
@@ -86,7 +86,7 @@ void be_quiet() {
 Handle new_file(const std::string& path) {
   const Handle access = new_properties(H5P_FILE_ACCESS);
   checked(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110));
-  // It is locked already, by who made it (see unfinished.hpp), and HDF5's lock would meet that.
+  // The file is already locked (see unfinished.hpp), and HDF5's own lock would conflict.
   checked(H5Pset_file_locking(access.id(), false, true));
   return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose};
 }

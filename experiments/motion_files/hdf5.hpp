@@ -9,20 +9,20 @@
 
 namespace qddot::motion_files::hdf5 {
 
-// A call of HDF5 failed; says why, as the operating system does where it knows.
+// Thrown when a call of HDF5 fails; what() is the operating system's reason if known.
 class Failure : public std::runtime_error {
  public:
   Failure();
 };
 
-// What a call of HDF5 returned, unless that says it failed: then a Failure.
+// Returns the result of a call of HDF5; throws Failure if it failed.
 template <class Status>
 Status checked(Status status) {
   if (status < 0) throw Failure();
   return status;
 }
 
-// An object of HDF5's, which is let go by `let_go`.
+// An object of HDF5, which `let_go` releases.
 class Handle {
  public:
   Handle() = default;
@@ -36,7 +36,7 @@ class Handle {
   ~Handle() {
     if (id_ >= 0) close_(id_);
   }
-  // Lets go of it now; what is not on the disk yet may fail to come there.
+  // Releases the object now; writing its remaining data to the disk may fail.
   void close() {
     if (id_ >= 0) checked(close_(std::exchange(id_, -1)));
   }
@@ -47,11 +47,11 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-// Keeps HDF5 from printing errors of the calling thread, and from doing anything at the process's
-// end. Must be called before any other function of HDF5.
+// Stops HDF5 from printing errors of the calling thread and from acting at the process's end. Must
+// be called before any other function of HDF5.
 void be_quiet();
 
-// A file in place of what is there, of HDF5 1.10's format, which HDF5 does not lock.
+// Creates a file of HDF5 1.10's format, replacing any other; HDF5 does not lock it.
 Handle new_file(const std::string& path);
 Handle new_group(const Handle& parent, const std::string& name);
 Handle new_properties(hid_t kind);
@@ -60,7 +60,8 @@ Handle new_space(const std::vector<hsize_t>& size, bool may_grow = false);
 Handle new_dataset(const Handle& parent, const std::string& name, hid_t type, const Handle& space,
                    const Handle& properties);
 
-// Has the chunks of a dataset with these properties shuffled, then deflated (see deflate.hpp).
+// Makes datasets with these properties shuffle their chunks and then deflate them (see
+// deflate.hpp).
 void pass_filters(const Handle& properties);
 
 // Writes a dataset of whole numbers or of times, all at once.

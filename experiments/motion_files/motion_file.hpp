@@ -10,7 +10,7 @@
 
 namespace qddot::motion_files {
 
-// What a motion says beside the positions, where its format has room for more.
+// The fields of a motion beside positions, for formats that hold them.
 struct Fields {
   bool velocity = true;        // [m/s], of each node
   bool kinetic_energy = true;  // [J], of each node
@@ -18,17 +18,18 @@ struct Fields {
 };
 constexpr Fields no_fields{.velocity = false, .kinetic_energy = false, .strain = false};
 
-// A motion in a file that others open: all nodes of a scene, pinned ones too, frame after frame in
-// 32-bit floats, and what joins them. Its files appear together on commit(), or not at all.
+// A motion in a file for other programs: all nodes of a scene, with pinned ones, frame after frame
+// in 32-bit floats, and the cells that join them. Its files appear together on commit(), or not at
+// all.
 class MotionFile {
  public:
   virtual ~MotionFile() = default;
-  // Adds the frame of this state at its time. `reference`: the state of the same scene with which
-  // the distance of each node [m] is taken, where the file was opened for one. False where a number
-  // is not finite or beyond 32-bit floats: the motion ends before that frame, and takes no more.
+  // Adds the frame of this state at its time. `reference`: for files that were opened with a
+  // reference, the state from which each node's distance [m] is measured. Returns false if a number
+  // is not finite or beyond 32-bit floats: the motion ends before that frame and takes no more.
   // Throws CannotWrite.
   virtual bool add(const State& state, const State* reference = nullptr) = 0;
-  // Writes all that is left, and the sidecar. `origin`: how the motion was made (see
+  // Writes the remaining data and the sidecar. `origin`: how the motion was made (see
   // provenance.hpp). Throws CannotWrite.
   virtual void complete(const nlohmann::json& origin) = 0;
   // Lets all files appear, after complete().

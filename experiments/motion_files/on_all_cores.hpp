@@ -10,9 +10,9 @@
 
 namespace qddot::motion_files {
 
-// Calls work(0) ... work(count - 1), on as many cores as there are; throws what one of them threw.
-// `numbers`: how many are worked on; a few are done before another thread has started. OpenMP's
-// threads are a run's own, bounded by --threads and OMP_NUM_THREADS, and none of these may throw.
+// Calls work(0) ... work(count - 1) on all cores; rethrows an exception of one of them. `numbers`:
+// the amount of work; a small one is done before another thread has started. OpenMP's threads
+// belong to a run, are bounded by --threads and OMP_NUM_THREADS, and may not throw.
 template <class Work>
 void on_all_cores(std::size_t count, std::size_t numbers, const Work& work) {
   constexpr std::size_t worth_a_thread = 1 << 15;
@@ -26,7 +26,7 @@ void on_all_cores(std::size_t count, std::size_t numbers, const Work& work) {
   try {
     while (others.size() + 1 < std::min(cores, count))
       others.push_back(std::async(std::launch::async, some));
-  } catch (const std::system_error&) {  // no more threads: those there are do it
+  } catch (const std::system_error&) {  // no more threads: the existing ones do all work
   }
   some();
   for (auto& other : others) other.get();

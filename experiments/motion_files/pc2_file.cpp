@@ -38,7 +38,7 @@ std::string header(std::size_t points, std::size_t frames) {
   return text;
 }
 
-// `nodes`: where the motion starts; massless ones are not where they are drawn.
+// `nodes`: the nodes at the start of the motion, where massless ones are not as drawn.
 std::string obj_text(const Scene& start, const std::vector<Node>& nodes) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);

@@ -11,10 +11,10 @@ namespace {
 
 using namespace hdf5;
 
-// Rows of a chunk: enough to make it worth its place in the index, few enough for the caches.
+// The numbers of rows of a chunk: enough for its entry in the index, few enough for the caches.
 constexpr std::size_t least_rows = 1 << 12, most_rows = 1 << 16;
 
-// Whole frames where they are small, equal parts of a frame where it is large.
+// Small frames are kept whole; a large frame is divided into equal parts.
 std::size_t rows_of_chunk(std::size_t rows_a_frame) {
   const std::size_t rows = std::max<std::size_t>(rows_a_frame, 1);
   if (rows < least_rows) return rows * ((least_rows + rows - 1) / rows);
@@ -74,7 +74,7 @@ std::vector<RowStream::Piece> RowStream::append(const std::vector<float>& rows) 
 
 void RowStream::put(const Piece& piece) const {
   Chunk& chunk = *piece.chunk;
-  std::array<float, 1024> numbers;  // what stays in the first cache
+  std::array<float, 1024> numbers;  // stay in the first cache
   for (std::size_t i = 0; i < piece.count; i += numbers.size()) {
     const std::size_t count = std::min(numbers.size(), piece.count - i);
     const float* const from = piece.from + i * columns_;

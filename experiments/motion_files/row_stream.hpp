@@ -13,37 +13,37 @@ namespace qddot::motion_files {
 
 // Consecutive rows of one column of a dataset.
 struct Chunk {
-  hsize_t row = 0, column = 0;  // of the first
-  std::size_t count = 0;        // of the rows that are there
-  Bytes bytes;                  // the rows, shuffled where they are to be compressed
-  Bytes packed;                 // as HDF5 keeps them, once all rows are there
+  hsize_t row = 0, column = 0;  // of the first row
+  std::size_t count = 0;        // of the present rows
+  Bytes bytes;                  // the rows, shuffled if they are to be compressed
+  Bytes packed;                 // the rows as HDF5 stores them, when all are present
 };
 
-// A dataset of 32-bit floats, rows x columns, that grows by the rows of frame after frame. Each
-// column is in chunks of its own: numbers beside each other are then alike, and smaller together.
+// A dataset of 32-bit floats, rows x columns, that grows by the rows of each frame. Each column has
+// chunks of its own: neighbouring numbers are then alike and compress well.
 class RowStream {
  public:
   // One column makes it a dataset of one dimension. `is_packed`: whether it is compressed.
   RowStream(const hdf5::Handle& parent, const std::string& name, std::size_t rows_a_frame,
             std::size_t columns, bool is_packed = true);
 
-  // Numbers of a frame that belong in one chunk: from[0], from[stride], ...
+  // The numbers of a frame that belong into one chunk: from[0], from[stride], ...
   struct Piece {
     Chunk* chunk;
     const float* from;
     std::size_t count;
   };
-  // Takes the rows of a frame, row after row: the pieces that are to be put in their chunks. Rows
-  // must stay until they are.
+  // Appends the rows of a frame and returns the pieces to be put into chunks. The rows must exist
+  // until that is done.
   std::vector<Piece> append(const std::vector<float>& rows);
   // Puts a piece in its chunk and compresses that if it is full. Different pieces of a frame may be
   // put by different threads.
   void put(const Piece& piece) const;
   // Compresses chunks that are not full, whose other rows are zero and beyond the last.
   void complete();
-  // Writes the chunks that are compressed; whether there were any.
+  // Writes the compressed chunks; returns whether there were any.
   bool write();
-  // A dataset that is the rows of that frame here, without a copy of them.
+  // Adds a dataset that shows the rows of the frame without copying them.
   void show_frame(const hdf5::Handle& parent, const std::string& name, std::size_t frame) const;
 
  private:
@@ -55,7 +55,7 @@ class RowStream {
   bool is_packed_;
   std::size_t rows_ = 0;  // appended so far
   hdf5::Handle set_;
-  std::deque<Chunk> chunks_;  // from the first that is not written, row by row
+  std::deque<Chunk> chunks_;  // from the first unwritten one, row by row
 };
 
 // Appends rows to streams, on all cores.

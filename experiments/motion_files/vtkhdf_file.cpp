@@ -45,7 +45,8 @@ Numbers joined(const Lists& lists) {
   return all;
 }
 
-// The cells as XDMF mixes them: each its kind, with the number of nodes where that is open.
+// The cells in XDMF's mixed form: the kind of each, with the number of nodes if the kind leaves it
+// open.
 Numbers mixed(const Cells& cells) {
   constexpr std::int64_t point = 1, line = 2, triangle = 4;
   Numbers all;
@@ -57,7 +58,7 @@ Numbers mixed(const Cells& cells) {
   return all;
 }
 
-// A field of the frames and where it goes.
+// A field of the frames and its datasets.
 struct Stream {
   std::string name;
   const std::vector<float> Frame::*numbers;
@@ -135,14 +136,14 @@ class VtkhdfFile final : public MotionFile {
     }
   }
 
-  // Writes the chunks that are full; whether there were any.
+  // Writes the full chunks; returns whether there were any.
   bool write_full() {
     bool is_any = false;
     for (Stream& stream : streams_) is_any |= stream.out.write();
     return is_any;
   }
 
-  // What is the same in all frames.
+  // Writes the parts that all frames share.
   void write_topology(const Cells& cells, std::size_t nodes) {
     hdf5::write_attribute(root_, "Version", Numbers{2, 0});
     hdf5::write_attribute(root_, "Type", std::string("PolyData"));
@@ -163,7 +164,7 @@ class VtkhdfFile final : public MotionFile {
   void open_streams(std::size_t nodes, std::size_t cells, const Fields& fields) {
     fields_of_nodes_ = hdf5::new_group(root_, "PointData");
     fields_of_cells_ = hdf5::new_group(root_, "CellData");
-    // Positions alone are small as they are, and to compress them takes most of the time.
+    // Positions alone are small, and compressing them takes most of the time.
     const bool is_packed =
         fields.velocity || fields.kinetic_energy || fields.strain || has_reference_;
     const auto open = [&](bool is_wanted, const Handle& group, const char* name,
@@ -183,7 +184,8 @@ class VtkhdfFile final : public MotionFile {
     open(fields.strain, fields_of_cells_, "strain", &Frame::strains, cells, 1);
   }
 
-  // Where each frame begins in the datasets: topology is there once, all else frame after frame.
+  // Writes the start of each frame in the datasets: the topology exists once, all else frame after
+  // frame.
   void write_steps() {
     const std::size_t count = times_.size();
     const Handle steps = hdf5::new_group(root_, "Steps");
@@ -209,7 +211,7 @@ class VtkhdfFile final : public MotionFile {
   WholeFile file_, xdmf_, sidecar_;
   bool has_reference_, has_ended_ = false;
   Handle hdf5_, root_, frames_, fields_of_nodes_, fields_of_cells_;
-  std::vector<Stream> streams_;  // after the file, so that they are closed before
+  std::vector<Stream> streams_;  // closed before the file, as it is declared after it
   std::vector<double> times_;    // [s]
   XdmfFields about_{};
 };

@@ -84,7 +84,7 @@ bool can_be_named(const std::string& file) {
   try {
     static_cast<void>(nlohmann::json(file).dump());
     return true;
-  } catch (const nlohmann::json::type_error&) {  // no UTF-8
+  } catch (const nlohmann::json::type_error&) {  // not UTF-8
     return false;
   }
 }

@@ -6,7 +6,7 @@
 
 namespace qddot::motion_files {
 
-// What an .xdmf says of the file beside it, whose datasets it names: /Frames/cells and, of each
+// The names that an .xdmf uses for the file beside it and its datasets: /Frames/cells and, for each
 // frame, /Frames/NUMBER/NAME with Points and the fields.
 struct XdmfFields {
   struct Field {
@@ -19,7 +19,7 @@ struct XdmfFields {
   std::vector<Field> fields;
 };
 
-// How every .xdmf of qddot's begins.
+// The first lines of every .xdmf file.
 extern const std::string xdmf_beginning;
 
 // The name of a frame's group.

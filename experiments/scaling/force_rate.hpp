@@ -4,11 +4,11 @@
 
 namespace qddot::scaling {
 
-// How fast f(q) is evaluated, and what of the machine that takes.
+// The rate at which f(q) is evaluated, and the traffic and work of one evaluation.
 struct ForceRate {
   double seconds = 0;  // of one evaluation
-  // What one evaluation has to move [bytes], each array once, and to do [operations; a root and a
-  // division are one each]. All arrays are in use, so that is its working set as well.
+  // The bytes that one evaluation must move, each array once, and its operations (a root and a
+  // division are one each). The bytes are also the working set.
   double bytes = 0, flops = 0;
 };
 

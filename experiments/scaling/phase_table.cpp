@@ -21,8 +21,8 @@ const PhaseCost* last_of(const std::vector<PhaseCost>& all, const std::string& s
 
 using Growth = double (*)(const SizedScenes&, const std::string&, double);
 
-// Adds the exponent of some of the costs' numbers where there are enough of them, beside the growth
-// of phase `law`.
+// Adds the exponent of some numbers of the costs, if there are enough, with the growth of phase
+// `law`.
 void add_exponent(std::vector<Exponent>& exponents, const std::vector<PhaseCost>& costs,
                   const std::string& phase, double PhaseCost::*number, Growth growth,
                   const std::string& law) {
@@ -82,7 +82,7 @@ std::vector<Exponent> exponents_of(const std::vector<PhaseCost>& all) {
   std::vector<Exponent> exponents;
   for (const auto& costs : groups) {
     const std::string& phase = costs.front().phase;
-    // A whole step grows as the steepest of its phases.
+    // A whole step grows as its steepest phase.
     std::string steepest = phase;
     for (const std::string& part : {factors, iterations}) {
       if (phase == "step" && last_of(all, costs.front().scene, costs.front().method, part)) {

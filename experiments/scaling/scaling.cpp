@@ -49,9 +49,9 @@ namespace {
 
 constexpr double gigabyte = 1e9;
 constexpr double least_nodes_allowed = 10, most_nodes_allowed = 1e7;
-// How long the peak is looked at [s].
+// The time [s] in which the peak is measured.
 constexpr double look_for_peak = 0.05;
-// The part of free memory that is taken without being told.
+// The fraction of free memory that is used by default.
 constexpr double taken_of_free = 0.8;
 
 struct Arguments {
@@ -156,7 +156,7 @@ std::vector<SolvedMethod> select(const SizedScenes& scenes, const Arguments& a) 
   return selected;
 }
 
-// `sizes` a decade from the least to the most nodes, both of them among these.
+// Sizes from the least to the most nodes, both included, `sizes` for each decade.
 std::vector<double> sizes_of(const Arguments& a) {
   std::vector<double> sizes;
   const double step = 1.0 / a.sizes;

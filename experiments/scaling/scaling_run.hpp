@@ -12,42 +12,44 @@
 
 namespace qddot::scaling {
 
-// How far a measurement of scaling goes, and how it steps.
+// The limits of a measurement of scaling, and the steps.
 struct ScalingLimits {
-  double seconds;    // that a step and its analysis may take
-  double bytes;      // that the process may allocate
+  double seconds;    // of a step and its analysis
+  double bytes;      // allocated by the process
   double step_size;  // h of implicit methods [s]
   Reductions reductions;
 };
 
-// A method and who solves its implicit steps.
+// A method and the solver of its implicit steps.
 struct SolvedMethod {
   const Method* method;
   Solver solver;
 
-  // As tables name it: the method's name, and behind a colon the solver's if that is not the
+  // The name in tables: the method's name, with a colon and the solver's if that is not the
   // multifrontal one.
   std::string name() const;
 };
 
-// One scene at one size: where its numbers come from, and how fast its f is.
+// One scene at one size: the origin of its numbers, and the rate of its f.
 struct ScalingSize {
   std::string scene, hash;
   double nodes, springs;
   Index unknowns = 0;
   ForceRate force{};
-  double triad = 0;  // [bytes/s], over arrays of as many bytes as the force's
+  double triad = 0;  // [bytes/s], over arrays of the force's size
 };
 
-// What was not measured: the scene from that many nodes on, with that method or with any.
+// Sizes that were not measured: the scene from this number of nodes on, with this method or with
+// any.
 struct LeftOut {
-  std::string scene, method;  // no method: any
+  std::string scene, method;  // empty method: any
   double nodes;
   std::string why;
 };
 
-// Costs of steps by scene, size, method and phase, gathered from small scenes to large ones. What
-// theory and the size before let expect beyond the limits is left out, with everything larger.
+// Costs of steps by scene, size, method and phase, from small scenes to large ones. A size with
+// expected costs beyond the limits is left out, with all larger ones. The expectation follows from
+// theory and the size before.
 class ScalingRun {
  public:
   explicit ScalingRun(const ScalingLimits& limits) : limits_(limits) {}
@@ -77,7 +79,7 @@ class ScalingRun {
 
   ScalingLimits limits_;
   std::vector<PhaseCost> costs_;
-  std::vector<ScalingSize> sizes_;  // the last is at hand
+  std::vector<ScalingSize> sizes_;  // the last one is being measured
   std::vector<LeftOut> left_out_;
   bool has_failed_ = false;
 };

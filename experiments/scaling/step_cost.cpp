@@ -8,14 +8,14 @@
 namespace qddot::scaling {
 namespace {
 
-// A timed run is at least so long [s], if that takes no more than so many steps: short runs are the
-// ones that nothing else disturbs.
+// The least time [s] of a timed run, unless that takes more than the most steps. Short runs are
+// disturbed least.
 constexpr double shortest_run = 5e-3;
 constexpr double most_steps = 10000, least_steps = 3;
-// The least of runs that take so long together [s], or of so many.
+// The runs of which the least counts take this time together [s], or are this many.
 constexpr double timed_together = 0.3;
 constexpr int fewest_runs = 2;
-// A first step at least so long [s] is as good as any other, and the only one.
+// A first step of at least this time [s] counts as any other, and is the only one.
 constexpr double own_warm_up = 5;
 
 struct Run {

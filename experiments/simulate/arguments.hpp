@@ -9,7 +9,7 @@
 
 namespace qddot::simulate {
 
-// What simulate takes on its command line.
+// The options of the command line of simulate.
 struct Arguments {
   SceneChoice scene;
   std::string method, accuracy_of, final_path, trajectory_path, energy_path, written_scene_path,
@@ -24,15 +24,15 @@ struct Arguments {
 
 void declare(CommandLine& line, Arguments& a);
 
-// These throw InvalidInput where options do not go together.
+// These throw InvalidInput if options do not go together.
 
-// Gives each --every to the output option before it; the only one belongs to all of them.
+// Gives each --every to the output option before it; a single one belongs to all outputs.
 void assign_every(const CommandLine& line, Arguments& a);
 
-// Asks for a file for each output.
+// Requires a file of its own for each output.
 void require_distinct_outputs(const CommandLine& line, const Arguments& a);
 
-// Whether the command line asks for the scene as a file and has nothing that is for a run.
+// Whether the command line only writes the scene as a file, without any option for a run.
 bool only_writes_scene(const CommandLine& line);
 
 // The method of that name.

@@ -5,8 +5,8 @@
 namespace qddot::simulate {
 namespace {
 
-// Numbers in the states that are handed over at once: enough to make waking the thread nothing
-// beside copying them, few enough to stay in the cache.
+// The numbers in the states of a batch: so many that waking the thread costs little beside copying,
+// so few that they stay in the cache.
 constexpr Index batch_size = 1 << 15;
 
 }  // namespace

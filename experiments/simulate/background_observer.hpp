@@ -17,25 +17,26 @@ namespace qddot::simulate {
 class BackgroundObserver {
  public:
   explicit BackgroundObserver(std::function<void(const State&)> look);
-  // States that nobody has looked at by then are forgotten.
+  // Drops the states that were not yet looked at.
   ~BackgroundObserver();
   BackgroundObserver(const BackgroundObserver&) = delete;
   BackgroundObserver& operator=(const BackgroundObserver&) = delete;
 
-  // Takes a copy. Throws what looking at an earlier state threw, after which no more are looked at.
+  // Takes a copy. Throws the exception of an earlier look, after which no more states are looked
+  // at.
   void see(const State& state);
-  // Returns when all states have been looked at, or throws likewise.
+  // Returns when all states have been looked at; throws as see().
   void finish();
 
  private:
-  // States in the order in which they came, with the memory of earlier ones behind them.
+  // States in order of arrival, and behind them the memory of earlier ones.
   struct Batch {
     std::vector<State> states;
     std::size_t count = 0;
   };
 
   void run();
-  // Gives what has gathered to the thread, once that has nothing left.
+  // Hands the gathered states to the thread when it has none left.
   void hand_over();
   void wait(std::unique_lock<std::mutex>& lock);
 
@@ -45,7 +46,7 @@ class BackgroundObserver {
   Batch at_hand_;   // the thread's, while its count is not zero
   std::exception_ptr error_;
   bool is_over_ = false;
-  std::mutex mutex_;  // of at_hand_, error_ and is_over_
+  std::mutex mutex_;  // guards at_hand_, error_ and is_over_
   std::condition_variable changed_;
   std::thread thread_;
 };

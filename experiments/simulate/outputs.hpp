@@ -18,16 +18,16 @@ namespace qddot::simulate {
 // other programs), and the energy over time.
 class Outputs {
  public:
-  // Throws InvalidInput where a file cannot be written. The scene must outlive it.
-  // `start`: the scene that `scene` was reduced from.
+  // `start`: the scene that `scene` was reduced from. The scene must outlive it. Throws
+  // InvalidInput if a file cannot be written.
   Outputs(const Arguments& a, const Scene& start, const ReducedScene& scene, double until);
 
   // Asks for the times of the samples.
   Observer observer();
-  // Takes the state at time 0, before the run, or one that the observer asked for.
+  // Takes the state at time 0, before the run, or an observed one.
   void see(const State& state);
 
-  // Whether anything is asked for that is seen on the way.
+  // Whether an output needs states before the end.
   bool looks_on_the_way() const { return trajectory_ || energy_ || motion_; }
   bool is_asked_for() const { return final_ || looks_on_the_way(); }
   // Lets all files appear. `state`: the end; `origin`: how it was made (see provenance.hpp).

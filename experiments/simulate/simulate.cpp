@@ -40,10 +40,10 @@
 namespace qddot::simulate {
 namespace {
 
-// Seconds that may be spent on why a run failed: some twenty times what the run took.
+// The time [s] for explaining why a run failed: some twenty times the run's, between these limits.
 constexpr double shortest_patience = 1, longest_patience = 5;
 
-// An interruption waits so long [s] for the step at hand.
+// The time [s] that an interruption waits for the present step.
 constexpr double patience_with_a_step = 60;
 
 std::string counts_in_words(const Counts& c) {

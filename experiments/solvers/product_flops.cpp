@@ -14,7 +14,7 @@ extern "C" void dgemm_(const char* transpose_a, const char* transpose_b, const i
 namespace qddot::solvers {
 
 double product_flops(double seconds) {
-  constexpr int n = 480;  // three of them lie in the second cache or close by
+  constexpr int n = 480;  // three of them fit about into the second cache
   constexpr double one = 1, zero = 0;
   const std::vector<double> a(n * n, 0.5), b = a;
   std::vector<double> c(n * n);

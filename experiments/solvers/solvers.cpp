@@ -79,7 +79,7 @@ std::vector<DirectSolverKind> select_solvers(const std::vector<std::string>& nam
   return chosen;
 }
 
-// One solver and the times it has taken.
+// A solver and its measured times.
 class Contender {
  public:
   Contender(const DirectSolverKind& kind, const System& system, double s, const SymmetricMatrix& k)
@@ -95,7 +95,7 @@ class Contender {
     solves_ = calls_in_a_sample([&] { solver_->solve(b_, x_); });
   }
 
-  // Seconds of a factorisation and of a solve; none where the matrix is singular to it.
+  // The seconds of a factorisation and of a solve; empty if the matrix is singular for the solver.
   std::vector<double> sample() {
     if (!solved_) return {};
     return {time_of(factorizations_, [&] { solver_->factorize(s_, k_); }),
@@ -132,14 +132,14 @@ class Contender {
   bool has_samples() const { return !factorization_.empty(); }
 
  private:
-  // As many calls as take about a millisecond.
+  // Calls as many times as take about a millisecond.
   template <class Call>
   static int calls_in_a_sample(const Call& call) {
     return std::clamp(static_cast<int>(1e-3 / seconds_of(call)), 1, 1000);
   }
   template <class Call>
   static double time_of(int calls, const Call& call) {
-    call();  // brings back what the others have taken from the caches
+    call();  // reloads the caches after the other solvers
     return seconds_of([&] {
              for (int i = 0; i < calls; ++i) call();
            }) /
@@ -204,7 +204,7 @@ int solvers(const CommandLine& line, const Arguments& a,
              "solve", "GFlop/s", "GB/s", "factor MB", "residual");
   for (const Contender& contender : contenders) contender.report(csv, drawn.name);
   if (!contenders.empty()) {
-    constexpr double look = 0.1;  // how long each of the machine's limits is looked at [s]
+    constexpr double look = 0.1;  // seconds in which each of the machine's limits is measured
     const double gflops = 1e-9 * product_flops(look), bytes = contenders.front().bytes();
     const double rate = 1e-9 * reading_rate(bytes, look),
                  nothing = std::numeric_limits<double>::quiet_NaN();

@@ -36,8 +36,8 @@ Scene drawn_with(const std::string& name, const std::string& vary, double value)
   return generate(*find_generator(name), {{vary, value}}, name);
 }
 
-// The scene with each node moved from its place at rest to `amplitude` times its distance from it,
-// velocities likewise.
+// The scene with each node's distance from its place at rest multiplied by `amplitude`, velocities
+// likewise.
 Scene scaled(const Scene& start, const Scene& rest, double amplitude) {
   Scene scene = start;
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
@@ -74,7 +74,7 @@ bool moves(const AmplitudeRow& row) {
   return row.omega_max > 0 && row.scene->energy(row.scene->initial()) > row.rest_energy;
 }
 
-// The rows of all values whose scenes can be and move.
+// The rows of all values whose scenes exist and move.
 std::vector<AmplitudeRow> rows_where_possible(const std::vector<double>& values, const auto& make,
                                               std::vector<std::string>* left_out) {
   std::vector<AmplitudeRow> rows;

@@ -22,9 +22,9 @@ TABLE, TABLE_END, LINE = 7.95, 12.65, 0.168
 LIMIT_AT, DIFFERENCE_AT = 11.7, 12.65
 SIZE = 8.5
 COLORS = tuple(color for pair in zip(WARM, COOL) for color in pair)
-# Curves nearer than this to each other are one.
+# Curves that are nearer than this to each other count as one.
 SAME = 1e-6
-# Damping ratios are drawn as they are below this, as logarithms above.
+# Damping ratios are drawn linearly below this, logarithmically above.
 STRAIGHT = 1e-3
 UNDAMPED = 1e-4
 # A mode "lives" up to the first damping ratio: it loses half of its energy in ten periods. It is
@@ -230,7 +230,7 @@ class DampingSheet:
         names = [
             self.sheet.wrapped(short_names(curve.methods), room, size=SIZE) for curve in self.curves
         ]
-        # As close as it takes to end above what comes below.
+        # The panel is just high enough to end above the next one.
         lines = sum(len(words) + 0.35 for words in names)
         pitch = min(LINE, (PANEL_HEIGHT + DOWN - 0.6) / lines)
         for curve, words_of_curve in zip(self.curves, names):

@@ -19,37 +19,39 @@ namespace {
 // modes are smaller: they move across springs, whose stretching is stiffer.
 constexpr double displacement = 3e-6;
 double displacement_in(const Mode& mode) { return displacement * std::sqrt(mode.part); }
-// What both leave of the responses.
+// The noise that rounding and nonlinearity leave in the responses.
 constexpr double noise = 1e-6;
-// No more than rounding of this scene's forces.
+// Solves are carried to rounding of this scene's forces.
 constexpr double solved = 1e-12;
 constexpr double growth_noise = 1e-6;
 const double living = std::log(2) / (4 * M_PI * 10), killing = std::log(10) / (2 * M_PI);
 
-// Steps between one response and the next. Slow modes have so many that the method forgets its
-// start and damping adds up. They are at most an eighth of a period: three of them are less than a
+// The number of steps between two responses. For slow modes it is large, so that the method forgets
+// its start and damping adds up. It is at most an eighth of a period: three strides are less than a
 // half.
 constexpr double least_stride = 8, most_stride = 16;
 int stride_in(double h_omega, bool others_grow) {
-  if (others_grow) return 1;  // for they drown this one
+  if (others_grow) return 1;  // the others hide this one
   const double eighth = M_PI / 4 / h_omega;
   return eighth < least_stride ? 1 : static_cast<int>(std::min(eighth, most_stride));
 }
 
-// When the responses to a start are looked at: after each stride of `steps`, after steps `before`.
+// The times at which the responses to a start are recorded: after each stride of `steps`, after the
+// first `before` steps.
 struct Looks {
   int before, strides, steps;
 };
-// A multistep method is looked at after so many steps, for its first are another method's.
+// The steps before a multistep method is observed: its first ones are another method's.
 constexpr int steps_of_start = 64;
-// What its first steps leave in its spurious roots vibrates too, and averages out over so many.
+// The first steps leave vibrations in the spurious roots too, which average out over this many
+// steps.
 constexpr int steps_of_average = 512;
 Looks looks_at(const Method& method, int stride) {
   if (!method.recurrence_roots) return {0, steps_observed, stride};
   return {steps_of_start, stride == 1 ? steps_of_average : steps_observed, stride};
 }
 
-// One run from the scene at rest; `see` takes the state at each look. How it ended.
+// Runs the method on the scene at rest; `see` takes the state at each look.
 Summary run(const Method& method, const ReducedScene& rest, State state, const Options& options,
             const Looks& looks, const std::function<void(const State&)>& see) {
   Observer each{{}, see};

@@ -12,7 +12,7 @@ namespace {
 constexpr int modes_excited = 12;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// What a method makes of a mode; empty steps are none.
+// The result of a method for a mode; empty steps are none.
 struct Row {
   const Method* method;
   const Mode* mode;
@@ -25,7 +25,7 @@ void fill(Row& row, const ReducedScene& rest, double h) {
     row.predicted = linear_step(*row.method, h * row.mode->omega);
     row.measured = modal_step(*row.method, rest, *row.mode, {.step_size = h});
     row.verdict = modal_verdict(row.measured);
-  } catch (const std::exception& why) {  // which cannot leave a thread
+  } catch (const std::exception& why) {  // may not leave a thread
     row.verdict = why.what();
   }
 }

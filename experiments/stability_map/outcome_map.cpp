@@ -15,7 +15,7 @@
 
 namespace qddot::stability_map {
 
-// What nlohmann::json looks for by this name.
+// nlohmann::json finds its functions by this name.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunOutcome, outcome, growth_rate, t_reached, energy_end,
                                    energy_max, mean_step, counts)
 
@@ -28,7 +28,7 @@ Options options_of(const Cell& cell) {
   return options;
 }
 
-// What tells two cells apart, whatever others there are.
+// The name of a cell, which depends on no other cells.
 std::string name_of(const Cell& cell) {
   return fmt::format("run {} {:.17g} {:.17g} {:.17g}", cell.method->name, cell.row->amplitude,
                      cell.h_omega, cell.rtol);
@@ -41,7 +41,7 @@ RunOutcome fate_in(const Cell& cell, const MapSettings& settings) {
                         .tolerated = settings.tolerated,
                         .until = settings.until,
                         .seconds = settings.seconds});
-  } catch (const std::exception&) {  // which cannot leave a thread
+  } catch (const std::exception&) {  // may not leave a thread
     return {.outcome = std::string(name(Outcome::solver_failed))};
   }
 }
@@ -82,7 +82,7 @@ std::vector<std::optional<RunOutcome>> run_outcomes(
 #pragma omp critical
       progress(++done);
     } catch (const Interrupted&) {
-      // The cell is missing.
+      // may not leave a thread
     } catch (...) {  // which cannot leave a thread
 #pragma omp critical
       trouble = std::current_exception();

@@ -14,11 +14,11 @@ namespace qddot::stability_map {
 struct Cell {
   const Method* method;
   const AmplitudeRow* row;
-  double h_omega;  // h w_max asked for; nothing where the method chooses its steps:
-  double rtol;     // then this is its tolerance
+  double h_omega;  // requested h w_max; nothing if the method chooses its steps:
+  double rtol;     // then its tolerance
 };
 
-// How runs are made and judged.
+// The settings by which runs are made and judged.
 struct MapSettings {
   double until, tolerated, seconds;
 };

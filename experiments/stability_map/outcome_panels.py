@@ -26,7 +26,7 @@ MOST_SHAPES = 10000
 LIMIT = {"color": INK, "linewidth": 1.3, "linestyle": (0, (4, 2))}
 BUCKLING = {"color": INK, "linewidth": 1.3, "linestyle": (0, (1, 1.2))}
 UNFORESEEN = {"color": INK, "linewidth": 1.3}
-# How many colours of the key fit into a line.
+# The number of colours of the key in a line.
 KEYS = 7
 
 
@@ -166,7 +166,7 @@ class OutcomeSheet:
         """The height of a row of panels with its headings."""
         title, chunk, names, following = row
         lines = max(map(len, names)) + 1
-        # Where a column ends, its ticks stand in the room of the titles below.
+        # At the end of a column, ticks use the space of the titles below.
         foot = DOWN if following == len(chunk) else TICKS
         return (HEADING if title else 0) + LINE * lines + self.tall + foot
 

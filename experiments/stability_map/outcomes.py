@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from style import COOL, number
 
-# What an outcome is called and its colour; others are called as they are named.
+# The words and colour of an outcome; others are drawn by their own name.
 OUTCOMES = {
     "bounded": ("bounded", "#E6EEE4"),
     "leaked": ("energy leaked", "#9CC8E6"),
@@ -22,7 +22,7 @@ HOLDS = ("bounded", "leaked", "over_budget")
 GROWS = ("gained", "diverged")
 # The growth of the amplitude in a step, as a logarithm, where the colour is faintest and deepest.
 FAINTEST, SLOWEST, FASTEST = 0.35, 3e-3, 1.0
-# Nearer to the limit than this no run is held against theory.
+# Runs nearer than this to the limit are not compared with theory.
 AT_LIMIT = 0.999
 
 

@@ -18,19 +18,20 @@
 namespace qddot::stability_map {
 namespace {
 
-// Chosen, not derived, and said in run_outcome.hpp; verdicts depend on them where a run is at the
-// limit of what its method holds.
+// Chosen values, stated in run_outcome.hpp; verdicts depend on them if a run is at the limit of its
+// method.
 
-// How often X is looked at: so many steps at first, so many times later.
+// X is recorded after this many steps at first, and this many times later.
 constexpr int watched_steps = 200, samples_more = 400;
 // A growth of fewer samples is fitted from its beginning.
 constexpr std::ptrdiff_t few = 8;
-// The push of compressed springs makes M - h^2 K singular at 1.
+// h times the rate of the sideways push from which M - h^2 K is nearly singular; it is singular at
+// 1.
 constexpr double nearly_singular = 0.9;
-// X over X(0) from which a run may be diverging, is growing, and is unbounded.
+// The ratios X over X(0) from which a run may be diverging, is growing, and is unbounded.
 constexpr double suspicious = 10, growing = 3, unbounded = 1e6;
-// A run's iterations are checked with this many times as many, which may change the motion by at
-// most this part of its size.
+// A run's iterations are checked by a run with this many times as many. It may change the motion by
+// at most this part of its size.
 constexpr int more_iterations = 5;
 constexpr double other_motion = 0.1;
 
@@ -38,8 +39,8 @@ struct Sample {
   double t, ratio;  // X over X(0)
 };
 
-// Every step at first, which a fast growth needs, then evenly; multiples of h, so that no step is
-// another one.
+// Every step at first, for fast growth, then equally spaced times; all are multiples of h, so that
+// no step is changed.
 std::vector<double> looks(const Options& options, double until) {
   std::vector<double> times;
   const double h =
@@ -54,9 +55,9 @@ struct Run {
   Summary summary;
   std::vector<Sample> samples;
   State end;
-  bool was_stopped = false;  // since X grew out of sight
-  // Where X jumped beyond what is suspicious: h times the rate [1/s] at which the state before was
-  // pushed to the side. Looked for in linearly implicit methods.
+  bool was_stopped = false;  // as X grew beyond all bounds
+  // Set if X jumped beyond `suspicious`: h times the rate [1/s] of the sideways push at the state
+  // before. Only for linearly implicit methods.
   std::optional<double> pushed{};
 };
 
@@ -99,7 +100,7 @@ double largest(Samples::const_iterator first, Samples::const_iterator last) {
   return std::ranges::max_element(first, last, {}, &Sample::ratio)->ratio;
 }
 
-// Those of the time from `part` of the run on; the last one at least.
+// The samples from `part` of the run's time on; at least the last one.
 Samples::const_iterator from(const Samples& samples, double part) {
   const double t = part * samples.back().t;
   return std::ranges::lower_bound(samples, t, {}, &Sample::t);
@@ -139,7 +140,8 @@ std::string judged(const Run& r, const RunOutcome& result, double tolerated) {
   return "bounded";
 }
 
-// The largest distance of a node's places in two states, over how far the motion took one.
+// The largest distance between a node's places in two states, over the largest displacement in the
+// motion.
 double difference(const ReducedScene& scene, const State& a, const State& b) {
   Scales scales;
   extend(scales, scene, a);

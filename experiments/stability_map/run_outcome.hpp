@@ -7,8 +7,8 @@
 
 namespace qddot::stability_map {
 
-// How a run is made and judged: by its energy above that at rest, X = E - V(rest), which the exact
-// motion keeps.
+// The settings of a run and of its verdict, which depends on the energy above rest, X = E -
+// V(rest). The exact motion conserves X.
 struct RunPlan {
   double rest_energy = 0;  // V at rest [J]
   double tolerated = 0.5;  // the part of X that may be lost or gained

@@ -113,7 +113,7 @@ void require(const Arguments& a) {
   }
 }
 
-// The rows of the map; none where the scene has no equilibrium.
+// The rows of the map; empty if the scene has no equilibrium.
 std::vector<AmplitudeRow> rows_of(const Arguments& a, const Scene& start,
                                   const std::optional<Scene>& rest) {
   const Reductions reductions = reductions_of(a.scene);
@@ -141,9 +141,9 @@ std::vector<double> spaced(double low, double high, int count) {
 
 struct Limit {
   const Method* method;
-  double predicted, measured;  // of h w; infinite where there is none
+  double predicted, measured;  // of h w; infinite without a limit
 
-  // How far the measured limit is from the predicted one, where there is one.
+  // The relative difference of the measured limit from the predicted one, if there is one.
   double difference() const { return (measured - predicted) / predicted; }
 };
 
@@ -209,8 +209,8 @@ void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>&
   }
 }
 
-// The methods that are followed through whole runs: all but SUNDIALS' fixed steps, which have twins
-// here.
+// The methods whose whole runs are mapped: all but SUNDIALS' fixed steps, which have hand-written
+// twins.
 std::vector<const Method*> followed(const Arguments& a, const std::vector<const Method*>& methods) {
   std::vector<const Method*> chosen;
   for (const Method* method : methods) {
@@ -301,7 +301,7 @@ void print(const std::vector<Cell>& cells, const Fates& all) {
   }
 }
 
-// The scene as it rests, or nothing, with the reason, where it does not.
+// The scene at rest, or nothing, with the reason, if it has no rest.
 std::optional<Scene> at_rest(const Scene& start, const std::string& source) {
   try {
     return settled(start, source);

@@ -75,8 +75,8 @@ struct Compressed {
   double lambda;  // the largest eigenvalue, positive
 };
 
-// Those of the compressed cases that can be indefinite. None can in 1D: a spring has no direction
-// across.
+// The compressed cases that can be indefinite. In 1D none can: a spring has no transverse
+// direction.
 const std::vector<Compressed>& compressed_cases() {
   static const std::vector<Compressed> all = [] {
     std::vector<Compressed> found;

@@ -4,6 +4,6 @@
 
 #include "qddot/algebra/effective_mass.hpp"
 
-// What has no text of its own; once for all tests, which Boost.Test asks for.
+// Types without text, declared once for all tests as Boost.Test requires.
 BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::Definiteness)
 BOOST_TEST_DONT_PRINT_LOG_VALUE(qddot::SolveOutcome)

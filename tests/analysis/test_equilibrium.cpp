@@ -36,7 +36,7 @@ void check_minimum(const System& system, const Equilibrium& e, double length) {
   const CurvatureSigns signs = qddot::curvature_signs(system, e.q);
   BOOST_TEST(signs.negative == 0);
   BOOST_TEST(e.smallest_eigenvalue >= -1e-11 * row_sum);
-  // That of the place before the last steps of Newton's: the same but for rounding.
+  // The value at the place before the last Newton steps differs by rounding only.
   const double smallest = smallest_curvature(system, e.q).value;
   BOOST_TEST(std::abs(e.smallest_eigenvalue - smallest) < 1e-9 * row_sum);
   BOOST_TEST(e.isolated == (signs.flat == 0));
@@ -44,7 +44,7 @@ void check_minimum(const System& system, const Equilibrium& e, double length) {
   if (e.smallest_eigenvalue > 1e-11 * row_sum) BOOST_TEST(e.isolated);
 }
 
-// How far a coordinate may be from the exact minimum: the force that is left over the stiffness.
+// The distance of a coordinate from the exact minimum: the remaining force over the stiffness.
 double position_tolerance(const Equilibrium& e) {
   return 100 * e.residual / e.smallest_eigenvalue + 100 * eps;
 }

@@ -21,7 +21,8 @@ namespace {
 // Eigenvalues of -K are wrong by some roundings of the largest row sum.
 constexpr double tolerance = 1e-13;
 
-// How many eigenvalues of -K are clearly negative, by a dense decomposition; the least of them.
+// The number of clearly negative eigenvalues of -K, by a dense decomposition, and the least of
+// them.
 struct Truth {
   int negative;
   double least, row_sum;

@@ -40,7 +40,7 @@ class DrawnMotion {
   double known_until_ = 0, displacement_ = 0, speed_ = 0, floor_ = 0;
 };
 
-// What is held against the drawn scene, and how often.
+// The quantities that are compared with the drawn scene, and the number of comparisons.
 struct Comparisons {
   std::int64_t states = 0, motions = 0, runs = 0;
   std::int64_t given_up = 0;  // runs whose nonlinear or linear solves failed, and said so

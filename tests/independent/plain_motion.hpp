@@ -42,8 +42,8 @@ class PlainMotion {
     now_.x[coordinate] += by;
     now_.v[coordinate] += faster;
   }
-  // Where a kink of f (a spring of length zero) held the steps to the shortest, its error is of
-  // that size: this many such steps were taken.
+  // The number of the shortest steps, taken at kinks of f (springs of length zero). The error of
+  // each is of that step's size.
   int forced_steps() const { return forced_; }
 
   // Steps to `until` [s]; false where a massless node finds no place or `most_steps` are not
@@ -126,8 +126,7 @@ class PlainMotion {
     // A displacement is as large as the motion has ever been in the time of a step.
     travelled = std::max(travelled, speed * h);
     if (travelled == 0) return Real(0);
-    // What rounding makes of positions no shorter step can mend: of velocities, their share of
-    // that.
+    // Shorter steps do not reduce the rounding of positions, nor its effect on velocities.
     const Real noise = magnified_rounding * farthest / (travelled * tolerance_);
     Real error = error_x / travelled;
     take_larger(error, error_v / speed);
@@ -137,7 +136,7 @@ class PlainMotion {
     return error;
   }
 
-  // So that what is no number is not lost.
+  // A result that is not a number is kept, not lost.
   static void take_larger(Real& largest, Real value) {
     if (!(value <= largest)) largest = value;
   }

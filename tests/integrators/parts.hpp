@@ -57,7 +57,7 @@ struct Together {
       at += one.start.q.size();
     }
   }
-  // What part i has of a state.
+  // The part of a state that belongs to part i.
   State part(const State& state, std::size_t i) const {
     Index at = 0;
     for (std::size_t before = 0; before < i; ++before) at += blocks_of(*system)[before]->size();

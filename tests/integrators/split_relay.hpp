@@ -61,7 +61,7 @@ class SplitRelay final : public System,
   Split split_;
 };
 
-// How often the two halves and the whole were asked for forces and stiffnesses.
+// The numbers of evaluations of forces and stiffnesses, of both halves and of the whole.
 struct Asked {
   std::int64_t stiff_force = 0, soft_force = 0, whole_force = 0;
   std::int64_t stiff_stiffness = 0, soft_stiffness = 0, whole_stiffness = 0;

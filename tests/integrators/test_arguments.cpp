@@ -1,4 +1,4 @@
-// What nobody can ask an integrator for: each is refused in a sentence before anything is done.
+// Arguments that an integrator refuses in a sentence before it does anything.
 #include <limits>
 #include <stdexcept>
 

@@ -27,7 +27,7 @@ std::vector<Method> methods_of_fixed_steps() {
   return list;
 }
 
-// One time in each step of h, at an irregular place in it.
+// A time in each step of h, at an irregular place.
 std::vector<double> one_a_step(double h, double t_end) {
   std::vector<double> times;
   for (int i = 0; (i + 1) * h <= t_end; ++i) times.push_back((i + std::fmod(i * golden, 1)) * h);
@@ -35,7 +35,7 @@ std::vector<double> one_a_step(double h, double t_end) {
   return times;
 }
 
-// Where every method is exact but for rounding: a mass that nothing pulls at, with t = x.
+// A problem in which every method is exact up to rounding: a mass without forces, with t = x.
 Problem flight() {
   return {{.dimension = 1, .node_mass = Vec::Ones(1)}, {0, Vec::Zero(1), Vec::Ones(1)}};
 }

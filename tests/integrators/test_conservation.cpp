@@ -22,7 +22,7 @@ Scene drifting_pair(double stretch, double spin, const Vector3d& drift) {
   return scene;
 }
 
-// What a run by 8th order to t_end makes of it.
+// The centre of mass and the difference of both positions after a run of order 8 to t_end.
 struct Pair {
   Vector3d centre, apart;
 };
@@ -57,7 +57,7 @@ Momenta momenta(const std::vector<Node>& nodes) {
   return sum;
 }
 
-// What 200 steps of 1/100 s change in them.
+// The change of the momenta in 200 steps of 1/100 s.
 Momenta change(const Scene& scene, const Reductions& reductions, const Method& method) {
   const Momenta before = momenta(scene.nodes);
   const Momenta after = momenta(nodes_after(scene, reductions, method, 0.01, t_end));
@@ -82,7 +82,7 @@ Scene chain(bool upright) {
   return scene;
 }
 
-// How far the nodes are from hanging still, each spring l0 + (weight below) / k long.
+// The distance of the nodes from hanging still, with each spring l0 + (weight below) / k long.
 double hanging_error(const std::vector<Node>& nodes) {
   double z = 0, error = 0;
   for (int i = 1; i <= links; ++i) {

@@ -27,7 +27,7 @@ double growth(const Method& method, const Problem& p, double t_end, const Option
   return run(method, *make_mass_spring(p.network), p.initial, t_end, options).summary.energy_growth;
 }
 
-// What a run says, and what its states at many times do.
+// The growth that a run reports, and the growth over its states at many times.
 struct Growth {
   double said, seen;
 };

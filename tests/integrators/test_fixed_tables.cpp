@@ -15,8 +15,8 @@ using Complex = std::complex<double>;
 
 const double gamma_sdirk = 1 - 1 / std::sqrt(2.0), gamma_tr = 2 - std::sqrt(2.0);
 
-// What a step multiplies the solution of y' = lambda y by, z = h lambda, and its limit of a long
-// step.
+// The factor by which a step multiplies the solution of y' = lambda y, z = h lambda, and its limit
+// for long steps.
 struct Formula {
   const char* method;
   std::function<Complex(Complex)> amplification;
@@ -67,8 +67,8 @@ std::vector<Table> tables() {
           {"arkode_trbdf2", Eigen::MatrixXd{{0, 0, 0}, {d, d, 0}, {w, w, d}}, Vec{{w, w, d}}}};
 }
 
-// One step of it, by an iteration of the stages' equations that shrinks by (h w)^2 a_ii^2 < 0.3 a
-// round.
+// A step of the table, by an iteration of the stages' equations that shrinks by (h w)^2 a_ii^2 <
+// 0.3 a round.
 State step(const Table& table, const System& system, const State& start, double h) {
   const Index n = system.size(), stages = table.b.size();
   Eigen::MatrixXd q_rate = Eigen::MatrixXd::Zero(n, stages), v_rate = q_rate;
@@ -86,7 +86,7 @@ State step(const Table& table, const System& system, const State& start, double 
 // Newton's iteration leaves a relative error of a tenth of 1e-10 in each stage. It leaves far less
 // if the motion is linear, as a second iteration confirms the first.
 constexpr double newton = 1e-10;
-// What that is worth after 100 steps that add up.
+// The effect of Newton's tolerance after 100 steps.
 constexpr double newton_of_100_steps = 1e-8;
 
 }  // namespace

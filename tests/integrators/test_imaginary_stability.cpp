@@ -68,7 +68,7 @@ struct SmoothChain {
   }
   double t_end = 5 * 2 * M_PI / frequency(1);
 
-  // What a run costs, and the larger of its errors in q [m] and v [m/s].
+  // The cost of a run, and the larger of its errors in q [m] and v [m/s].
   struct Ending {
     Counts counts;
     double error;

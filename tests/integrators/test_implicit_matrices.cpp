@@ -76,7 +76,8 @@ State run_oscillator(const char* method, double h, double t_end) {
   return r.state;
 }
 
-// How far the method is from the power of its matrix after so many steps, relative to the start.
+// The difference between the method and the power of its matrix after some steps, relative to the
+// start.
 double defect(const char* method, const Amplification& matrix, double hw, int steps) {
   const double h = hw / w;
   const MatrixXd a = matrix(hw);

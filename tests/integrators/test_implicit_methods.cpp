@@ -230,7 +230,7 @@ BOOST_AUTO_TEST_CASE(what_solves_leave_is_their_tolerance_of_the_method_s_own_er
     };
     for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8}) {
       BOOST_TEST_CONTEXT(method << " at " << tolerance) {
-        // What predictions miss is of the size of the steps' errors, within a small factor.
+        // The error of predictions is of the size of the steps' errors, up to a small factor.
         BOOST_TEST(part(tolerance) < 5 * tolerance);
         BOOST_TEST(part(tolerance) > 0.1 * tolerance);
       }

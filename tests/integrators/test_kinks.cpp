@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(errors_follow_the_tolerance_through_jumps_of_the_force) {
     for (const char* method : {"dprkn6", "dprkn8", "dprkn12"}) {
       for (const double rtol : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13}) {
         BOOST_TEST_CONTEXT(method << " at " << rtol << " in trial " << trial) {
-          // What is seen between steps is as accurate as they are.
+          // States between steps are as accurate as the steps.
           std::vector<State> seen;
           const Observer observer{{0.97 * exact.pass(), 1.001 * exact.pass(), 3.5 * exact.pass()},
                                   [&](const State& s) { seen.push_back(s); }};

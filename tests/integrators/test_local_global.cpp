@@ -15,7 +15,7 @@ std::vector<Method> all() {
   return list;
 }
 
-// One step of h with so many iterations.
+// A step of h with `iterations` iterations.
 State step(const Method& method, const System& system, const State& start, double h,
            int iterations) {
   const Run r = run(method, system, start, start.t + h, {.step_size = h, .iterations = iterations});
@@ -24,7 +24,7 @@ State step(const Method& method, const System& system, const State& start, doubl
   return r.state;
 }
 
-// What the step minimises.
+// The energy that the step minimises.
 double energy(const System& system, const State& start, const State& end) {
   return system.kinetic(end.v - start.v) + system.potential(end.q);
 }

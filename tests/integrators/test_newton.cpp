@@ -27,7 +27,7 @@ Problem strut(double bend) {
   return p;
 }
 
-// One implicit Euler step as a minimisation over v.
+// An implicit Euler step as a minimisation over v.
 class Minimisation {
  public:
   Minimisation(const Problem& p, double h)

@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(with_v_and_f_alone_it_is_run_by_every_method_that_needs_no_
   run_all(Chain(), without_stiffness);
 }
 
-// Nothing asks for its V.
+// A system whose V must not be evaluated.
 template <class Base>
 class WithoutPotential final : public Base {
  public:

@@ -125,7 +125,7 @@ BOOST_AUTO_TEST_CASE(of_several_parts_that_fail_the_earliest_decides_in_any_orde
         const Together together(parts);
         const Run r = run(method, together, t_end, options_for(method));
         BOOST_TEST(r.thrown == "early");
-        // Where its last step was depends on where an adaptive method wanted to stop.
+        // The last step of an adaptive method depends on the requested end.
         if (method.knob == Knob::step_size) BOOST_TEST(r.state.t == first.state.t);
         BOOST_TEST(std::abs(r.state.t - first.state.t) < 0.05);
         BOOST_TEST(r.summary.t_reached == r.state.t);

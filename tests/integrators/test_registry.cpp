@@ -33,7 +33,8 @@ Eigen::MatrixXd step_derivative(const Method& method, const System& system, cons
   return finite_difference_jacobian(map, y, 1e-4);
 }
 
-// How far `method` is from keeping the form dq ^ M dv: |D'SD - S| / |S|, S = [[0, M], [-M, 0]].
+// The relative defect of the symplectic form dq ^ M dv after a step: |D'SD - S| / |S|, S = [[0, M],
+// [-M, 0]].
 double symplectic_defect(const Method& method) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(p.network);

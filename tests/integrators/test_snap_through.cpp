@@ -21,8 +21,8 @@ double force_upwards(double y) {
   return 2 * k * (bar - length) * y / length;
 }
 
-// Where the truss, which pushes by 2 k (L a^2 / l^3 - 1) more a metre, gives way as the spring
-// does.
+// The height at which the truss, with 2 k (L a^2 / l^3 - 1) more push a metre, gives way as the
+// spring does.
 const double lost_at = std::sqrt(
     std::pow(bar * half_span * half_span / (1 + soft / (2 * k)), 2 / 3.) - half_span * half_span);
 const double mass_then = lost_at - hung - force_upwards(lost_at) / soft;

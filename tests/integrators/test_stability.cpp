@@ -34,7 +34,7 @@ double growth_a_step(const char* method, double hw, int steps) {
   return std::pow(ratio, 1.0 / steps);
 }
 
-// What a method keeps on the oscillator up to rounding, as the quadratic form v^2 + b x v + c x^2.
+// The quadratic form v^2 + b x v + c x^2 that a method conserves on the oscillator up to rounding.
 struct Invariant {
   const char* method;
   double b, c;
@@ -83,7 +83,7 @@ Vec modal_energies(const State& s) {
   return energies;
 }
 
-// How far a run forward and, with the velocities turned round, back again ends from its start.
+// The distance from its start at which a run forward, and back with reversed velocities, ends.
 double return_distance(const Method& method) {
   const Problem p = hammock(3);
   const auto system = make_mass_spring(p.network);
@@ -107,7 +107,7 @@ Vec momenta(const System& system, const State& s) {
   return both;
 }
 
-// What 1000 steps of 1/100 s change in the momenta.
+// The change of the momenta in 1000 steps of 1/100 s.
 Vec change_of_momenta(const Method& method) {
   const ReducedScene scene(generate(*find_generator("pair"), {}, "pair"),
                            Reductions::only({Reduction::pins}));

@@ -186,7 +186,7 @@ BOOST_AUTO_TEST_CASE(a_step_costs_one_force_after_those_of_the_start) {
   }
 }
 
-// What the errors of the first steps put into the spurious roots stays as large as it is.
+// The errors that the first steps leave in the spurious roots stay of their size.
 BOOST_AUTO_TEST_CASE(no_vibration_grows_in_a_hundred_thousand_steps) {
   const auto system = make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);
   const State start{0, Vec::Constant(1, 1), Vec::Constant(1, 0)};

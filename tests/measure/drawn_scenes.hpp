@@ -13,9 +13,9 @@ inline Scene drawn(const char* generator, const GeneratorValues& values) {
   return generate(*find_generator(generator), values, generator);
 }
 
-// What the case is judged by: a reference that is ten times as accurate as what is asked for.
-// Nothing where the case has more nodes than that, nothing moves in it, or there is no such
-// reference in about so many seconds.
+// The judge of the case: a reference that is ten times as accurate as the requested accuracy. Empty
+// if the case has more nodes, if nothing moves in it, or if no such reference is found in about
+// `seconds`.
 inline std::optional<measure::Reference> judge(const advice_study::Case& drawn,
                                                const ReducedScene& model, std::size_t most_nodes,
                                                double seconds) {

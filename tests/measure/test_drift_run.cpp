@@ -74,7 +74,8 @@ BOOST_AUTO_TEST_CASE(over_a_million_steps_verlet_does_not_drift_and_rk4_does) {
   // h^2 w^2/8 and thereabouts.
   BOOST_TEST(verlet.energy.oscillation > 1e-4);
   BOOST_TEST(verlet.energy.oscillation < 1e-2);
-  // So narrow that a loss of a tenth of the oscillation over the run would have been seen.
+  // The interval is so narrow that a loss of a tenth of the oscillation over the run would be
+  // visible.
   const double duration = 0.02 * 1e6;
   BOOST_TEST(verlet.energy.drift.high * duration < verlet.energy.oscillation / 10);
 

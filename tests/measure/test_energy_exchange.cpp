@@ -31,7 +31,7 @@ EnergyCourse course_of(double a, double ripple = 0) {
       a, [](double) { return 1.0; }, ripple);
 }
 
-// What a running mean makes of cos^2(t/50): its waves shrink by sinc(window/50).
+// The factor by which a running mean reduces the waves of cos^2(t/50): sinc(window/50).
 const double shrunk = std::sin(window / 50) / (window / 50);
 
 }  // namespace

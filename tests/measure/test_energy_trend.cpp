@@ -242,7 +242,7 @@ BOOST_AUTO_TEST_CASE(a_level_that_changed_once_is_bounded_after_that) {
     BOOST_TEST(trend.steady_from == (at < 0.5 ? 0.5 : 0.75) * duration);
     BOOST_TEST(trend.before == -1e-2, boost::test_tools::tolerance(0.01));
   }
-  // One so late has not been looked at for long.
+  // A late change has not been observed for long.
   const Trend late =
       judged(series([&](double t) { return vibrates(t) - (t > 0.9 * duration ? 1e-2 : 0); }));
   BOOST_TEST(verdict_name(late.verdict) == "undecided");

@@ -20,7 +20,7 @@ Scene three_nodes() {
   return scene;
 }
 
-// So that the unknowns are the coordinates of the free nodes.
+// With these reductions the unknowns are the coordinates of the free nodes.
 const auto plain = Reductions::only({Reduction::pins});
 
 }  // namespace

@@ -20,7 +20,7 @@ using namespace qddot;
 namespace {
 
 constexpr double failed = std::numeric_limits<double>::infinity();
-// What is asked for of the largest step, as part of the largest that holds.
+// The least ratio of the largest good step to the largest stable one.
 constexpr double near_enough = 0.98;
 
 // The error of a run of so many steps.
@@ -187,7 +187,7 @@ struct Small {
 
   explicit Small(unsigned seed) : Small(network(seed)) {}
 
-  // How far from the end of the motion verlet ends, in units of the motion; infinite where it
+  // The distance of verlet's end from the end of the motion, in units of the motion; infinite if it
   // fails.
   double error(double steps) const {
     State state = scene.initial();

@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(they_add_up_to_the_kinetic_energy) {
     BOOST_TEST(parts.minCoeff() >= 0);
     // Orthonormal to rounding, over some tens of modes.
     BOOST_TEST(parts.sum() == scene.system().kinetic(v), boost::test_tools::tolerance(1e-12));
-    // Where all modes are there is nothing above.
+    // If all modes are included, nothing is left above them.
     BOOST_TEST((parts[parts.size() - 1] < 1e-12 * parts.sum()) == (count == 5));
   }
 }

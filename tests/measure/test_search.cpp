@@ -1,4 +1,4 @@
-// What a search knows of its runs; what it finds is tried in test_solve.cpp.
+// The bounds that a search knows of its runs; its results are tested in test_solve.cpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -42,7 +42,7 @@ bool is_disturbed(const F& f) {
   return own < own_part * wall;
 }
 
-// What a search finds on a drawn case, and what says how accurate that is.
+// The result of a search on a drawn case, and its true accuracy.
 struct Finding {
   explicit Finding(std::uint64_t seed) : drawn(advice_study::drawn_case(seed)) {
     BOOST_TEST_REQUIRE(search.survey(drawn.accuracy));
@@ -199,8 +199,8 @@ BOOST_AUTO_TEST_CASE(an_order_is_believed_to_leave_a_tenth_at_least) {
   BOOST_TEST(bound->error <= 0.2 * apart);  // a margin of 1.6, and 0.9 of it is the coarse error
 }
 
-// Nothing is expected of a method before a forecast. How far its run is from one that is bounded
-// bounds it all the same, by |q - q*| <= |q - q_best| + |q_best - q*|.
+// Before a forecast, a method has no expected error. Its distance to a bounded run bounds its error
+// all the same, by |q - q*| <= |q - q_best| + |q_best - q*|.
 BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {
   const ReducedScene model(drawn("orbit", {}));
   const double until = 2, h = 0.01;
@@ -223,7 +223,7 @@ BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {
   BOOST_TEST(!bound->by_coarser);
   const double error = error_of(first, search, reference);
   BOOST_TEST(error <= bound->error);
-  // What the best run may be off by is part of it, and nothing else.
+  // The bound contains the error bound of the best run, and nothing else.
   const double apart = search.distance(first, best);
   BOOST_TEST(std::abs(bound->error - apart - least->error) <= 1e-15 * bound->error);
 }
@@ -232,7 +232,7 @@ BOOST_AUTO_TEST_CASE(a_run_is_bounded_by_the_most_accurate_one) {
 // such runs and one that makes the same runs but these, in the same order, know the same of each.
 BOOST_AUTO_TEST_CASE(runs_that_are_good_by_chance_judge_and_teach_nothing) {
   const ReducedScene model(drawn("pendulum", {}));
-  // So short that the number of bursts along the first run does not depend on its time.
+  // The run is so short that the number of bursts along the first run does not depend on its time.
   const double until = 0.5, accuracy = 1e-6;
   std::optional<Search> first, second;
   const auto begin = [&](std::optional<Search>& search) {
@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_CASE(runs_that_are_good_by_chance_judge_and_teach_nothing) {
     BOOST_TEST_REQUIRE(search->survey(accuracy));
     return search->trials().size();
   };
-  // How many steps a survey has time for may differ, and whether chance is given any.
+  // The number of runs in a survey, and whether runs by chance are made, depend on the time.
   std::size_t raced = 0;
   const auto is_alike = [&] {
     const std::size_t surveyed = begin(first);
@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(runs_that_are_good_by_chance_judge_and_teach_nothing) {
   BOOST_TEST(std::ranges::none_of(sober.trials(), &Trial::is_gamble));
   for (Search* search : {&gambling, &sober}) {
     look_again(*search);
-    // One more, for both to learn from all.
+    // A further run, from which both learn.
     search->try_once({&method("verlet"), until / 1000}, seconds);
   }
   constexpr double rounding = 1e-9;  // relative; nothing but the order of sums may differ
@@ -295,7 +295,7 @@ BOOST_AUTO_TEST_CASE(runs_that_are_good_by_chance_judge_and_teach_nothing) {
 // may miss, as an answer may, and then not by much.
 BOOST_AUTO_TEST_CASE(every_run_of_a_search_is_within_its_bound) {
   int bounded = 0, beyond = 0, bounded_by_one_it_does_not_check = 0;
-  // How many runs are worth making depends on how fast the machine is: cases go on until there are
+  // The number of worthwhile runs depends on the machine's speed: cases continue until there are
   // enough.
   for (std::uint64_t seed = 5000000; bounded < 120; ++seed) {
     const advice_study::Case c = advice_study::drawn_case(seed);
@@ -314,7 +314,7 @@ BOOST_AUTO_TEST_CASE(every_run_of_a_search_is_within_its_bound) {
     const Search& search = *made;
     for (const Trial& trial : search.trials()) {
       const auto bound = search.bound(trial);
-      // What is off by as much as the motion itself is lost, and so are bounds of it.
+      // Runs with an error as large as the motion are lost, and so are their bounds.
       if (!bound || bound->error > 0.1) continue;
       ++bounded;
       bounded_by_one_it_does_not_check += bound->by && bound->by != search.checker(trial);

@@ -161,7 +161,7 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_nothing_is_claimed) {
 BOOST_AUTO_TEST_CASE(below_rounding_nothing_is_claimed) {
   const Answer answer = measure::solve(drawn("orbit", {}), 1000, 1e-14);
   BOOST_TEST(!answer.is_reached);
-  // What is left is rounding, far below what one looks for.
+  // The remaining error is rounding, far below any requested accuracy.
   BOOST_TEST(answer.error_estimate > 1e-14);
   BOOST_TEST(answer.error_estimate < 1e-6);
   BOOST_TEST(contains(answer.why, {"the smallest known error bound is"}));

@@ -55,7 +55,7 @@ BOOST_AUTO_TEST_CASE(an_oscillators_speed_is_its_amplitude_times_its_frequency) 
     BOOST_TEST(options.length == std::abs(x));
     BOOST_TEST(options.speed == 10 * std::abs(x), within_rounding);  // w = sqrt(100 N/m / 1 kg)
   }
-  // Where it starts faster than that, this is its speed.
+  // The speed is that of the start if that is larger.
   BOOST_TEST(scales_of(drawn("oscillator", {{"velocity", -25}})).speed == 25);
 }
 
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(other_units_give_the_same_lengths_and_speeds) {
 BOOST_AUTO_TEST_CASE(nodes_without_mass_have_no_acceleration_to_count) {
   Scene scene = falling_triangle();
   const Scene heavy = scene;
-  // One that hangs on a spring of its own, far out of balance, within the extent.
+  // A node that hangs on its own spring, far out of balance, within the extent.
   scene.nodes.push_back({.position = {1, 1, 0}});
   scene.springs.push_back({{0, 3}, {.stiffness = 1e-9, .rest_length = 1}});
   for (const Reductions& reductions : {Reductions(), Reductions::only({})}) {

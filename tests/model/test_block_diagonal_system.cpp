@@ -26,7 +26,7 @@ BlockDiagonalSystem in_parts(const Networks&... networks) {
   return BlockDiagonalSystem(std::move(parts));
 }
 
-// All that a system says of a point.
+// The values of all functions of a system at a point.
 struct Said {
   Said(const System& system, const Vec& q)
       : v(system.potential(q)), f(force_at(system, q)), k(dense(stiffness_at(system, q))) {}

@@ -88,7 +88,7 @@ class Declines final : public Plain, public DiscreteGradient {
   bool offers_;
 };
 
-// All that a system may offer, in a fixed order.
+// The capabilities of a system, in a fixed order.
 struct Offers {
   bool stiffness = false, split_stiffness = false, discrete_gradient = false, laplacian = false,
        pieces = false, validity = false, kinks = false, blocks = false, split = false;
@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(blocks_offer_together_what_all_of_them_offer_and_exceptions
                             .blocks = true,
                             .split = false};
       BOOST_TEST((offers_of(both) == expected));
-      // What is offered can be used.
+      // The offered capabilities work.
       const Vec q = Vec::Constant(both.size(), 0.5);
       BOOST_TEST(force_at(both, q).allFinite());
       if (expected.stiffness) {

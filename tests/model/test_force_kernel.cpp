@@ -19,7 +19,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-// What a spring's force is rounded in proportion to: not the force itself, which is a difference.
+// The size that the rounding of a spring's force is relative to. The force itself is a difference.
 double size_of(const SpringLaw& law, double length) {
   const double sum = length + law.rest_length;
   return sum * (law.stiffness + law.quartic * sum * sum);

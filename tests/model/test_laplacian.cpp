@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(clamped_stiffness_is_that_of_stretched_springs_and_never_gr
     const Eigen::MatrixXd k = dense(stiffness_at(*system, s.q)),
                           clamped = dense(clamped_at(*system, s.q));
     BOOST_TEST(largest_eigenvalue(clamped) < rounding);
-    // What is taken off compressed springs was positive.
+    // The part removed from compressed springs was positive.
     BOOST_TEST(smallest_eigenvalue(k - clamped) > -rounding);
     worst = std::max(worst, largest_eigenvalue(k));
     const Vec q = beside(s.q, random);

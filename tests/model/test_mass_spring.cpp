@@ -44,7 +44,7 @@ Problem without_pins(Problem p) {
   return p;
 }
 
-// One move of all nodes together along axis d.
+// The displacement of all nodes together along axis d.
 Vec translation(const Problem& p, int d) {
   return Vec::Unit(p.network.dimension, d).replicate(p.network.node_mass.size(), 1);
 }

@@ -17,8 +17,8 @@ constexpr double rest_length = 0.7;
 enum class Kind { link, image, own_image, anchor };
 constexpr Kind kinds[] = {Kind::link, Kind::image, Kind::own_image, Kind::anchor};
 
-// One spring that needs tension, of `length` along a random direction, among others that do not
-// and are compressed.
+// A spring for tension only, of `length` along a random direction, among compressed springs that
+// hold always.
 struct Sample {
   Network network;
   Vec q;

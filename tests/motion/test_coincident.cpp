@@ -162,7 +162,8 @@ std::vector<Eigen::Vector3d> forces_by_hand(const Scene& scene, const std::vecto
   return f;
 }
 
-// That in this state all nodes are accelerated as drawn, and energies are those of all.
+// Checks that all nodes have the accelerations of the drawn scene in this state, and the energies
+// too.
 void check(const Scene& scene, const ReducedScene& reduced, const State& state) {
   const std::vector<Node> nodes = reduced.expand(state);
   const auto f = forces_by_hand(scene, nodes);

@@ -1,4 +1,4 @@
-// What nothing is pinned to falls as a whole, and is integrated about its centre of mass.
+// A part without pins falls as a whole, and is integrated about its centre of mass.
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/integrators/registry.hpp"
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(only_what_rests_by_construction_is_left_out) {
   Scene pinned = tetrahedron();
   pinned.nodes[0].pinned = true;
   BOOST_TEST(!has(ReducedScene(pinned), Reduction::falling));
-  // One that is off by more than rounding.
+  // A spring that is strained by more than rounding.
   Scene strained = tetrahedron();
   strained.springs[0].law.rest_length *= 1 + 1e-12;
   BOOST_TEST(ReducedScene(strained).system().size() == 12);

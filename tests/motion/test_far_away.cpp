@@ -1,5 +1,5 @@
-// What a scene does, does not depend on where it lies: tolerances, rounding and energies go with
-// its size and not with its distance from the origin.
+// A scene's motion does not depend on its place. Tolerances, rounding and energies scale with its
+// size and not with its distance from the origin.
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/integrators/registry.hpp"
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(weights_count_from_the_scenes_origin) {
   const double v = potential_by_hand(cloth, cloth.nodes);
   // 25 weights at a million metres and more, each rounded.
   BOOST_TEST(std::abs(reduced.potential(reduced.initial()) - v) <= 100 * eps * std::abs(v));
-  // What changes in a motion is the system's, which knows nothing of that.
+  // The potential that changes in a motion is the system's, which does not contain the place.
   BOOST_TEST(std::abs(reduced.system().potential(reduced.initial().q)) < 1e-3 * std::abs(v));
 }
 

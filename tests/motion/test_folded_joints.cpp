@@ -21,7 +21,7 @@ Scene folded(double joint, double k, double l0, int dimension = 1) {
 
 bool is_kept(const Scene& scene) { return !ReducedScene(scene).massless_nodes().empty(); }
 
-// Where the mass is at 0.1 s by steps of implicit Euler, which takes joints where f = 0.
+// The place of the mass at 0.1 s by steps of implicit Euler, which puts joints where f = 0.
 double end_of(const Scene& scene, const Reductions& reductions) {
   const ReducedScene reduced(scene, reductions);
   State state = reduced.initial();
@@ -32,7 +32,8 @@ double end_of(const Scene& scene, const Reductions& reductions) {
   return reduced.expand(state).back().position.x();
 }
 
-// Where the joint comes to rest if it follows its force from where it is drawn, the ends at rest.
+// The place at which the joint rests if it follows its force from its drawn place, with resting
+// ends.
 double rest_below(const Scene& scene) {
   double x = scene.nodes[1].position.x();
   for (int step = 0; step < 100000; ++step) {

@@ -16,7 +16,7 @@ std::vector<Node> end_of(const Scene& scene, const Reductions& reductions, doubl
                          const char* method = "kahan_li8") {
   const ReducedScene reduced(scene, reductions);
   State state = reduced.initial();
-  // Where implicit solved to rounding, to compare ends.
+  // Implicit methods are solved to rounding, so that ends can be compared.
   const auto integrator = make_integrator(*find_method(method), reduced.system(),
                                           {.step_size = h, .solve_tolerance = 1e-12});
   const Summary summary = integrator->advance(state, until);
@@ -34,7 +34,7 @@ double difference(const Scene& scene, const Reductions& one, const Reductions& o
 const Reductions all;
 Reductions without(Reduction reduction) { return all.without(reduction); }
 
-// What 1e3 steps make of the rounding of positions: these motions are regular and magnify it by
+// The growth of rounding of the positions in 1e3 steps: these motions are regular and magnify it by
 // less than a hundred.
 constexpr double round_off = 1e-10;
 
@@ -124,7 +124,7 @@ BOOST_AUTO_TEST_CASE(a_line_that_cannot_turn_moves_linearly) {
   const ReducedScene reduced(scene);
   BOOST_TEST(reduced.system().stiffness_is_constant());
   BOOST_TEST(difference(scene, all, without(Reduction::constant_stiffness), 1, 1e-3) < round_off);
-  // One exact step of a second, against a thousand of order 8 that are right to 1e-10.
+  // An exact step of a second is compared with a thousand steps of order 8, accurate to 1e-10.
   const auto exact = end_of(scene, all, 1, 1, "exact");
   const auto composed = end_of(scene, without(Reduction::constant_stiffness), 1, 1e-4);
   BOOST_TEST(farthest(exact, composed) / farthest(exact, scene.nodes) < 1e-9);

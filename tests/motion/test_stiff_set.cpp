@@ -30,8 +30,7 @@ void for_each_whole(const System& system, const Vec& q, const Action& action) {
   }
 }
 
-// What the stiff springs alone give, all parts together: V, -1/2 trace K and the entries of K's
-// pattern.
+// The sums over the stiff springs of all parts: V, -1/2 trace K and the entries of K's pattern.
 struct Stiff {
   double v = 0, half_trace = 0;
   Index pattern = 0;
@@ -158,7 +157,7 @@ BOOST_AUTO_TEST_CASE(stiff_and_soft_are_together_the_whole_and_stiff_is_what_was
       for (const State& state : {reduced.initial(), moved(reduced)}) {
         BOOST_TEST(adds_up(reduced, state.q));
         if (!reductions.has(Reduction::pins)) continue;  // moved as well
-        // Where two springs are one, both are stiff if one is: they have another place in `scenes`.
+        // Two springs that become one are both stiff if one is: the sum by hand does not apply.
         if (scene.springs.back().law.rest_length == scene.springs[1].law.rest_length) continue;
         const double v = stiff_potential_by_hand(scene, reduced.expand(state));
         BOOST_TEST(std::abs(stiff_of(reduced, state.q).v - v) <= 400 * eps * (1 + v));

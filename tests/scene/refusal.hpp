@@ -10,7 +10,7 @@
 namespace qddot {
 inline namespace tests {
 
-// What is said of something that is not taken; empty where it is.
+// The sentence of a refusal; empty if the input is accepted.
 template <class Reading>
 std::string refusal_of(const Reading& reading) {
   try {

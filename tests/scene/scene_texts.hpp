@@ -52,7 +52,7 @@ inline Scene parsed(const std::string& text, const SceneLimits& limits = {}) {
   return parse_scene(text, "a.toml", "", limits, mesh);
 }
 
-// What parsed() says of the text; empty where it takes it.
+// The sentence by which parsed() refuses the text; empty if it accepts it.
 inline std::string refusal(const std::string& text) {
   return refusal_of([&] { parsed(text); });
 }

@@ -23,7 +23,7 @@ Scene draw(const std::string& name, const GeneratorValues& values = {}) {
   return generate(*find_generator(name), values, "option --scene");
 }
 
-// What generate() says of the values; empty where it takes them.
+// The sentence by which generate() refuses the values; empty if it accepts them.
 std::string refusal(const Generator& generator, const GeneratorValues& values) {
   try {
     generate(generator, values, "option --scene");
@@ -66,7 +66,7 @@ bool all_distinct(const Scene& scene) {
   return pairs.size() == scene.springs.size();
 }
 
-// How many springs there are of each length, in tenths of `unit`, and stiffness.
+// The number of springs of each length, in tenths of `unit`, and stiffness.
 std::map<std::pair<long, double>, int> census(const Scene& scene, double unit) {
   std::map<std::pair<long, double>, int> count;
   for (const Spring& spring : scene.springs)

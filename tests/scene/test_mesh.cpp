@@ -25,7 +25,7 @@ namespace {
 using Triples = std::vector<std::array<std::size_t, 3>>;
 using Pairs = std::vector<std::array<std::size_t, 2>>;
 
-// What parse_mesh says of the text; empty where it takes it.
+// The sentence by which parse_mesh refuses the text; empty if it accepts it.
 std::string refusal(const std::string& name, const std::string& text) {
   return refusal_of([&] { parse_mesh(text, name); });
 }

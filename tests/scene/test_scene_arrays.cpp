@@ -11,7 +11,7 @@ using namespace qddot;
 
 namespace {
 
-// What a scene is as arrays.
+// The arrays of a scene.
 SceneArrays arrays_of(const Scene& scene) {
   SceneArrays a;
   const auto n = std::ssize(scene.nodes), m = std::ssize(scene.springs);
