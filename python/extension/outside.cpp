@@ -9,6 +9,8 @@
 #include <pthread.h>
 #include <set>
 #include <stdexcept>
+#include <thread>
+#include <unistd.h>
 #include <utility>
 
 #include "python/extension/control_c.hpp"
@@ -20,14 +22,23 @@ namespace py = pybind11;
 
 thread_local std::exception_ptr* raised = nullptr;
 
-// All work outside Python.
+// All work outside Python. Once the interpreter exits, threads that work, or are about to, never
+// return to Python: an exception there would be printed while the interpreter is taken apart.
 class Work {
  public:
-  // Throws std::runtime_error if the interpreter is about to exit.
+  // Needs the GIL. Throws std::runtime_error in the thread that ends the interpreter.
   explicit Work(const std::stop_source& source) : source_(source) {
-    const std::lock_guard lock(mutex);
-    if (is_closed) throw std::runtime_error("the interpreter exits, and no more work begins");
-    going_on.insert(this);
+    {
+      const std::lock_guard lock(mutex);
+      if (!is_closed) {
+        going_on.insert(this);
+        return;
+      }
+    }
+    if (thread_ == closer)
+      throw std::runtime_error("the interpreter exits, and no more work begins");
+    const py::gil_scoped_release released;
+    wait_for_exit();
   }
   ~Work() {
     const std::lock_guard lock(mutex);
@@ -36,6 +47,17 @@ class Work {
   }
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
+
+  // To be called without the GIL. Does not return if the interpreter exits.
+  void stay_if_closed() {
+    {
+      const std::lock_guard lock(mutex);
+      if (!is_closed || thread_ == closer) return;
+      std::erase_if(going_on, [&](const Work* work) { return work->thread_ == thread_; });
+      one_less.notify_all();
+    }
+    wait_for_exit();
+  }
 
   // A forked process has no other threads, one of which may have held the lock.
   static void forget() {
@@ -47,17 +69,24 @@ class Work {
   static void end_all() {
     std::unique_lock lock(mutex);
     is_closed = true;
+    closer = std::this_thread::get_id();
     for (Work* work : going_on) work->source_.request_stop();
     one_less.wait_for(lock, std::chrono::seconds(10), [] { return going_on.empty(); });
   }
 
  private:
+  [[noreturn]] static void wait_for_exit() {
+    for (;;) pause();
+  }
+
   static inline std::mutex mutex;
   static inline std::condition_variable one_less;
   static inline std::set<Work*> going_on;
   static inline bool is_closed = false;
+  static inline std::thread::id closer;
 
   std::stop_source source_;
+  std::thread::id thread_ = std::this_thread::get_id();
 };
 
 }  // namespace
@@ -107,6 +136,7 @@ void outside(int threads, const std::function<void(std::stop_token)>& work) {
       } catch (...) {
         if (!thrown) thrown = std::current_exception();
       }
+      going_on->stay_if_closed();
     }
     raised = outer;
     going_on.reset();
