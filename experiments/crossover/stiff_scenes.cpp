@@ -1,12 +1,7 @@
 #include "experiments/crossover/stiff_scenes.hpp"
 
-#include <algorithm>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
+#include "experiments/kit/named_choice.hpp"
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::crossover {
 namespace {
@@ -72,13 +67,7 @@ const std::vector<StiffFamily>& stiff_families() {
 }
 
 const StiffFamily& stiff_family(const std::string& name) {
-  const auto& all = stiff_families();
-  const auto found = std::ranges::find(all, name, &StiffFamily::name);
-  if (found != all.end()) return *found;
-  std::vector<std::string> names;
-  for (const StiffFamily& family : all) names.push_back(family.name);
-  throw InvalidInput(
-      fmt::format("--family: {} is not a family; allowed are {}", name, fmt::join(names, ", ")));
+  return named(name, stiff_families(), &StiffFamily::name, "--family", "a family");
 }
 
 }  // namespace qddot::crossover

@@ -1,7 +1,4 @@
-#include "experiments/solvers/product_flops.hpp"
-
-#include <vector>
-
+#include "experiments/solvers/direct_solvers.hpp"
 #include "qddot/measure/motion/timing.hpp"
 
 // C = alpha A B + beta C of column-major matrices (Dongarra, Du Croz, Hammarling, Hanson, ACM TOMS
