@@ -94,7 +94,7 @@ class Contents(Folder):
     def test_the_page_is_one_file_with_all_its_parts(self):
         text = self.make().text
         found = elements(text)
-        self.assertIn(["script", {}, "start('<!' + '-- qddot:data -->');"], found)
+        self.assertIn(["script", {}, page.packed_script("page/a.js")], found)
         self.assertIn(["style", {}, "p { color: red; }"], found)
         self.assertNotRegex(text, r"<!-- qddot:(style|scripts|static) -->|\{\{")
         cells = [text for tag, _, text in found if tag == "td"]
@@ -354,24 +354,40 @@ class WithoutScripts(Folder):
 class RealPage(unittest.TestCase):
     """The page that is shipped, with its own template, styles and scripts."""
 
-    def test_it_holds_all_that_its_order_lists(self):
+    def test_it_holds_its_styles_and_scripts(self):
         with tempfile.TemporaryDirectory() as folder:
             made_folder.make_folder(folder, side=3, frames=3, runs=1, scene="a </title> b")
             self.assertEqual(report.main([folder]), 0)
             result = Page(Path(folder) / "report.html")
         found = elements(result.text)
         texts = [text for _, _, text in found]
-        for name in page.listed(".js") + page.listed(".css"):
-            self.assertIn((page.HOME / name).read_text(encoding="utf-8"), texts, name)
+        for text in [*page.scripts(), *map(page.read_source, page.STYLES)]:
+            self.assertIn(text, texts)
         self.assertNotRegex(result.text, r"<!-- qddot:|\{\{title\}\}")
         self.assertEqual([text for tag, _, text in found if tag == "title"], ["a </title> b"])
         sources = [attributes["src"] for _, attributes, _ in found if "src" in attributes]
         self.assertEqual([source for source in sources if not source.startswith("data:")], [])
 
-    def test_every_script_of_the_page_is_listed(self):
+    def test_every_file_of_the_page_is_packed(self):
+        known = set()
+        for script in page.SCRIPTS:
+            page.with_imports(script, known)
         own = [file.relative_to(page.HOME) for file in (page.HOME / "page").rglob("*.[jc]s*")]
-        listed = page.listed(".js") + page.listed(".css")
-        self.assertEqual(sorted(map(str, own)), sorted(n for n in listed if n.startswith("page/")))
+        packed = [name for name in [*known, *page.STYLES] if name.startswith("page/")]
+        self.assertEqual(sorted(map(str, own)), sorted(packed))
+
+    def test_modules_export_all_that_is_imported_and_no_name_twice(self):
+        modules = {file.name: file.read_text() for file in (page.HOME / "page/js").iterdir()}
+        exported = {
+            name: [found[1] for found in page.EXPORT.findall(text)]
+            for name, text in modules.items()
+        }
+        every = sorted(sum(exported.values(), []))
+        self.assertEqual(every, sorted(set(every)))
+        for name, text in modules.items():
+            for names, file in page.IMPORT.findall(text):
+                wanted = {one.strip() for one in names.split(",")} - {""}
+                self.assertLessEqual(wanted, set(exported[file]), f"{name} from {file}")
 
 
 if __name__ == "__main__":

@@ -30,10 +30,10 @@ class Folder(unittest.TestCase):
         self.home = Path(temporary.name) / "home"
         (self.home / "page").mkdir(parents=True)
         (self.home / "page/page.html").write_text(TEMPLATE)
-        (self.home / "page/order.txt").write_text("# first\npage/a.js\n\npage/a.css\n")
         (self.home / "page/a.js").write_text("start('<!' + '-- qddot:data -->');")
         (self.home / "page/a.css").write_text("p { color: red; }")
-        patch = mock.patch.object(page, "HOME", self.home)
+        own = {"HOME": self.home, "STYLES": ["page/a.css"], "SCRIPTS": ["page/a.js"]}
+        patch = mock.patch.multiple(page, **own)
         patch.start()
         self.addCleanup(patch.stop)
         self.folder = Path(temporary.name) / "results"

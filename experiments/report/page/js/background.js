@@ -1,66 +1,42 @@
-// What was left out of the model, the reference, where the numbers come from, and the other
-// pictures.
-"use strict";
-{
-  const { element, byId, report, words } = qddotReport;
+// The end of the page: the parts of the model that were left out, the reference, the origin of the
+// numbers, and the other pictures.
+import { byId, commandLine, definitions, element } from "./element.js";
+import { report } from "./report.js";
+import { words } from "./words.js";
 
-  function list(pairs) {
-    return element(
-      "dl",
-      {},
-      ...pairs.flatMap(([label, value]) => [
-        element("dt", {}, label),
-        element("dd", {}, String(value)),
-      ]),
-    );
-  }
+const part = (title, ...nodes) => element("div", element("h3", title), nodes);
 
-  function part(title, ...nodes) {
-    return element("div", {}, element("h3", {}, title), ...nodes);
-  }
-
-  function leftOut({ unknowns_drawn: drawn, unknowns, findings, facts }) {
-    const count =
-      drawn === unknowns
-        ? `All ${words.count(unknowns)} unknowns are integrated.`
-        : `${words.count(unknowns)} of the ${words.count(drawn)} unknowns as drawn are integrated.`;
-    const found = findings.map(({ name, what }) =>
-      element("li", {}, element("b", {}, `${words.plain(name)}: `), what),
-    );
-    return part(
-      "What was left out of the model",
-      element("p", {}, count),
-      found.length ? element("ul", {}, ...found) : null,
-      facts.length ? list(facts) : null,
-    );
-  }
-
-  function picture({ title, alt, src }) {
-    return element(
-      "figure",
-      {},
-      element("figcaption", {}, title),
-      element("img", { src, alt, loading: "lazy" }),
-    );
-  }
-
-  /** Writes the section. */
-  qddotReport.drawBackground = () => {
-    const parts = element("div", { class: "behind" });
-    if (report.left_out) parts.append(leftOut(report.left_out));
-    if (report.reference.length) parts.append(part("The reference", list(report.reference)));
-    if (report.provenance.length)
-      parts.append(part("Where the numbers come from", list(report.provenance)));
-    const commands = report.command.map(qddotReport.commandLine);
-    byId("background-parts").append(
-      parts,
-      element("h3", {}, "To make this page again"),
-      ...commands,
-      ...report.pictures.map(picture),
-    );
-    byId("background").hidden = false;
-    byId("footer").append(
-      "Made by qddot. This file holds everything that it shows and asks nobody for anything.",
-    );
-  };
+function leftOut({ unknowns_drawn: drawn, unknowns, findings, facts }) {
+  const which =
+    drawn === unknowns
+      ? `All ${words.count(unknowns)} unknowns`
+      : `${words.count(unknowns)} of the ${words.count(drawn)} unknowns as drawn`;
+  const found = findings.map(({ name, what }) =>
+    element("li", element("b", `${words.plain(name)}: `), what),
+  );
+  return part(
+    "What was left out of the model",
+    element("p", `${which} are integrated.`),
+    found.length > 0 && element("ul", found),
+    facts.length > 0 && definitions(facts),
+  );
 }
+
+byId("background-parts").append(
+  element(
+    "div.behind",
+    report.left_out && leftOut(report.left_out),
+    report.reference.length > 0 && part("The reference", definitions(report.reference)),
+    report.provenance.length > 0 &&
+      part("Where the numbers come from", definitions(report.provenance)),
+  ),
+  element("h3", "To make this page again"),
+  ...report.command.map(commandLine),
+  ...report.pictures.map(({ title, alt, src }) =>
+    element("figure", element("figcaption", title), element("img", { src, alt, loading: "lazy" })),
+  ),
+);
+byId("background").hidden = false;
+byId("footer").append(
+  "Made by qddot. This file holds everything that it shows and asks nobody for anything.",
+);

@@ -1,204 +1,281 @@
-// The motion of the chosen run beside the reference's.
-"use strict";
-{
-  const { element, byId, report, state, keptMotion } = qddotReport;
-  const { sentence, endsEarly, withoutMotion, viewOf, knownTo, explain } = qddotReport.motionWords;
-  const { motion } = report;
-  const section = byId("motion");
-  // The reference in grey: dark lines, lighter faces, on which shade is seen.
-  const NEUTRAL = motion?.faces ? [0.24, 0.25, 0.27] : [0.07, 0.075, 0.085];
-  // How far up the largest displacement of a line of nodes is drawn, as a part of its length.
-  const LIFT = 0.2;
-  const FEWEST_LIFTED = 8;
-  // A packed relative distance of 0.3.
-  const FAR = 246;
-  let stage = null;
-  let player = null;
-  let lists = null;
-  let scene = null;
-  let turn = 0;
+// The motion of the chosen run beside the reference's, and the words on it.
+import { choose, state, visit } from "./choice.js";
+import { colorTable, distanceScale } from "./distances.js";
+import { byId, commandLine, element } from "./element.js";
+import {
+  boundsOf,
+  canUnpack,
+  frameAt,
+  metres,
+  nodeLists,
+  positionsAt,
+  unpacked,
+} from "./frames.js";
+import { playerOf } from "./player.js";
+import { keptMotion, keptRuns, points, report } from "./report.js";
+import { bodyOf, stageOf } from "./stage.js";
+import { words } from "./words.js";
 
-  const reference = motion?.runs.find((run) => run.role === "reference") ?? null;
-  const lost = element(
-    "p",
-    { class: "bad", role: "status", hidden: true },
-    "The browser took away what the motion is drawn with; it is drawn again when it comes back.",
+const { motion } = report;
+const section = byId("motion");
+const reference = motion?.runs.find((run) => run.role === "reference") ?? null;
+// The reference in grey: dark lines, lighter faces, on which shade is seen.
+const NEUTRAL = motion?.faces ? [0.24, 0.25, 0.27] : [0.07, 0.075, 0.085];
+// How far up the largest displacement of a line of nodes is drawn, as a part of its length.
+const LIFT = 0.2;
+const FEWEST_LIFTED = 8;
+// A packed relative distance of 0.3.
+const FAR = 246;
+// How many frames a user is told to make of a run without a motion.
+const FRAMES = 100;
+const ROUNDING = 1e-6;
+const MOST_BUTTONS = 6;
+
+const sentence = (text) => element("p.quiet", text);
+const lost = element(
+  "p.bad",
+  { role: "status", hidden: true },
+  "The browser took away what the motion is drawn with; it is drawn again when it comes back.",
+);
+
+let stage = null;
+let player = null;
+// The parts {run, body, view} that are drawn, with the scale of distances and how a line is lifted.
+let scene = null;
+let turn = 0;
+
+// The runs whose motion was kept: the most telling as buttons, all of many in a menu.
+function keptMotions() {
+  if (!keptRuns.length) return null;
+  const button = (run) =>
+    element(
+      "button",
+      {
+        type: "button",
+        "aria-pressed": String(run.point === state.run),
+        title: run.why,
+        click: () => visit({ run: run.point }),
+      },
+      run.label,
+    );
+  const menu = element(
+    "select",
+    {
+      "aria-label": "All runs whose motion was kept",
+      change: () => choose({ run: Number(menu.value) }),
+    },
+    element("option", { value: "", disabled: true }, `all ${keptRuns.length}`),
+    keptRuns.map(({ point, label, why }) =>
+      element("option", { value: point }, why ? `${label}: ${why}` : label),
+    ),
   );
-
-  // A line of nodes moves along itself: its displacements are drawn upwards, or nobody would see
-  // them.
-  function lifted(bounds) {
-    if (motion.dimension !== 1 || motion.nodes < FEWEST_LIFTED || !(motion.distance_unit > 0))
-      return null;
-    const extents = bounds.high.map((high, axis) => high - bounds.low[axis]);
-    const along = extents.indexOf(Math.max(...extents));
-    return {
-      along,
-      up: along === 2 ? 0 : 2,
-      factor: (LIFT * extents[along]) / motion.distance_unit,
-    };
-  }
-
-  function place(run, body, t) {
-    qddotReport.positionsAt(run, t, body.positions);
-    if (!scene.lift) return;
-    const { along, up, factor } = scene.lift;
-    const { places } = run;
-    for (let i = along; i < body.positions.length; i += 3) {
-      const start = motion.low[along] + (motion.size * places[i]) / 65535;
-      body.positions[i - along + up] = scene.middle[up] + factor * (body.positions[i] - start);
-    }
-  }
-
-  function paint(run, body, t) {
-    if (!run.distances) {
-      for (let i = 0; i < body.colors.length; i++) body.colors[i] = NEUTRAL[i % 3];
-      return null;
-    }
-    const { frame } = qddotReport.frameAt(run.times, t);
-    const { table } = qddotReport.distanceScale;
-    let largest = 0;
-    for (let node = 0; node < motion.nodes; node++) {
-      const code = run.distances[frame * motion.nodes + node];
-      if (code > largest) largest = code;
-      body.colors.set(table.subarray(3 * code, 3 * code + 3), 3 * node);
-    }
-    return largest;
-  }
-
-  function show(t) {
-    if (!scene) return;
-    for (const { run, body, view } of scene.parts) {
-      place(run, body, t);
-      const largest = paint(run, body, t);
-      if (largest !== null) scene.scale?.point(largest);
-      body.update();
-      view.style.background =
-        t > run.times.at(-1) && (run.outcome !== "reached_end" || endsEarly(run)) ? "#fbe9e5" : "";
-    }
-    stage.draw();
-  }
-
-  function buttons() {
-    const button = (text, label, act) =>
-      element("button", { type: "button", "aria-label": label, title: label, click: act }, text);
-    return [
-      button("+", "Closer", () => stage.zoom(1.25)),
-      button("−", "Farther", () => stage.zoom(0.8)),
-      button("Reset view", "Show the whole scene", () => stage.look(scene.bounds)),
-    ];
-  }
-
-  async function build(runs) {
-    lists ??= {
-      springs: await qddotReport.nodeLists(motion.springs),
-      faces: await qddotReport.nodeLists(motion.faces),
-    };
-    const unpacked = await Promise.all(runs.map(qddotReport.unpackedRun));
-    const bounds = qddotReport.boundsOf(unpacked[0]);
-    return { unpacked, bounds };
-  }
-
-  // Errors of the chart are those at the end. A run that blows up shows most while it is still in
-  // the view: while its error is about as large as the motion.
-  function openingTime(run, until) {
-    if (run.outcome === "reached_end" || !run.distances) return until;
-    const far = run.distances.findIndex((code) => code >= FAR);
-    return far < 0 ? run.times.at(-1) : run.times[Math.floor(far / motion.nodes)];
-  }
-
-  function liftBounds(bounds, lift) {
-    if (!lift) return bounds;
-    const [low, high] = [[...bounds.low], [...bounds.high]];
-    const reach = 1.2 * lift.factor * motion.distance_unit;
-    const middle = (low[lift.up] + high[lift.up]) / 2;
-    [low[lift.up], high[lift.up]] = [middle - reach, middle + reach];
-    return { low, high };
-  }
-
-  /** Draws the motion of the chosen run, or says why there is none. */
-  qddotReport.drawMotion = async () => {
-    const mine = ++turn;
-    player?.pause();
-    const beside = reference ? "Its motion beside the reference" : "Its motion";
-    const heading = element("h3", {}, beside);
-    const say = (...nodes) => section.replaceChildren(heading, ...nodes.filter(Boolean));
-    scene = null;
-    if (!motion || !motion.runs.length)
-      return say(sentence("No motions were kept."), state.run === null ? null : withoutMotion());
-    if (!qddotReport.canInflate())
-      return say(sentence("This browser cannot unpack the motions: it lacks DecompressionStream."));
-    const chosen = keptMotion(state.run);
-    const runs = [...new Set([reference, chosen].filter(Boolean))];
-    const missing = state.run !== null && !chosen ? withoutMotion() : null;
-    if (!runs.length) return say(qddotReport.keptMotions(), missing);
-
-    const views = runs.map(viewOf);
-    const holder = element("div", { class: views.length > 1 ? "views" : "views alone" }, ...views);
-    const opening = stage === null;
-    try {
-      stage ??= qddotReport.motionStage(motion.dimension, (gone) => (lost.hidden = !gone));
-    } catch {
-      return say(
-        qddotReport.keptMotions(),
-        missing,
-        sentence(
-          "This browser draws no WebGL, which the motion is drawn with; all else on this page works without.",
-        ),
-      );
-    }
-    const built = await build(runs).catch(() => null);
-    if (mine !== turn) return;
-    if (!built)
-      return say(
-        qddotReport.keptMotions(),
-        missing,
-        sentence("The motion cannot be unpacked: this file is damaged."),
-      );
-    const { unpacked, bounds } = built;
-    const lift = lifted(bounds);
-    const bodies = unpacked.map(() =>
-      qddotReport.motionBody({ nodes: motion.nodes, pinned: motion.pinned, ...lists }),
-    );
-    const scale = unpacked.some((run) => run.distances)
-      ? qddotReport.distanceScale.legend(knownTo(reference))
-      : null;
-    const wide = liftBounds(bounds, lift);
-    const middle = wide.low.map((low, axis) => (low + wide.high[axis]) / 2);
-    scene = {
-      bounds: wide,
-      lift,
-      middle,
-      scale,
-      parts: unpacked.map((run, at) => ({ run, body: bodies[at], view: views[at] })),
-    };
-    const until = Math.max(...unpacked.map((run) => run.times.at(-1)));
-    // A single frame has no time to go through.
-    player = until > 0 ? qddotReport.player(until, show) : null;
-    const controls = player?.node ?? element("div", { class: "player" });
-    controls.append(...buttons());
-    say(
-      qddotReport.keptMotions(),
-      missing,
-      holder,
-      lost,
-      controls,
-      scale?.node,
-      ...explain(lift?.factor ?? null),
-    );
-    stage.canvas.setAttribute(
-      "aria-label",
-      `Motion of ${runs.map((run) => run.label).join(" and ")}`,
-    );
-    stage.show(holder, views, bodies);
-    // The reader's own view stays from run to run.
-    if (opening || !reference) stage.look(wide);
-    const begin = openingTime(unpacked.at(-1), until);
-    if (player) player.go(begin);
-    else show(begin);
-    section.dataset.ready = state.run ?? "";
-  };
-
-  /** Makes the motion ready for paper, or for the screen again. */
-  qddotReport.printMotion = (onPaper) => scene && stage.still(onPaper);
+  menu.value = keptRuns.some(({ point }) => point === state.run) ? state.run : "";
+  return element(
+    "div.kept",
+    { role: "group", "aria-label": "Runs whose motion was kept" },
+    "Kept motions:",
+    keptRuns.slice(0, MOST_BUTTONS).map(button),
+    keptRuns.length > MOST_BUTTONS && menu,
+  );
 }
+
+// Words in the place of the motion of a run that has none, with the command that makes it.
+function withoutMotion() {
+  const command = points.command[state.run];
+  if (!command || !report.until) return sentence("No motion of this run was kept.");
+  const apart = report.until / FRAMES;
+  // Frames nearer to each other than its steps would have the run take other steps.
+  const hasSteps = points.knob[state.run] === "step_size";
+  const every = hasSteps ? Math.max(apart, points.value[state.run]) : apart;
+  return element(
+    "div",
+    sentence("No motion of this run was kept. This command writes it for ParaView:"),
+    commandLine(`${command} --motion motion.vtkhdf --every ${every}`),
+  );
+}
+
+// Whether the kept frames of a run end before its motion does.
+const endsEarly = ({ t_reached: end, times }) =>
+  end !== null && times.at(-1) < (1 - ROUNDING) * end;
+
+function stopWords(run) {
+  if (run.outcome !== "reached_end") {
+    const why = run.point === null ? null : points.cause[run.point];
+    return `stopped at t = ${words.seconds(run.t_reached)}: ${why ?? words.plain(run.outcome)}`;
+  }
+  if (!endsEarly(run)) return null;
+  return `its numbers grow beyond what is kept from t = ${words.seconds(run.times.at(-1))} on`;
+}
+
+// The place of a run's view, with what it shows in words.
+function viewOf(run) {
+  const isReference = run.role === "reference";
+  const stop = stopWords(run);
+  const notes = [
+    !isReference &&
+      points.knob[run.point] === "rtol" &&
+      "its steps end at the frames, so it is not quite the chart's run",
+    run.left_box && "parts of it leave what is kept",
+  ];
+  return element(
+    "div.view",
+    element(
+      "div.view-words",
+      element("b", run.label),
+      isReference ? ["stands for the reference", run.why].filter(Boolean).join(": ") : run.why,
+      stop && element("div", element("span.view-stop", stop)),
+      notes.filter(Boolean).map((text) => element("div.quiet", text)),
+    ),
+  );
+}
+
+// The least relative distance that the reference's own error lets mean something, where what is
+// said of the reference tells it; else null.
+function knownTo() {
+  const found = /\bwithin (\d[\d.]*e-?\d+)\b/.exec(reference?.why ?? "");
+  return found ? Number(found[1]) : null;
+}
+
+// How to move the view, and what else the drawing means.
+function explanation(lift) {
+  const move =
+    motion.dimension < 3 ? "Drag to move" : "Drag to turn, with the right button to move";
+  const notes = [
+    ...motion.notes,
+    "Dark squares are pinned nodes. Between kept frames nodes move straight.",
+  ];
+  if (lift)
+    notes.push(
+      `Nodes move along the line; their displacement is drawn upwards as well, ${words.ratio(lift.factor)} as large.`,
+    );
+  return [
+    sentence(`${move}; pinch, or click and turn the wheel, to zoom.`),
+    sentence(notes.join(" ")),
+  ];
+}
+
+// A line of nodes moves along itself: its displacements are drawn upwards, or nobody would see
+// them. Widens the bounds for that.
+function liftOf({ low, high }) {
+  if (motion.dimension !== 1 || motion.nodes < FEWEST_LIFTED || !(motion.distance_unit > 0))
+    return null;
+  const extents = high.map((end, axis) => end - low[axis]);
+  const along = extents.indexOf(Math.max(...extents));
+  const up = along === 2 ? 0 : 2;
+  const reach = LIFT * extents[along];
+  const middle = (low[up] + high[up]) / 2;
+  [low[up], high[up]] = [middle - 1.2 * reach, middle + 1.2 * reach];
+  return { along, up, middle, factor: reach / motion.distance_unit };
+}
+
+function place(run, { positions }, t) {
+  positionsAt(run, t, positions);
+  if (!scene.lift) return;
+  const { along, up, middle, factor } = scene.lift;
+  for (let i = 0; i < positions.length; i += 3) {
+    const start = metres(run.places[i + along], along);
+    positions[i + up] = middle + factor * (positions[i + along] - start);
+  }
+}
+
+// Colours the nodes; returns the largest packed distance, null where none are known.
+function paint(run, { colors }, t) {
+  if (!run.distances) {
+    colors.forEach((_, i) => (colors[i] = NEUTRAL[i % 3]));
+    return null;
+  }
+  const first = frameAt(run, t) * motion.nodes;
+  const codes = run.distances.subarray(first, first + motion.nodes);
+  codes.forEach((code, node) => colors.set(scene.table.subarray(3 * code, 3 * code + 3), 3 * node));
+  return codes.reduce((a, b) => Math.max(a, b), 0);
+}
+
+function show(t) {
+  if (!scene) return;
+  for (const { run, body, view } of scene.parts) {
+    place(run, body, t);
+    const largest = paint(run, body, t);
+    if (largest !== null) scene.scale.point(largest);
+    body.update();
+    const isOver = t > run.times.at(-1) && (run.outcome !== "reached_end" || endsEarly(run));
+    view.style.background = isOver ? "#fbe9e5" : "";
+  }
+  stage.draw();
+}
+
+function viewButtons(bounds) {
+  const button = (text, label, act) =>
+    element("button", { type: "button", "aria-label": label, title: label, click: act }, text);
+  return [
+    button("+", "Closer", () => stage.zoom(1.25)),
+    button("−", "Farther", () => stage.zoom(0.8)),
+    button("Reset view", "Show the whole scene", () => stage.look(bounds)),
+  ];
+}
+
+// Errors of the chart are those at the end. A run that blows up shows most while it is still in
+// the view: while its error is about as large as the motion.
+function openingTime(run, until) {
+  if (run.outcome === "reached_end" || !run.distances) return until;
+  const far = run.distances.findIndex((code) => code >= FAR);
+  return far < 0 ? run.times.at(-1) : run.times[Math.floor(far / motion.nodes)];
+}
+
+/** Draws the motion of the chosen run, or says why there is none. */
+export async function drawMotion() {
+  const mine = ++turn;
+  player?.pause();
+  scene = null;
+  const heading = element("h3", reference ? "Its motion beside the reference" : "Its motion");
+  const say = (...nodes) => section.replaceChildren(heading, ...nodes.flat().filter(Boolean));
+  if (!motion?.runs.length) return say(sentence("No motions were kept."), withoutMotion());
+  if (!canUnpack())
+    return say(sentence("This browser cannot unpack the motions: it lacks DecompressionStream."));
+  const chosen = keptMotion(state.run);
+  const runs = [...new Set([reference, chosen])].filter(Boolean);
+  const above = [keptMotions(), !chosen && withoutMotion()];
+  if (!runs.length) return say(above);
+
+  const isFirst = stage === null;
+  try {
+    stage ??= stageOf(motion.dimension, (gone) => (lost.hidden = !gone));
+  } catch {
+    const why = "This browser draws no WebGL, which the motion is drawn with";
+    return say(above, sentence(`${why}; all else on this page works without.`));
+  }
+  let frames, springs, faces;
+  try {
+    frames = await Promise.all(runs.map(unpacked));
+    [springs, faces] = await Promise.all([motion.springs, motion.faces].map(nodeLists));
+  } catch {
+    if (mine !== turn) return;
+    return say(above, sentence("The motion cannot be unpacked: this file is damaged."));
+  }
+  if (mine !== turn) return;
+
+  const views = runs.map(viewOf);
+  const bodies = runs.map(() => bodyOf({ ...motion, springs, faces }));
+  const bounds = boundsOf(frames[0]);
+  const lift = liftOf(bounds);
+  const hasDistances = frames.some((run) => run.distances);
+  const scale = hasDistances ? distanceScale(knownTo()) : null;
+  const parts = frames.map((run, at) => ({ run, body: bodies[at], view: views[at] }));
+  scene = { parts, lift, scale, table: colorTable() };
+  const until = Math.max(...frames.map((run) => run.times.at(-1)));
+  // A single frame has no time to go through.
+  player = until > 0 ? playerOf(until, show) : null;
+  const controls = player?.node ?? element("div.player");
+  controls.append(...viewButtons(bounds));
+  const holder = element(views.length > 1 ? "div.views" : "div.views.alone", views);
+  say(above, holder, lost, controls, scale?.node, explanation(lift));
+  const names = runs.map(({ label }) => label).join(" and ");
+  stage.canvas.setAttribute("aria-label", `Motion of ${names}`);
+  stage.show(holder, views, bodies);
+  // The reader's own view stays from run to run.
+  if (isFirst || !reference) stage.look(bounds);
+  (player?.go ?? show)(openingTime(frames.at(-1), until));
+  section.dataset.ready = state.run;
+}
+
+/** Makes the motion ready for paper, or for the screen again. */
+export const printMotion = (onPaper) => scene && stage.still(onPaper);

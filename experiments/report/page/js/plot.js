@@ -1,0 +1,81 @@
+// The style that all of Plotly's drawings share: type, axes, and the ring around the chosen run.
+
+export const INK = "#222222";
+export const FAINT = "#5f6368";
+export const GRID = "#e8e8e4";
+/** The width in px below which drawings have fewer words. */
+export const NARROW = 560;
+const MOST_TICKS = 12;
+
+/** Words that Plotly, which reads some HTML in them, shows as they are. */
+export const plainWords = (text) =>
+  text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
+
+/** A power of ten in words: 1, 10, 1e-3. */
+export function powerOfTen(value) {
+  const power = Math.round(Math.log10(value));
+  return power === 0 || power === 1 ? String(10 ** power) : `1e${power}`;
+}
+
+/** A logarithmic axis over a range of positive numbers, with ticks at decades in given words. */
+export function decades(low, high, inWords = powerOfTen) {
+  const [from, to] = [Math.log10(low), Math.log10(high)];
+  const every = Math.ceil((to - from) / MOST_TICKS);
+  const ticks = [];
+  for (let power = Math.ceil(from / every) * every; power <= to; power += every)
+    ticks.push(Number(`1e${power}`));
+  return {
+    type: "log",
+    range: [from, to],
+    tickvals: ticks,
+    ticktext: ticks.map((value) => plainWords(inWords(value))),
+    gridcolor: GRID,
+    linecolor: FAINT,
+    showline: true,
+    zeroline: false,
+    tickfont: { size: 12 },
+    minor: { showgrid: false },
+  };
+}
+
+/** The least and the largest of positive numbers, by a factor wider at both ends and never shorter
+    than two decades. */
+export function widened(values, factor) {
+  const [low, high] = [Math.min(...values), Math.max(...values)];
+  const spare = Math.max(factor, Math.sqrt(100 / (high / low)));
+  return [low / spare, high * spare];
+}
+
+/** A circle around one place, or around none. */
+export const ring = (x, y, size, xaxis = "x") => ({
+  x: x === null ? [] : [x],
+  y: x === null ? [] : [y],
+  xaxis,
+  mode: "markers",
+  hoverinfo: "skip",
+  marker: { symbol: "circle-open", size, color: INK, line: { width: 2.2, color: INK } },
+});
+
+/** Draws into an element, whose room may have changed: Plotly itself keeps the first. */
+export const plot = (drawing, traces, layout, config = {}) =>
+  Plotly.react(
+    drawing,
+    traces,
+    {
+      font: {
+        family: "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif",
+        size: 13,
+        color: INK,
+      },
+      paper_bgcolor: "#ffffff",
+      plot_bgcolor: "#ffffff",
+      showlegend: false,
+      hovermode: "closest",
+      hoverdistance: 16,
+      dragmode: matchMedia("(pointer: coarse)").matches ? false : "zoom",
+      width: drawing.clientWidth,
+      height: drawing.clientHeight,
+      ...layout,
+    },
+    { displayModeBar: false, showTips: false, doubleClick: "reset", ...config },
+  );

@@ -1,0 +1,169 @@
+// The menus that choose a run, its head, and its figures.
+import { chosenQuantity, choose, state, visit } from "./choice.js";
+import { byId, commandLine, definitions, element } from "./element.js";
+import { swatch } from "./marks.js";
+import {
+  countsOf,
+  familiesWithMethods,
+  isKnown,
+  keptMotion,
+  knobOf,
+  methods,
+  points,
+  report,
+  runsOf,
+} from "./report.js";
+import { words } from "./words.js";
+
+const PHASES = {
+  force: "forces",
+  stiffness: "stiffness matrices",
+  factorization: "factorizations",
+  solve: "solves",
+};
+const TIMES = {
+  time_s: "time of a run, median",
+  time_min_s: "fastest of them",
+  setup_s: "set-up",
+};
+
+const methodMenu = element(
+  "select",
+  { change: () => choose({ run: middleRun(Number(methodMenu.value)) }) },
+  familiesWithMethods.map(({ title, members }) =>
+    element(
+      "optgroup",
+      { label: title },
+      members.map((method) => element("option", { value: method }, methods[method].name)),
+    ),
+  ),
+);
+const runMenu = element("select", { change: () => choose({ run: Number(runMenu.value) }) });
+
+const stepButton = (text, label, by) =>
+  element(
+    "button",
+    { type: "button", "aria-label": label, title: label, click: () => step(by) },
+    text,
+  );
+
+byId("run-choice").append(
+  element("label", "Method ", methodMenu),
+  element("label", "Run ", runMenu),
+  stepButton("◀", "Coarser run", -1),
+  stepButton("▶", "Finer run", 1),
+);
+
+// The middle of a method's runs that gave a point.
+function middleRun(method) {
+  const good = runsOf[method].filter((point) => !points.cause[point]);
+  const runs = good.length ? good : runsOf[method];
+  return runs[Math.floor(runs.length / 2)];
+}
+
+function step(by) {
+  const runs = runsOf[points.method[state.run]];
+  const next = runs[runs.indexOf(state.run) + by];
+  if (next !== undefined) visit({ run: next });
+}
+
+// The menu tells of the error that the chart stands over.
+function showChoice() {
+  const { axis, column } = chosenQuantity();
+  const result = (point) => {
+    if (points.cause[point]) return "failed";
+    const error = points[column]?.[point];
+    return isKnown(error) ? `${axis} ${words.number(error)}` : "error not known";
+  };
+  const method = points.method[state.run];
+  methodMenu.value = method;
+  runMenu.replaceChildren(
+    ...runsOf[method].map((point) =>
+      element("option", { value: point }, `${knobOf(point)} · ${result(point)}`),
+    ),
+  );
+  runMenu.value = state.run;
+}
+
+const fact = (label, value) => element("li", element("b", value), element("span", label));
+
+function facts(point) {
+  const growth = points.energy_growth?.[point];
+  return [
+    ...report.quantities
+      .filter(({ column }) => isKnown(points[column]?.[point]))
+      .map(({ axis, column }) => fact(axis, words.number(points[column][point]))),
+    ...Object.entries(TIMES)
+      .filter(([column]) => isKnown(points[column]?.[point]))
+      .map(([column, label]) => fact(label, words.seconds(points[column][point]))),
+    // Where the energy stays, its growth says nothing.
+    isKnown(growth) &&
+      Math.abs(growth - 1) >= 0.01 &&
+      fact("largest energy / energy at the start", words.number(growth)),
+  ];
+}
+
+function ending(point) {
+  const t = points.t_reached[point];
+  if (points.outcome[point] === "reached_end") return "No point of the chart";
+  const how = words.plain(points.outcome[point]);
+  return t === null ? how : `${how} at t = ${words.seconds(t)}`;
+}
+
+// The range of a position error, where the reference leaves it open.
+function openRange(point) {
+  const least = points.error_position_at_least?.[point];
+  const most = points.error_position_at_most?.[point];
+  if (!isKnown(most) || least >= 0.95 * most) return null;
+  const range = `between ${words.number(least)} and ${words.number(most)}`;
+  return `Its position error lies ${range}: the reference leaves that open.`;
+}
+
+function head(point) {
+  const { name, line } = methods[points.method[point]];
+  const warnings = report.answers.filter((answer) => answer.point === point && answer.warning);
+  const open = openRange(point);
+  return element(
+    "div",
+    element(
+      "div.run-name",
+      swatch(points.method[point]),
+      name,
+      element("span.knob", knobOf(point)),
+    ),
+    line && element("p.quiet", line),
+    points.cause[point] && element("p.bad", `${ending(point)}: ${points.cause[point]}`),
+    element("ul.run-facts", facts(point)),
+    [...new Set(warnings.map(({ warning }) => warning))].map((text) => element("p.warning", text)),
+    open && element("p.about", open),
+    element("p.about", "This command repeats it:"),
+    commandLine(points.command[point]),
+  );
+}
+
+// The seconds of another run by phase, with their shares.
+function phases({ all, ...seconds }) {
+  const share = (value) => `${words.seconds(value)}, ${Math.round((100 * value) / all)} %`;
+  const known = Object.keys(PHASES).filter((phase) => seconds[phase] > 0);
+  return [
+    ["another run, timed by phase", words.seconds(all)],
+    ...known.map((phase) => [PHASES[phase], share(seconds[phase])]),
+  ];
+}
+
+function figures(title, pairs) {
+  const list = definitions(pairs);
+  list.className = "figures";
+  return [element("h3", title), list];
+}
+
+/** Shows the chosen run in words. */
+export function drawRun() {
+  showChoice();
+  const seconds = keptMotion(state.run)?.seconds;
+  byId("run-head").replaceChildren(head(state.run));
+  byId("run-figures").replaceChildren(
+    ...figures("Its counts", countsOf(state.run)),
+    ...(seconds?.all > 0 ? figures("Where its time goes", phases(seconds)) : []),
+  );
+}

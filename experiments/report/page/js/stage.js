@@ -1,0 +1,286 @@
+// A scene as three.js draws it, and two views of one camera on one canvas: the reference and the
+// chosen run.
+
+// In degrees: the camera's angle of view.
+const ANGLE = 32;
+const MARGIN = 1.12;
+const FLAT_MARGIN = 1.16;
+const MOST_PIXELS_A_PIXEL = 2;
+const FEW_NODES = 300;
+// Thick lines cost a rectangle each; where there are many springs, thin ones show more anyway.
+const FEW_SPRINGS = 3000;
+const PINNED = 0x222222;
+
+function discTexture() {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 64;
+  const pen = canvas.getContext("2d");
+  pen.fillStyle = "#fff";
+  pen.arc(32, 32, 30, 0, 2 * Math.PI);
+  pen.fill();
+  return new THREE.CanvasTexture(canvas);
+}
+
+// Lines of some pixels' width between pairs of nodes: the ends are copied at each change.
+function thickLines(springs, width, color) {
+  const geometry = new THREE.LineSegmentsGeometry();
+  geometry.setPositions(new Float32Array(3 * springs.length));
+  geometry.setColors(new Float32Array(3 * springs.length));
+  const lines = new THREE.LineSegments2(
+    geometry,
+    new THREE.LineMaterial({ linewidth: width, vertexColors: true, color }),
+  );
+  const copy = ({ data }, values) => {
+    springs.forEach((node, end) =>
+      data.array.set(values.subarray(3 * node, 3 * node + 3), 3 * end),
+    );
+    data.needsUpdate = true;
+  };
+  lines.userData.update = (positions, colors) => {
+    copy(geometry.attributes.instanceStart, positions);
+    copy(geometry.attributes.instanceColorStart, colors);
+  };
+  return lines;
+}
+
+/** The body of `nodes` nodes: springs as lines, faces shaded, nodes as points where they are few;
+    update() draws its positions and colours (both nodes x 3) from then on. */
+export function bodyOf({ nodes, springs, faces, pinned }) {
+  const scene = new THREE.Scene();
+  const positions = new Float32Array(3 * nodes);
+  const colors = new Float32Array(3 * nodes);
+  const [position, color] = [positions, colors].map((values) =>
+    new THREE.BufferAttribute(values, 3).setUsage(THREE.DynamicDrawUsage),
+  );
+  const geometry = (index) => {
+    const made = new THREE.BufferGeometry();
+    made.setAttribute("position", position).setAttribute("color", color);
+    return index ? made.setIndex(new THREE.BufferAttribute(index, 1)) : made;
+  };
+  const hasFaces = faces.length > 0;
+  const parts = [];
+
+  if (hasFaces) {
+    const skin = new THREE.MeshLambertMaterial({
+      vertexColors: true,
+      side: THREE.DoubleSide,
+      flatShading: true,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
+    parts.push(new THREE.Mesh(geometry(faces), skin));
+    const sun = new THREE.DirectionalLight(0xffffff, 1.6);
+    sun.position.set(-0.4, -0.7, 1);
+    scene.add(new THREE.AmbientLight(0xffffff, 1.9), sun);
+  }
+  // Springs are darker than the faces below them, so that the weave is visible.
+  const shade = hasFaces ? 0x777777 : 0xffffff;
+  if (springs.length > 2 * FEW_SPRINGS) {
+    const thin = new THREE.LineBasicMaterial({
+      vertexColors: true,
+      color: shade,
+      transparent: hasFaces,
+      opacity: hasFaces ? 0.35 : 1,
+    });
+    parts.push(new THREE.LineSegments(geometry(springs), thin));
+  } else if (springs.length) {
+    parts.push(thickLines(springs, hasFaces ? 1.2 : springs.length <= 600 ? 2.6 : 1.5, shade));
+  }
+  const dots = (size, look, index) =>
+    new THREE.Points(
+      geometry(index),
+      new THREE.PointsMaterial({ size, sizeAttenuation: false, ...look }),
+    );
+  const disc = discTexture();
+  if (nodes <= FEW_NODES || !springs.length) {
+    const size = nodes <= 40 ? 13 : nodes <= FEW_NODES ? 7 : 3;
+    parts.push(dots(size, { vertexColors: true, map: disc, alphaTest: 0.5 }));
+  }
+  if (pinned.length)
+    parts.push(dots(nodes <= FEW_NODES ? 11 : 5, { color: PINNED }, Uint32Array.from(pinned)));
+  // Bounds of what moves would have to be found anew for each frame.
+  for (const part of parts) part.frustumCulled = false;
+  scene.add(...parts);
+
+  function update() {
+    position.needsUpdate = true;
+    color.needsUpdate = true;
+    for (const part of parts) part.userData.update?.(positions, colors);
+  }
+
+  function dispose() {
+    disc.dispose();
+    for (const part of parts) {
+      part.geometry.dispose();
+      part.material.dispose();
+    }
+  }
+
+  return { scene, positions, colors, update, dispose };
+}
+
+const extentsOf = ({ low, high }) => high.map((end, axis) => end - low[axis]);
+
+// Along which axis a flat scene is looked at: the one in which it extends least.
+function thinnestAxis(bounds) {
+  const extents = extentsOf(bounds);
+  return extents.indexOf(Math.min(...extents));
+}
+
+// How far from the middle of a box a camera in the direction `from` sees all of its corners.
+function distanceToSee({ low, high }, middle, from, aspect) {
+  const right = new THREE.Vector3(0, 0, 1).cross(from).normalize();
+  const up = from.clone().cross(right);
+  const slope = Math.tan((ANGLE * Math.PI) / 360) / MARGIN;
+  let away = 1e-30;
+  for (let corner = 0; corner < 8; corner++) {
+    const place = new THREE.Vector3(
+      ...[0, 1, 2].map((axis) => (corner & (1 << axis) ? high : low)[axis]),
+    ).sub(middle);
+    const wide = Math.max(Math.abs(place.dot(up)), Math.abs(place.dot(right)) / aspect);
+    away = Math.max(away, place.dot(from) + wide / slope);
+  }
+  return away;
+}
+
+/** A stage, made once for the page; throws where there is no WebGL. show(holder, places, bodies)
+    puts its canvas behind the elements `places` of the holder and draws a body into each;
+    `lost(gone)` hears when the browser takes WebGL away and gives it back. */
+export function stageOf(dimension, lost) {
+  const canvas = document.createElement("canvas");
+  canvas.setAttribute("role", "img");
+  // Where a pixel of the page is several of the screen, edges are smooth enough without more work.
+  const antialias = devicePixelRatio < MOST_PIXELS_A_PIXEL;
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias, alpha: true });
+  renderer.setClearColor(0xffffff, 1);
+  renderer.setScissorTest(true);
+  const flat = dimension < 3;
+  const eye = flat
+    ? new THREE.OrthographicCamera(-1, 1, 1, -1, -1, 1)
+    : new THREE.PerspectiveCamera(ANGLE, 1);
+  eye.up.set(0, 0, 1);
+  const controls = new THREE.OrbitControls(eye, canvas);
+  controls.enableDamping = false;
+  controls.enableRotate = !flat;
+  controls.screenSpacePanning = true;
+  // The wheel and a finger up or down go on scrolling the page; a click on the view gives it the
+  // wheel.
+  controls.enableZoom = false;
+  canvas.style.touchAction = "pan-y";
+  canvas.addEventListener("pointerdown", () => (controls.enableZoom = true));
+  canvas.addEventListener("pointerleave", (event) => {
+    if (event.pointerType === "mouse") controls.enableZoom = false;
+  });
+  let bounds = { low: [-1, -1, -1], high: [1, 1, 1] };
+  let holder = null;
+  let places = [];
+  let bodies = [];
+  let asked = false;
+
+  // Puts the camera where it sees all of the bounds.
+  function look(newBounds) {
+    bounds = newBounds;
+    const middle = new THREE.Vector3(...bounds.low.map((low, i) => (low + bounds.high[i]) / 2));
+    controls.target.copy(middle);
+    let away = Math.hypot(...extentsOf(bounds)) || 2;
+    let from = new THREE.Vector3(0.62, -1, 0.5).normalize();
+    if (flat) {
+      const axis = thinnestAxis(bounds);
+      from = new THREE.Vector3(axis === 0 ? 1 : 0, axis === 1 ? -1 : 0, axis === 2 ? 1 : 0);
+      eye.up.set(0, axis === 2 ? 1 : 0, axis === 2 ? 0 : 1);
+      eye.zoom = 1;
+    } else {
+      const aspect = places[0] ? places[0].clientWidth / places[0].clientHeight : 1;
+      away = distanceToSee(bounds, middle, from, aspect);
+    }
+    eye.position.copy(middle).addScaledVector(from, away);
+    [eye.near, eye.far] = [away / 200, away * 50];
+    controls.update();
+    draw();
+  }
+
+  function fit(width, height) {
+    if (!flat) {
+      eye.aspect = width / height;
+    } else {
+      const extents = extentsOf(bounds);
+      const axis = thinnestAxis(bounds);
+      const across = extents[axis === 0 ? 1 : 0];
+      const up = extents[axis === 2 ? 1 : 2];
+      const half = (FLAT_MARGIN * Math.max(up, (across * height) / width, 1e-30)) / 2;
+      [eye.top, eye.bottom] = [half, -half];
+      [eye.right, eye.left] = [(half * width) / height, (-half * width) / height];
+    }
+    eye.updateProjectionMatrix();
+  }
+
+  function drawNow() {
+    asked = false;
+    const { width, height } = holder.getBoundingClientRect();
+    if (!width || !height) return;
+    const ratio = Math.min(devicePixelRatio, MOST_PIXELS_A_PIXEL);
+    const [wide, high] = [width, height].map((length) => Math.floor(length * ratio));
+    if (canvas.width !== wide || canvas.height !== high) {
+      renderer.setPixelRatio(ratio);
+      renderer.setSize(width, height);
+    }
+    places.forEach(({ offsetLeft, offsetTop, clientWidth, clientHeight }, index) => {
+      const corner = [offsetLeft + 1, holder.clientHeight - offsetTop - clientHeight - 1];
+      renderer.setViewport(...corner, clientWidth, clientHeight);
+      renderer.setScissor(...corner, clientWidth, clientHeight);
+      fit(clientWidth, clientHeight);
+      renderer.render(bodies[index].scene, eye);
+    });
+    holder.dataset.draws = Number(holder.dataset.draws ?? 0) + 1;
+  }
+
+  // Draws at the next frame of the screen.
+  function draw() {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(drawNow);
+  }
+
+  function show(newHolder, newPlaces, newBodies) {
+    for (const body of bodies) body.dispose();
+    resized.disconnect();
+    [holder, places, bodies] = [newHolder, newPlaces, newBodies];
+    holder.append(canvas);
+    resized.observe(holder);
+    draw();
+  }
+
+  // Draws at once and lays a still picture over the views, for paper, which would show the last
+  // frame of the screen; or takes the picture away.
+  function still(wanted) {
+    holder.querySelector(".still")?.remove();
+    drawNow();
+    if (!wanted) return;
+    const picture = document.createElement("canvas");
+    picture.className = "still";
+    picture.style.cssText = canvas.style.cssText;
+    [picture.width, picture.height] = [canvas.width, canvas.height];
+    picture.getContext("2d").drawImage(canvas, 0, 0);
+    holder.append(picture);
+  }
+
+  function zoom(factor) {
+    if (flat) eye.zoom *= factor;
+    else eye.position.sub(controls.target).divideScalar(factor).add(controls.target);
+    controls.update();
+    draw();
+  }
+
+  canvas.addEventListener("webglcontextlost", (event) => {
+    event.preventDefault();
+    lost(true);
+  });
+  canvas.addEventListener("webglcontextrestored", () => {
+    lost(false);
+    draw();
+  });
+  controls.addEventListener("change", draw);
+  const resized = new ResizeObserver(draw);
+  return { canvas, show, look, draw, still, zoom };
+}
