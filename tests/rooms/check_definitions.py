@@ -9,9 +9,9 @@ import re
 import sys
 from pathlib import Path
 
-OPENS = re.compile(r"^(?:inline )?namespace(?: ([\w:]+))? \{$")
+OPENS = re.compile(r"^(?:inline )?namespace(?: (\w[\w: ]*))? \{$")
 CLOSES = re.compile(r"^\}  // namespace")
-SUITE = re.compile(r"^BOOST_AUTO_TEST_SUITE\((\w+)")
+SUITE = re.compile(r"^BOOST_(?:AUTO|FIXTURE)_TEST_SUITE\((\w+)")
 SUITE_ENDS = re.compile(r"^BOOST_AUTO_TEST_SUITE_END")
 TYPE = re.compile(
     r"^(?:template <.*> )?(?:struct|class|enum class|union) (?:\[\[\w+\]\] )?([\w:]+)\b(?!.*;$)(?!<)"
@@ -25,7 +25,7 @@ def definitions(text):
     spaces = []
     for line in text.splitlines():
         if opened := OPENS.match(line):
-            spaces.append(opened[1])  # None: nobody else sees what is in it
+            spaces.append(opened[1] and opened[1].replace("inline ", ""))  # None: nobody sees it
         elif suite := SUITE.match(line):
             spaces.append(suite[1])
         elif CLOSES.match(line) or SUITE_ENDS.match(line):
