@@ -8,6 +8,7 @@
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
+namespace {
 
 // The paper prints 15 digits. These are the nearest numbers, less than 2e-16 away, that meet the
 // conditions of order 4 to 40 digits.
@@ -21,6 +22,8 @@ const Splitting& blanes_moan4_splitting() {
           {0.2452989571842711626039, 0.6048726657110799749609, -0.3501716228953511375648}, 6)};
   return splitting;
 }
+
+}  // namespace
 
 Method blanes_moan4() {
   return {.name = "blanes_moan4",

@@ -8,6 +8,7 @@
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
+namespace {
 
 // The paper prints 15 digits. These are the nearest numbers, less than 7e-16 away, that meet the
 // conditions of order 6 to 40 digits.
@@ -24,6 +25,8 @@ const Splitting& blanes_moan6_splitting() {
                    11)};
   return splitting;
 }
+
+}  // namespace
 
 Method blanes_moan6() {
   return {.name = "blanes_moan6",

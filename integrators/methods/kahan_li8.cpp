@@ -10,6 +10,7 @@
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
+namespace {
 
 const Splitting& kahan_li8_splitting() {
   static const Splitting splitting = [] {
@@ -29,6 +30,8 @@ const Splitting& kahan_li8_splitting() {
   }();
   return splitting;
 }
+
+}  // namespace
 
 Method kahan_li8() {
   return {.name = "kahan_li8",

@@ -8,11 +8,14 @@
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
+namespace {
 
 const Splitting& position_verlet_splitting() {
   static const Splitting splitting{.order = 2, .kicks = {1}, .drifts = {1. / 2, 1. / 2}};
   return splitting;
 }
+
+}  // namespace
 
 Method position_verlet() {
   return {.name = "position_verlet",

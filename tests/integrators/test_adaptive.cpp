@@ -4,8 +4,8 @@
 
 #include "qddot/analysis/linear_motion.hpp"
 #include "qddot/integrators/base/nystrom.hpp"
-#include "tests/integrators/runs.hpp"
 #include "tests/integrators/spectral_radius.hpp"
+#include "tests/integrators/tables.hpp"
 
 BOOST_AUTO_TEST_SUITE(adaptive)
 
@@ -13,13 +13,10 @@ using namespace qddot;
 
 namespace {
 
-struct Named {
-  const char* name;
-  const NystromPair& pair;
-};
-const std::vector<Named> pairs = {{"dprkn6", registered::dprkn6_pair()},
-                                  {"dprkn8", registered::dprkn8_pair()},
-                                  {"dprkn12", registered::dprkn12_pair()}};
+const std::vector<WithTable<NystromPair>>& pairs() {
+  static const auto list = methods_with_tables<Nystrom>();
+  return list;
+}
 
 std::vector<Method> interpolating() {
   std::vector<Method> list = methods();
@@ -99,7 +96,7 @@ double largest_error(const std::vector<State>& states, const Case& c) {
 
 BOOST_AUTO_TEST_CASE(a_step_is_the_formula_of_its_pair) {
   for (const Case& c : {linear(), nonlinear()}) {
-    for (const auto& [name, pair] : pairs) {
+    for (const auto& [name, pair] : pairs()) {
       const double h = 0.01;
       const Run r = run(method_named(name), *c.system, c.initial, h, {.rtol = 1});
       BOOST_REQUIRE(r.summary.counts.steps == 1);
@@ -114,7 +111,7 @@ BOOST_AUTO_TEST_CASE(a_step_of_a_pair_errs_by_its_order_and_one) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0, 0.5);
   for (const Case& c : {linear(), nonlinear()}) {
-    for (const auto& [name, pair] : pairs) {
+    for (const auto& [name, pair] : pairs()) {
       // There are 20 starts, as errors of single ones vanish by chance at some h. h w goes from 1
       // to 4 down to a value above the influence of rounding.
       constexpr int count = 5;
@@ -157,7 +154,7 @@ BOOST_AUTO_TEST_CASE(forces_are_those_of_the_stages_and_nothing_else) {
   // Forces: one at the start, one of an Euler step for the first step size, s - 1 stages of each
   // attempt, and one at the end of a step unless that is the last stage.
   const auto system = make_mass_spring(wall().network);
-  for (const auto& [name, pair] : pairs) {
+  for (const auto& [name, pair] : pairs()) {
     std::int64_t rejected = 0;
     for (const double rtol : {1e-2, 1e-6, 1e-10}) {
       BOOST_TEST_CONTEXT(name << " at " << rtol) {
@@ -197,7 +194,7 @@ BOOST_AUTO_TEST_CASE(errors_are_of_the_size_of_the_tolerance_where_steps_are_rej
 
 BOOST_AUTO_TEST_CASE(steps_are_held_to_the_stability_limit_at_coarse_tolerances) {
   const Case c = linear();
-  for (const auto& [name, pair] : pairs) {
+  for (const auto& [name, pair] : pairs()) {
     const auto counts = [&, &name = name](double rtol) {
       return run(method_named(name), *c.system, c.initial, 10, {.rtol = rtol}).summary.counts;
     };
@@ -221,7 +218,7 @@ BOOST_AUTO_TEST_CASE(the_stability_limit_lets_vibrations_grow_by_a_hundredth_a_s
     }
     return spectral_radius(matrix);
   };
-  for (const auto& [name, pair] : pairs) {
+  for (const auto& [name, pair] : pairs()) {
     BOOST_TEST_CONTEXT(name) {
       double below = 0;
       for (int i = 1; i <= 1000; ++i) {
@@ -256,7 +253,7 @@ BOOST_AUTO_TEST_CASE(an_observer_changes_neither_the_end_nor_the_counts) {
 
 BOOST_AUTO_TEST_CASE(between_steps_errors_are_of_the_size_of_those_at_their_ends) {
   for (const Case& c : {linear(), nonlinear()}) {
-    for (const auto& [name, pair] : pairs) {
+    for (const auto& [name, pair] : pairs()) {
       for (const double rtol : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
         const Options options{.rtol = rtol};
         const Method& method = method_named(name);

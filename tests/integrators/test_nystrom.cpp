@@ -1,7 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "tests/integrators/nystrom_trees.hpp"
-#include "tests/integrators/runs.hpp"
+#include "tests/integrators/tables.hpp"
 
 BOOST_AUTO_TEST_SUITE(nystrom)
 
@@ -9,14 +9,10 @@ using namespace qddot;
 
 namespace {
 
-struct Named {
-  const char* name;
-  const NystromPair& pair;
-  std::int64_t forces;  // of a step
-};
-const std::vector<Named> pairs = {{"dprkn6", registered::dprkn6_pair(), 5},
-                                  {"dprkn8", registered::dprkn8_pair(), 8},
-                                  {"dprkn12", registered::dprkn12_pair(), 17}};
+const std::vector<WithTable<NystromPair>>& pairs() {
+  static const auto list = methods_with_tables<Nystrom>();
+  return list;
+}
 
 // Each of up to 17 products and sums of up to 12 levels rounds by 1.1e-16 of what is added up, and
 // so do coefficients of 16 digits.
@@ -26,7 +22,7 @@ constexpr double rounding = 2e-15;
 
 BOOST_AUTO_TEST_CASE(there_are_as_many_terms_of_each_order_as_there_should_be) {
   std::vector<int> count(13, 0);
-  const NystromTrees trees(registered::dprkn6_pair(), 12);
+  const NystromTrees trees(pairs().front().table, 12);
   for (const NystromTree& tree : trees.all()) {
     ++count[static_cast<std::size_t>(tree.order)];
   }
@@ -36,7 +32,7 @@ BOOST_AUTO_TEST_CASE(there_are_as_many_terms_of_each_order_as_there_should_be) {
 }
 
 BOOST_AUTO_TEST_CASE(each_pair_meets_all_conditions_of_its_orders_and_not_those_of_the_next) {
-  for (const auto& [name, pair, forces] : pairs) {
+  for (const auto& [name, pair] : pairs()) {
     const NystromTrees trees(pair, pair.order + 1);
     for (int p = 1; p <= pair.order + 1; ++p) {
       const double higher = order_defect(trees.all(), pair.b, pair.b_prime, p);

@@ -65,7 +65,7 @@ State by_fehlberg(const Case& c) {
 // higher terms (h w / 2 of it) do not matter. Multistep methods need more steps than they begin
 // with; their errors soon are so small that halvings would leave too few.
 std::vector<int> step_counts(const Method& method) {
-  const bool is_multistep = method.name.starts_with("symmetric");
+  const bool is_multistep = method.recurrence_roots != nullptr;
   std::vector<int> list;
   if (!is_multistep) {
     for (int steps = 6; steps <= 6 << 12; steps *= 2) list.push_back(steps);
@@ -90,7 +90,7 @@ Orders observed_orders(const Method& method, const Case& c) {
     v.push_back(std::log(error_v));
   }
   BOOST_REQUIRE(q.size() >= 5);
-  const auto last = std::min<Index>(std::ssize(q), method.name.starts_with("symmetric") ? 10 : 5);
+  const auto last = std::min<Index>(std::ssize(q), method.recurrence_roots ? 10 : 5);
   const auto tail = [last](const std::vector<double>& x) {
     return Vec(Eigen::Map<const Vec>(x.data() + std::ssize(x) - last, last));
   };
@@ -105,7 +105,7 @@ bool is_of_order(int p, const Orders& observed) {
 // A multistep method of order 8 or 10 is at rounding before its higher terms vanish, which make the
 // slope steeper; its order conditions are tested exactly elsewhere.
 bool is_of_order(const Method& method, const Orders& observed) {
-  if (!method.name.starts_with("symmetric") || method.order < 8) {
+  if (!method.recurrence_roots || method.order < 8) {
     return is_of_order(method.order, observed);
   }
   const double lower = std::min(observed.q, observed.v), upper = std::max(observed.q, observed.v);

@@ -1,4 +1,3 @@
-#include <set>
 #include <stdexcept>
 
 #include <Eigen/Dense>
@@ -35,18 +34,6 @@ Options fine(const Method& method) {
 // w)^2 w t / 12 at order 2.
 double allowed(const Method& method) { return method.order == 1 ? 2e-2 : 2e-3; }
 
-const std::set<std::string> never_ask_for_stiffness = {
-    "explicit_euler",   "symplectic_euler", "verlet",      "position_verlet", "rk4",
-    "blanes_moan4",     "symmetric4",       "symmetric6",  "symmetric8",      "symmetric10",
-    "takahashi_imada4", "blanes_moan6",     "kahan_li8",   "dprkn6",          "dprkn8",
-    "dprkn12",          "arkode_erk2",      "arkode_erk3", "arkode_erk4",     "arkode_erk5",
-    "arkode_erk6",      "arkode_erk8",      "cvode_adams"};
-bool asks_for_laplacian(const Method& method) { return method.name.starts_with("local_global"); }
-bool asks_for_split(const Method& method) {
-  return method.name.starts_with("arkode_imex") || method.name.starts_with("arkode_mri") ||
-         method.name.starts_with("multirate_adams");
-}
-
 // Runs all methods: each ends at the reference, or is refused with what expected(method) says.
 template <class Expected>
 void run_all(const System& system, const Expected& expected) {
@@ -69,14 +56,16 @@ void run_all(const System& system, const Expected& expected) {
 }
 
 Outcome without_stiffness(const Method& method) {
-  if (never_ask_for_stiffness.contains(method.name)) return Outcome::reached_end;
-  return asks_for_laplacian(method) ? Outcome::no_laplacian : Outcome::no_stiffness;
+  if (method.asks(Need::stiffness)) return Outcome::no_stiffness;
+  return method.asks(Need::laplacian) ? Outcome::no_laplacian : Outcome::reached_end;
+}
+Outcome with_split(const Method& method) {
+  if (method.asks(Need::constant_stiffness)) return Outcome::stiffness_varies;
+  return method.asks(Need::laplacian) ? Outcome::no_laplacian : Outcome::reached_end;
 }
 Outcome with_stiffness(const Method& method) {
-  if (method.name == "exact") return Outcome::stiffness_varies;
-  if (method.name == "discrete_gradient") return Outcome::no_discrete_gradient;
-  if (asks_for_laplacian(method)) return Outcome::no_laplacian;
-  return asks_for_split(method) ? Outcome::no_stiff_set : Outcome::reached_end;
+  if (method.asks(Need::discrete_gradient)) return Outcome::no_discrete_gradient;
+  return method.asks(Need::split_forces) ? Outcome::no_stiff_set : with_split(method);
 }
 
 }  // namespace
@@ -140,7 +129,7 @@ BOOST_AUTO_TEST_CASE(with_k_it_is_run_by_every_method_that_needs_nothing_else) {
 BOOST_AUTO_TEST_CASE(with_a_discrete_gradient_its_energy_can_be_kept) {
   const WithGradient<ChainWithStiffness> chain;
   run_all(chain, [](const Method& method) {
-    return method.name == "discrete_gradient" ? Outcome::reached_end : with_stiffness(method);
+    return method.asks(Need::discrete_gradient) ? Outcome::reached_end : with_stiffness(method);
   });
   const State end =
       run(method_named("discrete_gradient"), chain, start(), 5, {.step_size = 0.02}).state;
@@ -148,10 +137,7 @@ BOOST_AUTO_TEST_CASE(with_a_discrete_gradient_its_energy_can_be_kept) {
 }
 
 BOOST_AUTO_TEST_CASE(with_its_bonds_named_stiff_all_methods_run_that_take_forces_apart) {
-  run_all(DividedChain(), [](const Method& method) {
-    if (asks_for_split(method) || method.name == "discrete_gradient") return Outcome::reached_end;
-    return with_stiffness(method);
-  });
+  run_all(DividedChain(), with_split);
 }
 
 // Bonds of 0.8 m push so hard that -K is negative across them. The matrix of a step with all of K

@@ -26,6 +26,8 @@ class KickDrift final : public FixedStep {
   KickDrift(const Method& method, const System& system, const Options& options,
             const Splitting& splitting);
 
+  const Splitting& table() const { return splitting_; }
+
  private:
   void start(const State& state) override;
   Outcome step(const State& now, double h, State& next) override;
@@ -44,13 +46,5 @@ std::unique_ptr<Integrator> create_splitting(const Method& method, const System&
                                              const Options& options) {
   return std::make_unique<KickDrift>(method, system, options, splitting());
 }
-
-// All splittings, each in the file of its method.
-namespace registered {
-const Splitting& position_verlet_splitting();
-const Splitting& kahan_li8_splitting();
-const Splitting& blanes_moan4_splitting();
-const Splitting& blanes_moan6_splitting();
-}  // namespace registered
 
 }  // namespace qddot

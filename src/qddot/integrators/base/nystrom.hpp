@@ -18,6 +18,8 @@ class Nystrom final : public AdaptiveStep {
   Nystrom(const Method& method, const System& system, const Options& options,
           const NystromPair& pair, std::size_t instants);
 
+  const NystromPair& table() const { return pair_; }
+
  private:
   void start(const State& state) override;
   double longest_step(const Instant& now) override;
