@@ -4,6 +4,7 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -48,6 +49,22 @@ class Started {
       execv(argv[0], argv.data());
       _exit(127);
     }
+  }
+
+  // Waits until it has had so many seconds of the processor, however busy the machine is, or has
+  // ended.
+  void let_work(double seconds) const {
+    clockid_t clock{};
+    timespec spent{};
+    siginfo_t ended{};
+    const auto is_early = [&] {
+      waitid(P_PID, static_cast<id_t>(child_), &ended, WEXITED | WNOHANG | WNOWAIT);
+      return ended.si_pid == 0 && clock_getcpuclockid(child_, &clock) == 0 &&
+             clock_gettime(clock, &spent) == 0 &&
+             static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec) <
+                 seconds;
+    };
+    while (is_early()) usleep(1000);
   }
 
   // Sends it a signal, if any, and waits for its end. Call it once.

@@ -94,35 +94,6 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_had_is_said_and_what_was_reached_is_there) {
   BOOST_TEST(contains(advised.out, {"none: the motion is chaotic", "energy"}), advised.out);
 }
 
-BOOST_AUTO_TEST_CASE(what_makes_no_sense_is_refused_before_anything_is_written) {
-  const Folder folder;
-  const std::string out = folder / "out", end = folder / "end.csv";
-  for (const char* accuracy : {"0", "nan", "1e-40", "10", "-1"}) {
-    for (const Exit& refused : {run("simulate", {"--scene", "orbit", "--until", "1", "--accuracy",
-                                                 accuracy, "--final", end}),
-                                run("advise", {"--scene", "orbit", "--until", "1", "--accuracy",
-                                               accuracy, "--out", out})}) {
-      BOOST_TEST(refused.status == 2);
-      BOOST_TEST(contains(refused.err, {"--accuracy", "from 1e-14", "below 1"}), refused.err);
-    }
-  }
-  const std::vector<std::string> asked = {"--scene", "orbit", "--until", "1", "--final", end};
-  const auto with = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), asked.begin(), asked.end());
-    return run("simulate", more);
-  };
-  BOOST_TEST(complains(with({"--accuracy", "1e-3", "--method", "verlet"}), 2, "simulate",
-                       {"--method", "--accuracy"}));
-  BOOST_TEST(complains(with({"--accuracy", "1e-3", "--rtol", "1e-3"}), 2, "simulate", {"--rtol"}));
-  BOOST_TEST(complains(with({"--accuracy", "1e-3", "--accuracy-of", "speed"}), 2, "simulate",
-                       {"--accuracy-of speed", "positions, path and energy"}));
-  BOOST_TEST(complains(with({"--accuracy-of", "path", "--method", "verlet", "--step-size", "0.1"}),
-                       2, "simulate", {"--accuracy-of"}));
-  BOOST_TEST(complains(run("advise", {"--scene", "orbit", "--until", "1"}), 2, "advise",
-                       {"--accuracy is missing"}));
-  BOOST_TEST(folder.listing().empty(), folder.listing());
-}
-
 BOOST_AUTO_TEST_CASE(the_study_judges_what_was_claimed) {
   const Folder folder;
   const Exit result = run("advice", {"--cases", "3", "--first", "11000000", "--repeats", "1",

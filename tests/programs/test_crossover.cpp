@@ -59,10 +59,6 @@ std::map<std::string, double> times(const Table& points, double ratio, double ac
   return least;
 }
 
-void check_refused(const Words& words, const Words& fragments) {
-  qddot::check_refused("crossover", words, fragments);
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(it_writes_a_row_for_each_ratio_and_accuracy_in_order) {
@@ -189,43 +185,6 @@ BOOST_AUTO_TEST_CASE(a_second_run_takes_the_references_that_are_there) {
   BOOST_TEST(before != "");
   BOOST_TEST_REQUIRE(run("crossover", words).status == 0);
   BOOST_TEST(read_all(file) == before);
-}
-
-BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
-  const Words good = {"--nodes", "5", "--ratios", "1", "--until", "0.01", "--out", "OUT"};
-  check_refused(joined(good, {"--family", "carpet"}), {"--family", "carpet", "allowed", "whole"});
-  for (const char* value : {"0", "0.5", "-1", "nan", "inf", "1e10"}) {
-    check_refused({"--ratios", value, "--out", "OUT"}, {"--ratios", "from 1 to 1e+09"});
-  }
-  check_refused({"--ratios", "10,1,10", "--out", "OUT"}, {"--ratios: 10", "twice"});
-  check_refused({"--ratios", "10,many", "--out", "OUT"}, {"--ratios", "many", "allowed"});
-  for (const char* value : {"0", "3", "-5", "1001"}) {
-    check_refused(joined(good, {"--nodes", value}), {"--nodes", value, "from 4 to 1000"});
-  }
-  for (const char* value : {"0", "-1", "nan", "inf"}) {
-    check_refused(joined(good, {"--until", value}), {"--until", value, "greater than 0"});
-    check_refused(joined(good, {"--point-limit", value}), {"--point-limit", value});
-  }
-  for (const char* value : {"0", "-1", "1001"}) {
-    check_refused(joined(good, {"--repeats", value}), {"--repeats", value, "from 1 to 1000"});
-  }
-  check_refused(joined(good, {"--methods", "leapfrog"}), {"--methods", "leapfrog", "allowed"});
-  check_refused(joined(good, {"--methods", "ida,ida"}), {"--methods", "ida", "twice"});
-  check_refused(joined(good, {"--methods", "exact"}), {"exact", "allowed"});
-  // No spring is stiff at ratio 1.
-  check_refused(joined(good, {"--methods", "arkode_imex3"}), {"arkode_imex3", "stiff"});
-  check_refused(joined(good, {"--scene", "cloth"}), {"--scene"});
-  check_refused({"--ratios", "1"}, {"--out", "missing"});
-}
-
-BOOST_AUTO_TEST_CASE(a_place_taken_by_a_folder_is_known_before_anything_is_measured) {
-  for (const char* name : {"points.csv", "crossover.csv", "kinds.csv", "points.json"}) {
-    const Folder folder;
-    std::filesystem::create_directories(folder / name);
-    const Exit result = run("crossover", {"--ratios", "1", "--out", folder.path()});
-    BOOST_TEST(complains(result, 2, "crossover", {name}), name << ": " << result.err);
-    BOOST_TEST(folder.listing() == name + std::string(" "));
-  }
 }
 
 BOOST_AUTO_TEST_CASE(negative_control_a_cell_of_the_other_ratio_has_another_time) {

@@ -151,35 +151,4 @@ BOOST_AUTO_TEST_CASE(a_scene_with_massless_nodes_is_studied_by_those_that_take_t
   BOOST_TEST(contains(summary.text(1, "verdict"), {"dissipates"}));
 }
 
-BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
-  using Words = std::vector<std::string>;
-  const std::vector<std::pair<Words, Words>> cases = {
-      {{}, {"--scene is missing"}},
-      {{"--scene", "no such"}, {"no such"}},
-      {{"--scene", "orbit", "--step-size", "0"}, {"--step-size 0", "greater than 0"}},
-      {{"--scene", "orbit", "--until", "-1"}, {"--until -1", "greater than 0"}},
-      {{"--scene", "orbit", "--step-size", "1", "--until", "0.5"}, {"--until 0.5", "0.5 steps"}},
-      {{"--scene", "orbit", "--step-size", "1e-9", "--until", "1e9"}, {"1e+18 steps"}},
-      {{"--scene", "orbit", "--rtol", "0"}, {"--rtol 0", "greater than 0"}},
-      {{"--scene", "orbit", "--method-limit", "0"}, {"--method-limit 0"}},
-      {{"--scene", "orbit", "--methods", "nothing"}, {"nothing is not a method"}}};
-  for (const auto& [words, fragments] : cases) {
-    const Folder folder;
-    const Exit result = run_energy_drift(folder, words);
-    BOOST_TEST(complains(result, 2, "energy_drift", fragments), exit_in_words(result, words));
-    BOOST_TEST(folder.listing() == "");
-  }
-  const Folder folder;
-  const std::string flying =
-      folder.write("flying.toml", "dimension = 1\nnodes = [{position = [0], mass = 1}]\n");
-  const Exit still = run_energy_drift(folder, {"--scene", flying});
-  BOOST_TEST(complains(still, 2, "energy_drift", {"--step-size is missing", flying}), still.err);
-  const Exit no_folder = run("energy_drift", {"--scene", "orbit"});
-  BOOST_TEST(complains(no_folder, 2, "energy_drift", {"--out is missing"}), no_folder.err);
-  const Exit help = run("energy_drift", {"--help"});
-  BOOST_TEST(help.status == 0);
-  BOOST_TEST(contains(help.out, {"--scene", "--step-size", "--until", "--methods", "--rtol",
-                                 "--compensated", "--method-limit", "--out"}));
-}
-
 BOOST_AUTO_TEST_SUITE_END()

@@ -71,24 +71,4 @@ BOOST_AUTO_TEST_CASE(scene_without_rest_ends_with_status_3_and_one_sentence) {
   BOOST_TEST(origin.at("residual").get<double>() == 1);  // its weight
 }
 
-BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
-  const Folder folder;
-  using Words = std::vector<std::string>;
-  const std::vector<std::pair<Words, Words>> cases = {
-      {{}, {"--scene is missing"}},
-      {{"--scene", "no such"}, {"no such"}},
-      {{"--scene", "cloth", "--final", ""}, {"--final is missing"}},
-      {{"--scene", "cloth", "--final", folder / "none/e.csv"}, {"none/e.csv"}},
-      {{"--scene", "cloth", "--finall", "x"}, {"--finall"}}};
-  for (const auto& [words, fragments] : cases) {
-    const Exit result = run("equilibrium", words);
-    BOOST_TEST(complains(result, 2, "equilibrium", fragments), exit_in_words(result, words));
-    BOOST_TEST(result.out == "");
-  }
-  BOOST_TEST(folder.listing() == "");
-  const Exit help = run("equilibrium", {"--help"});
-  BOOST_TEST(help.status == 0);
-  BOOST_TEST(contains(help.out, {"--scene", "--final"}));
-}
-
 BOOST_AUTO_TEST_SUITE_END()

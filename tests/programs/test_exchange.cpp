@@ -156,31 +156,4 @@ BOOST_AUTO_TEST_CASE(springs_of_several_parts_are_followed_and_the_fastest_part_
   }
 }
 
-BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
-  const Words good = {"--scene", "fpu", "--out", "OUT"};
-  const auto with = [&](Words words) {
-    words.insert(words.begin(), good.begin(), good.end());
-    return words;
-  };
-  check_refused({"--out", "OUT"}, {"--scene", "missing"});
-  check_refused({"--scene", "fpu"}, {"--out", "missing"});
-  check_refused({"--scene", "cloth", "--out", "OUT"}, {"cloth: stiff_above: it is missing"});
-  check_refused({"--scene", "framed_cloth", "--out", "OUT"}, {"framed_cloth", "without energy"});
-  for (const char* value : {"0", "-1", "nan", "inf"}) {
-    check_refused(with({"--h-omega", value}), {"--h-omega", value, "greater than 0"});
-    check_refused(with({"--until", value}), {"--until", value, "greater than 0"});
-    check_refused(with({"--every", value}), {"--every", value, "greater than 0"});
-  }
-  check_refused(with({"--h-omega", "1,0.1,1"}), {"--h-omega: 1 is named twice"});
-  // So small that h is zero, or that no sum of steps grows by it.
-  check_refused(with({"--h-omega", "5e-324"}), {"--h-omega", "h = 0 ", "greater than 0"});
-  check_refused(with({"--h-omega", "1e-18"}), {"--h-omega 1e-18", "at least"});
-  check_refused(with({"--until", "0.9"}), {"--until 0.9", "ten steps", "1 s"});
-  check_refused(with({"--every", "21"}), {"--every 21", "tenth"});
-  check_refused(with({"--methods", "leapfrog"}), {"leapfrog is not a method"});
-  check_refused(with({"--methods", "verlet,verlet"}), {"verlet is named twice"});
-  check_refused(with({"--methods", "exact"}), {"exact needs a K"});
-  check_refused(with({"--no-reduce", "walls"}), {"walls is not a reduction"});
-}
-
 BOOST_AUTO_TEST_SUITE_END()

@@ -60,16 +60,4 @@ BOOST_AUTO_TEST_CASE(runs_are_the_same_to_the_bit_at_every_width_and_with_all_ki
   }
 }
 
-BOOST_AUTO_TEST_CASE(kernels_that_are_not_there_are_told_in_a_sentence) {
-  for (const char* variable : {"QDDOT_ROOTS", "QDDOT_KERNELS"}) {
-    setenv(variable, "square", 1);
-    const Exit exit =
-        run("simulate", {"--scene", "cloth", "--method", "verlet", "--step-size", "1e-4"});
-    unsetenv(variable);
-    BOOST_TEST(exit.status == 2);
-    BOOST_TEST(exit.err.starts_with(fmt::format("simulate: {}=square: ", variable)), exit.err);
-    BOOST_TEST(exit.err.find("allowed are ") != std::string::npos, exit.err);
-  }
-}
-
 BOOST_AUTO_TEST_SUITE_END()

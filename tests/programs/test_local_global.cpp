@@ -33,22 +33,7 @@ const Small& small() {
   return run;
 }
 
-void check_refused(const Words& words, const Words& fragments) {
-  qddot::check_refused("local_global", words, fragments);
-}
-
 }  // namespace
-
-BOOST_AUTO_TEST_CASE(what_would_run_without_end_is_refused) {
-  check_refused({"--step-size", "1e-300", "--out", "OUT"}, {"--step-size", "at least"});
-  check_refused({"--step-size", "1e300", "--out", "OUT"}, {"--step-size", "not allowed"});
-  check_refused({"--step-size", "1e6", "--out", "OUT"}, {"--step-size", "at most", "1e+07 steps"});
-  check_refused({"--step-size", "1e-8", "--out", "OUT"}, {"--step-size", "5e+07 steps"});
-  check_refused({"--until", "1e300", "--out", "OUT"}, {"--step-size 0.01", "at least"});
-  check_refused({"--until", "1e4", "--step-size", "1", "--out", "OUT"}, {"--until", "at most"});
-  check_refused({"--swing", "1e6", "--out", "OUT"}, {"--swing", "at most"});
-  check_refused({"--iterations", "1000000000", "--out", "OUT"}, {"--iterations", "100000"});
-}
 
 BOOST_AUTO_TEST_CASE(one_step_is_tabulated_by_solver_and_iteration) {
   const Table table = read_csv(small().file("convergence.csv"));
@@ -134,24 +119,6 @@ BOOST_AUTO_TEST_CASE(runs_say_what_is_lost) {
   BOOST_TEST(table.text(last, "solver") == "newton_exact");
   BOOST_TEST(table.value(last, "position_error") > 1e-4);
   BOOST_TEST(table.value(last, "energy_change") < 0);  // implicit Euler damps
-}
-
-BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
-  check_refused({}, {"--out", "missing"});
-  for (const char* value : {"2", "401", "-1"}) {
-    check_refused({"--nodes", value, "--out", "OUT"}, {"--nodes", value, "from 3 to 400"});
-  }
-  check_refused({"--resolutions", "4,2", "--out", "OUT"}, {"--resolutions 2", "from 3 to 400"});
-  check_refused({"--stiffnesses", "1,0", "--out", "OUT"}, {"--stiffnesses 0", "greater than 0"});
-  check_refused({"--iterations", "0", "--out", "OUT"}, {"--iterations 0", "from 1 to"});
-  check_refused({"--repeats", "0", "--out", "OUT"}, {"--repeats 0", "from 1 to 1000"});
-  for (const char* option : {"--stiffness", "--step-size", "--until"}) {
-    for (const char* value : {"0", "-1", "nan", "inf"}) {
-      check_refused({option, value, "--out", "OUT"}, {option, value, "greater than 0"});
-    }
-  }
-  check_refused({"--swing", "-1", "--out", "OUT"}, {"--swing -1", "at least 0"});
-  check_refused({"--scene", "cloth", "--out", "OUT"}, {"--scene"});
 }
 
 BOOST_AUTO_TEST_CASE(simulate_takes_iterations_for_methods_that_have_them) {

@@ -182,26 +182,4 @@ BOOST_AUTO_TEST_CASE(scene_without_modes_or_rest_is_refused) {
   BOOST_TEST(run_modes(folder, {"--scene", falling}).status == 0);
 }
 
-BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
-  using Words = std::vector<std::string>;
-  const std::vector<std::pair<Words, Words>> cases = {
-      {{}, {"--scene is missing"}},
-      {{"--scene", "no such"}, {"no such"}},
-      {{"--scene", "cloth", "--count", "0"}, {"--count 0", "from 1 to 1000"}},
-      {{"--scene", "cloth", "--count", "1001"}, {"--count 1001"}},
-      {{"--scene", "cloth", "--count", "many"}, {"--count", "many"}},
-      {{"--scene", "cloth", "--at", "rest"}, {"--at: rest", "drawn or equilibrium"}}};
-  for (const auto& [words, fragments] : cases) {
-    const Folder folder;
-    const Exit result = run_modes(folder, words);
-    BOOST_TEST(complains(result, 2, "modes", fragments), exit_in_words(result, words));
-    BOOST_TEST(folder.listing() == "");
-  }
-  const Exit no_folder = run("modes", {"--scene", "cloth"});
-  BOOST_TEST(complains(no_folder, 2, "modes", {"--out is missing"}), no_folder.err);
-  const Exit help = run("modes", {"--help"});
-  BOOST_TEST(help.status == 0);
-  BOOST_TEST(contains(help.out, {"--scene", "--out", "--count", "--at", "growth rate"}));
-}
-
 BOOST_AUTO_TEST_SUITE_END()

@@ -206,8 +206,6 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_said_in_a_sentence) {
     BOOST_TEST(contains(exit.err, fragments), exit.err);
     BOOST_TEST(std::ranges::count(exit.err, '\n') == 1);
   };
-  refused(run("motions", {"--scene", "pendulum"}), {"--out is missing"});
-  refused(run("motions", {"--out", k.folder.path()}), {"--scene is missing"});
   refused(run("motions", {"--scene", "orbit", "--out", k.folder.path()}),
           {"--scene orbit", "another scene"});
   refused(k.keep({"--frames", "0"}), {"--frames 0", "1 to 10000"});

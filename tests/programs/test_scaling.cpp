@@ -41,10 +41,6 @@ const Small& small() {
   return run;
 }
 
-void check_refused(const Words& words, const Words& fragments) {
-  qddot::check_refused("scaling", words, fragments);
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(an_exact_power_law_is_recovered_to_rounding) {
@@ -198,27 +194,6 @@ BOOST_AUTO_TEST_CASE(a_first_scene_that_does_not_fit_is_not_drawn) {
                       "--memory-limit", "0.1", "--time-limit", "20", "--out", folder / "out"});
   BOOST_TEST(result.status == 0, result.err);
   BOOST_TEST(contains(result.out, {"left out: cloth", "GB, more than 0.1 GB"}), result.out);
-}
-
-BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_in_one_sentence_and_leaves_nothing) {
-  check_refused({}, {"--out", "missing"});
-  check_refused({"--scenes", "chain,rope", "--out", "OUT"}, {"rope", "chain, cloth, lattice"});
-  check_refused({"--scenes", "chain,chain", "--out", "OUT"}, {"chain", "twice"});
-  check_refused({"--methods", "verlett", "--out", "OUT"}, {"verlett", "verlet"});
-  check_refused({"--solvers", "lu", "--out", "OUT"}, {"--solvers: lu", "conjugate_gradients"});
-  check_refused({"--solvers", "cholmod,cholmod", "--out", "OUT"}, {"cholmod", "twice"});
-  check_refused({"--methods", "dprkn8", "--out", "OUT"}, {"dprkn8", "fixed step"});
-  check_refused({"--most-nodes", "1e8", "--out", "OUT"}, {"--most-nodes", "1e+07"});
-  check_refused({"--least-nodes", "2000", "--most-nodes", "1000", "--out", "OUT"},
-                {"--least-nodes 2000", "--most-nodes 1000"});
-  check_refused({"--sizes", "0", "--out", "OUT"}, {"--sizes 0", "from 1 to"});
-  check_refused({"--no-reduce", "nothing", "--out", "OUT"}, {"nothing", "not a reduction"});
-  for (const char* option :
-       {"--step-size", "--point-limit", "--memory-limit", "--least-nodes", "--most-nodes"}) {
-    for (const char* value : {"0", "-1", "nan"}) {
-      check_refused({option, value, "--out", "OUT"}, {option, value});
-    }
-  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

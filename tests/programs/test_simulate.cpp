@@ -244,4 +244,24 @@ BOOST_AUTO_TEST_CASE(negative_control_another_step_is_another_end) {
   BOOST_TEST(read_all(folder / "a.csv") != read_all(folder / "b.csv"));
 }
 
+BOOST_AUTO_TEST_CASE(tolerances_that_hardly_mean_anything_are_warned_of) {
+  const auto run_at = [](const char* rtol, const char* atol) {
+    return run("simulate", {"--scene", "oscillator", "--method", "ida", "--until", "0.01", "--rtol",
+                            rtol, "--atol", atol});
+  };
+  BOOST_TEST(run_at("0.1", "1e-6").err == "");
+  BOOST_TEST(contains(run_at("0.2", "1e-6").err, {"simulate: warning: --rtol 0.2", "hardly"}));
+  BOOST_TEST(
+      contains(run_at("1e-15", "1e-6").err, {"simulate: warning: --rtol 1e-15", "rounding"}));
+  BOOST_TEST(contains(run_at("1e-6", "2").err, {"simulate: warning: --atol 2", "positions, 1 m"}));
+}
+
+BOOST_AUTO_TEST_CASE(a_long_run_says_how_long_it_will_take) {
+  // 2e11 steps, minutes at the very least.
+  const Exit result = run("simulate", {"--scene", "pendulum", "--method", "verlet", "--step-size",
+                                       "1e-11", "--time-limit", "2.5"});
+  BOOST_TEST(result.status == 3);
+  BOOST_TEST(contains(result.err, {"simulate: t = ", "the run will take about "}), result.err);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

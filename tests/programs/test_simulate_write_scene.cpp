@@ -17,12 +17,6 @@ Words with(Words words, const Words& more) {
   return words;
 }
 
-void check_refused(const Words& words, const Words& fragments) {
-  const Exit result = run("simulate", words);
-  BOOST_TEST(complains(result, 2, "simulate", fragments), exit_in_words(result, words));
-  BOOST_TEST(result.out == "");
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(a_scene_is_written_without_a_run) {
@@ -76,47 +70,6 @@ BOOST_AUTO_TEST_CASE(inputs_are_never_replaced_and_files_of_others_by_force_alon
   BOOST_TEST(folder.listing() == "end.json m.obj s.toml ");
   BOOST_TEST(run("simulate", with(end, {"--force"})).status == 0);
   BOOST_TEST(run("simulate", end).status == 0);  // its own by now
-}
-
-BOOST_AUTO_TEST_CASE(a_run_that_is_asked_for_in_part_is_not_left_out) {
-  const Folder folder;
-  for (const Words& part :
-       {Words{"--final", folder / "f.csv"}, Words{"--energy", folder / "e.csv", "--every", "1"},
-        Words{"--step-size", "0.1"}, Words{"--until", "1"}}) {
-    check_refused(with({"--scene", "orbit", "--write-scene", folder / "s.toml"}, part),
-                  {"--method", "missing"});
-    BOOST_TEST(folder.listing() == "");
-  }
-}
-
-BOOST_AUTO_TEST_CASE(it_does_not_go_where_another_output_goes) {
-  const Folder folder;
-  const Words orbit = {"--scene", "orbit", "--method", "verlet", "--step-size", "0.1"};
-  for (const char* place : {"f.csv", "./f.csv", "f.json", "e.csv", "e.json"}) {
-    check_refused(with(orbit, {"--final", folder / "f.csv", "--energy", folder / "e.csv", "--every",
-                               "1", "--write-scene", folder / place}),
-                  {"--write-scene", place, "another output", "allowed"});
-    BOOST_TEST(folder.listing() == "");
-  }
-  // A scene has no sidecar that could be in the way.
-  BOOST_TEST(run("simulate",
-                 with(orbit, {"--final", folder / "f.csv", "--write-scene", folder / "f.toml"}))
-                 .status == 0);
-}
-
-BOOST_AUTO_TEST_CASE(what_is_refused_writes_nothing) {
-  const Folder folder;
-  const std::string bad = folder.write("bad.toml", "dimension = 7\nnodes = []\n");
-  check_refused({"--scene", bad, "--write-scene", folder / "s.toml"}, {"bad.toml:1", "dimension"});
-  check_refused({"--scene", "carpet", "--write-scene", folder / "s.toml"}, {"carpet"});
-  check_refused({"--write-scene", folder / "s.toml"}, {"--scene", "missing"});
-  check_refused({"--scene", "orbit", "--write-scene", ""}, {"--write-scene"});
-  check_refused({"--scene", "orbit", "--write-scene", folder / "none/s.toml"},
-                {"none/s.toml", "cannot be written", "allowed"});
-  check_refused({"--scene", "orbit", "--method", "verlet", "--step-size", "0.1", "--write-scene",
-                 folder / "s.toml", "--final", folder / "none/f.csv"},
-                {"none/f.csv", "cannot be written"});
-  BOOST_TEST(folder.listing() == "bad.toml ");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -35,16 +35,4 @@ BOOST_AUTO_TEST_CASE(every_solver_solves_and_is_held_against_the_machine) {
   BOOST_TEST(table.value(4, "gigabytes_per_second") > 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_wrong_list_of_solvers_is_said_in_one_sentence) {
-  const Folder folder;
-  const Exit result = run_solvers(folder, {"--solvers", "multifrontal,lu"});
-  BOOST_TEST(result.status == 2);
-  BOOST_TEST(result.err ==
-             "solvers: --solvers: lu is not a solver; allowed are multifrontal, cholmod, eigen, "
-             "klu\n");
-  const Exit twice = run_solvers(folder, {"--solvers", "klu,klu"});
-  BOOST_TEST(twice.status == 2);
-  BOOST_TEST(twice.err == "solvers: --solvers: klu is named twice; allowed is once\n");
-}
-
 BOOST_AUTO_TEST_SUITE_END()

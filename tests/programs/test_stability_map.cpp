@@ -145,28 +145,6 @@ BOOST_AUTO_TEST_CASE(a_scene_without_natural_modes_is_said_to_have_none) {
   BOOST_TEST(complains(result, 3, "stability_map", {"massless node"}), result.err);
 }
 
-BOOST_AUTO_TEST_CASE(bad_input_is_one_sentence_and_nothing_is_written) {
-  const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases = {
-      {{"--scene", "nowhere"}, {"nowhere"}},
-      {with(small, {"--methods", "verlt"}), {"--methods", "verlt", "allowed"}},
-      {with(small, {"--columns", "0"}), {"--columns", "0", "1 to"}},
-      {with(small, {"--low", "-1"}), {"--low", "-1"}},
-      {with(small, {"--low", "3", "--high", "2"}), {"--high", "2", "3"}},
-      {with(small, {"--vary", "colour"}), {"colour", "mass"}},
-      {{"--scene", "oscillator", "--amplitudes", "0"}, {"--amplitudes", "0"}},
-      {with(small, {"--cell-limit", "nan"}), {"--cell-limit"}},
-      {with(small, {"--tolerated", "0"}), {"--tolerated", "0"}},
-      {with(small, {"--until", "-2"}), {"--until", "-2"}}};
-  for (const auto& [words, fragments] : cases) {
-    const Folder folder;
-    const Exit result = run_map(folder, words);
-    BOOST_TEST(complains(result, 2, "stability_map", fragments), exit_in_words(result, words));
-    BOOST_TEST(folder.listing() == "", exit_in_words(result, words));
-  }
-  const Exit nowhere = run("stability_map", small);
-  BOOST_TEST(complains(nowhere, 2, "stability_map", {"--out"}));
-}
-
 BOOST_AUTO_TEST_CASE(a_horizon_beyond_all_steps_ends_by_the_limit_of_its_cells) {
   const Folder folder;
   const Exit result = run("stability_map", {"--scene", "oscillator", "--methods", "verlet",

@@ -317,30 +317,4 @@ BOOST_AUTO_TEST_CASE(parallel_runs_its_lines_where_it_is_installed) {
   BOOST_TEST(std::filesystem::exists(sweep.out + "/chain/report.html"));
 }
 
-BOOST_AUTO_TEST_CASE(bad_words_are_refused_in_one_sentence) {
-  const Sweep sweep;
-  const auto refused = [&](std::vector<std::string> words,
-                           const std::vector<std::string>& fragments) {
-    const Exit end = run("sweep", words);
-    BOOST_TEST(complains(end, 2, "sweep", fragments), exit_in_words(end, words));
-  };
-  const std::string& s = sweep.out;
-  refused({}, {"the action is missing"});
-  refused({"sweep", s}, {"sweep is no action of sweep"});
-  refused({"run"}, {"the sweep's folder is missing"});
-  refused({"run", s}, {"--stage is missing"});
-  refused({"run", s, "--stage", "point"}, {"--stage point is not one"});
-  for (const char* shard : {"5/4", "0/4", "1", "1/", "/2", "a/b", "1/2/3", "-1/4", "1/-4", "1.5/2"})
-    refused({"run", s, "--stage", "points", std::string("--shard=") + shard},
-            {shard, "1/N to N/N"});
-  refused({"run", s, "--stage", "points", "--task", "0"}, {"0 is no task of points"});
-  refused({"run", s, "--stage", "points", "--go"}, {"--go is for sweep submit"});
-  refused({"run", sweep.folder.path(), "--stage", "points"}, {"tasks.jsonl: it is missing"});
-  refused({"merge", s, "--by", "time"}, {"--by time is not allowed"});
-  refused({"submit", s}, {"--slurm or --parallel"});
-  refused({"submit", s, "--slurm", "--shards", "0"}, {"--shards 0"});
-  refused({"status", sweep.folder / "nothing"}, {"tasks.jsonl: it is missing"});
-  refused({"plan", sweep.study}, {"--out is missing"});
-}
-
 BOOST_AUTO_TEST_SUITE_END()

@@ -152,11 +152,11 @@ BOOST_AUTO_TEST_CASE(what_it_runs_ends_with_it) {
     return contains(run("sweep", {"status", sweep.out}).out, {what});
   };
   // Its runs take minutes.
-  for (int i = 0; i < 500 && !says("1 running"); ++i)
+  for (int i = 0; i < 12000 && !says("1 running"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   BOOST_TEST_REQUIRE(says("1 running"));
   process.end(SIGKILL);
-  for (int i = 0; i < 500 && says("1 running"); ++i)
+  for (int i = 0; i < 12000 && says("1 running"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   BOOST_TEST(!says("1 running"));
 }
@@ -204,9 +204,11 @@ BOOST_AUTO_TEST_CASE(a_time_limit_ends_it_in_order_and_the_next_call_goes_on) {
   const Sweep sweep;
   sweep.go("references");
   int calls = 0;
-  for (Exit end; end.status != 0; ++calls) {
-    BOOST_TEST_REQUIRE(calls < 200);
-    end = sweep.go("points", {"--time-limit", "0.1"});
+  double limit =
+      0.1;  // grows, since on a busy machine nothing might be measured in so short a time
+  for (Exit end; end.status != 0; ++calls, limit *= 1.2) {
+    BOOST_TEST_REQUIRE(limit < 1000);
+    end = sweep.go("points", {"--time-limit", fmt::format("{}", limit)});
     if (end.status == 0) continue;
     BOOST_TEST(complains(end, 3, "sweep", {"interrupted by --time-limit"}), end.err);
   }

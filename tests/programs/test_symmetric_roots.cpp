@@ -239,18 +239,4 @@ BOOST_AUTO_TEST_CASE(the_same_command_gives_the_same_table) {
   BOOST_TEST(read_all(one / "out/roots.csv") == read_all(other / "out/roots.csv"));
 }
 
-BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
-  const auto refused = [](std::vector<std::string> words, std::vector<std::string> fragments) {
-    check_refused("symmetric_roots", std::move(words), fragments);
-  };
-  refused({}, {"--out is missing"});
-  refused({"--out", "OUT", "--samples", "0"}, {"--samples 0", "from 1 to 100000"});
-  refused({"--out", "OUT", "--samples", "100001"}, {"--samples 100001"});
-  refused({"--out", "OUT", "--samples", "many"}, {"--samples", "many"});
-  for (const char* at : {"0", "-1", "2.1", "nan", "inf"}) {
-    refused({"--out", "OUT", "--at", at}, {"--at", at, "from 0.01 to 2"});
-  }
-  refused({"--out", "OUT", "--scene", "cloth"}, {"--scene"});
-}
-
 BOOST_AUTO_TEST_SUITE_END()

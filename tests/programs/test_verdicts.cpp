@@ -63,20 +63,4 @@ BOOST_AUTO_TEST_CASE(verdicts_are_seldom_wrong_and_intervals_hold_what_is_true) 
   BOOST_TEST(origin.at("walk_size").contains("random walk"));
 }
 
-BOOST_AUTO_TEST_CASE(wrong_command_lines_are_refused) {
-  using Words = std::vector<std::string>;
-  const std::vector<std::pair<Words, Words>> cases = {
-      {{"--seeds", "0"}, {"--seeds 0"}},
-      {{"--cells", "1"}, {"--cells 1"}},
-      {{"--kinds", "nothing"}, {"no kind \"nothing\"", "random walk"}}};
-  for (const auto& [words, fragments] : cases) {
-    const Folder folder;
-    const Exit result = run_verdicts(folder, words);
-    BOOST_TEST(complains(result, 2, "verdicts", fragments), exit_in_words(result, words));
-    BOOST_TEST(folder.listing() == "");
-  }
-  const Exit no_folder = run("verdicts", {});
-  BOOST_TEST(complains(no_folder, 2, "verdicts", {"--out is missing"}), no_folder.err);
-}
-
 BOOST_AUTO_TEST_SUITE_END()

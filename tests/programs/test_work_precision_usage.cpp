@@ -19,10 +19,6 @@ Exit measure(const std::string& out, const Words& more) {
   return run("work_precision", words);
 }
 
-void check_refused(const Words& words, const Words& fragments) {
-  qddot::check_refused("work_precision", words, fragments);
-}
-
 const std::string pinned =
     "dimension = 2\nuntil = 0.5\n"
     "nodes = [{position = [0, 0], pinned = true}, {position = [1, 0], pinned = true}]\n"
@@ -53,70 +49,6 @@ struct Cache {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_CASE(help_names_every_option) {
-  const Exit result = run("work_precision", {"--help"});
-  BOOST_TEST(result.status == 0);
-  BOOST_TEST(contains(result.out,
-                      {"--scene", "--until", "--methods", "--repeats", "--point-limit", "--out"}));
-}
-
-BOOST_AUTO_TEST_CASE(bad_options_are_refused_and_leave_nothing) {
-  const Words good = {"--scene", "orbit", "--out", "OUT"};
-  const auto with = [&](const Words& more) {
-    Words words = good;
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  };
-  Words names = {"--methods", "leapfrog"};
-  for (const Method& method : methods()) names.push_back(method.name);
-  check_refused(with({"--methods", "verlet,leapfrog"}), names);
-  check_refused(with({"--methods", "verlet,ida,verlet"}), {"--methods", "verlet", "twice"});
-  for (const char* option : {"--point-limit", "--until"}) {
-    for (const char* value : {"0", "-1", "nan", "inf"}) {
-      check_refused(with({option, value}), {option, value, "not allowed", "greater than 0"});
-    }
-    check_refused(with({option, "text"}), {option, "text"});
-    check_refused(with({option}), {option});
-  }
-  for (const char* value : {"0", "-1", "1001"}) {
-    check_refused(with({"--repeats", value}), {"--repeats", value, "from 1 to 1000"});
-  }
-  for (const char* value : {"1.5", "nan", "text", "99999999999999999999"}) {
-    check_refused(with({"--repeats", value}), {"--repeats", value});
-  }
-  check_refused(with({"--step-size", "1"}), {"--step-size"});
-  check_refused({"--out", "OUT"}, {"--scene", "missing"});
-  check_refused({"--scene", "orbit"}, {"--out", "missing"});
-  check_refused({"--scene", "carpet", "--out", "OUT"}, {"carpet", "allowed"});
-  check_refused({"--scene", "orbit", "--out", "/proc/none"}, {"--out", "/proc/none", "allowed"});
-  check_refused({"--scene", "orbit", "--out", "/etc/passwd"}, {"/etc/passwd", "allowed"});
-}
-
-BOOST_AUTO_TEST_CASE(a_place_taken_by_a_folder_is_known_before_anything_is_measured) {
-  for (const char* name : {"points.csv", "front.csv", "reference.json"}) {
-    const Folder folder;
-    std::filesystem::create_directories(folder / name);
-    const Exit result = measure(folder.path(), {"--scene", "orbit", "--until", "0.1"});
-    BOOST_TEST(complains(result, 2, "work_precision", {name}), name << ": " << result.err);
-    BOOST_TEST(folder.listing() == name + std::string(" "));
-  }
-}
-
-BOOST_AUTO_TEST_CASE(a_scene_with_a_massless_node_or_no_horizon_is_refused) {
-  const Folder folder;
-  const std::string nodes =
-      "dimension = 1\nnodes = [{position = [0], pinned = true}, {position = [1], mass = ";
-  const std::string spring = "}]\nsprings = [{nodes = [0, 1], stiffness = 1}]\n";
-  const std::string massless = folder.write("massless.toml", nodes + "0" + spring);
-  const std::string endless = folder.write("endless.toml", nodes + "1" + spring);
-  Exit result = measure(folder / "out", {"--scene", massless, "--until", "1"});
-  BOOST_TEST(complains(result, 2, "work_precision", {massless, "nodes[1].mass", "allowed"}),
-             result.err);
-  result = measure(folder / "out", {"--scene", endless});
-  BOOST_TEST(complains(result, 2, "work_precision", {"--until", "missing"}), result.err);
-  BOOST_TEST(folder.listing() == "endless.toml massless.toml ");
-}
 
 BOOST_AUTO_TEST_CASE(where_all_is_pinned_every_method_is_exact) {
   const Folder folder;
