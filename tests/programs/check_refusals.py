@@ -21,6 +21,8 @@ SCENES = {
     "falling.toml": "dimension = 1\ngravity = [-1]\n" + ONE_NODE,
     "massless.toml": "dimension = 1\nuntil = 1\nnodes = [{position = [0], pinned = true}, "
     "{position = [1], mass = 0}]\nsprings = [{nodes = [0, 1], stiffness = 1}]\n",
+    "huge.toml": "dimension = 1\nnodes = [{position = [0.0], pinned = true}, "
+    "{position = [1e60], mass = 1.0}]\nsprings = [{nodes = [0, 1], stiffness = 100.0}]\n",
     # Malformed ones.
     "empty.toml": "",
     "syntax.toml": "dimension = = 1\n",
@@ -74,6 +76,22 @@ simulate --write-scene s.toml | --scene | missing
 simulate --scene orbit --write-scene '' | --write-scene
 simulate --scene orbit --write-scene none/s.toml | none/s.toml | cannot be written | allowed
 simulate --scene orbit --method verlet --step-size 0.1 --write-scene s.toml --final none/f.csv | none/f.csv | cannot be written
+
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion {m.vtk,m} | --motion {} | .vtkhdf and .pc2
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion= | --motion
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --motion m.pc2 | --every is missing | --motion
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --motion-fields strain | --motion-fields | --motion,
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion m.vtkhdf --motion-fields speed | --motion-fields | speed | strain
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion m.vtkhdf --motion-fields none,strain | none alone
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion m.pc2 --motion-fields strain | --motion-fields | .pc2
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --trajectory m.vtkhdf --motion m.vtkhdf | another output | --motion
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --final m.vtkhdf.json --motion m.vtkhdf | another output | --motion
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --energy m.xdmf --motion m.vtkhdf | another output | --motion
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --energy m.obj --motion m.pc2 | another output | m.obj
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion m.vtkhdf --write-scene m.xdmf | another output | --write-scene
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion none/m.vtkhdf | none/m.vtkhdf | folder
+simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion a:b.vtkhdf | a:b.vtkhdf | colons
+simulate --scene huge.toml --method verlet --step-size 1e-4 --until 0.05 --every 0.01 --motion {m.vtkhdf,m.pc2} | 32-bit
 
 crossover --ratios 1 | --out | missing
 crossover --ratios {0,0.5,-1,nan,inf,1e10} OUT | --ratios | from 1 to 1e+09

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""What simulate refuses of motions, and what it may replace.
+"""What files simulate may replace by a motion, and what is left where the disk is full.
 
-Call: check_refusals.py --bin FOLDER.
+Call: check_replacing.py --bin FOLDER.
 """
 
 import os
@@ -10,12 +10,6 @@ import signal
 import subprocess
 
 from motion_case import run_words, tried_place
-
-HUGE = """
-dimension = 1
-nodes = [{position = [0.0], pinned = true}, {position = [1e60], mass = 1.0}]
-springs = [{nodes = [0, 1], stiffness = 100.0}]
-"""
 
 
 def check_refused(place, words, *fragments):
@@ -29,36 +23,6 @@ def check_refused(place, words, *fragments):
     for fragment in fragments:
         assert fragment in said, (fragment, said)
     assert sorted(os.listdir(place.folder)) == before, words
-
-
-def check_refusals(place):
-    good = run_words("cloth", "")
-    without_every = good.replace("--every 0.01", "")
-    check_refused(place, good + "--motion m.vtk", "--motion m.vtk", ".vtkhdf and .pc2")
-    check_refused(place, good + "--motion m", "--motion m", ".vtkhdf and .pc2")
-    check_refused(place, good + "--motion=", "--motion")
-    check_refused(place, without_every + "--motion m.pc2", "--every is missing", "--motion")
-    check_refused(place, without_every + "--motion-fields strain", "--motion-fields", "--motion,")
-    check_refused(
-        place,
-        good + "--motion m.vtkhdf --motion-fields speed",
-        "--motion-fields",
-        "speed",
-        "strain",
-    )
-    check_refused(place, good + "--motion m.vtkhdf --motion-fields none,strain", "none alone")
-    check_refused(place, good + "--motion m.pc2 --motion-fields strain", "--motion-fields", ".pc2")
-    for other in ("--trajectory m.vtkhdf", "--final m.vtkhdf.json", "--energy m.xdmf"):
-        check_refused(place, good + other + " --motion m.vtkhdf", "another output", "--motion")
-    check_refused(place, good + "--energy m.obj --motion m.pc2", "another output", "m.obj")
-    check_refused(
-        place, good + "--motion m.vtkhdf --write-scene m.xdmf", "another output", "--write-scene"
-    )
-    check_refused(place, good + "--motion none/m.vtkhdf", "none/m.vtkhdf", "folder")
-    check_refused(place, good + "--motion a:b.vtkhdf", "a:b.vtkhdf", "colons")
-    place.write("huge.toml", HUGE)
-    for ending in ("vtkhdf", "pc2"):
-        check_refused(place, run_words("huge", f"--motion m.{ending}"), "32-bit")
 
 
 def check_replacing(place):
@@ -107,7 +71,6 @@ def limit(most):
 
 def main():
     with tried_place(__doc__) as place:
-        check_refusals(place)
         check_replacing(place)
         check_full_disk(place)
 
