@@ -1,12 +1,7 @@
-#!/usr/bin/python3
 """Makes a folder as ./run report finds it, of a motion and measurements that formulas give: a sheet
 (3D), a chain (2D) or a row (1D) that swings.
-
-Call: made_folder.py OUT [--side 12] [--frames 40] [--runs 6] [--noise 1e-3] [--dimension 3]
-[--scene NAME] [--no-faces] [--no-springs] [--no-motions].
 """
 
-import argparse
 import json
 from pathlib import Path
 
@@ -183,25 +178,3 @@ def make_folder(
     rows = made_sweeps.write_study(folder, scene, dimension, *counts, displacement_of(sheet))
     if has_motions:
         write_motions(folder, sheet, rows, frames, runs, noise)
-
-
-def main():
-    """Makes the folder that the command line asks for."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("out")
-    parser.add_argument("--scene", default="made")
-    parser.add_argument("--side", type=int, default=12)
-    parser.add_argument("--frames", type=int, default=40)
-    parser.add_argument("--runs", type=int, default=6)
-    parser.add_argument("--noise", type=float, default=1e-3)
-    parser.add_argument("--dimension", type=int, choices=(1, 2, 3), default=3)
-    for absent in ("faces", "springs", "motions"):
-        parser.add_argument(
-            f"--no-{absent}", dest=f"has_{absent}", action="store_false", help=f"without {absent}"
-        )
-    options = vars(parser.parse_args())
-    make_folder(options.pop("out"), **options)
-
-
-if __name__ == "__main__":
-    main()
