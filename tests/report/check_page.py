@@ -230,6 +230,10 @@ class Odd(Page):
         self.browser.wait("return qddotReport.state.run === arguments[0]", point)
 
     def test_hostile_names_are_words(self):
+        def spoil_methods(content):
+            for method in content["methods"]:
+                method["summary"] = {"onclick": "alert(3)"}
+
         def spoil(folder):
             table = Folder()
             table.folder = folder
@@ -241,6 +245,7 @@ class Odd(Page):
                 )
             table.rewrite("points.csv", rows)
             table.edit("points.json", lambda content: content["scene"].update(name=HOSTILE))
+            table.edit("points.json", spoil_methods)
             table.edit("reference.json", lambda content: content.update(scene=HOSTILE))
 
         page = self.packed("hostile", spoil)
@@ -255,7 +260,7 @@ class Odd(Page):
         self.browser.find(".legend-buttons button:nth-child(2)").click()
         self.assertIn(HOSTILE, self.browser.text("#run-head"))
         self.assertEqual(
-            self.browser.run("return document.querySelectorAll('img[src=x]').length"), 0
+            self.browser.run("return document.querySelectorAll('img[src=x], [onclick]').length"), 0
         )
 
     def test_a_telephone_needs_no_scrolling_sideways(self):

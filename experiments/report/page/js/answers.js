@@ -1,8 +1,7 @@
 // The head of the page and the table of answers: which run to take at each accuracy.
-import { onChoice, state, visit } from "./choice.js";
 import { byId, element } from "./element.js";
 import { named } from "./marks.js";
-import { allRuns, knobOf, methods, points, report } from "./report.js";
+import { allRuns, knobOf, methods, onChoice, points, report, state, visit } from "./report.js";
 import { words } from "./words.js";
 
 const HEADS = [
@@ -31,8 +30,7 @@ const beside = ({ point, ratio }) =>
 // The address keeps the choice, so the link is not followed.
 function seeRun(event) {
   event.preventDefault();
-  const smooth = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-  byId("run").scrollIntoView({ behavior: smooth ? "smooth" : "auto" });
+  byId("run").scrollIntoView();
 }
 
 function cellsOf({ point, next, others, warning }) {

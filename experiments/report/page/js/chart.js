@@ -1,10 +1,18 @@
 // The chart of all runs: error against time or a count.
-import { chosenQuantity, state } from "./choice.js";
 import { byId, element } from "./element.js";
 import { lineOf, markOf } from "./marks.js";
-import { FAINT, NARROW, decades, plainWords, plot, powerOfTen, ring, widened } from "./plot.js";
-import { allRuns, isDrawn, methods, points, runsOf } from "./report.js";
-import { listenToMarks } from "./tooltip.js";
+import {
+  FAINT,
+  NARROW,
+  decades,
+  listenToMarks,
+  plainWords,
+  plot,
+  powerOfTen,
+  ring,
+  widened,
+} from "./plot.js";
+import { allRuns, chosenQuantity, isDrawn, methods, points, runsOf, state } from "./report.js";
 import { words } from "./words.js";
 
 const drawing = byId("chart-drawing");
@@ -254,7 +262,7 @@ function drawNone() {
   // That takes the listeners too.
   Plotly.purge(drawing);
   byId("whole").hidden = true;
-  drawing.replaceChildren(element("p.quiet.empty", "No run gave a point of this chart."));
+  drawing.replaceChildren(element("p.quiet", "No run gave a point of this chart."));
   drawing.style.height = "auto";
 }
 

@@ -15,7 +15,8 @@ export function element(kind, ...children) {
   for (const [name, value] of Object.entries(isAttributes(children[0]) ? children.shift() : {})) {
     if (value === null || value === undefined || value === false) continue;
     if (typeof value === "function") node.addEventListener(name, value);
-    else node.setAttribute(name, value === true ? "" : value);
+    // A part of the data that is an object, in place of a text, must not become a listener.
+    else if (!name.startsWith("on")) node.setAttribute(name, value === true ? "" : value);
   }
   const is = (child) => child !== null && child !== undefined && child !== false;
   node.append(...children.flat().filter(is));
@@ -32,20 +33,38 @@ export const definitions = (pairs) =>
     pairs.map(([term, value]) => element("div", element("dt", term), element("dd", String(value)))),
   );
 
+/** A button with words. */
+export const button = (text, click, attributes = {}) =>
+  element("button", { type: "button", click, ...attributes }, text);
+
+/** A button whose words are a sign; `label` tells its meaning. */
+export const signButton = (sign, label, click) =>
+  button(sign, click, { "aria-label": label, title: label });
+
+/** The options of a menu, from pairs of a value and its words. */
+export const options = (pairs) => pairs.map(([value, text]) => element("option", { value }, text));
+
+/** A menu, which tells `chosen` the value that is chosen, as a text. */
+export const menuOf = (pairs, chosen, attributes = {}) =>
+  element(
+    "select",
+    { change: ({ target }) => chosen(target.value), ...attributes },
+    options(pairs),
+  );
+
 /** A line of a shell with a button that copies it. */
 export function commandLine(line) {
-  const button = element("button", { type: "button", "aria-label": `Copy: ${line}` }, "Copy");
   const code = element("code", line);
-  button.addEventListener("click", async () => {
+  async function copyLine({ target }) {
     try {
       await navigator.clipboard.writeText(line);
-      button.textContent = "Copied";
+      target.textContent = "Copied";
     } catch {
       // A browser that keeps pages on disk from the clipboard lets the reader copy the selection.
       getSelection().selectAllChildren(code);
-      button.textContent = "Selected";
+      target.textContent = "Selected";
     }
-    setTimeout(() => (button.textContent = "Copy"), 1500);
-  });
-  return element("div.command", code, button);
+    setTimeout(() => (target.textContent = "Copy"), 1500);
+  }
+  return element("div.command", code, button("Copy", copyLine, { "aria-label": `Copy: ${line}` }));
 }

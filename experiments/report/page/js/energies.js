@@ -1,8 +1,7 @@
 // The energies of the chosen run over time, and how far its total drifts.
-import { state } from "./choice.js";
 import { byId, element } from "./element.js";
 import { GRID, INK, decades, plot, widened } from "./plot.js";
-import { keptMotion, report } from "./report.js";
+import { keptMotion, report, state } from "./report.js";
 import { words } from "./words.js";
 
 const KINDS = { kinetic: "#0072B2", potential: "#B35900", total: INK };

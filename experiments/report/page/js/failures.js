@@ -1,10 +1,18 @@
 // The runs that gave no point of the chart, over the knob: a row for each way to fail, and in a row
 // those at about the same knob under each other.
-import { state } from "./choice.js";
 import { byId } from "./element.js";
-import { GRID, INK, NARROW, decades, plainWords, plot, ring, widened } from "./plot.js";
-import { allRuns, isDrawn, methods, points, whyNot } from "./report.js";
-import { listenToMarks } from "./tooltip.js";
+import {
+  GRID,
+  INK,
+  NARROW,
+  decades,
+  listenToMarks,
+  plainWords,
+  plot,
+  ring,
+  widened,
+} from "./plot.js";
+import { allRuns, isDrawn, methods, points, state, whyNot } from "./report.js";
 import { words } from "./words.js";
 
 const drawing = byId("failures-drawing");
@@ -17,7 +25,7 @@ const PALE = 0.25;
 const GAP = 0.03;
 const EDGES = { t: 4, b: 46 };
 
-// How many earlier runs stand at about the same knob, for each of the runs.
+// The number of earlier runs at about the same knob, for each of the runs.
 function levelsOf(runs) {
   const filled = {};
   return runs.map((point) => {
@@ -133,15 +141,17 @@ export function drawFailures() {
       ),
       yaxis: rowAxis(rows, narrow),
       margin: { l: narrow ? 104 : 132, r: 12, ...EDGES },
-      shapes: rows.slice(1).map(({ top }) => ({
-        type: "line",
-        xref: "paper",
-        x0: 0,
-        x1: 1,
-        y0: top,
-        y1: top,
-        line: { color: GRID, width: 1 },
-      })),
+      shapes: rows
+        .slice(1)
+        .map(({ top }) => ({
+          type: "line",
+          xref: "paper",
+          x0: 0,
+          x1: 1,
+          y0: top,
+          y1: top,
+          line: { color: GRID, width: 1 },
+        })),
     },
   );
   if (isFirst) listenToMarks(drawing);

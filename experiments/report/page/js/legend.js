@@ -1,8 +1,7 @@
 // The list of methods beside the chart: which are drawn strongly.
-import { choose, onChoice, state } from "./choice.js";
-import { byId, element } from "./element.js";
+import { button, byId, element } from "./element.js";
 import { swatch } from "./marks.js";
-import { familiesWithMethods, methods } from "./report.js";
+import { choose, familiesWithMethods, methods, onChoice, state } from "./report.js";
 
 const strong = [...state.shown];
 const show = (chosen) => choose({ shown: new Set(chosen) });
@@ -58,9 +57,6 @@ function search({ target }) {
   noHit.hidden = groups.some((group) => !group.hidden);
 }
 
-const button = (text, chosen) =>
-  element("button", { type: "button", click: () => show(chosen) }, text);
-
 byId("legend").append(
   element("input", {
     type: "search",
@@ -71,9 +67,9 @@ byId("legend").append(
   element(
     "div.legend-buttons",
     { role: "group", "aria-label": "Draw strongly" },
-    button("Strong", strong),
-    button("All", [...methods.keys()]),
-    button("None", []),
+    button("Strong", () => show(strong)),
+    button("All", () => show(methods.keys())),
+    button("None", () => show([])),
   ),
   element("div.legend-list", noHit, groups),
   element(

@@ -1,7 +1,6 @@
 // The motion of the chosen run beside the reference's, and the words on it.
-import { choose, state, visit } from "./choice.js";
-import { colorTable, distanceScale } from "./distances.js";
-import { byId, commandLine, element } from "./element.js";
+import { colorTable, distanceScale, playerOf } from "./controls.js";
+import { button, byId, commandLine, element, menuOf, signButton } from "./element.js";
 import {
   boundsOf,
   canUnpack,
@@ -11,8 +10,7 @@ import {
   positionsAt,
   unpacked,
 } from "./frames.js";
-import { playerOf } from "./player.js";
-import { keptMotion, keptRuns, points, report } from "./report.js";
+import { choose, keptMotion, keptRuns, points, report, state, visit } from "./report.js";
 import { bodyOf, stageOf } from "./stage.js";
 import { words } from "./words.js";
 
@@ -21,12 +19,12 @@ const section = byId("motion");
 const reference = motion?.runs.find((run) => run.role === "reference") ?? null;
 // The reference in grey: dark lines, lighter faces, on which shade is seen.
 const NEUTRAL = motion?.faces ? [0.24, 0.25, 0.27] : [0.07, 0.075, 0.085];
-// How far up the largest displacement of a line of nodes is drawn, as a part of its length.
+// The height at which the largest displacement of a line of nodes is drawn, by its length.
 const LIFT = 0.2;
 const FEWEST_LIFTED = 8;
 // A packed relative distance of 0.3.
 const FAR = 246;
-// How many frames a user is told to make of a run without a motion.
+// The number of frames that the command for a run without a motion makes.
 const FRAMES = 100;
 const ROUNDING = 1e-6;
 const MOST_BUTTONS = 6;
@@ -47,34 +45,23 @@ let turn = 0;
 // The runs whose motion was kept: the most telling as buttons, all of many in a menu.
 function keptMotions() {
   if (!keptRuns.length) return null;
-  const button = (run) =>
-    element(
-      "button",
-      {
-        type: "button",
-        "aria-pressed": String(run.point === state.run),
-        title: run.why,
-        click: () => visit({ run: run.point }),
-      },
-      run.label,
-    );
-  const menu = element(
-    "select",
-    {
-      "aria-label": "All runs whose motion was kept",
-      change: () => choose({ run: Number(menu.value) }),
-    },
-    element("option", { value: "", disabled: true }, `all ${keptRuns.length}`),
-    keptRuns.map(({ point, label, why }) =>
-      element("option", { value: point }, why ? `${label}: ${why}` : label),
-    ),
+  const buttonOf = ({ point, label, why }) =>
+    button(label, () => visit({ run: point }), {
+      "aria-pressed": String(point === state.run),
+      title: why,
+    });
+  const menu = menuOf(
+    keptRuns.map(({ point, label, why }) => [point, why ? `${label}: ${why}` : label]),
+    (run) => choose({ run: Number(run) }),
+    { "aria-label": "All runs whose motion was kept" },
   );
+  menu.prepend(element("option", { value: "", disabled: true }, `all ${keptRuns.length}`));
   menu.value = keptRuns.some(({ point }) => point === state.run) ? state.run : "";
   return element(
     "div.kept",
     { role: "group", "aria-label": "Runs whose motion was kept" },
     "Kept motions:",
-    keptRuns.slice(0, MOST_BUTTONS).map(button),
+    keptRuns.slice(0, MOST_BUTTONS).map(buttonOf),
     keptRuns.length > MOST_BUTTONS && menu,
   );
 }
@@ -136,7 +123,7 @@ function knownTo() {
   return found ? Number(found[1]) : null;
 }
 
-// How to move the view, and what else the drawing means.
+// The ways to move the view, and the meaning of the drawing.
 function explanation(lift) {
   const move =
     motion.dimension < 3 ? "Drag to move" : "Drag to turn, with the right button to move";
@@ -203,15 +190,11 @@ function show(t) {
   stage.draw();
 }
 
-function viewButtons(bounds) {
-  const button = (text, label, act) =>
-    element("button", { type: "button", "aria-label": label, title: label, click: act }, text);
-  return [
-    button("+", "Closer", () => stage.zoom(1.25)),
-    button("−", "Farther", () => stage.zoom(0.8)),
-    button("Reset view", "Show the whole scene", () => stage.look(bounds)),
-  ];
-}
+const viewButtons = (bounds) => [
+  signButton("+", "Closer", () => stage.zoom(1.25)),
+  signButton("−", "Farther", () => stage.zoom(0.8)),
+  signButton("Reset view", "Show the whole scene", () => stage.look(bounds)),
+];
 
 // Errors of the chart are those at the end. A run that blows up shows most while it is still in
 // the view: while its error is about as large as the motion.

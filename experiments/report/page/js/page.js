@@ -1,13 +1,12 @@
 // Draws the page below the answers, and again where a choice or the room changes.
 import "./background.js";
 import { drawChart, moveRing } from "./chart.js";
-import { choose, onChoice, ordinates, state } from "./choice.js";
-import { byId, element } from "./element.js";
+import { byId, options } from "./element.js";
 import { drawEnergies } from "./energies.js";
 import { drawFailures } from "./failures.js";
 import "./legend.js";
 import { drawMotion, printMotion } from "./motion.js";
-import { allRuns, report } from "./report.js";
+import { allRuns, choose, onChoice, ordinates, report, state } from "./report.js";
 import { drawRun } from "./run.js";
 import { words } from "./words.js";
 
@@ -15,7 +14,7 @@ const STILL_MS = 150;
 
 function menu(id, choices, key) {
   const select = byId(id);
-  select.append(...choices.map(([value, text]) => element("option", { value }, text)));
+  select.append(...options(choices));
   select.addEventListener("change", () => choose({ [key]: select.value }));
   const update = () => (select.value = state[key]);
   update();

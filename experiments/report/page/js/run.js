@@ -1,19 +1,21 @@
 // The menus that choose a run, its head, and its figures.
-import { chosenQuantity, choose, state, visit } from "./choice.js";
-import { byId, commandLine, definitions, element } from "./element.js";
+import { byId, commandLine, definitions, element, menuOf, options, signButton } from "./element.js";
 import { swatch } from "./marks.js";
 import {
+  choose,
+  chosenQuantity,
   countsOf,
   familiesWithMethods,
-  isKnown,
   keptMotion,
   knobOf,
   methods,
   points,
   report,
   runsOf,
+  state,
+  visit,
 } from "./report.js";
-import { words } from "./words.js";
+import { isKnown, words } from "./words.js";
 
 const PHASES = {
   force: "forces",
@@ -21,37 +23,21 @@ const PHASES = {
   factorization: "factorizations",
   solve: "solves",
 };
-const TIMES = {
-  time_s: "time of a run, median",
-  time_min_s: "fastest of them",
-  setup_s: "set-up",
-};
+const TIMES = { time_s: "time of a run, median", time_min_s: "fastest of them", setup_s: "set-up" };
 
-const methodMenu = element(
-  "select",
-  { change: () => choose({ run: middleRun(Number(methodMenu.value)) }) },
-  familiesWithMethods.map(({ title, members }) =>
-    element(
-      "optgroup",
-      { label: title },
-      members.map((method) => element("option", { value: method }, methods[method].name)),
-    ),
+const methodMenu = menuOf([], (method) => choose({ run: middleRun(Number(method)) }));
+methodMenu.append(
+  ...familiesWithMethods.map(({ title: label, members }) =>
+    element("optgroup", { label }, options(members.map((one) => [one, methods[one].name]))),
   ),
 );
-const runMenu = element("select", { change: () => choose({ run: Number(runMenu.value) }) });
-
-const stepButton = (text, label, by) =>
-  element(
-    "button",
-    { type: "button", "aria-label": label, title: label, click: () => step(by) },
-    text,
-  );
+const runMenu = menuOf([], (run) => choose({ run: Number(run) }));
 
 byId("run-choice").append(
   element("label", "Method ", methodMenu),
   element("label", "Run ", runMenu),
-  stepButton("◀", "Coarser run", -1),
-  stepButton("▶", "Finer run", 1),
+  signButton("◀", "Coarser run", () => step(-1)),
+  signButton("▶", "Finer run", () => step(1)),
 );
 
 // The middle of a method's runs that gave a point.
@@ -78,9 +64,7 @@ function showChoice() {
   const method = points.method[state.run];
   methodMenu.value = method;
   runMenu.replaceChildren(
-    ...runsOf[method].map((point) =>
-      element("option", { value: point }, `${knobOf(point)} · ${result(point)}`),
-    ),
+    ...options(runsOf[method].map((point) => [point, `${knobOf(point)} · ${result(point)}`])),
   );
   runMenu.value = state.run;
 }
@@ -96,7 +80,7 @@ function facts(point) {
     ...Object.entries(TIMES)
       .filter(([column]) => isKnown(points[column]?.[point]))
       .map(([column, label]) => fact(label, words.seconds(points[column][point]))),
-    // Where the energy stays, its growth says nothing.
+    // The growth of an energy that stays says nothing.
     isKnown(growth) &&
       Math.abs(growth - 1) >= 0.01 &&
       fact("largest energy / energy at the start", words.number(growth)),

@@ -4,7 +4,6 @@
 // In degrees: the camera's angle of view.
 const ANGLE = 32;
 const MARGIN = 1.12;
-const FLAT_MARGIN = 1.16;
 const MOST_PIXELS_A_PIXEL = 2;
 const FEW_NODES = 300;
 // Thick lines cost a rectangle each; where there are many springs, thin ones show more anyway.
@@ -120,17 +119,16 @@ export function bodyOf({ nodes, springs, faces, pinned }) {
   return { scene, positions, colors, update, dispose };
 }
 
-const extentsOf = ({ low, high }) => high.map((end, axis) => end - low[axis]);
-
-// Along which axis a flat scene is looked at: the one in which it extends least.
-function thinnestAxis(bounds) {
-  const extents = extentsOf(bounds);
-  return extents.indexOf(Math.min(...extents));
+// The direction from which a flat scene is looked at: along the axis in which it extends least.
+function acrossPlane({ low, high }) {
+  const extents = high.map((end, axis) => end - low[axis]);
+  const axis = extents.indexOf(Math.min(...extents));
+  return new THREE.Vector3().setComponent(axis, axis === 1 ? -1 : 1);
 }
 
-// How far from the middle of a box a camera in the direction `from` sees all of its corners.
-function distanceToSee({ low, high }, middle, from, aspect) {
-  const right = new THREE.Vector3(0, 0, 1).cross(from).normalize();
+// The distance from the middle of a box at which a camera in the direction `from` sees all of it.
+function distanceToSee({ low, high }, middle, from, upwards, aspect) {
+  const right = upwards.clone().cross(from).normalize();
   const up = from.clone().cross(right);
   const slope = Math.tan((ANGLE * Math.PI) / 360) / MARGIN;
   let away = 1e-30;
@@ -150,15 +148,13 @@ function distanceToSee({ low, high }, middle, from, aspect) {
 export function stageOf(dimension, lost) {
   const canvas = document.createElement("canvas");
   canvas.setAttribute("role", "img");
-  // Where a pixel of the page is several of the screen, edges are smooth enough without more work.
+  // Edges need no more work where a pixel of the page is several of the screen.
   const antialias = devicePixelRatio < MOST_PIXELS_A_PIXEL;
   const renderer = new THREE.WebGLRenderer({ canvas, antialias, alpha: true });
   renderer.setClearColor(0xffffff, 1);
   renderer.setScissorTest(true);
   const flat = dimension < 3;
-  const eye = flat
-    ? new THREE.OrthographicCamera(-1, 1, 1, -1, -1, 1)
-    : new THREE.PerspectiveCamera(ANGLE, 1);
+  const eye = new THREE.PerspectiveCamera(ANGLE);
   eye.up.set(0, 0, 1);
   const controls = new THREE.OrbitControls(eye, canvas);
   controls.enableDamping = false;
@@ -172,46 +168,31 @@ export function stageOf(dimension, lost) {
   canvas.addEventListener("pointerleave", (event) => {
     if (event.pointerType === "mouse") controls.enableZoom = false;
   });
-  let bounds = { low: [-1, -1, -1], high: [1, 1, 1] };
+  // Width by height of a view that shows the whole scene.
+  let aspect = 1;
   let holder = null;
   let places = [];
   let bodies = [];
   let asked = false;
 
   // Puts the camera where it sees all of the bounds.
-  function look(newBounds) {
-    bounds = newBounds;
+  function look(bounds) {
     const middle = new THREE.Vector3(...bounds.low.map((low, i) => (low + bounds.high[i]) / 2));
+    const from = flat ? acrossPlane(bounds) : new THREE.Vector3(0.62, -1, 0.5).normalize();
+    eye.up.set(0, from.z === 1 ? 1 : 0, from.z === 1 ? 0 : 1);
+    aspect = places[0].clientWidth / places[0].clientHeight;
+    const away = distanceToSee(bounds, middle, from, eye.up, aspect);
     controls.target.copy(middle);
-    let away = Math.hypot(...extentsOf(bounds)) || 2;
-    let from = new THREE.Vector3(0.62, -1, 0.5).normalize();
-    if (flat) {
-      const axis = thinnestAxis(bounds);
-      from = new THREE.Vector3(axis === 0 ? 1 : 0, axis === 1 ? -1 : 0, axis === 2 ? 1 : 0);
-      eye.up.set(0, axis === 2 ? 1 : 0, axis === 2 ? 0 : 1);
-      eye.zoom = 1;
-    } else {
-      const aspect = places[0] ? places[0].clientWidth / places[0].clientHeight : 1;
-      away = distanceToSee(bounds, middle, from, aspect);
-    }
     eye.position.copy(middle).addScaledVector(from, away);
-    [eye.near, eye.far] = [away / 200, away * 50];
+    [eye.near, eye.far] = [away / 200, away * 20];
     controls.update();
     draw();
   }
 
+  // Takes a view of another shape, which shows no less when it is narrower.
   function fit(width, height) {
-    if (!flat) {
-      eye.aspect = width / height;
-    } else {
-      const extents = extentsOf(bounds);
-      const axis = thinnestAxis(bounds);
-      const across = extents[axis === 0 ? 1 : 0];
-      const up = extents[axis === 2 ? 1 : 2];
-      const half = (FLAT_MARGIN * Math.max(up, (across * height) / width, 1e-30)) / 2;
-      [eye.top, eye.bottom] = [half, -half];
-      [eye.right, eye.left] = [(half * width) / height, (-half * width) / height];
-    }
+    eye.aspect = width / height;
+    eye.zoom = Math.min(1, eye.aspect / aspect);
     eye.updateProjectionMatrix();
   }
 
@@ -266,8 +247,7 @@ export function stageOf(dimension, lost) {
   }
 
   function zoom(factor) {
-    if (flat) eye.zoom *= factor;
-    else eye.position.sub(controls.target).divideScalar(factor).add(controls.target);
+    eye.position.sub(controls.target).divideScalar(factor).add(controls.target);
     controls.update();
     draw();
   }

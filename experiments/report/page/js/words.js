@@ -1,11 +1,13 @@
 // Numbers in words, as the pictures of the experiments write them.
 
 const KNOBS = { step_size: "step size h", rtol: "tolerance rtol" };
-const known = (value) => typeof value === "number" && Number.isFinite(value);
+
+/** Whether a number was measured. */
+export const isKnown = Number.isFinite;
 
 /** A number in few characters: 2e-3, 0.5, 3.3e-14; a dash where it is unknown. */
 function number(value) {
-  if (!known(value)) return "–";
+  if (!isKnown(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
   if (size >= 0.1 && size < 1000) return String(Number(value.toPrecision(3)));
@@ -14,14 +16,14 @@ function number(value) {
 
 /** A number that is known to about one digit: "about 6e-3". */
 function about(value) {
-  if (!known(value) || value === 0) return number(value);
+  if (!isKnown(value) || value === 0) return number(value);
   const rough = Number(value.toPrecision(1));
   return `about ${number(rough)}`;
 }
 
 /** A number to as many digits as its file holds, for knobs: 0.0005, 6.17e-5. */
 function exact(value) {
-  if (!known(value)) return "–";
+  if (!isKnown(value)) return "–";
   const digits = Number(value.toPrecision(4));
   return digits !== 0 && Math.abs(digits) < 1e-3
     ? digits.toExponential().replace("e+", "e")
@@ -30,7 +32,7 @@ function exact(value) {
 
 /** A duration with its unit: 20 µs, 5 ms, 3 s. */
 function seconds(value) {
-  if (!known(value)) return "–";
+  if (!isKnown(value)) return "–";
   if (value === 0) return "0 s";
   for (const [unit, scale] of [
     ["s", 1],
@@ -45,7 +47,7 @@ function seconds(value) {
 
 /** A whole number with its thousands apart. */
 function count(value) {
-  if (!known(value)) return "–";
+  if (!isKnown(value)) return "–";
   return Number.isInteger(value)
     ? value.toLocaleString("en").replaceAll(",", "\u202f")
     : number(value);
@@ -54,9 +56,9 @@ function count(value) {
 /** A count of things in words: "1 run", "12 runs". */
 const things = (value, name) => `${count(value)} ${value === 1 ? name : `${name}s`}`;
 
-/** How many times as much: "1.04 ×", "120 ×". */
+/** A ratio in words: "1.04 ×", "120 ×". */
 function ratio(value) {
-  return known(value) ? `${value < 10 ? value.toPrecision(3) : count(Math.round(value))} ×` : "–";
+  return isKnown(value) ? `${value < 10 ? value.toPrecision(3) : count(Math.round(value))} ×` : "–";
 }
 
 /** The knob of a run with its value: "h = 0.0005 s", "rtol = 1e-7". */
