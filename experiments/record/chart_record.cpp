@@ -1,5 +1,6 @@
 #include "experiments/record/chart_record.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <string_view>
@@ -58,21 +59,23 @@ std::string numbers(const Chart& chart, const std::vector<const Point*>& points)
   return list(points, [&](const Point* point) { return json(chart.number(point)); });
 }
 
-std::string json(const Chart& chart, std::size_t i) {
-  const Point& point = chart.points[i];
-  return fmt::format(
-      R"({{"knob": {}, "time": {}, "failure": {}, "is_timed": {}, "margin": {}, "order": {}}})",
-      json(knob_in_words(*point.method, point.value)),
-      is_timed(point) ? json(time_in_words(point.time)) : null,
-      json(failure_in_words(point, chart.judged_view().points[i])), json(is_timed(point)),
-      json(chart.margins[i]), point.method->order);
+// A list with what `of` gives of each point and its judgement.
+template <class Of>
+std::string column(const Chart& chart, const ChartView& view, const Of& of) {
+  std::string text;
+  for (std::size_t i = 0; i < view.points.size(); ++i)
+    text += (i > 0 ? ", " : "") + json(of(chart.points[i], view.points[i]));
+  return '[' + text + ']';
 }
 
-std::string json(const Point& point, const Judged& judged) {
-  return fmt::format(
-      R"({{"error": {}, "at_least": {}, "at_most": {}, "counts": {}, "is_uncertain": {}, "failure": {}}})",
-      json(judged.error), json(judged.bounds.at_least), json(judged.bounds.at_most),
-      json(judged.counts), json(judged.is_uncertain), json(failure_in_words(point, judged)));
+// The lengths [m] by which position errors are divided: the least and the largest of the parts'.
+std::string displacements(const Scales& scales) {
+  if (!(scales.displacement > 0)) return null;
+  std::vector<double> lengths;
+  for (const PartScale& part : scales.parts) lengths.push_back(scales.displacement_of(part));
+  if (lengths.empty()) lengths.push_back(scales.displacement);
+  const auto [least, largest] = std::ranges::minmax(lengths);
+  return list(std::vector{least, largest});
 }
 
 const char* column_of(Quantity quantity) {
@@ -90,14 +93,17 @@ const char* column_of(Quantity quantity) {
 }
 
 std::string json(const Chart& chart, const ChartView& view) {
-  std::string points;
-  for (std::size_t i = 0; i < view.points.size(); ++i)
-    points += (i > 0 ? lines : "") + json(chart.points[i], view.points[i]);
+  const auto of_each = [&](const auto& of) { return column(chart, view, of); };
   return fmt::format(
       R"({{"name": {}, "column": {}, "floor": {}, "floor_words": {}, "rounding_decides_below": {},
   "front": {},
   "staircase": {},
-  "points": [{}]}})",
+  "errors": {},
+  "at_least": {},
+  "at_most": {},
+  "counts": {},
+  "is_uncertain": {},
+  "failures": {}}})",
       json(name(view.quantity)), json(column_of(view.quantity)), json(view.floor),
       json(floor_in_words(view)), json(view.rounding_decides_below),
       list(
@@ -108,7 +114,12 @@ std::string json(const Chart& chart, const ChartView& view) {
                                numbers(chart, row.ranked));
           },
           lines),
-      list(view.staircase), points);
+      list(view.staircase), of_each([](const Point&, const Judged& j) { return j.error; }),
+      of_each([](const Point&, const Judged& j) { return j.bounds.at_least; }),
+      of_each([](const Point&, const Judged& j) { return j.bounds.at_most; }),
+      of_each([](const Point&, const Judged& j) { return j.counts; }),
+      of_each([](const Point&, const Judged& j) { return j.is_uncertain; }),
+      of_each([](const Point& p, const Judged& j) { return failure_in_words(p, j); }));
 }
 
 // How many times as long a point takes as the fastest one of the row.
@@ -145,15 +156,16 @@ std::string json(const Chart& chart, const FrontRow& row) {
 const char* const chart_beginning = "{\"format\": 1, \"judged_by\": ";
 
 std::string chart_record(const Chart& chart, const std::string& scene, const StudyEnd& end) {
-  std::vector<std::size_t> all(chart.points.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   const double bound = certified(chart.reference);
   return fmt::format(
       R"({}{}, "scene": {}, "until": {},
  "certified": {},
  "accuracies": {},
  "caveats": {},
- "points": {},
+ "displacements": {},
+ "knobs": {},
+ "times": {},
+ "margins": {},
  "quantities": {},
  "rows": {},
  "staircases": {{"all": {}, "hand_written": {}, "sundials": {}}},
@@ -161,8 +173,14 @@ std::string chart_record(const Chart& chart, const std::string& scene, const Stu
 )",
       chart_beginning, json(name(chart.judge)), scene, json(chart.reference.end.t),
       bound > 0 ? json(bound) : null, list(chart.accuracies), list(caveats(chart.reference, end)),
-      list(
-          all, [&](std::size_t i) { return json(chart, i); }, lines),
+      displacements(chart.reference.scales),
+      list(chart.points,
+           [](const Point& point) { return json(knob_in_words(*point.method, point.value)); }),
+      list(chart.points,
+           [](const Point& point) {
+             return is_timed(point) ? json(time_in_words(point.time)) : null;
+           }),
+      list(chart.margins),
       list(
           chart.views, [&](const ChartView& view) { return json(chart, view); }, ",\n "),
       list(

@@ -6,7 +6,7 @@
 
 namespace qddot::record {
 
-// The chart as JSON, one line for each point, row and view: the contents of chart.json. `scene`:
+// The chart as JSON, one line for each list, row and view: the contents of chart.json. `scene`:
 // the scene's name as JSON text. Numbers have 17 digits; null stands for what is not known.
 std::string chart_record(const Chart& chart, const std::string& scene, const StudyEnd& end = {});
 

@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_the_energy_on_the_way_counts) {
 }
 
 BOOST_AUTO_TEST_CASE(beyond_the_horizon_energy_in_other_modes_does_not_count) {
-  // What does not move keeps its energy.
+  // A run that does not move conserves its energy.
   Reference reference;
   reference.end.t = 2;
   reference.horizon = 1.3;

@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(it_goes_down_to_where_the_reference_or_rounding_ends_it) {
   for (const auto& [name, until] :
        {std::pair("orbit", 0.3), std::pair("pair", 0.1), std::pair("pendulum", 0.6)}) {
     const Course course(name, until);
-    // Generous: what ends this sweep is not its budget.
+    // Generous: what ends this ladder is not its budget.
     const auto points = course.run("kahan_li8", {.seconds = 60, .repeats = 1});
     BOOST_TEST(points.back().errors.position < 1e-11,
                name << " to " << until << " ended at " << points.back().errors.position);
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(steps_held_to_a_stability_limit_do_not_end_it) {
     return 2 * point.counts.stability_limited_steps > point.counts.steps;
   };
   BOOST_TEST_REQUIRE(points.size() > 4u);
-  // Four points of good errors without a gain would end the sweep of any other method.
+  // Four points of good errors without a gain would end the ladder of any other method.
   for (std::size_t i = 0; i < 4; ++i) {
     BOOST_TEST(is_held(points[i]));
     BOOST_TEST(points[i].errors.position < 1e-4);

@@ -8,16 +8,15 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/bench/processor_time.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/simulation.hpp"
-#include "qddot/measure/motion/timing.hpp"
+#include "tests/measure/clocks.hpp"
 #include "tests/measure/drawn_scenes.hpp"
 
-BOOST_AUTO_TEST_SUITE(search)
-
 using namespace qddot;
+
+BOOST_FIXTURE_TEST_SUITE(search, ProcessorClock)
 
 namespace {
 
@@ -30,21 +29,9 @@ double error_of(const Trial& trial, const Search& search, const Reference& refer
       .position;
 }
 
-// Whether the machine did other things while f ran: a search goes by the times that it measures.
-template <class F>
-bool is_disturbed(const F& f) {
-  constexpr double own_part = 0.95;
-  double own = 0;
-  const double wall = seconds_of([&] {
-    const bench::ProcessorTime timed(own);
-    f();
-  });
-  return own < own_part * wall;
-}
-
 // The result of a search on a drawn case, and its true accuracy.
 struct Finding {
-  explicit Finding(std::uint64_t seed) : drawn(advice_study::drawn_case(seed)) {
+  explicit Finding(std::uint64_t seed) : drawn(judged_advice::drawn_case(seed)) {
     BOOST_TEST_REQUIRE(search.survey(drawn.accuracy));
     found = search.find(drawn.accuracy);
     BOOST_TEST_REQUIRE((found != nullptr));
@@ -52,7 +39,7 @@ struct Finding {
     BOOST_TEST_REQUIRE((bound && bound->by));
   }
 
-  advice_study::Case drawn;
+  judged_advice::Case drawn;
   ReducedScene model{drawn.scene};
   Search search{model, drawn.until, AccuracyOf::positions, seconds};
   const Trial* found = nullptr;
@@ -65,7 +52,7 @@ BOOST_AUTO_TEST_CASE(a_first_run_that_has_to_be_made_shorter_is_no_trouble) {
   // Here w_max grows so much that the first steps do not hold, and the run is looked at fewer times
   // than its length asks for.
   for (const std::uint64_t seed : {191u, 398u}) {
-    const advice_study::Case c = advice_study::drawn_case(seed);
+    const judged_advice::Case c = judged_advice::drawn_case(seed);
     const ReducedScene model(c.scene);
     Search search(model, c.until, AccuracyOf::positions, seconds);
     BOOST_TEST(search.survey(c.accuracy), c.scene.name);
@@ -84,7 +71,7 @@ BOOST_AUTO_TEST_CASE(a_first_run_that_has_to_be_made_shorter_is_no_trouble) {
 
 BOOST_AUTO_TEST_CASE(steps_that_meet_a_resonance_are_made_somewhat_shorter) {
   // 130 steps resolve the soft springs of this framed cloth, and grow all the same; 195 do not.
-  const advice_study::Case c = advice_study::drawn_case(8000385);
+  const judged_advice::Case c = judged_advice::drawn_case(8000385);
   const ReducedScene model(c.scene);
   std::vector<Trial> tried;
   // The first of them may take all the time on a busy machine.
@@ -298,20 +285,13 @@ BOOST_AUTO_TEST_CASE(every_run_of_a_search_is_within_its_bound) {
   // The number of worthwhile runs depends on the machine's speed: cases continue until there are
   // enough.
   for (std::uint64_t seed = 5000000; bounded < 120; ++seed) {
-    const advice_study::Case c = advice_study::drawn_case(seed);
+    const judged_advice::Case c = judged_advice::drawn_case(seed);
     const ReducedScene model(c.scene);
     const auto reference = judge(c, model, 40, 0.5);
     if (!reference) continue;
-    std::optional<Search> made;
-    const auto search_on = [&] {
-      made.emplace(model, c.until, AccuracyOf::positions, seconds);
-      const Trial* found = made->survey(c.accuracy) ? made->find(c.accuracy) : nullptr;
-      if (found) made->race(found, c.accuracy, seconds);
-    };
-    int attempts = 20;
-    while (is_disturbed(search_on) && --attempts > 0) {
-    }
-    const Search& search = *made;
+    Search search(model, c.until, AccuracyOf::positions, seconds);
+    const Trial* found = search.survey(c.accuracy) ? search.find(c.accuracy) : nullptr;
+    if (found) search.race(found, c.accuracy, seconds);
     for (const Trial& trial : search.trials()) {
       const auto bound = search.bound(trial);
       // Runs with an error as large as the motion are lost, and so are their bounds.
@@ -355,7 +335,7 @@ BOOST_AUTO_TEST_CASE(an_implicit_method_that_diverges_gets_more_steps) {
   // Steps of the midpoint rule that are too long for this case's motion diverge. How far they miss
   // nobody knows then, and the next run has six times as many, which is the most that one more has.
   constexpr double most = 6;
-  const advice_study::Case c = advice_study::drawn_case(4000205);
+  const judged_advice::Case c = judged_advice::drawn_case(4000205);
   const ReducedScene model(c.scene);
   bool has_diverged = false, has_more = false;
   // A search on a busy machine may overestimate the time of steps, so that more of them gain

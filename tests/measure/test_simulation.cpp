@@ -6,7 +6,7 @@
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/speed/work_precision.hpp"
-#include "qddot/measure/trend/scene_trend.hpp"
+#include "qddot/measure/trend/drift_run.hpp"
 #include "qddot/scene/scene_file.hpp"
 #include "tests/integrators/own_system.hpp"
 
@@ -30,7 +30,7 @@ OwnChain own_chain() {
   return chain;
 }
 
-// Where the nodes of two runs are apart most [m].
+// The largest distance [m] between the nodes of two runs.
 double distance(const std::vector<Node>& a, const std::vector<Node>& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {

@@ -11,11 +11,12 @@
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "tests/fragments.hpp"
+#include "tests/measure/clocks.hpp"
 #include "tests/measure/drawn_scenes.hpp"
 
-BOOST_AUTO_TEST_SUITE(solve)
-
 using namespace qddot;
+
+BOOST_FIXTURE_TEST_SUITE(solve, ProcessorClock)
 
 namespace {
 
@@ -77,7 +78,7 @@ BOOST_AUTO_TEST_CASE(what_it_claims_holds_on_drawn_scenes) {
   // hold in 95 of 100.
   int claimed = 0, beyond_bar = 0, beyond_accuracy = 0;
   for (std::uint64_t seed = 5000000; claimed < 24; ++seed) {
-    const advice_study::Case c = advice_study::drawn_case(seed);
+    const judged_advice::Case c = judged_advice::drawn_case(seed);
     const ReducedScene model(c.scene);
     const auto reference = judge(c, model, 200, 1);
     if (!reference) continue;
@@ -188,7 +189,7 @@ BOOST_AUTO_TEST_CASE(the_path_and_the_energy_are_within_what_was_asked_for) {
     const auto path = seen(*answer.method, answer.value), fine = seen(method("kahan_li8"), 1e-4);
     Scales scales;
     for (const State& state : fine) extend(scales, model, state);
-    Errors largest;
+    Errors largest = no_error;
     for (std::size_t i = 0; i < path.size(); ++i)
       largest = larger(
           largest, errors_between(model, path[i], fine[i], model.energy(model.initial()), scales));

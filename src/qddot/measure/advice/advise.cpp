@@ -10,7 +10,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/advice/solve.hpp"
-#include "qddot/measure/advice/twin.hpp"
+#include "qddot/measure/advice/trial.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/settle.hpp"
@@ -187,7 +187,7 @@ double Advice::margin() const {
 
 Advices advise(const ReducedScene& model, double until, const std::vector<double>& accuracies,
                AccuracyOf of) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = clock_now();
   for (const double accuracy : accuracies) require_accuracy(accuracy);
   if (accuracies.empty()) throw std::invalid_argument("advise: no accuracy is given");
   if (!(until > 0) || !std::isfinite(until))

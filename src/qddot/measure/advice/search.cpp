@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "qddot/measure/advice/forecast.hpp"
+#include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::inline measure {
 
@@ -138,7 +139,7 @@ class Search {
 
   AccuracyOf of_;
   double limit_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point begin_ = clock_now();
   double bound_of_w_, w_start_ = 0, first_seconds_ = 0;
   Stage stage_;
   std::optional<Forecast> forecast_;

@@ -5,8 +5,8 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
-#include "qddot/measure/motion/resolved_frequency.hpp"
 #include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/motion/vibrating_modes.hpp"
 
 namespace qddot::inline measure {
 namespace {

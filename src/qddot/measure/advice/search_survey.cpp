@@ -4,13 +4,12 @@
 #include <limits>
 #include <vector>
 
-#include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/advice/step_cost.hpp"
-#include "qddot/measure/motion/resolved_frequency.hpp"
 #include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/motion/vibrating_modes.hpp"
 
 namespace qddot::inline measure {
 namespace {

@@ -10,8 +10,7 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
-#include "qddot/measure/advice/twin.hpp"
-#include "qddot/measure/motion/duration.hpp"
+#include "qddot/measure/advice/trial.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/model/machine_epsilon.hpp"
@@ -139,7 +138,6 @@ Answer of_nothing(const ReducedScene& model, double until) {
   answer.value = until;
   answer.error_estimate = 4 * machine_epsilon;
   answer.error_estimate_kind = EstimateKind::rounding;
-  answer.advised_by = "modes";
   answer.end = model.initial();
   answer.end.t = until;
   answer.summary.outcome = Outcome::reached_end;
@@ -152,31 +150,25 @@ Answer of_nothing(const ReducedScene& model, double until) {
 }  // namespace
 
 const char* name(EstimateKind kind) {
-  switch (kind) {
-    case EstimateKind::compared:
-      return "compared";
-    case EstimateKind::refined:
-      return "refined";
-    case EstimateKind::conserved:
-      return "conserved";
-    case EstimateKind::rounding:
-      return "rounding";
-    case EstimateKind::none:
-      break;
-  }
-  return "none";
+  constexpr const char* names[] = {"compared", "refined", "conserved", "rounding", "none"};
+  return names[static_cast<int>(kind)];
 }
 
-void require_accuracy(double accuracy) {
+const char* name(AdvisedBy origin) {
+  constexpr const char* names[] = {"modes", "forecast", "refinement", "tolerance"};
+  return names[static_cast<int>(origin)];
+}
+
+void require_accuracy(double accuracy, const std::string& said) {
   if (accuracy >= least_accuracy && accuracy < 1) return;
   throw std::invalid_argument(
-      fmt::format("accuracy = {:g} is not allowed; it is a relative error from 1e-14 (rounding) to "
-                  "below 1 (as large as the motion)",
-                  accuracy));
+      fmt::format("{} {:g} is not allowed; it is a relative error from 1e-14 (rounding) to below 1 "
+                  "(as large as the motion)",
+                  said, accuracy));
 }
 
 Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = clock_now();
   require_accuracy(wanted.accuracy);
   if (!(until > 0) || !std::isfinite(until))
     throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
@@ -197,10 +189,10 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted) {
   } catch (const Interrupted& interrupted) {
     stopped_by = interrupted.what();
   }
-  answer.advised_by = search.forecast()                   ? "forecast"
-                      : model.system().has_massless()     ? "tolerance"
-                      : found && found->method->order > 0 ? "refinement"
-                                                          : "modes";
+  answer.advised_by = search.forecast()                   ? AdvisedBy::forecast
+                      : model.system().has_massless()     ? AdvisedBy::tolerance
+                      : found && found->method->order > 0 ? AdvisedBy::refinement
+                                                          : AdvisedBy::modes;
   if (found && search.is_known(*found, wanted.accuracy)) {
     fill(answer, search, *found, model);
     answer.is_reached = true;

@@ -19,8 +19,9 @@ struct Wanted {
 
 // The smallest accuracy that can be asked for; smaller errors are below rounding.
 constexpr double least_accuracy = 1e-14;
-// Throws std::invalid_argument, which names the allowed range, for an accuracy outside of it.
-void require_accuracy(double accuracy);
+// Throws std::invalid_argument, which begins with `said` and names the allowed range, for an
+// accuracy outside of it.
+void require_accuracy(double accuracy, const std::string& said = "accuracy =");
 
 // The origin of an error estimate.
 enum class EstimateKind {
@@ -31,6 +32,15 @@ enum class EstimateKind {
   none,       // no run reached the end
 };
 const char* name(EstimateKind kind);
+
+// The origin of a method that solve() chose.
+enum class AdvisedBy {
+  modes,       // the motion is computed mode by mode, or nothing moves
+  forecast,    // a forecast of errors and times
+  refinement,  // implicit or multirate steps, refined until they agree
+  tolerance,   // IDA at ever smaller tolerances
+};
+const char* name(AdvisedBy origin);
 
 // Wall time of an answer [s]: `run` for the answer itself, `check` for the run that checks it,
 // `pilots` for all other runs and work.
@@ -49,8 +59,7 @@ struct Answer {
   // A bound of the error that Wanted::of names; infinite if none is known.
   double error_estimate = std::numeric_limits<double>::infinity();
   EstimateKind error_estimate_kind = EstimateKind::none;
-  // The choice of the method: "modes", "forecast", "refinement" or (for IDA) "tolerance".
-  std::string advised_by{};
+  AdvisedBy advised_by = AdvisedBy::modes;
   // The time [s] from which two motions that start one rounding apart are different, and the rate
   // [1/s] at which they part. Infinite and zero if this was not seen.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;

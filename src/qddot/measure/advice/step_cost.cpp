@@ -52,13 +52,9 @@ double cost_at(const Cost& cost, Index unknowns) {
   return cost.steps[low] * std::pow(cost.steps[low + 1] / cost.steps[low], part);
 }
 
-bool is_linearly_implicit(const Method& method) {
-  return method.name.starts_with("linear_midpoint");
-}
-
 // The number of unknowns that a step solves for.
 Index unknowns_solved_for(const Method& method, const System& system) {
-  const Split* split = is_linearly_implicit(method) ? split_of(system) : nullptr;
+  const Split* split = method.solves_stiff_part ? split_of(system) : nullptr;
   return split ? static_cast<Index>(split->stiff_unknowns.size()) : system.size();
 }
 
@@ -81,7 +77,7 @@ double steps_to_begin(const Method& method, const System& system) {
   // for methods with one solve a step, 4 to 260 for Newton's iterations.
   constexpr double linear = 5, newton = 40;
   if (!method.is(Trait::implicit) || unknowns_solved_for(method, system) <= small) return 0;
-  return is_linearly_implicit(method) ? linear : newton;
+  return method.solves_stiff_part ? linear : newton;
 }
 
 double forces_to_begin(const Method& method) {

@@ -7,8 +7,8 @@ namespace qddot::inline measure {
 
 // The time of a step of the method on the system, in steps of Verlet's method. It was measured on
 // other scenes of that size (see step_cost.cpp) and serves until the method was timed on this
-// scene. Infinite if it was never measured. Linearly implicit methods solve only for the unknowns
-// that feel stiff forces, if these are told apart.
+// scene. Infinite if it was never measured. It allows for methods that solve for the stiff
+// unknowns only (Method::solves_stiff_part).
 double usual_step_cost(const Method& method, const System& system);
 
 // The time that an implicit method takes before its steps, in its steps. It analyses the pattern of

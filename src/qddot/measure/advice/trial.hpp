@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "qddot/integrators/method.hpp"
 #include "qddot/measure/motion/error.hpp"
+#include "qddot/measure/reference/divergence.hpp"
 
 namespace qddot::inline measure {
 
@@ -67,5 +69,9 @@ class Stage {
   std::vector<double> times_;
   Scales scales_;
 };
+
+// Repeats the trial from a start that is one rounding away, for `seconds` at most, and measures how
+// the two part. Empty if the repetition does not reach the end.
+std::optional<Divergence> parting_of_twins(const Stage& stage, const Trial& trial, double seconds);
 
 }  // namespace qddot::inline measure

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "qddot/integrators/integrator.hpp"
 #include "qddot/model/system.hpp"
 
 namespace qddot::inline measure {
@@ -31,5 +33,13 @@ struct ExchangeComparison {
 // Running means are over `window` [s], cut off at both ends of the time. Both courses start at t =
 // 0, and times after the end of the shorter one do not count. Each has at least two times.
 ExchangeComparison compare(const EnergyCourse& course, const EnergyCourse& other, double window);
+
+// The verdict on a run of `exchange` that did not reach its end: its outcome and when.
+std::string verdict_on(const Summary& summary);
+
+// The verdict on a course against the reference's. Its springs exchange energy as they should, too
+// fast, too slowly or not at all, or they lose or gain energy. `reference`: the reference compared
+// with itself.
+std::string verdict_on(const ExchangeComparison& c, const ExchangeComparison& reference);
 
 }  // namespace qddot::inline measure

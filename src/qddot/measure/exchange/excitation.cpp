@@ -9,7 +9,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/samples.hpp"
-#include "qddot/measure/reference/no_reference.hpp"
+#include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/stiff_energies.hpp"

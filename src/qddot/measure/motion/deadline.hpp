@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -7,6 +8,7 @@
 #include <thread>
 
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::inline measure {
 
@@ -17,8 +19,12 @@ class Deadline {
   explicit Deadline(double seconds)
       : watcher_([this, seconds](const std::stop_token& disarmed) {
           std::unique_lock lock(mutex_);
-          wake_.wait_for(lock, disarmed, std::chrono::duration<double>(seconds),
-                         [] { return false; });
+          const auto start = clock_now();
+          // In waits that are no longer than a clock can count.
+          for (double left = seconds; left > 0 && !disarmed.stop_requested();
+               left = seconds - seconds_since(start))
+            wake_.wait_for(lock, disarmed, std::chrono::duration<double>(std::min(left, 1e6)),
+                           [] { return false; });
           if (!disarmed.stop_requested()) source_.request_stop();
         }) {}
 

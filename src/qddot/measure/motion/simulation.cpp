@@ -28,8 +28,8 @@ const Method& method(std::string_view name) {
 
 ReducedScene reduced_for(const Method& method, const Scene& scene, const Reductions& reductions) {
   const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
-  // A node between springs in series must stay a node in compression too, unless the method accepts
-  // no massless node.
+  // Springs in series equal one spring in tension only. Methods that accept massless nodes run
+  // without this reduction.
   return ReducedScene(start, method.is(Trait::accepts_massless)
                                  ? reductions.without(Reduction::massless)
                                  : reductions);

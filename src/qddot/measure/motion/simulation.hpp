@@ -43,6 +43,8 @@ class Simulation {
   std::vector<Node> nodes() const { return model_->expand(state_); }
   double energy() const { return model_->energy(state_); }
   const ReducedScene& model() const { return *model_; }
+  // The time [s] that advance() has reached, while it runs on another thread.
+  double reached() const { return integrator_->reached(); }
   // The options that the method was given, tolerance scales included.
   const Options& options() const { return options_; }
 

@@ -1,21 +1,30 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace qddot::inline measure {
 
-// Wall time [s] since `start`.
+// The clock that measurements and their limits go by: that of the wall. A test may set another, as
+// the processor's, which stands still while other processes run.
+inline std::atomic<std::chrono::steady_clock::time_point (*)()> clock_in_use =
+    std::chrono::steady_clock::now;
+// The time on that clock.
+inline std::chrono::steady_clock::time_point clock_now() { return clock_in_use.load()(); }
+
+// The time [s] since `start`.
 inline double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double>(clock_now() - start).count();
 }
 
-// The wall time of work() [s].
+// The time that work() takes [s].
 template <class Work>
 double seconds_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = clock_now();
   work();
   return seconds_since(start);
 }
@@ -43,5 +52,8 @@ inline double median(std::vector<double> values) {
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
+
+// A duration [s] in words, from "5.2 s" to "3.1e+05 years".
+std::string duration_in_words(double seconds);
 
 }  // namespace qddot::inline measure

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "qddot/analysis/curvature_signs.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/natural_modes.hpp"
 
 namespace qddot::inline measure {
@@ -61,6 +62,20 @@ double buckling_rate(const System& system, const Vec& q) {
   if (finite_modes(system) == 0) return 0;
   if (curvature_signs(system, q).negative == 0) return 0;
   return std::sqrt(std::max(0.0, -lowest_modes(system, q, 1).squares[0]));
+}
+
+double resolved_frequency(const Method& method, const System& system, const Vec& q) {
+  if (!method.asks(Need::split_forces) || method.is(Trait::implicit))
+    return frequency_bound(system, q);
+  if (const Split* split = split_of(system)) return frequency_bound(*split->soft, q);
+  double largest = 0;
+  Index first = 0;
+  for (const auto& block : blocks_of(system)) {
+    const Vec own = q.segment(first, block->size());
+    largest = std::max(largest, resolved_frequency(method, *block, own));
+    first += block->size();
+  }
+  return largest;
 }
 
 }  // namespace qddot::inline measure

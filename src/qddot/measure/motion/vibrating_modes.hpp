@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "qddot/integrators/method.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot::inline measure {
@@ -23,5 +24,10 @@ std::vector<Mode> sampled_modes(const System& system, const Vec& q, int count);
 // The largest rate [1/s] at which a motion leaves q, where compressed springs push sideways: the
 // square root of the largest eigenvalue of M^-1 K(q). Zero if rounding may have made it positive.
 double buckling_rate(const System& system, const Vec& q);
+
+// An upper bound of the largest frequency [rad/s] that a step of the method has to resolve at the
+// start. This is w_max, or that of the soft forces alone for multirate methods, which integrate the
+// stiff ones with inner steps.
+double resolved_frequency(const Method& method, const System& system, const Vec& q);
 
 }  // namespace qddot::inline measure

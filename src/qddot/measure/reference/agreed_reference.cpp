@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/base/step_times.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
@@ -55,7 +55,7 @@ std::optional<Solution> ida(const ReducedScene& scene, double until, double rtol
 }  // namespace
 
 Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = clock_now();
   Scales scales;
   const auto explicitly = [&](const char* name, double coarsest) {
     return [&, name, coarsest](int level, double limit) {
@@ -73,7 +73,7 @@ Reference agreed_reference(const ReducedScene& scene, double until, double neede
   // evaluates 17 forces a step. Fehlberg's pair evaluates 13, and its steps are no longer than
   // three of Verlet's. The time of the implicit method is a guess.
   Way verlet{true, 0, 2, explicitly("verlet", 1)};
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = clock_now();
   verlet.finest = verlet.solve(verlet.level++, seconds);
   const double unit = seconds_since(begin);
   verlet.expected = verlet.growth * unit;
@@ -87,7 +87,7 @@ Reference agreed_reference(const ReducedScene& scene, double until, double neede
     Way& next = *std::ranges::min_element(ways, {}, &Way::expected);
     const double left = seconds - seconds_since(start);
     if (next.expected > left) break;
-    const auto from = std::chrono::steady_clock::now();
+    const auto from = clock_now();
     const auto solution = next.solve(next.level++, left);
     next.expected = next.level < most_levels ? next.growth * seconds_since(from)
                                              : std::numeric_limits<double>::infinity();

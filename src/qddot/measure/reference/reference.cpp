@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/linear_motion.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
-#include "qddot/measure/motion/duration.hpp"
+#include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/reference/reference_rounding.hpp"
 #include "qddot/measure/reference/reference_ways.hpp"
 #include "qddot/measure/reference/refinement.hpp"
@@ -35,7 +35,7 @@ void require_affordable(const ReducedScene& scene, double until, double steps, d
   }
   const auto integrator =
       make_integrator(*find_method("kahan_li8"), scene.system(), {.step_size = h});
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = clock_now();
   const Deadline deadline(seconds);
   integrator->advance(state, tried * h, {}, deadline.token());
   const double expected = seconds_since(begin) / tried * steps;
@@ -107,7 +107,7 @@ bool is_reduced_by_symmetry(const ReducedScene& scene) {
 
 Reference make_reference(const ReducedScene& scene, double until, double seconds,
                          const Scene* start, const Expect& expect) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = clock_now();
   const Composed composed(scene, until, 0.6 * seconds, seconds, expect);
   const Solution& finest = composed.finest();
   const Errors& effect = composed.rounding().effect();

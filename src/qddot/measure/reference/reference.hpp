@@ -3,13 +3,19 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "qddot/measure/motion/error.hpp"
 #include "qddot/measure/reference/divergence.hpp"
-#include "qddot/measure/reference/no_reference.hpp"
 
 namespace qddot::inline measure {
+
+// The high-accuracy methods did not reach the end.
+class NoReference : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 // The effect of a push by one rounding on a motion that was computed in a plane, on a line or with
 // mirror symmetry. The push moves all drawn nodes in all drawn dimensions.
@@ -85,5 +91,12 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
 // agree in damping the same vibrations. Rounding is not measured. Throws NoReference if no method
 // of a kind reaches the end.
 Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds);
+
+// A sentence that names the scales of errors against the reference, with their values.
+std::string what_divides(const Reference& reference);
+
+// A sentence on symmetry: whether the motion exists in exact symmetry alone and what a push does to
+// it, or that this took too long to find out. Empty otherwise.
+std::string symmetry_in_words(const Reference& reference);
 
 }  // namespace qddot::inline measure

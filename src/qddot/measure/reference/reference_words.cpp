@@ -1,8 +1,8 @@
-#include "qddot/measure/reference/reference_words.hpp"
-
 #include <algorithm>
 
 #include <fmt/format.h>
+
+#include "qddot/measure/reference/reference.hpp"
 
 namespace qddot::inline measure {
 namespace {

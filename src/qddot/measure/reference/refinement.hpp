@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/reference/reference_ways.hpp"
 
 namespace qddot::inline measure {
@@ -25,13 +26,13 @@ constexpr int most_lost_levels = 3;
 template <class Solve, class IsRounding>
 Solution refined(const ReducedScene& scene, double seconds, const Solve& solve,
                  const IsRounding& is_rounding) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = clock_now();
   std::optional<Solution> best;
   Errors last = no_error;                                   // change
   double before = std::numeric_limits<double>::infinity();  // the larger part of the last change
   double share = 1;
   for (int level = 0; level < most_refinements; ++level) {
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = clock_now();
     std::optional<Solution> next = solve(level);
     if (next && best) {
       const Errors change =

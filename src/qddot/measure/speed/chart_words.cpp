@@ -49,10 +49,9 @@ std::string horizon_in_words(const Reference& reference) {
     words += fmt::format(" (× 10 in {})", time_in_words(std::numbers::ln10 / reference.lyapunov));
   words +=
       fmt::format(".\nPosition errors at T = {} s mean nothing.", number_in_words(reference.end.t));
-  if (!can_shares_tell(reference)) {
-    words +=
-        fmt::format(" Such runs have energy in other modes by {}: no run is known to be right.",
-                    number_in_words(reference.modal_shares_floor));
+  if (!largest_difference_by_chance(reference)) {
+    words += fmt::format(" Modal shares differ by {} by chance: no run is known to be right.",
+                         number_in_words(reference.modal_shares_floor));
   } else if (reference.modal_shares_floor > 0) {
     words += " Fastest: of the runs whose energy is in the right modes.";
   }

@@ -25,7 +25,7 @@ std::string why_empty(const FrontRow& row, const Reference& reference);
 constexpr double small_margin = 0.15;
 // "3.2 % below its limit of stability", or "above".
 std::string margin_in_words(double stability_margin);
-// What a reader must know of the fastest point of a row, in clauses.
+// The warnings on the fastest point of a row, in clauses.
 std::vector<std::string> warnings(const FrontRow& row, const Reference& reference);
 
 // The words on a view's floor; empty if it has none.
@@ -36,7 +36,7 @@ struct StudyEnd {
   std::string interrupted_by{};    // empty if it is complete
   bool are_times_of_work = false;  // counts times costs, which nobody measured
 };
-// What a reader must know of a study and its motion before the errors: sentences of two lines.
+// The warnings on a study and its motion, for a reader of its errors: sentences of two lines.
 std::vector<std::string> caveats(const Reference& reference, const StudyEnd& end = {});
 
 }  // namespace qddot::inline measure

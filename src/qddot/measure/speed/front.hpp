@@ -10,7 +10,7 @@ namespace qddot::inline measure {
 
 // The fastest points at one accuracy, of all methods and of each family; nullptr if there is none.
 // A point has reached the accuracy if its error is known to be at most that (see judgement.hpp).
-// Of equally fast points, the first one is the fastest.
+// The first of equally fast points counts as the fastest.
 struct FrontRow {
   double accuracy = 0;
   bool may_be_reached = false;         // by a point whose error is uncertain

@@ -54,8 +54,13 @@ double certified(const Reference& reference, Quantity quantity) {
 
 double certified(const Reference& reference) { return certified(reference, judge_of(reference)); }
 
-bool can_shares_tell(const Reference& reference) {
-  return most_of_chance * reference.modal_shares_floor < 1;
+std::optional<double> largest_difference_by_chance(const Reference& reference) {
+  const double floor = reference.modal_shares_floor;
+  if (10 * floor < 1) return 10 * floor;
+  // A share for each mode and one for all higher modes; a kept reference may be without them.
+  const Index shares = reference.modal_shares.size();
+  const bool has_three_modes = shares == 0 || shares > 3;
+  return has_three_modes && 4 * floor < 1 ? std::optional(4 * floor) : std::nullopt;
 }
 
 Judged judged(const Point& point, const Reference& reference, Quantity quantity) {
@@ -64,9 +69,9 @@ Judged judged(const Point& point, const Reference& reference, Quantity quantity)
   judged.bounds = known(judged.error, bound);
   judged.is_uncertain = bound > 0.1 * judged.error;
   if (quantity != Quantity::energy || !reference.is_beyond_horizon()) return judged;
-  const bool is_another = point.path.modal_shares > most_of_chance * reference.modal_shares_floor;
-  judged.may_count = !is_another;
-  judged.counts = !is_another && can_shares_tell(reference);
+  const auto allowed = largest_difference_by_chance(reference);
+  judged.may_count = !(point.path.modal_shares > allowed.value_or(1));
+  judged.counts = judged.may_count && allowed;
   return judged;
 }
 

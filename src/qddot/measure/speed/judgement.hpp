@@ -1,7 +1,7 @@
 #pragma once
 
 #include <limits>
-#include <string>
+#include <optional>
 
 #include "qddot/measure/speed/measurement.hpp"
 
@@ -45,14 +45,17 @@ double certified(const Reference& reference, Quantity quantity);
 // The same in the quantity that decides.
 double certified(const Reference& reference);
 
-// A run that hardly moves keeps its energy well. So the energy of a motion beyond the horizon
-// counts only if the run's modal shares differ from the reference's by at most this many floors.
-// The floor is one difference by chance. If both are normal in one variable, a right run differs by
-// more with probability 2/pi atan(1/10) = 6 %.
-constexpr double most_of_chance = 10;
-// Whether modal shares can tell another motion from the reference's: shares differ by at most 1, so
-// that no run differs by more than ten floors of a tenth. No run is known to be right then.
-bool can_shares_tell(const Reference& reference);
+// The largest difference of a right run's modal shares to the reference's. A run that hardly moves
+// keeps its energy well, so that the energy of a motion beyond the horizon counts only up to here.
+//
+// The floor f is one difference by chance. A right run differs by another one, which is independent
+// and distributed alike. If the shares vary in k independent directions, normally and alike, it
+// exceeds c f with a probability of 2/pi atan(1/c) for k = 1 and of 1/(1 + c^2) for k = 2, and with
+// a smaller one for more. That is 6 % for k = 1 and c = 10, and for k = 2 and c = 4. No difference
+// exceeds 1. So this is 10 f where that is below 1. Else it is 4 f where that is below 1 and at
+// least three modes have shares. Else it is nothing: the shares cannot tell another motion from the
+// reference's, and no run is known to be right.
+std::optional<double> largest_difference_by_chance(const Reference& reference);
 
 // The error of a point in a quantity, and in the quantity that decides. This is the definition of
 // the error that charts, fronts and answers use.

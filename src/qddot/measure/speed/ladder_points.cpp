@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "qddot/measure/motion/resolved_frequency.hpp"
+#include "qddot/measure/motion/vibrating_modes.hpp"
 #include "qddot/measure/speed/judgement.hpp"
 #include "qddot/measure/speed/ladder.hpp"
 

@@ -55,6 +55,7 @@ Point taken(const Method& method, double value, const ReducedScene& scene, doubl
     if (summary.outcome != Outcome::reached_end) {  // half a run gives no time
       point.outcome = summary.outcome;
       point.t_reached = summary.t_reached;
+      point.errors = {};
       return point;
     }
     spent += sample;

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "qddot/measure/speed/front.hpp"
+#include "qddot/measure/speed/chart.hpp"
 
 namespace qddot::inline measure {
 
@@ -14,6 +14,10 @@ struct WorkPrecision {
 
   // The fastest point at each accuracy 1e-1 ... 1e-9; rows point into `points`.
   std::vector<FrontRow> front() const { return fastest_at_each_accuracy(points, reference); }
+  // All that is said of the points, with stability margins on the model. Borrows the points.
+  Chart chart(const ReducedScene& model) const {
+    return chart_of(points, reference, usual_accuracies(), StabilityMargins(model));
+  }
 };
 
 // Measures the methods on the model up to the time `until` [s], against a reference that takes

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
@@ -231,7 +230,7 @@ std::string diagnosis(const Method& method, const Options& options, const Reduce
     if (std::string extreme = extreme_start(scene); !extreme.empty()) return extreme;
   }
   if (!has_own_step(method) || !is_diagnosed) return "";
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = clock_now();
   const auto left = [&] { return seconds - seconds_since(begin); };
   const double h = options.step_size;
   const Before before = before_failure(method, options, scene, summary.t_reached, seconds / 4);

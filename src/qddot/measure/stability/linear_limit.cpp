@@ -33,7 +33,8 @@ double half_trace(const Method& method, double h_omega) {
 }
 
 double grid(int i) {
-  return least_h_omega * std::pow(largest_h_omega / least_h_omega, 1. * i / points);
+  return least_searched_h_omega *
+         std::pow(largest_searched_h_omega / least_searched_h_omega, 1. * i / points);
 }
 
 // The h w between a and c at which the roots are nearest to separating.

@@ -5,7 +5,7 @@
 namespace qddot::inline measure {
 
 // The range of h w in which the limit is searched.
-constexpr double least_h_omega = 0.01, largest_h_omega = 100;
+constexpr double least_searched_h_omega = 0.01, largest_searched_h_omega = 100;
 
 // The stability limit of the implemented method: the largest h w up to which q'' = -w^2 q does not
 // grow. The spectral radius of a step is then at most 1 + 1e-12 (rounding). The limit is searched

@@ -10,8 +10,8 @@
 #include <Eigen/LU>
 
 #include "qddot/algebra/dense_cholesky.hpp"
+#include "qddot/algebra/straight_line.hpp"
 #include "qddot/measure/trend/block_covariance.hpp"
-#include "qddot/measure/trend/student.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {

@@ -7,6 +7,7 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/trend/sample_steps.hpp"
 #include "qddot/model/machine_epsilon.hpp"
@@ -168,6 +169,16 @@ std::string verdict(const DriftRun& run, double until) {
     return fmt::format("{}; over {}, when its time was up", words, part);
   }
   return fmt::format("{} at t = {:.4g} s; until then: {}", name(outcome), t, words);
+}
+
+DriftRun energy_trend(const Scene& scene, const Method& method, const Options& options,
+                      double until, double seconds) {
+  constexpr double looks = 1e5;
+  const Simulation run(scene, method, options);
+  const Momenta momenta(scene);
+  const double step = options.step_size > 0 ? options.step_size : until / looks;
+  return run_drift(method, run.options(), run.model(), momenta,
+                   motion_scales(run.model(), momenta, until), {step, until, seconds});
 }
 
 }  // namespace qddot::inline measure

@@ -14,7 +14,7 @@ std::vector<SampledStep> sample_steps(std::int64_t count, std::int64_t cells) {
     for (std::int64_t cell = cells; cell-- > 0;) {
       const std::int64_t first = low + 1 + steps * cell / cells;
       const std::int64_t last = low + steps * (cell + 1) / cells;
-      // The last step is left out: the end of the run is always a sample.
+      // In the last cell the last step is taken: a run is looked at there anyway.
       const std::int64_t drawn = std::uniform_int_distribution(first, last)(random);
       sampled.push_back({last == count ? count : drawn, static_cast<double>(last - first + 1)});
     }

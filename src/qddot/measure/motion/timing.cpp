@@ -1,4 +1,4 @@
-#include "qddot/measure/motion/duration.hpp"
+#include "qddot/measure/motion/timing.hpp"
 
 #include <fmt/format.h>
 

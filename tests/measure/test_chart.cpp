@@ -1,0 +1,275 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/speed/chart_words.hpp"
+#include "qddot/model/machine_epsilon.hpp"
+
+BOOST_AUTO_TEST_SUITE(chart)
+
+using namespace qddot;
+
+namespace {
+
+using Numbers = std::vector<std::size_t>;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Point point(const char* method, double error, double time, double value = 0.1) {
+  return {.method = find_method(method),
+          .value = value,
+          .outcome = Outcome::reached_end,
+          .errors = {.position = error, .velocity = 0, .energy = 0},
+          .time = time};
+}
+
+Point failed(Outcome outcome) {
+  return {.method = find_method("verlet"), .value = 1, .outcome = outcome};
+}
+
+Reference reference(double certified = 1e-12) {
+  Reference regular;
+  regular.end.t = 2;
+  regular.certified = {.position = certified, .velocity = certified, .energy = certified};
+  return regular;
+}
+
+// A motion that is unknown at its end.
+Reference chaotic(double floor = 0.01) {
+  Reference motion = reference();
+  motion.horizon = 1.5;
+  motion.lyapunov = 10;
+  motion.modal_shares_floor = floor;
+  return motion;
+}
+
+// A point of a chaotic motion.
+Point by_energy(const char* method, double energy, double shares, double time) {
+  Point made = point(method, 1, time);
+  made.path = {.energy = energy, .modal_shares = shares};
+  return made;
+}
+
+// The chart at 1e-1, 1e-3 and 1e-5, of a scene whose largest frequency is 10 rad/s.
+Chart made(const std::vector<Point>& points, const Reference& of = reference()) {
+  return chart_of(points, of, {1e-1, 1e-3, 1e-5}, StabilityMargins(10));
+}
+
+Numbers ranked(const Chart& chart, std::size_t row) {
+  Numbers numbers;
+  for (const Point* one : chart.front[row].ranked) numbers.push_back(chart.number(one));
+  return numbers;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(each_method_is_ranked_by_its_fastest_point) {
+  const std::vector<Point> points = {point("verlet", 5e-2, 3), point("verlet", 5e-4, 4),
+                                     point("ida", 5e-4, 2), point("rk4", 5e-4, 9)};
+  const Chart chart = made(points);
+  BOOST_TEST(ranked(chart, 0) == (Numbers{2, 0, 3}), boost::test_tools::per_element());
+  BOOST_TEST(ranked(chart, 1) == (Numbers{2, 1, 3}), boost::test_tools::per_element());
+  BOOST_TEST(ranked(chart, 2).empty());
+  BOOST_TEST(chart.front[1].fastest == &points[2]);
+  BOOST_TEST(chart.front[1].runner_up() == &points[1]);
+  BOOST_TEST(chart.front[1].fastest_hand_written == &points[1]);
+  BOOST_TEST(chart.front[1].fastest_sundials == &points[2]);
+  BOOST_TEST(!chart.front[2].runner_up());
+}
+
+BOOST_AUTO_TEST_CASE(of_equally_fast_points_the_first_one_wins) {
+  std::vector<Point> points = {point("rk4", 5e-2, 1), point("verlet", 5e-2, 1),
+                               point("verlet", 5e-3, 1), point("ida", 5e-2, 1)};
+  const Numbers first = {0, 1, 3};
+  BOOST_TEST(ranked(made(points), 0) == first, boost::test_tools::per_element());
+  std::swap(points[0], points[3]);
+  BOOST_TEST(ranked(made(points), 0) == first, boost::test_tools::per_element());
+  BOOST_TEST(made(points).front[0].fastest->method->name == "ida");
+}
+
+BOOST_AUTO_TEST_CASE(an_uncertain_error_is_told_and_reaches_nothing_by_luck) {
+  const std::vector<Point> points = {point("verlet", 9e-4, 1), point("ida", 2e-3, 2)};
+  const Chart chart = made(points, reference(3e-4));
+  BOOST_TEST(chart.views[0].points[0].bounds.at_least == 6e-4, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(chart.views[0].points[0].bounds.at_most == 1.2e-3,
+             boost::test_tools::tolerance(1e-12));
+  BOOST_TEST((chart.views[0].points[0].is_uncertain && chart.views[0].points[1].is_uncertain));
+  BOOST_TEST(!chart.front[1].fastest);
+  BOOST_TEST(why_empty(chart.front[1], chart.reference) == "no method is known to have reached it");
+  BOOST_TEST(why_empty(chart.front[2], chart.reference) == "beyond what the reference certifies");
+  const auto words = warnings(chart.front[0], chart.reference);
+  BOOST_TEST_REQUIRE(words.size() == 1u);  // h = 0.1 s is half of verlet's limit at 10 rad/s
+  BOOST_TEST(words[0] == "error known only to within 3.0e-04, as the reference itself is");
+}
+
+BOOST_AUTO_TEST_CASE(an_accuracy_that_nothing_reached_has_no_row) {
+  const Chart chart = made({});
+  BOOST_TEST_REQUIRE(chart.front.size() == 3u);
+  for (const FrontRow& row : chart.front) {
+    BOOST_TEST(!row.fastest);
+    BOOST_TEST(why_empty(row, chart.reference) == "no method reached it");
+    BOOST_TEST(warnings(row, chart.reference).empty());
+  }
+  BOOST_TEST(chart.crossings.empty());
+  BOOST_TEST(chart.judged_view().staircase.empty());
+}
+
+BOOST_AUTO_TEST_CASE(failed_runs_have_no_error_and_reach_nothing) {
+  const std::vector<Point> points = {failed(Outcome::diverged), failed(Outcome::newton_failed),
+                                     point("verlet", nan, 1),   point("verlet", 4, 1),
+                                     point("verlet", 1e-9, 0),  point("verlet", 1e-9, 1)};
+  BOOST_TEST(std::isnan(points[0].errors.position));
+  const Chart chart = made(points);
+  const auto failure = [&](std::size_t i) {
+    return failure_in_words(points[i], chart.judged_view().points[i]);
+  };
+  BOOST_TEST(failure(0) == "diverged");
+  BOOST_TEST(failure(1) == "Newton failed");
+  BOOST_TEST(failure(2) == "error not measured");
+  BOOST_TEST(failure(3) == "error above 3");
+  BOOST_TEST(failure(4) == "not timed");
+  BOOST_TEST(failure(5) == "");
+  for (std::size_t i = 0; i < 3; ++i) BOOST_TEST(std::isnan(chart.views[0].points[i].error));
+  BOOST_TEST(ranked(chart, 2) == Numbers{5}, boost::test_tools::per_element());
+  BOOST_TEST(chart.judged_view().staircase == Numbers{5}, boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(no_point_beats_one_of_the_staircase) {
+  const std::vector<Point> points = {point("verlet", 1e-1, 1), point("verlet", 1e-2, 2),
+                                     point("ida", 1e-2, 1.5),  point("ida", 1e-3, 9),
+                                     point("rk4", 1e-4, 8),    point("rk4", 1e-13, 20),
+                                     point("rk4", 1e-14, 30)};
+  const Chart chart = made(points);
+  const Numbers all = {0, 2, 4, 5, 6}, own = {0, 1, 4, 5, 6}, others = {2, 3};
+  BOOST_TEST(chart.judged_view().staircase == all, boost::test_tools::per_element());
+  BOOST_TEST(chart.hand_written == own, boost::test_tools::per_element());
+  BOOST_TEST(chart.sundials == others, boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(another_motion_counts_nowhere) {
+  const std::vector<Point> points = {by_energy("implicit_euler", 0, 0.11, 1),
+                                     by_energy("verlet", 5e-4, 0.02, 2),
+                                     by_energy("rk4", 5e-4, 0.1, 3)};
+  const Chart chart = made(points, chaotic());
+  BOOST_TEST((chart.judge == Quantity::energy));
+  BOOST_TEST(!chart.judged_view().points[0].counts);
+  BOOST_TEST(ranked(chart, 1) == (Numbers{1, 2}), boost::test_tools::per_element());
+  BOOST_TEST(chart.judged_view().staircase == Numbers{1}, boost::test_tools::per_element());
+  BOOST_TEST(chart.judged_view().points[1].bounds.at_most == 5e-4 + machine_epsilon);
+  BOOST_TEST_REQUIRE(chart.views.size() == 3u);  // nobody measured momenta
+  BOOST_TEST((chart.views[2].quantity == Quantity::modes));
+  BOOST_TEST(chart.views[2].floor == 0.01);
+  BOOST_TEST(floor_in_words(chart.views[2]) == "difference by chance 1e-2");
+}
+
+BOOST_AUTO_TEST_CASE(shares_tell_another_motion_by_ten_floors_or_by_four) {
+  // One step of local_global over a chain of four nodes keeps the energy to a tenth and has its
+  // energy in other modes by 0.85. Ten floors of 0.122 are more than any difference.
+  const auto counts = [](double floor, double shares) {
+    Reference motion = chaotic(floor);
+    motion.modal_shares = Vec::Constant(7, 1.0 / 7);
+    return judged(by_energy("local_global", 0.1, shares, 1), motion).counts;
+  };
+  BOOST_TEST(!counts(0.122, 0.85));
+  BOOST_TEST(!counts(0.122, 0.489));
+  BOOST_TEST(counts(0.122, 0.487));
+  BOOST_TEST(counts(0.09, 0.89));
+  BOOST_TEST(!counts(0.09, 0.91));
+  BOOST_TEST(!counts(0.25, 0));
+}
+
+BOOST_AUTO_TEST_CASE(where_shares_cannot_tell_no_run_is_known_to_be_right) {
+  // Four floors are more than the largest difference there is, or one share decides all others.
+  const std::vector<Point> points = {by_energy("local_global", 0.1, 0.85, 1),
+                                     by_energy("verlet", 1e-6, 0.01, 2)};
+  for (const double floor : {0.12, 0.25, 0.7}) {
+    Reference motion = chaotic(floor);
+    motion.modal_shares = Vec::Constant(floor < 0.25 ? 3 : 7, 0.1);
+    const Chart chart = made(points, motion);
+    for (const FrontRow& row : chart.front) BOOST_TEST(!row.fastest);
+    BOOST_TEST(why_empty(chart.front[1], chart.reference) ==
+               "no method is known to have reached it");
+    BOOST_TEST(chart.judged_view().staircase.empty());
+    const std::string words = caveats(chart.reference).at(0);
+    BOOST_TEST(words.ends_with("no run is known to be right."), words);
+  }
+  // The positions of a regular motion need no shares.
+  Reference regular = chaotic(0.5);
+  regular.horizon = 3;
+  BOOST_TEST(made({point("verlet", 5e-4, 1)}, regular).front[1].ranked.size() == 1u);
+}
+
+BOOST_AUTO_TEST_CASE(a_point_has_the_margin_of_its_step) {
+  const std::vector<Point> points = {point("verlet", 1e-4, 1, 0.18), point("verlet", 1e-4, 2, 0.22),
+                                     point("ida", 1e-4, 3), point("implicit_midpoint", 1e-4, 4)};
+  const Chart chart = made(points);
+  BOOST_TEST(chart.margins[0] == 0.1, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(chart.margins[1] == -0.1, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST((std::isnan(chart.margins[2]) && std::isnan(chart.margins[3])));
+  BOOST_TEST(warnings(chart.front[0], chart.reference).at(0) ==
+             "10 % below its limit of stability");
+  BOOST_TEST(margin_in_words(chart.margins[1]) == "10 % above its limit of stability");
+  const Chart without = chart_of(points, reference(), {1e-1}, StabilityMargins(0));
+  BOOST_TEST(
+      (std::isnan(without.margins[0]) && warnings(without.front[0], without.reference).empty()));
+}
+
+BOOST_AUTO_TEST_CASE(the_fastest_method_changes_along_the_accuracies) {
+  const Chart chart = made({point("verlet", 5e-2, 1), point("rk4", 5e-6, 5)});
+  BOOST_TEST_REQUIRE(chart.crossings.size() == 1u);
+  BOOST_TEST(chart.crossings[0].accuracy == 1e-3);
+  BOOST_TEST(chart.crossings[0].from->name == "verlet");
+  BOOST_TEST(chart.crossings[0].to->name == "rk4");
+}
+
+BOOST_AUTO_TEST_CASE(two_methods_take_equally_long_between_two_scenes) {
+  // The ratio of their times is x/10.
+  BOOST_TEST(equally_long(1, 1000, std::log(0.1), std::log(100)) == 10,
+             boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(equally_long(0, 4, -1, 1) == 2, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(std::isnan(equally_long(1, 10, nan, 1)));
+}
+
+BOOST_AUTO_TEST_CASE(knobs_and_times_are_told_in_few_characters) {
+  const Method &fixed = *find_method("verlet"), &adaptive = *find_method("ida");
+  BOOST_TEST(knob_in_words(fixed, 5.917159763313609e-4) == "h = 5.917e-4 s");
+  BOOST_TEST(knob_in_words(fixed, 0.02) == "h = 0.02 s");
+  BOOST_TEST(knob_in_words(fixed, 0.0078125) == "h = 0.007813 s");  // halves go up
+  BOOST_TEST(knob_in_words(fixed, 9.99996e-4) == "h = 0.001 s");
+  BOOST_TEST(knob_in_words(adaptive, 1e-6) == "rtol = 1e-6");
+  BOOST_TEST(time_in_words(3.2e-3) == "3.2 ms");
+  BOOST_TEST(time_in_words(9.9995e-4) == "1 ms");
+  BOOST_TEST(time_in_words(2.05e-5) == "20.5 µs");
+  BOOST_TEST(time_in_words(4e-9) == "4 ns");
+  BOOST_TEST(number_in_words(2e-3) == "2e-3");
+  BOOST_TEST(number_in_words(3.3e-14) == "3.3e-14");
+  BOOST_TEST(number_in_words(0.5) == "0.5");
+  BOOST_TEST(number_in_words(1234) == "1.2e3");
+}
+
+BOOST_AUTO_TEST_CASE(a_reader_is_told_what_errors_mean) {
+  BOOST_TEST(caveats(reference()).empty());
+  const auto words = caveats(chaotic(), {.interrupted_by = "SIGINT", .are_times_of_work = true});
+  BOOST_TEST_REQUIRE(words.size() == 3u);
+  BOOST_TEST(words[0].starts_with("Times are not measured"));
+  BOOST_TEST(words[1].starts_with("The study was interrupted by SIGINT: points are missing."));
+  BOOST_TEST(
+      words[2] ==
+      "chaotic: from t = 1.5 s on, two runs that start one rounding apart differ by more than "
+      "1e-2 (× 10 in 230 ms).\nPosition errors at T = 2 s mean nothing. Fastest: of the runs "
+      "whose energy is in the right modes.");
+}
+
+BOOST_AUTO_TEST_CASE(negative_control_a_little_more_time_or_error_is_seen) {
+  std::vector<Point> points = {point("verlet", 5e-2, 1), point("ida", 5e-2, 1)};
+  BOOST_TEST(made(points).front[0].fastest->method->name == "verlet");
+  points[0].time = std::nextafter(1.0, 2.0);
+  BOOST_TEST(made(points).front[0].fastest->method->name == "ida");
+  points[1].errors.position = 0.1;  // with what is certified, it is more
+  BOOST_TEST(made(points).front[0].fastest->method->name == "verlet");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
