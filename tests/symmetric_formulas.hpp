@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "qddot/integrators/base/symmetric_multistep.hpp"
+#include "integrators/methods/tables.hpp"
 
 namespace qddot {
 inline namespace tests {

@@ -6,9 +6,10 @@
 // A step takes 17 forces. The same sums with other weights, of order 10, estimate the error, and
 // the next step size follows from it.
 //
-// Where the system has a K, steps are held to h <= 8.42/w_max. Up to there no vibration grows by
+// If the system has a K, steps are held to h <= 8.42/w_max. Up to there no vibration grows by
 // more than a hundredth a step. The error test alone would miss vibrations that grow but are still
 // small.
+#include "integrators/methods/tables.hpp"
 #include "qddot/integrators/base/nystrom.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -6,11 +6,12 @@
 // The last stage is the first of the next step: five forces a step. The same sums with other
 // weights, of order 4, estimate the error, and the next step size follows from it.
 //
-// Where the system has a K, steps are held to h <= 2.71/w_max. Up to there no vibration grows by
+// If the system has a K, steps are held to h <= 2.71/w_max. Up to there no vibration grows by
 // more than a hundredth a step. The error test alone would miss vibrations that grow but are still
 // small.
 #include <cmath>
 
+#include "integrators/methods/tables.hpp"
 #include "qddot/integrators/base/nystrom.hpp"
 #include "qddot/integrators/registry.hpp"
 

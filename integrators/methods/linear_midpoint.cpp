@@ -12,7 +12,7 @@
 // keeps angular momentum, since springs push along themselves in K_m as in f (where their rest
 // length is positive).
 //
-// Where K is constant, this is the implicit midpoint rule for the stiff springs. Let a vibration
+// If K is constant, this is the implicit midpoint rule for the stiff springs. Let a vibration
 // q'' = -(w_f^2 + w_s^2) q have w_f from stiff springs and w_s from soft ones. Then half the trace
 // of a step is
 //   1 - h^2 (w_f^2 + w_s^2)/(2 + h^2 w_f^2/2)
@@ -164,6 +164,7 @@ Method linear_midpoint() {
               "Stern and Grinspun, Multiscale Modeling and Simulation 7:4 (2009) 1779-1794, "
               "of which this is one iteration",
           .order = 2,
+          .solves_stiff_part = true,
           .traits = {Trait::implicit, Trait::cancels_torques},
           .needs = {Need::stiffness},
           .takes = {Option::solver},
@@ -175,6 +176,7 @@ Method linear_midpoint4() {
           .summary = "five steps of linear_midpoint, one of them backwards, composed to order 4",
           .source = "Suzuki, Physics Letters A 146 (1990) 319-323",
           .order = 4,
+          .solves_stiff_part = true,
           .traits = {Trait::implicit, Trait::cancels_torques},
           .needs = {Need::stiffness},
           .takes = {Option::solver},

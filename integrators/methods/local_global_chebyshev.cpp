@@ -13,13 +13,13 @@
 // one for [-rho, rho].
 //
 // The first iteration is a plain one. After it the momentum of free bodies is right and stays so.
-// Where p^T (M + h^2 L) p grows from one iteration to the next, the recurrence starts again with a
+// If p^T (M + h^2 L) p grows from one iteration to the next, the recurrence starts again with a
 // plain step.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/base/local_global.hpp"
 #include "qddot/integrators/registry.hpp"
 
@@ -37,8 +37,8 @@ class Chebyshev final : public LocalGlobal {
   }
 
  private:
-  // Takes the widest interval in which k iterations gain a digit. A narrower one makes errors
-  // inside shrink faster, and errors outside grow faster in a few iterations.
+  // Takes the widest interval in which k iterations gain a digit. In a few iterations a narrower
+  // interval is better: errors inside shrink faster, and those outside hardly grow.
   void begin_step() override {
     const double hw = step_size() * frequency_;
     const double widest = hw * hw / (1 + hw * hw);

@@ -146,7 +146,8 @@ class MultirateAdams final : public FixedStep {
     return all;
   }
 
-  // Advances the state by h from `now`, which is t after the step's start, with soft forces p.
+  // Advances the state by h from `now`, which is t after the step's start, with soft accelerations
+  // p.
   Outcome follow(const State& now, double t, double h, State& next) {
     const Eigen::Matrix<double, k, k> polynomials = basis(points(t, h));
     Row once = Row::Zero(), twice = Row::Zero();

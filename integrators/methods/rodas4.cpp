@@ -6,7 +6,7 @@
 // be g times the right-hand side. Then a stage is one n x n solve:
 //   (M - g^2 K) U_q = M (r + g s),   U_v = (U_q - r)/g
 // A step takes six forces, one factorisation and six solves. The method is L-stable.
-#include "qddot/integrators/base/rosenbrock.hpp"
+#include "integrators/methods/tables.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {

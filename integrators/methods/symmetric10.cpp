@@ -6,7 +6,7 @@
 // formula, not to the motion. They lie on the unit circle, at angles of the cosines 13/20, 2/5,
 // -1/5 and -1/2. So no vibration grows or dies up to a limit of h w. Other cosines give limits as
 // large, but roots that come nearer to each other.
-#include "qddot/integrators/base/symmetric_multistep.hpp"
+#include "integrators/methods/tables.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {

@@ -8,7 +8,7 @@
 // circle, at an angle of cosine 1/4. So no vibration grows or dies up to a limit of h w. The limit
 // grows with the cosine, and so does the phase error. It is 1.73 at the cosine 0 (the formula of
 // Lambert and Watson) and 1.83 here. Larger cosines bring the roots near those of the motion.
-#include "qddot/integrators/base/symmetric_multistep.hpp"
+#include "integrators/methods/tables.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {

@@ -8,7 +8,7 @@
 // circle, at angles of the cosines 1/20 and -1/2. So no vibration grows or dies up to a limit of
 // h w. The cosine 0 in place of 1/20 makes the limit 1.130, but brings the roots nearer to each
 // other. The energy of an orbit then goes to and fro by much more at h w = 0.6.
-#include "qddot/integrators/base/symmetric_multistep.hpp"
+#include "integrators/methods/tables.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {

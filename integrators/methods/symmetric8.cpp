@@ -7,7 +7,7 @@
 // The roots of r are spurious: they belong to the formula, not to the motion. They lie on the unit
 // circle, at angles of the cosines 1/2, 0 and -1/2. So no vibration grows or dies up to a limit of
 // h w.
-#include "qddot/integrators/base/symmetric_multistep.hpp"
+#include "integrators/methods/tables.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {

@@ -5,7 +5,7 @@
 // The coefficients follow from the sizes of the last steps. BDF has order 1 to 5 and is solved by
 // Newton's method. The method cvode_bdf solves with the structured n x n matrix, cvode_bdf_klu the
 // stock way with KLU. Adams-Moulton, cvode_adams, has order 1 to 12 and is solved by fixed-point
-// iteration. What is not set here is CVODE's default.
+// iteration. All other settings are CVODE's defaults.
 #include <cvode/cvode.h>
 #include <fmt/format.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>

@@ -4,7 +4,7 @@
 //   y_{n+1} = y_n + h sum_{i<=s} b_i F(Y_i)
 // Other weights of the same table estimate the error, and the next step size follows from it.
 //
-// Where the system has a K, steps are held to h <= c/w_max, with the table's own stability limit c
+// If the system has a K, steps are held to h <= c/w_max, with the table's own stability limit c
 // on vibrations. The error test alone would miss vibrations that grow but are still small.
 #include <fmt/format.h>
 

@@ -3,16 +3,16 @@
 //   F(y, y') = (q' - v, M v' - f(q)) = 0,   y = (q, v)
 //   h y'_n = sum_{i=0}^k alpha_i y_{n-i}
 // Newton's matrix is dF/dy + c dF/dy' = [[c I, -I], [-K, c M]] with c = alpha_0/h. The method ida
-// eliminates v and solves with a symmetric n x n matrix, ida_klu the stock way with KLU. What is
-// not set here is IDA's default.
+// eliminates v and solves with a symmetric n x n matrix, ida_klu the stock way with KLU. All
+// other settings are IDA's defaults.
 //
 // M may be singular. The position of a massless node is then constrained by 0 = f (index 1). The
-// error test sees it like all other positions. Where it moves fast, longer steps would throw
+// error test sees it like all other positions. If it moves fast, longer steps would throw
 // Newton's iteration onto another balance, a saddle of its energy.
 //
 // The velocity v = q' of a massless node is of index 2 (Brenan, Campbell, Petzold, Numerical
-// Solution of IVPs in DAEs, section 5.2). Nothing depends on it, so IDA gets 0 = -v for it. What is
-// seen of it is q'. At the ends of a run it is the velocity in which f stays zero,
+// Solution of IVPs in DAEs, section 5.2). Nothing depends on it, so IDA gets 0 = -v for it. Its
+// observed velocity is q'. At the ends of a run it is the velocity in which f stays zero,
 // 0 = (K v)_massless. The start is made consistent to rounding: massless nodes go downhill to where
 // their springs balance, while the others are held.
 #include <algorithm>

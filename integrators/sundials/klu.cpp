@@ -6,7 +6,7 @@
 #include <sunmatrix/sunmatrix_sparse.h>
 
 #include "integrators/sundials/newton_matrix.hpp"
-#include "integrators/sundials/vector.hpp"
+#include "integrators/sundials/support.hpp"
 #include "qddot/model/first_order.hpp"
 
 namespace qddot::sundials {

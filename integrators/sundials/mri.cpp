@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 
 #include "integrators/sundials/arkode.hpp"
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {

@@ -7,7 +7,7 @@
 
 #include "integrators/sundials/cause.hpp"
 #include "integrators/sundials/newton_matrix.hpp"
-#include "integrators/sundials/vector.hpp"
+#include "integrators/sundials/support.hpp"
 #include "qddot/integrators/base/step_times.hpp"
 #include "qddot/integrators/integrator.hpp"
 #include "qddot/integrators/method.hpp"

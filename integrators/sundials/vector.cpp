@@ -1,7 +1,6 @@
-#include "integrators/sundials/vector.hpp"
-
 #include <algorithm>
 
+#include "integrators/sundials/support.hpp"
 #include "qddot/model/vector_updates.hpp"
 
 namespace qddot::sundials {

@@ -1,7 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/algebra/automatic_factors.hpp"
-#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/algebra/factors.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/algebra/unprinted.hpp"
@@ -79,7 +79,7 @@ BOOST_AUTO_TEST_CASE(a_block_is_factorised_once_its_iterations_have_cost_as_much
   for (int i = 0; i < 3 * iterative; ++i) BOOST_TEST(both.solves_directly());
   factorize(3e-6);
   BOOST_TEST(both.solves_directly());
-  // One solve with that matrix: the next is iterated for again.
+  // After one solve with that matrix, the next one iterates again.
   factorize(3e-6);
   BOOST_TEST(!both.solves_directly());
 }

@@ -6,7 +6,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/algebra/conjugate_gradients.hpp"
-#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/algebra/factors.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/algebra/unprinted.hpp"

@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "qddot/algebra/factors.hpp"
 #include "qddot/algebra/laplacian_mass.hpp"
-#include "qddot/algebra/multifrontal.hpp"
 #include "qddot/model/block_diagonal_system.hpp"
 #include "qddot/model/constrained_system.hpp"
 #include "qddot/scene/generators.hpp"

@@ -7,9 +7,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/algebra/cholmod_factors.hpp"
 #include "qddot/algebra/effective_mass.hpp"
-#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/algebra/factors.hpp"
 #include "qddot/algebra/multifrontal/fronts.hpp"
 #include "qddot/algebra/symbolic_factorization.hpp"
 #include "qddot/scene/generators.hpp"
@@ -134,8 +133,8 @@ Matrix displaced(const Generator& generator, const Reductions& reductions,
   return {generator.name, system.mass(), stiffness_at(system, q)};
 }
 
-// How many pivots are negative in a matrix factorised by so many threads, or -1 where that was
-// given up, and the solutions of some right-hand side.
+// The number of negative pivots of a matrix that `threads` threads factorise, or -1 if they gave
+// up, and the solution for a right-hand side.
 struct Solved {
   Index negative = -1;
   Vec x;

@@ -2,7 +2,6 @@
 
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/equilibrium.hpp"
-#include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/linear_motion.hpp"
 #include "qddot/analysis/natural_modes.hpp"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
@@ -43,7 +43,7 @@ std::vector<NamedReductions> sets_of_reductions() {
 // Energies of nodes with these positions and velocities, by the independent model.
 struct PlainEnergies {
   long double kinetic = 0, potential = 0;  // [J]
-  // What rounding of the nodes' coordinates is multiplied by in the potential and in a force.
+  // The factors by which rounding of coordinates enters the potential and a force.
   long double potential_size = 0, force_size = 0;
   std::vector<long double> force{};  // on free nodes, weights included
 };

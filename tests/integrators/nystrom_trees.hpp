@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "qddot/integrators/base/nystrom.hpp"
@@ -85,6 +86,13 @@ inline double order_defect(const std::vector<NystromTree>& trees, const std::vec
     if (r == p - 1) compare(b, tree, tree.exact / (r * (r + 1)));
   }
   return largest;
+}
+
+// The larger modulus of the eigenvalues t +- sqrt(t^2 - d), t half the trace and d the determinant.
+inline double spectral_radius(const Eigen::Matrix2d& matrix) {
+  const double t = (matrix(0, 0) + matrix(1, 1)) / 2;
+  const double d = matrix(0, 0) * matrix(1, 1) - matrix(0, 1) * matrix(1, 0);
+  return t * t < d ? std::sqrt(d) : std::abs(t) + std::sqrt(t * t - d);
 }
 
 }  // namespace tests

@@ -38,7 +38,7 @@ struct Orders {
   double q, v;
 };
 
-// What `method` takes of the two.
+// The one of the two that is the method's knob.
 inline Options options_of(const Method& method, double step_size, double rtol) {
   return method.knob == Knob::step_size ? Options{.step_size = step_size} : Options{.rtol = rtol};
 }

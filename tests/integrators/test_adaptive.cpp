@@ -4,7 +4,7 @@
 
 #include "qddot/analysis/linear_motion.hpp"
 #include "qddot/integrators/base/nystrom.hpp"
-#include "tests/integrators/spectral_radius.hpp"
+#include "tests/integrators/nystrom_trees.hpp"
 #include "tests/integrators/tables.hpp"
 
 BOOST_AUTO_TEST_SUITE(adaptive)
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(a_step_of_a_pair_errs_by_its_order_and_one) {
       const double in_q = slope(logs, q.array().log() / 2), in_v = slope(logs, v.array().log() / 2);
       BOOST_TEST_CONTEXT(name << ": " << in_q << " in q, " << in_v << " in v") {
         BOOST_TEST(std::abs(in_v - (pair.order + 1)) < 0.5);
-        // That of q is the smaller one, and may be an order higher.
+        // The order in q is the smaller one, and may be higher by one.
         BOOST_TEST(in_q > pair.order + 0.5);
         BOOST_TEST(in_q < pair.order + 2.5);
       }

@@ -2,7 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/allocations.hpp"
 #include "tests/integrators/scenes.hpp"
@@ -112,7 +112,8 @@ Cost cost_of(const Method& method, const Course& c, int length, bool compensated
   return {allocations - before, std::move(summary)};
 }
 
-// What a run four times as long allocates more; nothing where one of them does not reach its end.
+// The additional allocation of a run four times as long; empty if one of them does not reach its
+// end.
 std::optional<std::int64_t> more_of_longer_run(const Method& method, const Course& c,
                                                bool compensated = false) {
   const Cost few = cost_of(method, c, 1, compensated), many = cost_of(method, c, 4, compensated);
@@ -139,7 +140,7 @@ class Spender final : public FixedStep {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(no_step_of_any_method_and_no_look_at_it_allocates) {
-  // What is allocated once, as by OpenMP where the first matrix is factorised.
+  // Some memory is allocated only once, as by OpenMP at the first factorisation.
   cost_of(method_named("semi_implicit_euler"), courses().front(), 1, false);
   for (const Course& c : courses()) {
     BOOST_TEST_CONTEXT(c.name) {

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/linear_motion.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/integrators/split_relay.hpp"
@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(newtons_matrix_is_that_of_the_stiff_springs_alone) {
       BOOST_TEST(r.summary.message == "");
       BOOST_TEST(asked.stiff_stiffness > 0);
       BOOST_TEST(asked.stiff_stiffness + asked.soft_stiffness == c.stiffness_evaluations);
-      // That of the soft springs is for the stability limit alone, once in fifty steps.
+      // K of the soft springs is only for the stability limit, once in fifty steps.
       BOOST_TEST(asked.soft_stiffness == (c.steps + c.rejected + 49) / 50);
       BOOST_TEST(asked.whole_stiffness == 0);
       // Each force is that of one half, the soft one once a stage and none for Newton's iterations.

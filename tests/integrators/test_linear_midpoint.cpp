@@ -3,7 +3,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/algebra/effective_mass.hpp"
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/linear_motion.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/integrators/split_relay.hpp"
@@ -86,7 +86,7 @@ double observed_growth(const Form& form, double h, double w_f, double w_s, int s
   return std::pow(amplitude(steps) / amplitude(steps / 2), 2.0 / steps);
 }
 
-// That it grows by what the theory says, in steps of h on w_s = 1.
+// Checks that the form grows as the theory predicts, in steps of h at w_s = 1.
 void check_growth(const Form& form, double h, double w_f) {
   const double expected = growth(form, h, w_f, 1);
   BOOST_TEST(expected > 1.03);
@@ -323,7 +323,8 @@ BOOST_AUTO_TEST_CASE(each_part_of_a_step_takes_one_force_one_matrix_and_one_solv
                                                        .stiffness_evaluations = parts,
                                                        .factorizations = parts,
                                                        .solves = parts}));
-      // Where K is constant, one for each change of the size of a step: to p, and there and back.
+      // With a constant K, one factorisation for each change of the step size: to p, and there and
+      // back.
       const std::int64_t sizes = form.order == 2 ? 1 : 1 + 2 * steps;
       BOOST_TEST(counts(linear_hammock(2).network) == (Counts{.steps = steps,
                                                               .force_evaluations = parts,

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "tests/integrators/split_relay.hpp"
 
 BOOST_AUTO_TEST_SUITE(mri)
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(soft_forces_are_evaluated_a_few_times_a_step_and_stiff_ones
         BOOST_TEST(r.summary.counts.steps == steps);
         BOOST_TEST(r.summary.counts.force_evaluations == asked.soft_force + asked.stiff_force);
         BOOST_TEST(asked.whole_force == 0);
-        // One at the start beside the stages.
+        // One evaluation at the start, beside those of the stages.
         BOOST_TEST(asked.soft_force == slow * steps + 1);
         // Inner steps of h/m go from each stage to the next. ARKODE evaluates one more force at the
         // end of some of them, once a step, and at the start.

@@ -1,7 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "integrators/sundials/newton_matrix.hpp"
-#include "integrators/sundials/vector.hpp"
+#include "integrators/sundials/support.hpp"
 #include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(newton_matrix)

@@ -2,7 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/find_outcome.hpp"
+#include "qddot/integrators/integrator.hpp"
 #include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(registry)

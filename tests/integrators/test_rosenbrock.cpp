@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "integrators/methods/tables.hpp"
 #include "qddot/analysis/linear_motion.hpp"
-#include "qddot/integrators/base/rosenbrock.hpp"
 #include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(rosenbrock)
@@ -37,7 +37,7 @@ Plain plain(const RosenbrockTable& table) {
   return {a * gamma, a * gamma + gamma, gamma.transpose() * m, gamma.transpose() * lower_m};
 }
 
-// What is left of the conditions of order 1, 2, 3, 3, 4, 4, 4, 4 of autonomous systems (Table
+// The residuals of the conditions of order 1, 2, 3, 3, 4, 4, 4, 4 of autonomous systems (Table
 // IV.7.1 there, with gamma among the beta).
 std::vector<double> conditions(const Plain& p, const Vec& b) {
   const Vec ones = Vec::Ones(b.size());
@@ -78,7 +78,7 @@ Case nonlinear() {
   return {std::move(system), p.initial, std::move(end)};
 }
 
-// One step of the method in the form without transformation, with a dense 2n x 2n Jacobian.
+// A step of the method in the form without transformation, with a dense 2n x 2n Jacobian.
 State step(const System& system, const State& start, double h) {
   const Plain p = plain(registered::rodas4_table());
   const Index n = system.size(), s = p.b.size();
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(it_is_a_stable_and_damps_infinite_frequencies_at_once) {
 BOOST_AUTO_TEST_CASE(a_step_in_n_x_n_form_is_the_one_of_the_first_order_form) {
   for (const Case& c : {linear(), nonlinear()}) {
     for (const double h : {0.001, 0.004, 0.016}) {
-      // So coarse a tolerance that one step is taken.
+      // The tolerance is so coarse that one step is taken.
       const Run r = run(method_named("rodas4"), *c.system, c.initial, h, {.rtol = 1e3});
       BOOST_REQUIRE(r.summary.counts.steps == 1);
       // Stages of 34 times what they make together, on q and v of 5, and matrices of condition 100.

@@ -4,7 +4,7 @@
 
 #include "integrators/sundials/additive_tables.hpp"
 #include "integrators/sundials/arkode.hpp"
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/integrators/split_relay.hpp"
 

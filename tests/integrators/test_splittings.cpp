@@ -4,7 +4,6 @@
 
 #include "qddot/integrators/base/kick_drift.hpp"
 #include "tests/integrators/nystrom_trees.hpp"
-#include "tests/integrators/spectral_radius.hpp"
 #include "tests/integrators/tables.hpp"
 
 BOOST_AUTO_TEST_SUITE(splittings)

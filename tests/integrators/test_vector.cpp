@@ -3,7 +3,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "integrators/sundials/vector.hpp"
+#include "integrators/sundials/support.hpp"
 #include "tests/measure.hpp"
 
 BOOST_AUTO_TEST_SUITE(vector)

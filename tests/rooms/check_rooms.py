@@ -51,6 +51,8 @@ MAY_SEE = {
     # Those that write motions.
     "experiments/simulate": KIT | {"experiments/motion_files"},
     "experiments/motions": KIT | {"experiments/motion_files"},
+    # Compares the formulas of methods.
+    "experiments/symmetric_roots": KIT | {"integrators/methods"},
     # A peer is SUNDIALS by itself, whose handles are there.
     "experiments/bench": KIT | {"integrators/sundials"},
 }

@@ -3,7 +3,6 @@
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_file.hpp"
-#include "qddot/scene/scene_writer.hpp"
 #include "qddot/scene/settle.hpp"
 #include "tests/folder.hpp"
 #include "tests/scene/refusal.hpp"

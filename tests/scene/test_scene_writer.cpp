@@ -8,7 +8,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/scene_writer.hpp"
+#include "qddot/scene/scene_file.hpp"
 #include "tests/scene/same_scene.hpp"
 #include "tests/scene/scene_texts.hpp"
 

@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "qddot/algebra/conjugate_gradients.hpp"
-#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/algebra/factors.hpp"
 #include "qddot/algebra/symbolic_factorization.hpp"
 
 namespace qddot {

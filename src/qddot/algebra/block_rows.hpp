@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "qddot/algebra/blocks.hpp"
 #include "qddot/algebra/large_array.hpp"
+#include "qddot/algebra/symbolic_factorization.hpp"
 
 namespace qddot {
 
-// A symmetric matrix a D - s K, both triangles, stored by rows of B x B blocks (see blocks.hpp). A
-// product reads it once from front to back and writes each row once. Blocks of fewer unknowns are
+// A symmetric matrix a D - s K, both triangles, stored by rows of B x B blocks (see block_starts).
+// A product reads it once from front to back and writes each row once. Blocks of fewer unknowns are
 // filled up with rows and columns of the identity. Vectors have B entries for each row of blocks,
 // zero where filled up, and `slack` more, which may be read past the end.
 template <int B>

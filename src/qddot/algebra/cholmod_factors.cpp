@@ -1,5 +1,3 @@
-#include "qddot/algebra/cholmod_factors.hpp"
-
 #include <atomic>
 #include <cmath>
 #include <new>
@@ -9,6 +7,8 @@
 #include <sys/mman.h>
 
 #include <suitesparse/cholmod.h>
+
+#include "qddot/algebra/factors.hpp"
 
 namespace qddot {
 namespace {

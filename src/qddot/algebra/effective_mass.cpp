@@ -1,9 +1,8 @@
 #include "qddot/algebra/effective_mass.hpp"
 
 #include "qddot/algebra/automatic_factors.hpp"
-#include "qddot/algebra/cholmod_factors.hpp"
 #include "qddot/algebra/conjugate_gradients.hpp"
-#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/algebra/factors.hpp"
 
 namespace qddot {
 namespace {

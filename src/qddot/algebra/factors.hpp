@@ -1,9 +1,13 @@
 #pragma once
 
+#include <memory>
+
 #include "qddot/algebra/solver.hpp"
 #include "qddot/model/system.hpp"
 
 namespace qddot {
+
+struct SymbolicFactorization;
 
 // Signs of a factorised symmetric matrix. Direct solvers can still solve with an `indefinite` one;
 // no solver can with a `singular` one.
@@ -31,5 +35,18 @@ class Factors {
   // case.
   virtual void set_tolerance(double) {}
 };
+
+// Makes Factors by CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM TOMS 35:3, 2008): supernodal LL'
+// or simplicial LDL', whichever its flop count favours.
+std::unique_ptr<Factors> make_cholmod_factors(const SymmetricMatrix& pattern, Vec diagonal);
+
+// Makes Factors P (a D - s K) P' = L E L' without pivoting, by the multifrontal method (Duff, Reid,
+// ACM TOMS 9:3, 1983; Liu, SIAM Review 34:1, 1992). Order and supernodes are those of
+// symbolic_factorization.hpp. Throws std::bad_alloc or std::runtime_error when out of memory, here
+// only.
+std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal);
+// The same for a pattern that is analysed already.
+std::unique_ptr<Factors> make_multifrontal(const SymmetricMatrix& pattern, Vec diagonal,
+                                           SymbolicFactorization symbolic);
 
 }  // namespace qddot

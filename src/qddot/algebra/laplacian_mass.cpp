@@ -4,7 +4,7 @@
 #include <numeric>
 #include <span>
 
-#include "qddot/algebra/multifrontal.hpp"
+#include "qddot/algebra/factors.hpp"
 
 namespace qddot {
 namespace {

@@ -1,16 +1,16 @@
-#include "qddot/algebra/multifrontal.hpp"
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <omp.h>
 #include <optional>
 
+#include "qddot/algebra/factors.hpp"
 #include "qddot/algebra/large_array.hpp"
 #include "qddot/algebra/multifrontal/front_kernels.hpp"
 #include "qddot/algebra/multifrontal/fronts.hpp"
 #include "qddot/algebra/multifrontal/team.hpp"
 #include "qddot/algebra/multifrontal/triangular_solves.hpp"
+#include "qddot/algebra/symbolic_factorization.hpp"
 
 namespace qddot {
 namespace {

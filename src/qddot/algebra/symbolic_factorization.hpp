@@ -25,8 +25,16 @@ struct SymbolicFactorization {
 };
 
 // Analyses an n x n pattern by CHOLMOD (Chen, Davis, Hager, Rajamanickam, ACM TOMS 35:3, 2008) on
-// the graph of its blocks (blocks.hpp): a block is one vertex. Throws std::runtime_error when out
+// the graph of its blocks (block_starts): a block is one vertex. Throws std::runtime_error when out
 // of memory.
 SymbolicFactorization analyse(const SymmetricMatrix& pattern);
+
+// The most unknowns of a block: those of a node.
+inline constexpr int most_block_unknowns = 3;
+
+// The first unknown of each block of a symmetric n x n pattern, and last n. A block is a run of at
+// most three unknowns with the same neighbours, itself included, such as those of a node. Entries
+// between two blocks are all there or all absent.
+std::vector<int> block_starts(const SymmetricMatrix& pattern);
 
 }  // namespace qddot

@@ -8,10 +8,10 @@
 
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/effective_mass.hpp"
-#include "qddot/analysis/require_stiffness.hpp"
 #include "qddot/analysis/stability.hpp"
 #include "qddot/model/capabilities.hpp"
 #include "qddot/model/machine_epsilon.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 namespace {

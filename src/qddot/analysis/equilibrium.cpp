@@ -5,9 +5,9 @@
 
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
-#include "qddot/analysis/require_stiffness.hpp"
 #include "qddot/analysis/stability.hpp"
 #include "qddot/model/machine_epsilon.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 namespace {

@@ -11,8 +11,8 @@
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
-#include "qddot/analysis/require_stiffness.hpp"
 #include "qddot/model/machine_epsilon.hpp"
+#include "qddot/model/system.hpp"
 
 namespace qddot {
 namespace {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -237,5 +238,13 @@ class Integrator {
   double slack_at_ = 0;              // [s], time of the outcome went_slack
   std::int64_t failed_step_ = 0;
 };
+
+// The outcome of that name (see name(Outcome)); nothing if there is none.
+inline std::optional<Outcome> find_outcome(std::string_view word) {
+  for (int i = 0; i <= static_cast<int>(Outcome::no_discrete_gradient); ++i) {
+    if (name(static_cast<Outcome>(i)) == word) return static_cast<Outcome>(i);
+  }
+  return {};
+}
 
 }  // namespace qddot

@@ -71,6 +71,9 @@ struct Method {
   // The roots, at h w, of the recurrence of positions on q'' = -w^2 q, the deciding one first.
   // Given for methods whose steps depend on more earlier steps than a run shows.
   std::vector<std::complex<double>> (*recurrence_roots)(double h_omega) = nullptr;
+  // Whether a step solves linear equations, for the unknowns with stiff forces alone if a scene
+  // names stiff springs.
+  bool solves_stiff_part = false;
   SetOf<Trait> traits{};
   SetOf<Need> needs{};
   SetOf<Option> takes{};

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "qddot/model/capabilities.hpp"
-#include "qddot/model/kinks.hpp"
 
 namespace qddot {
 

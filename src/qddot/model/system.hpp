@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stdexcept>
 #include <typeinfo>
 #include <utility>
 
@@ -78,6 +79,13 @@ class System {
 // Kinetic plus potential energy [J] of a state.
 inline double total_energy(const System& system, const State& state) {
   return system.kinetic(state.v) + system.potential(state.q);
+}
+
+// Throws std::invalid_argument if the system computes no K.
+inline void require_stiffness(const System& system) {
+  if (!system.has_stiffness()) {
+    throw std::invalid_argument("the system computes no stiffness matrix K, which this is made of");
+  }
 }
 
 }  // namespace qddot

@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include "qddot/analysis/curvature_signs.hpp"
-#include "qddot/analysis/frequency_bound.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/natural_modes.hpp"
 

@@ -11,7 +11,6 @@
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/mesh/mesh_scene.hpp"
 #include "qddot/scene/toml_table.hpp"
-#include "qddot/scene/toml_text.hpp"
 
 namespace qddot {
 namespace {

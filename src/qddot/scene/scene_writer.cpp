@@ -1,5 +1,3 @@
-#include "qddot/scene/scene_writer.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -8,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/scene_file.hpp"
 
 namespace qddot {
 namespace {

@@ -1,11 +1,10 @@
-#include "qddot/scene/toml_text.hpp"
-
 #include <cctype>
 
 #include <fmt/format.h>
 
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/text_file.hpp"
+#include "qddot/scene/toml_table.hpp"
 
 namespace qddot {
 namespace {

@@ -22,9 +22,11 @@ constexpr double factor_of_failure = 0.25;
 constexpr double stretch = 1.01;
 // The first step, as a fraction of the run, if the start and its rate of change say nothing.
 constexpr double blind_step = 1e-6;
-// A step ends before a jump by the first part of its length. A step over a jump may be this many
-// times shorter.
-constexpr double short_of_jump = 1e-6, slowest_over_jump = 1e-6;
+// A step ends before a jump by this part of its length.
+constexpr double short_of_jump = 1e-6;
+// A step over a jump takes some roundings of the time. It is longer for slow positions, whose
+// rounding takes longer to cross, by at most this part of the step before.
+constexpr double slowest_over_jump = 1e-6;
 constexpr double roundings_over_jump = 8 * machine_epsilon;
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/integrators/base/compression.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"
-#include "qddot/model/kinks.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 
@@ -57,7 +57,7 @@ class ImplicitStep : public FixedStep {
   bool is_exact(const Vec& q);
   bool is_rounding(const Vec& q, double size, double least) const;
   bool is_linear_along(const Vec& q);
-  // Whether f has a kink (kinks.hpp) between q, the place of the residual and the place that the
+  // Whether f has a kink (Kinks) between q, the place of the residual and the place that the
   // correction leads to.
   bool crosses_kink(const Vec& q);
   void residual(const Vec& q, double s);

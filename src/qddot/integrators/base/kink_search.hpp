@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "qddot/model/kinks.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 

@@ -49,11 +49,4 @@ class NystromStages {
   Vec stage_;
 };
 
-// The pairs of Dormand, El-Mikkawy and Prince, each in the file of its method.
-namespace registered {
-const NystromPair& dprkn6_pair();
-const NystromPair& dprkn8_pair();
-const NystromPair& dprkn12_pair();
-}  // namespace registered
-
 }  // namespace qddot

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 
 namespace qddot {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "qddot/integrators/base/table_row.hpp"
-
 namespace qddot {
 namespace {
 
@@ -16,6 +14,11 @@ constexpr std::size_t instants = 2;
 constexpr double stage_share = 1e-4;
 // The smallest relative residual; below it is rounding.
 constexpr double tightest = 1e-15;
+
+// A row of a method's table as a vector of weights.
+Eigen::Map<const Vec> as_vec(const std::vector<double>& row) {
+  return {row.data(), static_cast<Index>(row.size())};
+}
 
 }  // namespace
 

@@ -16,11 +16,6 @@ struct RosenbrockTable {
   std::vector<std::vector<double>> a, c;  // rows i = 0, 1, ..., with i entries
 };
 
-// The table of order 4 with an estimate of order 3.
-namespace registered {
-const RosenbrockTable& rodas4_table();
-}  // namespace registered
-
 // Steps of such a method for y = (q, v), F = (v, M^-1 f(q)), with the exact
 // J = [[0, I], [M^-1 K, 0]], K = K(q_n). Each stage is one n x n solve, g = gamma h:
 //   (I - g J)(U_q, U_v) = (r, s)  <=>  (M - g^2 K) U_q = M (r + g s),  U_v = (U_q - r)/g.

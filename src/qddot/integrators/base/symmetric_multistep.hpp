@@ -71,12 +71,4 @@ std::vector<std::complex<double>> symmetric_roots(double h_omega) {
   return roots_of(formula(), h_omega);
 }
 
-// All formulas, each in the file of its method.
-namespace registered {
-const SymmetricFormula& symmetric4_formula();
-const SymmetricFormula& symmetric6_formula();
-const SymmetricFormula& symmetric8_formula();
-const SymmetricFormula& symmetric10_formula();
-}  // namespace registered
-
 }  // namespace qddot

@@ -2,7 +2,6 @@
 // central, so energy and angular momentum stay, and the motion stays in a plane that is none of the
 // coordinate planes. The orbit is an ellipse if rest_length = 0, otherwise a rosette.
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/generators/one_spring.hpp"
 #include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {

@@ -1,7 +1,6 @@
 // The lecture's first example, a 1D spring of zero rest length on a wall: m x'' = -k x. Its closed
 // form by exp(At) is x(t) = x0 cos(w t), w = sqrt(k/m).
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/generators/one_spring.hpp"
 #include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {

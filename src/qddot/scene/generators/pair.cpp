@@ -2,7 +2,6 @@
 // rotates about it. The frequency at small amplitude without rotation is sqrt(k/mu) with the
 // reduced mass mu = m1 m2 / (m1 + m2).
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/generators/one_spring.hpp"
 #include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {

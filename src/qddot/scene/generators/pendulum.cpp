@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/generators/one_spring.hpp"
 #include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {

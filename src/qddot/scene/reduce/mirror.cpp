@@ -116,9 +116,10 @@ std::vector<int> along_springs(const DrawnPart& drawn,
   return order;
 }
 
-class Search {
+// Finds mirror planes of a part.
+class MirrorSearch {
  public:
-  explicit Search(const DrawnPart& drawn)
+  explicit MirrorSearch(const DrawnPart& drawn)
       : drawn_(drawn),
         tolerance_(rounding * largest_coordinate(drawn.x)),
         speed_tolerance_(rounding * largest_coordinate(drawn.v)),
@@ -328,7 +329,7 @@ std::vector<Vector3d> candidates(const DrawnPart& drawn, const Frame& frame) {
 }  // namespace
 
 Mirrors mirrors_of(const DrawnPart& drawn, const Frame& frame) {
-  const Search search(drawn);
+  const MirrorSearch search(drawn);
   std::vector<Plane> planes;
   Mirrors mirrors{.frame = frame};
   if (search.has_unclear_spring()) return mirrors;
