@@ -1,55 +1,15 @@
 #include "experiments/advice/case_result.hpp"
 
-#include <cmath>
-#include <limits>
-#include <tuple>
-
-#include <nlohmann/json.hpp>
-
 #include "experiments/advice/hindsight.hpp"
 #include "qddot/measure/advice/advise.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 
-namespace qddot::advice_study {
+namespace qddot::judged_advice {
 namespace {
 
 // Fraction of the accuracy that the reference may be off by.
 constexpr double good_reference = 0.3;
-
-struct Text {
-  const char* name;
-  std::string CaseResult::*value;
-};
-constexpr Text texts[] = {{"case", &CaseResult::name},
-                          {"kind", &CaseResult::kind},
-                          {"left_out", &CaseResult::left_out},
-                          {"method", &CaseResult::method},
-                          {"error_estimate_kind", &CaseResult::kind_of_estimate},
-                          {"why", &CaseResult::why},
-                          {"best_method", &CaseResult::best_method},
-                          {"advised", &CaseResult::advised}};
-
-struct Number {
-  const char* name;
-  double CaseResult::*value;
-};
-constexpr Number numbers[] = {{"unknowns", &CaseResult::unknowns},
-                              {"springs", &CaseResult::springs},
-                              {"until", &CaseResult::until},
-                              {"accuracy", &CaseResult::accuracy},
-                              {"value", &CaseResult::value},
-                              {"error_estimate", &CaseResult::error_estimate},
-                              {"error", &CaseResult::error},
-                              {"certified", &CaseResult::certified},
-                              {"best_value", &CaseResult::best_value},
-                              {"best_time_s", &CaseResult::best_seconds},
-                              {"run_time_s", &CaseResult::run_seconds},
-                              {"total_time_s", &CaseResult::total_seconds},
-                              {"runs", &CaseResult::runs},
-                              {"advised_error", &CaseResult::advised_error},
-                              {"advised_time_s", &CaseResult::advised_seconds},
-                              {"advice_time_s", &CaseResult::advice_seconds}};
 
 void measure_worth(CaseResult& result, const ReducedScene& model, const Reference& reference,
                    const Answer& answer, int repeats) {
@@ -111,42 +71,34 @@ CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
   return result;
 }
 
-nlohmann::json record_of(const CaseResult& result) {
-  nlohmann::json record{{"is_claimed", result.is_claimed}};
-  for (const Text& text : texts) record[text.name] = result.*text.value;
-  for (const Number& number : numbers) {
-    const double x = result.*number.value;
-    record[number.name] = std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr);
-  }
-  return record;
-}
-
-CaseResult result_from(const nlohmann::json& record) {
-  CaseResult result;
-  record.at("is_claimed").get_to(result.is_claimed);
-  for (const Text& text : texts) record.at(text.name).get_to(result.*text.value);
-  for (const Number& number : numbers) {
-    const nlohmann::json& x = record.at(number.name);
-    result.*number.value = x.is_null() ? std::numeric_limits<double>::infinity() : x.get<double>();
-  }
-  return result;
-}
-
 const Columns<CaseResult>& case_columns() {
-  static const Columns<CaseResult> columns = [] {
-    Columns<CaseResult> all = {
-        {"is_claimed", [](const CaseResult& result) { return result.is_claimed ? 1 : 0; }}};
-    for (const Text& text : texts) {
-      all += Columns<CaseResult>{
-          {text.name, [text](const CaseResult& result) { return result.*text.value; }}};
-    }
-    for (const Number& number : numbers) {
-      all += Columns<CaseResult>{
-          {number.name, [number](const CaseResult& result) { return result.*number.value; }}};
-    }
-    return all;
-  }();
+  static const Columns<CaseResult> columns = {
+      {"is_claimed", [](const CaseResult& result) { return result.is_claimed ? 1 : 0; }},
+      {"case", &CaseResult::name},
+      {"kind", &CaseResult::kind},
+      {"left_out", &CaseResult::left_out},
+      {"method", &CaseResult::method},
+      {"error_estimate_kind", &CaseResult::kind_of_estimate},
+      {"why", &CaseResult::why},
+      {"best_method", &CaseResult::best_method},
+      {"advised", &CaseResult::advised},
+      {"unknowns", &CaseResult::unknowns},
+      {"springs", &CaseResult::springs},
+      {"until", &CaseResult::until},
+      {"accuracy", &CaseResult::accuracy},
+      {"value", &CaseResult::value},
+      {"error_estimate", &CaseResult::error_estimate},
+      {"error", &CaseResult::error},
+      {"certified", &CaseResult::certified},
+      {"best_value", &CaseResult::best_value},
+      {"best_time_s", &CaseResult::best_seconds},
+      {"run_time_s", &CaseResult::run_seconds},
+      {"total_time_s", &CaseResult::total_seconds},
+      {"runs", &CaseResult::runs},
+      {"advised_error", &CaseResult::advised_error},
+      {"advised_time_s", &CaseResult::advised_seconds},
+      {"advice_time_s", &CaseResult::advice_seconds}};
   return columns;
 }
 
-}  // namespace qddot::advice_study
+}  // namespace qddot::judged_advice

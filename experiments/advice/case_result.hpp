@@ -2,15 +2,15 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include "experiments/advice/drawn_case.hpp"
 #include "experiments/kit/columns.hpp"
 #include "qddot/measure/advice/solve.hpp"
 
-namespace qddot::advice_study {
+namespace qddot::judged_advice {
 
-// What an answer was worth on one case.
+// The worth of an answer on one case.
 struct CaseResult {
   std::string name{}, kind{};
   double unknowns = 0, springs = 0, until = 0, accuracy = 0;
@@ -32,17 +32,18 @@ struct CaseResult {
   bool has_error() const { return is_judged() && certified <= 0.1 * error; }
   bool has_best() const { return left_out.empty() && !best_method.empty(); }
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CaseResult, name, kind, unknowns, springs, until, accuracy,
+                                   left_out, is_claimed, method, kind_of_estimate, why, value,
+                                   error_estimate, error, certified, best_method, best_value,
+                                   best_seconds, run_seconds, total_seconds, runs, advised,
+                                   advised_error, advised_seconds, advice_seconds)
 
 // Asks for the motion of the case and for advice, and then measures both. The error is that against
 // a reference of about `reference_seconds`. The time is compared with the fastest run of all
 // methods; each time is the median of `repeats`.
 CaseResult result_of(const Case& drawn, double reference_seconds, int repeats);
 
-// As a journal keeps it, and back.
-nlohmann::json record_of(const CaseResult& result);
-CaseResult result_from(const nlohmann::json& record);
-
 // The columns of cases.csv.
 const Columns<CaseResult>& case_columns();
 
-}  // namespace qddot::advice_study
+}  // namespace qddot::judged_advice

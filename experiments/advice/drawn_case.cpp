@@ -13,7 +13,7 @@
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::advice_study {
+namespace qddot::judged_advice {
 namespace {
 
 // The distributions of the standard library differ between machines.
@@ -254,4 +254,4 @@ Case drawn_case(std::uint64_t seed) {
   return drawn;
 }
 
-}  // namespace qddot::advice_study
+}  // namespace qddot::judged_advice

@@ -5,7 +5,7 @@
 
 #include "qddot/scene/scene.hpp"
 
-namespace qddot::advice_study {
+namespace qddot::judged_advice {
 
 // A question that somebody may bring: this scene, up to then, this accurately.
 struct Case {
@@ -27,4 +27,4 @@ struct Case {
 // about 10^8.
 Case drawn_case(std::uint64_t seed);
 
-}  // namespace qddot::advice_study
+}  // namespace qddot::judged_advice

@@ -7,7 +7,7 @@
 #include "qddot/measure/speed/judgement.hpp"
 #include "qddot/measure/speed/ladder_points.hpp"
 
-namespace qddot::advice_study {
+namespace qddot::judged_advice {
 namespace {
 
 // A run, and all runs of a case together [s].
@@ -75,4 +75,4 @@ Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
   return found;
 }
 
-}  // namespace qddot::advice_study
+}  // namespace qddot::judged_advice

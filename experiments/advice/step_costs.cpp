@@ -11,7 +11,7 @@
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
-namespace qddot::advice_study {
+namespace qddot::judged_advice {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -79,4 +79,4 @@ std::vector<MeasuredCost> measured_costs() {
   return costs;
 }
 
-}  // namespace qddot::advice_study
+}  // namespace qddot::judged_advice

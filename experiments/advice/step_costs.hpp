@@ -5,13 +5,13 @@
 
 #include "qddot/integrators/method.hpp"
 
-namespace qddot::advice_study {
+namespace qddot::judged_advice {
 
 // The sizes that steps are timed at, in unknowns, about.
 constexpr std::array<double, 4> sizes_of_costs = {3, 30, 300, 3000};
 
-// What a step of a method takes, in steps of Verlet's method, at each of the sizes; no number where
-// it did not make its steps.
+// The time of a step of a method in steps of Verlet's method, at each of the sizes; NaN where it
+// did not make its steps.
 struct MeasuredCost {
   const Method* method = nullptr;
   std::array<double, sizes_of_costs.size()> steps{};
@@ -22,4 +22,4 @@ struct MeasuredCost {
 // table in measure/advice/step_cost.cpp has these numbers.
 std::vector<MeasuredCost> measured_costs();
 
-}  // namespace qddot::advice_study
+}  // namespace qddot::judged_advice

@@ -7,7 +7,7 @@
 
 #include "qddot/measure/motion/timing.hpp"
 
-namespace qddot::advice_study {
+namespace qddot::judged_advice {
 namespace {
 
 // Total times count from there on [s]: below, what is found costs no one anything.
@@ -63,7 +63,7 @@ std::vector<Figure> worth_of(const std::vector<CaseResult>& results) {
   const auto advised = [](const CaseResult& r) { return !r.advised.empty(); };
   share("claimed", "cases that had a run in hindsight, and an answer", &CaseResult::has_best,
         [](const CaseResult& r) { return r.is_claimed; });
-  // What the reference is off by speaks for the answer.
+  // The error of the reference is counted in favour of the answer.
   share("within_accuracy", "answers with an error of at most the accuracy", judged,
         [](const CaseResult& r) { return r.error - r.certified <= r.accuracy; });
   share("within_bar", "answers with an error of at most the error bar", judged,
@@ -81,4 +81,4 @@ std::vector<Figure> worth_of(const std::vector<CaseResult>& results) {
   return figures;
 }
 
-}  // namespace qddot::advice_study
+}  // namespace qddot::judged_advice

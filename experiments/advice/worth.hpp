@@ -5,7 +5,7 @@
 
 #include "experiments/advice/case_result.hpp"
 
-namespace qddot::advice_study {
+namespace qddot::judged_advice {
 
 // A number that says what advice is worth, over so many cases.
 struct Figure {
@@ -18,4 +18,4 @@ struct Figure {
 // hindsight, and what it costs.
 std::vector<Figure> worth_of(const std::vector<CaseResult>& results);
 
-}  // namespace qddot::advice_study
+}  // namespace qddot::judged_advice

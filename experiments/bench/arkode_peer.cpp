@@ -6,7 +6,6 @@
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
 #include "integrators/sundials/support.hpp"
-#include "integrators/sundials/vector.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 
 namespace qddot::bench {

@@ -6,7 +6,6 @@
 // which is right to first order in the strain, in floats.
 #include "experiments/bench/peers.hpp"
 #include "experiments/bench/processor_time.hpp"
-#include "experiments/bench/springs.hpp"
 
 #ifdef QDDOT_BULLET
 

@@ -23,7 +23,7 @@ class ScratchFolder {
   std::string path_;
 };
 
-// What a shell's command prints, and its exit status; -1 where it has none.
+// The output of a shell's command and its exit status, or -1 if it has none.
 std::pair<std::string, int> output_of(const std::string& command);
 
 // The status with which `timeout` says that a command was out of time.

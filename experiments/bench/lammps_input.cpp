@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/bench/springs.hpp"
+#include "experiments/bench/problem.hpp"
 
 namespace qddot::bench {
 namespace {

@@ -15,8 +15,7 @@
 #include "experiments/bench/external_program.hpp"
 #include "experiments/bench/lammps_input.hpp"
 #include "experiments/bench/peers.hpp"
-#include "experiments/bench/springs.hpp"
-#include "experiments/kit/shell_word.hpp"
+#include "experiments/kit/program.hpp"
 #include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::bench {

@@ -16,7 +16,7 @@ using Stacked = std::vector<double>;
 
 struct TimeIsUp {};
 
-// What odeint throws, as an outcome; `work` sets the end and the steps of the run.
+// Turns the exceptions of odeint into outcomes; `work` sets the end and the steps of the run.
 template <class Work>
 void guarded(Run& run, const Work& work) {
   try {

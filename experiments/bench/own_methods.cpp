@@ -28,52 +28,45 @@ Run run_of(const Method& method, const System& system, const ReducedScene& scene
   return run;
 }
 
-class OurMethod final : public Peer {
+class Registered final : public Peer {
  public:
-  OurMethod(const Method& method, bool smallest)
-      : Peer(method.name, method.knob), method_(method), is_smallest_(smallest) {}
+  Registered(const Method& method, bool smallest, bool is_stock)
+      : Peer(method.name, method.knob),
+        method_(method),
+        is_smallest_(smallest),
+        is_stock_(is_stock) {}
 
-  std::vector<ForceKind> forces() const override { return {ForceKind::ours}; }
+  bool is_stock_implicit() const override { return is_stock_; }
+  std::vector<ForceKind> forces() const override {
+    return is_stock_ ? Peer::forces() : std::vector{ForceKind::ours};
+  }
   std::vector<double> values(const Problem& problem) const override {
-    return method_.knob == Knob::rtol ? tolerances(4) : step_sizes(problem, 10, 4);
+    if (method_.knob == Knob::rtol) return tolerances(is_stock_ ? 1 : 4);
+    return step_sizes(problem, 10, 4);
   }
 
-  Run run(const Problem& problem, ForceKind, double value, double limit) override {
+  Run run(const Problem& problem, ForceKind force, double value, double limit) override {
     const ReducedScene& scene = is_smallest_ ? problem.smallest : problem.scene;
-    return run_of(method_, scene.system(), scene, problem, value, limit);
-  }
-
- private:
-  const Method& method_;
-  bool is_smallest_;
-};
-
-class StockImplicit final : public Peer {
- public:
-  explicit StockImplicit(const Method& method) : Peer(method.name, Knob::rtol), method_(method) {}
-
-  bool is_stock_implicit() const override { return true; }
-  std::vector<double> values(const Problem&) const override { return tolerances(1); }
-
-  Run run(const Problem& problem, ForceKind force, double rtol, double limit) override {
+    if (force == ForceKind::ours)
+      return run_of(method_, scene.system(), scene, problem, value, limit);
     const PlainForce plain(problem.start);
-    const auto with_plain = with_plain_force(problem.scene.system(), plain);
-    const System& system = force == ForceKind::plain ? *with_plain : problem.scene.system();
-    return run_of(method_, system, problem.scene, problem, rtol, limit);
+    const auto system = with_plain_force(scene.system(), plain);
+    return run_of(method_, *system, scene, problem, value, limit);
   }
 
  private:
   const Method& method_;
+  bool is_smallest_, is_stock_;
 };
 
 }  // namespace
 
 std::unique_ptr<Peer> our_method(const std::string& method, bool smallest) {
-  return std::make_unique<OurMethod>(*find_method(method), smallest);
+  return std::make_unique<Registered>(*find_method(method), smallest, /*is_stock=*/false);
 }
 
 std::unique_ptr<Peer> stock_implicit(const std::string& method) {
-  return std::make_unique<StockImplicit>(*find_method(method));
+  return std::make_unique<Registered>(*find_method(method), /*smallest=*/false, /*is_stock=*/true);
 }
 
 }  // namespace qddot::bench

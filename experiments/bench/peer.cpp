@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 
 namespace qddot::bench {
 

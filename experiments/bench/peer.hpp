@@ -39,7 +39,7 @@ class Peer {
   virtual std::vector<ForceKind> forces() const { return {ForceKind::plain, ForceKind::ours}; }
   // Which of our methods takes the same steps, but for rounding; empty where none does.
   virtual std::string twin() const { return {}; }
-  // What of the scene it cannot do, as a clause; empty where it can do it all.
+  // The reason why the peer cannot run the scene, as a clause; empty if it can.
   virtual std::string misfit(const Scene&) const { return {}; }
   // Whether it is one of SUNDIALS' implicit methods.
   virtual bool is_stock_implicit() const { return false; }

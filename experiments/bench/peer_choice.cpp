@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "experiments/bench/peers.hpp"
+#include "qddot/integrators/registry.hpp"
 
 namespace qddot::bench {
 namespace {
@@ -38,6 +39,21 @@ std::vector<std::unique_ptr<Peer>> all_peers(const std::string& force_library, L
 }
 
 }  // namespace
+
+std::vector<std::string> explicit_methods() {
+  std::vector<const Method*> list;
+  for (const Method& method : methods()) {
+    const bool is_ours = method.family == Family::hand_written && !method.is(Trait::implicit);
+    const bool asks_for_more = method.asks(Need::stiffness) ||
+                               method.asks(Need::constant_stiffness) ||
+                               method.asks(Need::split_forces);
+    if (is_ours && !asks_for_more && method.order > 1) list.push_back(&method);
+  }
+  std::ranges::stable_sort(list, std::greater(), &Method::order);
+  std::vector<std::string> names;
+  for (const Method* method : list) names.push_back(method->name);
+  return names;
+}
 
 void LeftOut::add(const std::string& sentence) {
   fmt::print("{}\n", sentence);

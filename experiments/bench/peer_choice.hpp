@@ -8,6 +8,9 @@
 
 namespace qddot::bench {
 
+// The names of our explicit methods that any scene can have, those of high order first.
+std::vector<std::string> explicit_methods();
+
 // Which peers are missing, and why.
 class LeftOut {
  public:

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include <nlohmann/json_fwd.hpp>
 
 #include "qddot/measure/reference/reference.hpp"
@@ -28,6 +30,17 @@ struct Problem {
   Reference own;          // the same reference in these unknowns
   double length, speed;   // what positions [m] and velocities [m/s] are large or small by
 };
+
+// Whether the spring moves a node.
+inline bool has_free_end(const Scene& scene, const Spring& spring) {
+  return !scene.nodes[spring.nodes[0]].pinned || !scene.nodes[spring.nodes[1]].pinned;
+}
+
+// Whether a spring of the scene is more than linear.
+inline bool has_quartic(const Scene& scene) {
+  return std::ranges::any_of(scene.springs,
+                             [](const Spring& spring) { return spring.law.quartic != 0; });
+}
 
 // The state of all free nodes, in the unknowns of a scene that is reduced by pins alone.
 State state_of(const std::vector<Node>& nodes, int dimension, double t);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/bench/sweep.hpp"
+#include "experiments/bench/peer_ladder.hpp"
 
 namespace qddot::bench {
 
@@ -22,14 +22,14 @@ struct Ratio {
   bool is_known() const { return ours != nullptr; }
 };
 
-// The fastest good point of at most that error, of the sweeps that `counts`; nullptr if none.
-const Measured* fastest(const std::vector<Sweep>& sweeps, double error,
-                        const std::function<bool(const Sweep&)>& counts);
+// The fastest good point of at most that error, of the ladders that `counts`; nullptr if none.
+const Measured* fastest(const std::vector<PeerLadder>& ladders, double error,
+                        const std::function<bool(const PeerLadder&)>& counts);
 
-// A ratio for each sweep of a peer at each accuracy. Our methods run with all reductions
+// A ratio for each ladder of a peer at each accuracy. Our methods run with all reductions
 // (`smallest`) or with pins alone. There is one more ratio for each f: that of the fastest stock
-// implicit peer. Points are borrowed from the sweeps.
-std::vector<Ratio> ratios(const std::vector<Sweep>& sweeps, bool smallest,
+// implicit peer. Points are borrowed from the ladders.
+std::vector<Ratio> ratios(const std::vector<PeerLadder>& ladders, bool smallest,
                           const std::vector<double>& accuracies);
 
 }  // namespace qddot::bench

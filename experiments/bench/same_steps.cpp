@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "experiments/bench/peers.hpp"
-#include "experiments/bench/springs.hpp"
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 
 namespace qddot::bench {
 namespace {

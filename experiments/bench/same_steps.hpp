@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "experiments/bench/peer.hpp"
 
 namespace qddot::bench {
@@ -25,6 +27,9 @@ struct SameSteps {
     return peer_outcome == Outcome::reached_end && outcome == Outcome::reached_end;
   }
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SameSteps, solver, method, is_smallest, unknowns, springs,
+                                   step_size, steps, peer_outcome, outcome, peer_step, step,
+                                   distance, difference)
 
 // Runs both by turns, each `repeats` times, at h w = 1/2 of the fastest vibration at the start. The
 // peer must have a twin; a run takes at most `limit` seconds.

@@ -5,8 +5,8 @@
 
 #include "experiments/bench/external_program.hpp"
 #include "experiments/bench/peers.hpp"
-#include "experiments/kit/shell_word.hpp"
-#include "qddot/scene/scene_writer.hpp"
+#include "experiments/kit/program.hpp"
+#include "qddot/scene/scene_file.hpp"
 
 namespace qddot::bench {
 namespace {
@@ -77,7 +77,7 @@ class SciPy final : public Peer {
         method_(method),
         force_library_(std::move(force_library)) {}
 
-  // What is implicit takes minutes.
+  // Implicit methods take minutes.
   std::vector<double> values(const Problem&) const override {
     return tolerances(method_ == "DOP853" ? 2 : 1);
   }

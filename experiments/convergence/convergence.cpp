@@ -23,8 +23,8 @@
 #include "experiments/kit/point_record.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/reference_file.hpp"
-#include "qddot/measure/motion/resolved_frequency.hpp"
-#include "qddot/measure/reference/reference_words.hpp"
+#include "qddot/measure/motion/vibrating_modes.hpp"
+#include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -37,12 +37,6 @@ constexpr double longest_run = 10;  // [s]
 // order is then wrong by 1 / (20 ln 2) = 0.07 at most.
 constexpr double well_above = 20;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-// What rounding makes of a run: each step adds one, by chance to either side. It is from 2^-54 to
-// 2^-53 of a coordinate, a quarter to a half of what the reference's start was displaced by.
-double rounding_of_steps(const Reference& reference, double steps) {
-  return reference.rounding_effect * std::sqrt(steps) / 4;
-}
 
 // Runs of a method at h, h/2, h/4, ... [s] that reached the end or failed; a run over the budget
 // ends the series.
@@ -72,8 +66,9 @@ void tabulate(Csv& csv, const Method& method, double until, const Reference& ref
   std::vector<double> floors;
   for (const Point& p : points) {
     errors.push_back(p.outcome == Outcome::reached_end ? p.errors.position : nothing);
-    floors.push_back(well_above * std::max(reference.certified.position,
-                                           rounding_of_steps(reference, until / p.value)));
+    floors.push_back(well_above *
+                     std::max(reference.certified.position,
+                              rounding_of_steps(reference.rounding_effect, until / p.value)));
   }
   const std::vector<double> orders = observed_orders(errors, floors);
   for (std::size_t i = 0; i < points.size(); ++i) {

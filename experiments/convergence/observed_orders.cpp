@@ -25,4 +25,8 @@ std::vector<double> observed_orders(const std::vector<double>& errors,
   return orders;
 }
 
+double rounding_of_steps(double rounding_effect, double steps) {
+  return rounding_effect * std::sqrt(steps) / 4;
+}
+
 }  // namespace qddot::convergence

@@ -17,4 +17,9 @@ constexpr double agreeing = 0.5;
 std::vector<double> observed_orders(const std::vector<double>& errors,
                                     const std::vector<double>& floors);
 
+// The distance that rounding moves a run by: each step adds one rounding, by chance to either side.
+// It is from 2^-54 to 2^-53 of a coordinate, a quarter to a half of the displacement of the
+// reference's start, whose effect is `rounding_effect`.
+double rounding_of_steps(double rounding_effect, double steps);
+
 }  // namespace qddot::convergence

@@ -6,9 +6,9 @@
 //
 //  1. Each ratio has a scene (stiff_scenes.hpp) and a reference (agreed_reference) that is good to
 //     a tenth of the finest accuracy. It is kept in ratio_R/reference.json for the next time.
-//  2. Methods are swept as in work_precision, those first that were fast at the former ratio.
+//  2. Methods are measured as in work_precision, those first that were fast at the former ratio.
 //     SUNDIALS' stock variants are left out: they are slower than the same methods with the
-//     structure. A sweep ends early if the method will be 20 times slower than the fastest at each
+//     structure. A ladder ends early if the method will be 20 times slower than the fastest at each
 //     accuracy that it has not reached yet. An explicit method that is so slow throughout is not
 //     tried at larger ratios.
 //  3. points.csv has every point. crossover.csv has, for each ratio and accuracy from 1e-1 to 1e-6,
@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
         [&] {
           for (const AtRatio& one : all) tabulate(one, methods, winners, of_kinds, points);
           const nlohmann::json origin = origin_of(p, all);
-          // What no method could win yet is not said to be lost.
+          // A ratio that is not measured yet has no winner.
           all.erase(all.begin() + complete, all.end());
           print_winners(all);
           return origin;

@@ -10,7 +10,7 @@
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "qddot/measure/motion/interruption.hpp"
-#include "qddot/measure/reference/no_reference.hpp"
+#include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/ladder_points.hpp"
 
 namespace qddot::crossover {

@@ -1,6 +1,6 @@
 #include "experiments/energy_drift/drift_record.hpp"
 
-#include "experiments/kit/summary_record.hpp"
+#include "experiments/kit/point_record.hpp"
 #include "qddot/integrators/registry.hpp"
 
 // What nlohmann::json looks for in the namespace of these types.

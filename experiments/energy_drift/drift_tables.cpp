@@ -1,8 +1,12 @@
 #include "experiments/energy_drift/drift_tables.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+
+#include "qddot/algebra/straight_line.hpp"
 
 namespace qddot::energy_drift {
 namespace {
@@ -118,6 +122,35 @@ Columns<ToleranceRow> make_tolerance_columns() {
   return all;
 }
 
+// The root mean square of the errors from 0.9 t to t.
+double error_near(const DriftRun& run, double t) {
+  double sum = 0;
+  int count = 0;
+  for (const DriftPoint& point : run.path) {
+    if (point.t < 0.9 * t || point.t > t) continue;
+    sum += point.error * point.error;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+// The slope of ln error over ln rtol, of the errors at the time that all runs reached; none where
+// there are fewer than two.
+std::optional<double> tolerance_exponent(const std::vector<const DriftRun*>& runs, double& t) {
+  t = INFINITY;
+  for (const DriftRun* run : runs) t = std::min(t, run->path.back().t);
+  std::vector<double> x, y;
+  for (const DriftRun* run : runs) {
+    const double error = error_near(*run, t);
+    if (!(error > 0)) continue;
+    x.push_back(std::log(run->value));
+    y.push_back(std::log(error));
+  }
+  const StraightLine line = straight_line(x, y);
+  if (!(line.spread > 0)) return {};
+  return line.slope;
+}
+
 }  // namespace
 
 const Columns<PathPoint>& path_columns() {
@@ -140,6 +173,33 @@ const Columns<SummaryRow>& summary_columns() {
 const Columns<ToleranceRow>& tolerance_columns() {
   static const Columns<ToleranceRow> columns = make_tolerance_columns();
   return columns;
+}
+
+void print_verdicts(const std::vector<DriftRun>& runs, double until) {
+  for (const DriftRun& run : runs) {
+    const bool fixed = run.method->knob == Knob::step_size;
+    const std::string who =
+        fixed ? run.method->name : fmt::format("{} {:g}", run.method->name, run.value);
+    fmt::print("{:<30} {}\n", who, verdict(run, until));
+  }
+}
+
+void print_tolerances(const std::vector<DriftRun>& runs, const MotionScales& scales) {
+  std::map<std::string, std::vector<const DriftRun*>> adaptive;
+  std::vector<std::string> order;
+  for (const DriftRun& run : runs) {
+    if (run.method->knob != Knob::rtol) continue;
+    auto& own = adaptive[run.method->name];
+    if (own.empty()) order.push_back(run.method->name);
+    own.push_back(&run);
+  }
+  for (const std::string& method : order) {
+    double t = 0;
+    if (const auto exponent = tolerance_exponent(adaptive[method], t)) {
+      fmt::print("{:<30} the energy error goes as rtol^{:.2f}, over {:.3g} periods\n", method,
+                 *exponent, t * scales.frequency / (2 * M_PI));
+    }
+  }
 }
 
 }  // namespace qddot::energy_drift

@@ -31,4 +31,9 @@ struct ToleranceRow {
 };
 const Columns<ToleranceRow>& tolerance_columns();
 
+// Prints the verdict on each run. Then prints, for each adaptive method, the exponent of rtol by
+// which its error goes, at the time that all its runs reached.
+void print_verdicts(const std::vector<DriftRun>& runs, double until);
+void print_tolerances(const std::vector<DriftRun>& runs, const MotionScales& scales);
+
 }  // namespace qddot::energy_drift

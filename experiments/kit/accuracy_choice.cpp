@@ -1,15 +1,17 @@
 #include "experiments/kit/accuracy_choice.hpp"
 
+#include <stdexcept>
+
 #include <fmt/format.h>
 
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::inline kit {
 
-void add_accuracy_of_option(CommandLine& line, std::string& of) {
-  line.add_option("--accuracy-of", of,
-                  "the error that --accuracy bounds: positions (at the end), path (positions at "
-                  "all times) or energy (at all times) (default: positions)");
+Argument<std::string> accuracy_of_option(Program& program) {
+  return program.word("--accuracy-of",
+                      "the error that --accuracy bounds: positions (at the end), path (positions "
+                      "at all times) or energy (at all times) (default: positions)");
 }
 
 AccuracyOf accuracy_of(const std::string& of) {
@@ -20,11 +22,11 @@ AccuracyOf accuracy_of(const std::string& of) {
 }
 
 void require_allowed_accuracy(double accuracy, const std::string& option) {
-  if (accuracy >= least_accuracy && accuracy < 1) return;
-  throw InvalidInput(
-      fmt::format("{} {:g} is not allowed; it is a relative error from 1e-14 (rounding) to below 1 "
-                  "(as large as the motion)",
-                  option, accuracy));
+  try {
+    require_accuracy(accuracy, option);
+  } catch (const std::invalid_argument& error) {
+    throw InvalidInput(error.what());
+  }
 }
 
 }  // namespace qddot::inline kit

@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 
-#include "experiments/kit/command_line.hpp"
+#include "experiments/kit/program.hpp"
 #include "qddot/measure/advice/solve.hpp"
 
 namespace qddot::inline kit {
 
 // Adds --accuracy-of.
-void add_accuracy_of_option(CommandLine& line, std::string& of);
+Argument<std::string> accuracy_of_option(Program& program);
 
 // The value of --accuracy-of; throws InvalidInput for anything but positions, path and energy.
 AccuracyOf accuracy_of(const std::string& of);

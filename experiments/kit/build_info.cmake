@@ -1,4 +1,4 @@
-# Writes OUTPUT, the definitions of build_info.hpp: run at build time whenever a source has changed.
+# Writes OUTPUT, the definitions of build_info in provenance.hpp: run at build time whenever a source has changed.
 # Needs SOURCE_DIR, OUTPUT, PROJECT_VERSION, COMPILER, FLAGS.
 file(GLOB_RECURSE sources RELATIVE ${SOURCE_DIR}
   ${SOURCE_DIR}/src/*.[ch]pp ${SOURCE_DIR}/integrators/*.[ch]pp ${SOURCE_DIR}/experiments/*.[ch]pp)
@@ -17,7 +17,7 @@ if(described)
   string(APPEND version " (${described})")
 endif()
 
-file(WRITE ${OUTPUT} "#include \"experiments/kit/build_info.hpp\"
+file(WRITE ${OUTPUT} "#include \"experiments/kit/provenance.hpp\"
 
 namespace qddot::inline kit::build_info {
 const char* const version = \"${version}\";

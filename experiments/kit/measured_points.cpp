@@ -8,10 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "experiments/kit/command_line.hpp"
 #include "experiments/kit/method_options.hpp"
 #include "experiments/kit/written_table.hpp"
-#include "qddot/integrators/find_outcome.hpp"
+#include "qddot/integrators/integrator.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -71,9 +70,9 @@ Point point_of(const WrittenTable& table, std::size_t row, const std::string& pa
 
 // The options as the study was given them, read as a command line is.
 void take_options(const nlohmann::json& given, MeasuredPoints& study) {
-  CommandLine line("", "study");
-  line.add_option("--no-reduce", study.no_reduce, "").delimiter(',');
-  add_method_options(line, study.options);
+  Program program({.name = "study", .summary = ""});
+  const auto scene = program.scene();
+  const auto options = program.method_options();
   std::vector<std::string> words = {"study"};
   for (const auto& [option, values] : given.items()) {
     if (std::ranges::find(of_a_run, option) == of_a_run.end()) continue;
@@ -82,8 +81,10 @@ void take_options(const nlohmann::json& given, MeasuredPoints& study) {
   }
   std::vector<const char*> argv;
   for (const std::string& word : words) argv.push_back(word.c_str());
-  line.parse(static_cast<int>(argv.size()), argv.data());
-  require_options(line, study.options);
+  program.parse(static_cast<int>(argv.size()), argv.data());
+  require_options(program, options);
+  study.no_reduce = scene->no_reduce;
+  study.options = options;
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/progress.hpp"
-#include "experiments/kit/summary_record.hpp"
 #include "qddot/integrators/registry.hpp"
 
 // What nlohmann::json looks for in the namespace of these types.

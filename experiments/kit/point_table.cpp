@@ -1,7 +1,12 @@
 #include "experiments/kit/point_table.hpp"
 
 #include <limits>
+#include <set>
+#include <string>
 
+#include <nlohmann/json.hpp>
+
+#include "experiments/kit/method_options.hpp"
 #include "qddot/measure/speed/judgement.hpp"
 
 namespace qddot::inline kit {
@@ -60,6 +65,23 @@ const Columns<PointRow>& point_columns() {
       {"energy_growth", [](const Row& row) { return row.point.energy_growth; }},
       {"stock_of", [](const Row& row) { return row.point.method->stock_of; }}};
   return columns;
+}
+
+nlohmann::json notes_on(const std::vector<Point>& points) {
+  nlohmann::json methods = nlohmann::json::array();
+  nlohmann::json outcomes = nlohmann::json::object();
+  std::set<const Method*> noted;
+  for (const Point& point : points) {
+    const Method& method = *point.method;
+    if (noted.insert(&method).second) {
+      methods.push_back({{"name", method.name},
+                         {"summary", method.summary},
+                         {"takes", options_taken_by(method)}});
+    }
+    if (point.outcome != Outcome::reached_end)
+      outcomes[std::string(name(point.outcome))] = advice(point.outcome);
+  }
+  return {{"methods", methods}, {"outcomes", outcomes}};
 }
 
 }  // namespace qddot::inline kit

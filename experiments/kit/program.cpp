@@ -1,59 +1,43 @@
 #include "experiments/kit/program.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <omp.h>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "experiments/kit/build_info.hpp"
-#include "experiments/kit/command_line.hpp"
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/memory.hpp"
-#include "experiments/kit/method_options.hpp"
 #include "experiments/kit/overwriting.hpp"
-#include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/whole_file.hpp"
-#include "qddot/measure/reference/no_reference.hpp"
+#include "qddot/measure/reference/reference.hpp"
 #include "qddot/model/kernels/level.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::inline kit {
 namespace {
 
-int complain(const CommandLine& line, const std::string& sentence, int status) {
-  say(fmt::format("{}: {}", line.program(), in_one_line(sentence)));
-  return status;
+// Calls parse(), and says what is wrong in the words of an InvalidInput.
+template <class Parse>
+void in_one_sentence(const Parse& parse) {
+  try {
+    parse();
+  } catch (const CLI::Success&) {
+    throw;
+  } catch (const CLI::ConversionError& error) {
+    throw InvalidInput(fmt::format("{}; allowed is a number", error.what()));
+  } catch (const CLI::ParseError& error) {
+    throw InvalidInput(error.what());
+  }
 }
-
-// The options that every program takes.
-struct EveryProgram {
-  explicit EveryProgram(CommandLine& line) {
-    line.set_version(fmt::format("{} of qddot {}, {}", line.program(), build_info::version,
-                                 build_info::compiler));
-    line.add_flag("--force", force, "replace files that qddot did not write");
-    line.add_option("--time-limit", seconds,
-                    "seconds after which the program ends in order and keeps its results so far "
-                    "(default: none)")
-        .take_last();
-    line.add_option("--progress", form, "how progress is shown on stderr, one of auto, plain, none")
-        .take_last()
-        .capture_default_str();
-  }
-  void apply(const CommandLine& line, Interruptible& run) const {
-    if (force) allow_replacing();
-    start_progress(line.program(), form);
-    if (!line.has("--time-limit")) return;
-    require_positive(seconds, "--time-limit", "the seconds that the program may take");
-    run.end_after(seconds);
-  }
-
-  bool force = false;
-  double seconds = 0;
-  std::string form = "auto";
-};
 
 }  // namespace
 
@@ -80,39 +64,19 @@ void say(const std::string& line) {
   std::fputs((line + "\n").c_str(), stderr);
 }
 
-int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& body) {
-  const EveryProgram options(line);
-  try {
-    Interruptible run(line.program());
-    if (const auto status = line.parse(argc, argv)) return *status;
-    options.apply(line, run);
-    const int status = body();
-    progress().wipe();
-    return status;
-  } catch (const Interrupted& error) {
-    return complain(line, error.what(), error.status);
-  } catch (const CannotWrite& error) {
-    return complain(line, error.what(), end_not_reached);
-  } catch (const InvalidInput& error) {
-    return complain(line, error.what(), bad_input);
-  } catch (const kernels::NoSuchKernels& error) {
-    return complain(line, error.what(), bad_input);
-  } catch (const NoReference& error) {
-    return complain(line, error.what(), end_not_reached);
-  } catch (const std::domain_error& error) {  // what is asked for does not exist for the scene
-    return complain(line, error.what(), end_not_reached);
-  } catch (const std::range_error& error) {  // numbers of the scene overflow on the way to it
-    return complain(line, error.what(), end_not_reached);
-  } catch (const std::bad_alloc&) {
-    return complain(line, out_of_memory(), end_not_reached);
-  } catch (const std::system_error&) {  // no thread can be started
-    return complain(line, out_of_memory(), end_not_reached);
-  } catch (const std::exception& error) {
-    return complain(line, error.what(), failed);
-  }
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!word.empty() && word.find_first_not_of(plain) == word.npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
 }
 
-Program::Program(const About& about) : about_(about), line_(about.summary, about.name) {}
+Program::Program(const About& about)
+    : about_(about), app_(std::make_unique<CLI::App>(about.summary, about.name)) {}
+
+Program::~Program() = default;
 
 template <class T>
 T& Program::keep(T value) {
@@ -125,13 +89,33 @@ T& Program::keep(T value) {
 template <class T>
 Argument<T> Program::declare(const std::string& name, T value, const std::string& text,
                              bool is_shown) {
-  T& place = keep(std::move(value));
-  auto taken = line_.add_option(name, place, text);
+  Argument<T> argument = bind(name, keep(std::move(value)), text, is_shown);
   if constexpr (requires { typename T::value_type; } && !std::same_as<T, std::string>)
-    taken.delimiter(',');
-  if (is_shown) taken.capture_default_str();
-  return {*this, name, place, {taken}};
+    option(name)->delimiter(',');
+  return argument;
 }
+
+template <class T>
+Argument<T> Program::bind(const std::string& name, T& value, const std::string& text,
+                          bool is_shown) {
+  if constexpr (std::same_as<T, bool>) {
+    app_->add_flag(name, value, text);
+  } else {
+    CLI::Option* option = app_->add_option(name, value, text);
+    if (is_shown) option->capture_default_str();
+  }
+  return {*this, name, value};
+}
+template Argument<bool> Program::bind(const std::string&, bool&, const std::string&, bool);
+template Argument<double> Program::bind(const std::string&, double&, const std::string&, bool);
+template Argument<int> Program::bind(const std::string&, int&, const std::string&, bool);
+template Argument<std::string> Program::bind(const std::string&, std::string&, const std::string&,
+                                             bool);
+template Argument<std::vector<double>> Program::bind(const std::string&, std::vector<double>&,
+                                                     const std::string&, bool);
+template Argument<std::vector<std::string>> Program::bind(const std::string&,
+                                                          std::vector<std::string>&,
+                                                          const std::string&, bool);
 
 Argument<double> Program::number(const std::string& name, const std::string& text) {
   return declare(name, 0., text, false);
@@ -172,16 +156,29 @@ Argument<std::vector<std::string>> Program::words(const std::string& name,
                                                   const std::string& text) {
   return declare(name, std::move(values), text, true);
 }
+Argument<std::vector<double>> Program::repeated_number(const std::string& name,
+                                                       const std::string& text) {
+  Argument<std::vector<double>> argument = bind(name, keep(std::vector<double>()), text);
+  option(name)->expected(1)->take_all();
+  return argument;
+}
 Argument<bool> Program::flag(const std::string& name, const std::string& text) {
-  bool& place = keep(false);
-  line_.add_flag(name, place, text);
-  return {*this, name, place, {}};
+  return bind(name, keep(false), text);
 }
 
 Argument<SceneChoice> Program::scene() {
+  const Argument<SceneChoice> scene = drawn_scene();
+  bind("--no-reduce", scene.value_->no_reduce,
+       fmt::format("a,b,...: reductions of the scene to leave out (default: none), of {}",
+                   fmt::join(reduction_names, ", ")));
+  option("--no-reduce")->delimiter(',');
+  return scene;
+}
+
+Argument<SceneChoice> Program::drawn_scene() {
   SceneChoice& choice = keep(SceneChoice());
-  add_scene_options(line_, choice);
-  return {*this, "--scene", choice, {}};
+  bind("--scene", choice.name, "a generator's name or a scene file");
+  return {*this, "--scene", choice};
 }
 
 Argument<double> Program::until(const std::string& text) { return number("--until", text); }
@@ -197,36 +194,52 @@ Argument<std::vector<double>> Program::steps(std::vector<double> usual) {
 
 Argument<Effort> Program::effort(const Effort& usual) {
   Effort& effort = keep(usual);
-  Argument<int>(*this, "--repeats", effort.repeats,
-                {line_.add_option("--repeats", effort.repeats, "timed runs of each point")
-                     .take_last()
-                     .capture_default_str()})
-      .within(1, 1000);
-  Argument<double>(
-      *this, "--point-limit", effort.seconds,
-      {line_
-           .add_option("--point-limit", effort.seconds,
-                       "seconds that one run of a point may take; slower ones become over_budget")
-           .take_last()
-           .capture_default_str()})
+  bind("--repeats", effort.repeats, "timed runs of each point", true).last().within(1, 1000);
+  bind("--point-limit", effort.seconds,
+       "seconds that one run of a point may take; slower ones become over_budget", true)
+      .last()
       .positive("the seconds a run may take");
-  return {*this, "--repeats", effort, {}};
-}
-
-Argument<Options> Program::method_options(const Options& usual) {
-  Options& options = keep(usual);
-  add_method_options(line_, options);
-  return {*this, "--max-order", options, {}};
+  return {*this, "--repeats", effort};
 }
 
 void Program::out(const std::string& text, const std::string& meaning) {
   meaning_of_folder_ = meaning;
-  line_.add_option("--out", folder_, text);
+  bind("--out", folder_, text);
 }
 
 Table& Program::table(const std::string& file, const std::vector<std::string>& header) {
   tables_.push_back(std::make_unique<Table>(file, header));
   return *tables_.back();
+}
+
+std::unique_ptr<WholeFile>& Program::file(const std::string& name, const std::string& beginning) {
+  files_.push_back(std::make_unique<File>(name, beginning));
+  return files_.back()->file;
+}
+
+void Program::instead(const std::string& name, const std::string& text,
+                      const std::function<void(const std::string&)>& act) {
+  instead_.emplace(word(name, text), act);
+}
+
+void Program::declare_threads() {
+  omp_set_num_threads(1);
+  whole("--threads", "number of cores that a run of a large scene may use (default: 1)")
+      .last()
+      .check([](int threads, const std::string& name) {
+        require_within(threads, 1, 256, name);
+        omp_set_num_threads(threads);
+      });
+}
+
+void Program::declare_shares() {
+  flag("--list-shares",
+       "print, as JSON, the shares of the study that processes can measure independently, and its "
+       "key");
+  word("--share", "measure this share alone, into the file --journal").last();
+  word("--journal", "the file for the results of --share").last();
+  flag("--kept",
+       "measure nothing: make the tables from the complete shares in the folder's journal");
 }
 
 int Program::run(int argc, char** argv, const std::function<int()>& work) {
@@ -235,40 +248,136 @@ int Program::run(int argc, char** argv, const std::function<int()>& work) {
     for (const auto& table : tables_) files += (files.empty() ? "" : ", ") + table->file_;
     out("the folder for " + files);
   }
-  if (about_.has_threads) add_threads_option(line_);
-  if (about_.has_resume) add_resume_option(line_);
-  if (about_.has_shares) add_share_options(line_);
+  if (about_.has_threads) declare_threads();
+  if (about_.has_resume) {
+    flag("--resume",
+         "go on with an interrupted run of the same command: measure only what is missing");
+  }
+  if (about_.has_shares) declare_shares();
+  app_->set_version_flag("--version", fmt::format("{} of qddot {}, {}", about_.name,
+                                                  build_info::version, build_info::compiler));
+  const auto force = flag("--force", "replace files that qddot did not write");
+  const auto limit = number("--time-limit",
+                            "seconds after which the program ends in order and keeps its results "
+                            "so far (default: none)")
+                         .last();
+  const auto form =
+      word("--progress", "auto", "how progress is shown on stderr, one of auto, plain, none")
+          .last();
   command_line_.assign(argv, argv + argc);
-  return run_program(line_, argc, argv, [&] {
-    if (!meaning_of_folder_.empty()) require_given(folder_, "--out", meaning_of_folder_);
-    for (const auto& check : checks_) check();
-    return work();
-  });
+  try {
+    Interruptible run(about_.name);
+    try {
+      parse(argc, argv);
+    } catch (const CLI::Success& help) {
+      return app_->exit(help);
+    }
+    if (force) allow_replacing();
+    start_progress(about_.name, form);
+    if (limit.is_given()) {
+      require_positive(limit, "--time-limit", "the seconds that the program may take");
+      run.end_after(limit);
+    }
+    const int status = work_or_instead(work);
+    progress().wipe();
+    return status;
+  } catch (const Interrupted& error) {
+    return complain(error.what(), error.status);
+  } catch (const CannotWrite& error) {
+    return complain(error.what(), end_not_reached);
+  } catch (const InvalidInput& error) {
+    return complain(error.what(), bad_input);
+  } catch (const kernels::NoSuchKernels& error) {
+    return complain(error.what(), bad_input);
+  } catch (const NoReference& error) {
+    return complain(error.what(), end_not_reached);
+  } catch (const std::domain_error& error) {  // what is asked for does not exist for the scene
+    return complain(error.what(), end_not_reached);
+  } catch (const std::range_error& error) {  // numbers of the scene overflow on the way to it
+    return complain(error.what(), end_not_reached);
+  } catch (const std::bad_alloc&) {
+    return complain(out_of_memory(), end_not_reached);
+  } catch (const std::system_error&) {  // no thread can be started
+    return complain(out_of_memory(), end_not_reached);
+  } catch (const std::exception& error) {
+    return complain(error.what(), failed);
+  }
+}
+
+void Program::parse(int argc, const char* const* argv) {
+  in_one_sentence([&] { app_->parse(argc, argv); });
+  for (const auto& check : checks_) check();
+}
+
+int Program::work_or_instead(const std::function<int()>& work) {
+  if (instead_ && instead_->option.is_given()) {
+    for (const auto& [option, values] : given()) {
+      if (option == instead_->option.name() || option == "--force" || option == "--progress")
+        continue;
+      throw InvalidInput(fmt::format("{} is not allowed with {}, which measures nothing", option,
+                                     instead_->option.name()));
+    }
+    instead_->act(instead_->option);
+    return done;
+  }
+  if (!meaning_of_folder_.empty()) require_given(folder_, "--out", meaning_of_folder_);
+  return work();
+}
+
+int Program::complain(const std::string& sentence, int status) const {
+  say(fmt::format("{}: {}", about_.name, in_one_line(sentence)));
+  return status;
+}
+
+CLI::Option* Program::option(const std::string& name) const { return app_->get_option(name); }
+
+void Program::let_last_count(const std::string& name) { option(name)->take_last(); }
+
+bool Program::has(const std::string& option) const {
+  const CLI::Option* known = app_->get_option_no_throw(option);
+  return known && known->count() > 0;
+}
+
+std::vector<std::pair<std::string, std::vector<std::string>>> Program::given() const {
+  std::vector<std::pair<std::string, std::vector<std::string>>> all;
+  for (const CLI::Option* option : std::as_const(*app_).get_options()) {
+    if (option->count() > 0) all.emplace_back(option->get_name(), option->results());
+  }
+  return all;
+}
+
+std::vector<std::string> Program::order() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app_->parse_order()) names.push_back(option->get_name());
+  return names;
 }
 
 void Program::open_tables() {
   require_folder(folder_);
   for (const auto& table : tables_)
     table->csv_ = std::make_unique<CsvFile>(folder_ + "/" + table->file_, table->header_);
+  for (const auto& file : files_)
+    file->file = std::make_unique<WholeFile>(folder_ + "/" + file->name, file->beginning);
 }
 
-int Program::study(const nlohmann::json& about, const Shares& shares,
-                   const std::function<void(Study&)>& measure,
-                   const std::function<nlohmann::json()>& report) {
+int Program::run_study(const nlohmann::json& about, const Shares& shares,
+                       const std::function<void(Study&)>& measure,
+                       const std::function<nlohmann::json(Study&)>& report) {
   std::vector<std::string> files;
   for (const auto& table : tables_) files.push_back(table->file_);
-  Study study(line_, folder_, files, about, shares);
+  Study study(study_call(), folder_, files, about, shares);
   if (const auto status = study.completed()) return *status;
   open_tables();
   study.measure([&] { measure(study); });
   if (study.is_share()) return study.conclude(study.falls_short() ? end_not_reached : done);
-  const nlohmann::json origin = report();
+  const nlohmann::json origin = report(study);
   const int status = study.falls_short() ? end_not_reached : done;
   for (const auto& table : tables_) {
     nlohmann::json own = origin;
     own.update(table->notes_);
     study.complete(**table, std::move(own), status);
   }
+  for (const auto& file : files_) study.complete(*file->file);
   return study.conclude(status);
 }
 
@@ -283,6 +392,23 @@ int Program::write(const std::function<nlohmann::json()>& fill) {
   return done;
 }
 
+StudyCall Program::study_call() const {
+  // Where results go and how the program is to be run decides no result.
+  constexpr std::array other = {"--out",         "--scene",    "--resume",  "--force",
+                                "--time-limit",  "--progress", "--help",    "--version",
+                                "--list-shares", "--share",    "--journal", "--kept"};
+  StudyCall call{.program = about_.name,
+                 .resumes = has("--resume"),
+                 .lists_shares = has("--list-shares"),
+                 .is_of_kept = has("--kept")};
+  for (const auto& [name, values] : given()) {
+    if (name == "--share") call.share = values.back();
+    if (name == "--journal") call.journal = values.back();
+    if (std::ranges::find(other, name) == other.end()) call.options[name] = values;
+  }
+  return call;
+}
+
 nlohmann::json Program::origin() const { return provenance(command_line_); }
 
 nlohmann::json Program::origin(const Subject& subject) const {
@@ -292,21 +418,7 @@ nlohmann::json Program::origin(const Subject& subject) const {
 Subject subject_of(const SceneChoice& choice, const Argument<double>& until) {
   Scene drawn = load(choice);
   const double end = end_time(until, until.is_given(), drawn);
-  Scene start = started(drawn, choice);
-  ReducedScene reduced(start, reductions_of(choice));
-  return {choice.name, std::move(drawn), std::move(start), std::move(reduced), end};
-}
-
-void add_threads_option(CommandLine& line) {
-  omp_set_num_threads(1);
-  line.add_option_function(
-          "--threads",
-          [](int threads) {
-            require_within(threads, 1, 256, "--threads");
-            omp_set_num_threads(threads);
-          },
-          "number of cores that a run of a large scene may use (default: 1)")
-      .take_last();
+  return subject_of(std::move(drawn), choice, end);
 }
 
 void require_folder(const std::string& folder) {

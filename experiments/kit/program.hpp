@@ -3,6 +3,7 @@
 #include <concepts>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,17 @@
 
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/columns.hpp"
-#include "experiments/kit/command_line.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/scene_choice.hpp"
 #include "experiments/kit/study.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/scene.hpp"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace qddot::inline kit {
 
@@ -25,6 +31,9 @@ enum ExitStatus { done = 0, failed = 1, bad_input = 2, end_not_reached = 3 };
 
 // The text in one line without control characters.
 std::string in_one_line(const std::string& text);
+
+// The word as a shell reads it back: quoted if necessary.
+std::string shell_word(const std::string& word);
 
 // Writes a line to stderr, after removing the line of the progress. Does not throw if stderr cannot
 // be written (fmt::print does, on a full disk).
@@ -37,28 +46,26 @@ class Program;
 template <class T>
 class Argument {
  public:
-  Argument(Program& program, std::string name, T& value, std::vector<CommandLine::Taken> options)
-      : program_(&program), name_(std::move(name)), value_(&value), options_(std::move(options)) {}
+  Argument(Program& program, std::string name, T& value)
+      : program_(&program), name_(std::move(name)), value_(&value) {}
 
   const T& operator*() const { return *value_; }
   const T* operator->() const { return value_; }
   operator const T&() const { return *value_; }
+  const std::string& name() const { return name_; }
   bool is_given() const;
 
   // Lets the last value count if the option is given more than once, which is refused otherwise.
-  Argument& last() {
-    for (auto& option : options_) option.take_last();
-    return *this;
-  }
-  // Calls check(value, name of the option) before the program's work, if the option is given. It
+  Argument& last();
+  // Calls allow(value, name of the option) before the program's work, if the option is given. It
   // may throw InvalidInput.
   template <class Check>
-  Argument& check(Check check);
+  Argument& check(Check allow);
   // The same for each entry of a list.
   template <class Check>
-  Argument& check_each(Check check) {
-    return this->check([check](const T& values, const std::string& name) {
-      for (const auto& value : values) check(value, name);
+  Argument& check_each(Check allow) {
+    return check([allow](const T& values, const std::string& name) {
+      for (const auto& value : values) allow(value, name);
     });
   }
   // Refuses all but finite numbers above zero; `meaning` says what the number is.
@@ -67,10 +74,10 @@ class Argument {
   Argument& within(int low, int high);
 
  private:
+  friend class Program;
   Program* program_;
   std::string name_;
   T* value_;
-  std::vector<CommandLine::Taken> options_;
 };
 
 // A table X.csv in the folder of a program (--out), with its sidecar X.json. It can be written
@@ -116,6 +123,7 @@ class Program {
     bool has_shares = false;    // --list-shares, --share, --journal and --kept, see Study
   };
   explicit Program(const About& about);
+  ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
@@ -136,11 +144,19 @@ class Program {
   Argument<std::vector<std::string>> words(const std::string& name, const std::string& text);
   Argument<std::vector<std::string>> words(const std::string& name, std::vector<std::string> values,
                                            const std::string& text);
+  // An option whose value is kept elsewhere, a double, int, bool, std::string or a vector. Lists
+  // are of several words here.
+  template <class T>
+  Argument<T> bind(const std::string& name, T& value, const std::string& text,
+                   bool is_shown = false);
+  // A number that may be given several times.
+  Argument<std::vector<double>> repeated_number(const std::string& name, const std::string& text);
   Argument<bool> flag(const std::string& name, const std::string& text);
 
   // Options that several programs share: --scene and --no-reduce; --until; --methods; --repeats and
   // --point-limit; those of the methods (see method_options.hpp).
   Argument<SceneChoice> scene();
+  Argument<SceneChoice> drawn_scene();  // --scene alone
   Argument<double> until(
       const std::string& text = "the time to run to in s (default: the scene's own)");
   Argument<std::vector<std::string>> methods(
@@ -157,6 +173,13 @@ class Program {
   Table& table(const std::string& file, const std::vector<std::string>& header);
   template <class Row>
   RowTable<Row>& table(const std::string& file, Columns<Row> columns);
+  // Another file in the folder, which appears together with the tables; see WholeFile for
+  // `beginning`. Null until they can be written.
+  std::unique_ptr<WholeFile>& file(const std::string& name, const std::string& beginning);
+  // An option that takes a word and replaces the work by act(word). No option but --force and
+  // --progress may be given beside it.
+  void instead(const std::string& name, const std::string& text,
+               const std::function<void(const std::string&)>& act);
 
   // Parses the command line, checks the values and runs `work`. SIGINT, SIGTERM and the time limit
   // interrupt it (see interruptible.hpp). Returns the exit status: that of `work`, or after one
@@ -167,15 +190,27 @@ class Program {
   // - failed for any other exception.
   int run(int argc, char** argv, const std::function<int()>& work);
 
-  // Runs a study with these tables, which may be interrupted and divided (see Study): measure()
-  // makes its pieces, then report() fills the tables, unless one share is measured, and returns how
-  // they were made. `about`: all that decides the results beside options and code. Returns the exit
-  // status.
+  // Only reads the options and checks their values, as run() does. Throws InvalidInput.
+  void parse(int argc, const char* const* argv);
+
+  // Runs a study with these tables, which may be interrupted and divided (see Study):
+  // measure(study) makes its pieces. Then report() or report(study) fills the tables, unless one
+  // share is measured, and returns how they were made. `about`: all that decides the results beside
+  // options and code. Returns the exit status.
+  template <class Report>
   int study(const nlohmann::json& about, const Shares& shares,
-            const std::function<void(Study&)>& measure,
-            const std::function<nlohmann::json()>& report);
+            const std::function<void(Study&)>& measure, const Report& report) {
+    return run_study(about, shares, measure, [&](Study& study) {
+      if constexpr (std::invocable<Report, Study&>) {
+        return report(study);
+      } else {
+        return report();
+      }
+    });
+  }
+  template <class Report>
   int study(const nlohmann::json& about, const std::function<void(Study&)>& measure,
-            const std::function<nlohmann::json()>& report) {
+            const Report& report) {
     return study(about, {}, measure, report);
   }
   // The simplest study: a table with the row make(method, value) for each method and value of its
@@ -192,34 +227,51 @@ class Program {
 
   // The command line as given.
   const std::vector<std::string>& command_line() const { return command_line_; }
-  const CommandLine& line() const { return line_; }
-  CommandLine& line() { return line_; }
+  const std::string& name() const { return about_.name; }
+  bool has(const std::string& option) const;
+  // The options that were given with their values, in the order of declaration; their names,
+  // repeated and in the order in which they were given.
+  std::vector<std::pair<std::string, std::vector<std::string>>> given() const;
+  std::vector<std::string> order() const;
 
  private:
   template <class T>
   friend class Argument;
 
+  int run_study(const nlohmann::json& about, const Shares& shares,
+                const std::function<void(Study&)>& measure,
+                const std::function<nlohmann::json(Study&)>& report);
   template <class T>
   T& keep(T value);
   template <class T>
   Argument<T> declare(const std::string& name, T value, const std::string& text, bool is_shown);
+  CLI::Option* option(const std::string& name) const;
+  void let_last_count(const std::string& name);
+  void declare_threads();
+  void declare_shares();
+  StudyCall study_call() const;
+  int work_or_instead(const std::function<int()>& work);
+  int complain(const std::string& sentence, int status) const;
   void open_tables();
 
   About about_;
-  CommandLine line_;
+  std::unique_ptr<CLI::App> app_;  // hidden, since its headers take six seconds to compile
   std::vector<std::shared_ptr<void>> values_;
   std::vector<std::function<void()>> checks_;
   std::vector<std::unique_ptr<Table>> tables_;
+  struct File {
+    std::string name, beginning;
+    std::unique_ptr<WholeFile> file{};
+  };
+  std::vector<std::unique_ptr<File>> files_;
+  struct Instead {
+    Argument<std::string> option;
+    std::function<void(const std::string&)> act;
+  };
+  std::optional<Instead> instead_;
   std::string folder_, meaning_of_folder_;
   std::vector<std::string> command_line_;
 };
-
-// The same for a command line whose options are declared already.
-int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& body);
-
-// Adds --threads: the number of cores that forces, stiffness and factorisations of one run may use.
-// The default is 1, so that times of methods compare. Results do not depend on it.
-void add_threads_option(CommandLine& line);
 
 // Creates the folder and its parents; throws InvalidInput if that cannot be done.
 void require_folder(const std::string& folder);
@@ -230,14 +282,20 @@ Subject subject_of(const SceneChoice& choice, const Argument<double>& until);
 
 template <class T>
 bool Argument<T>::is_given() const {
-  return program_->line().has(name_);
+  return program_->has(name_);
+}
+
+template <class T>
+Argument<T>& Argument<T>::last() {
+  program_->let_last_count(name_);
+  return *this;
 }
 
 template <class T>
 template <class Check>
-Argument<T>& Argument<T>::check(Check check) {
-  program_->checks_.emplace_back([argument = *this, check] {
-    if (argument.is_given()) check(*argument, argument.name_);
+Argument<T>& Argument<T>::check(Check allow) {
+  program_->checks_.emplace_back([argument = *this, allow] {
+    if (argument.is_given()) allow(*argument, argument.name_);
   });
   return *this;
 }

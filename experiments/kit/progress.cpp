@@ -73,7 +73,8 @@ void Progress::begin(std::size_t pieces) {
   state_.number = done_ = 0;
   over_by_.reset();
   last_finish_ = screen_.now();
-  slowest_ = 0;
+  measured_ = 0;
+  measured_pieces_ = 0;
 }
 
 void Progress::now_at(const std::string& what) {
@@ -86,23 +87,23 @@ void Progress::now_at(const std::string& what) {
 void Progress::finish(const std::string& what) {
   const std::lock_guard lock(mutex_);
   const double now = screen_.now();
-  slowest_ = std::max(slowest_, now - last_finish_);
+  if (now - last_finish_ >= kept) {
+    measured_ += now - last_finish_;
+    ++measured_pieces_;
+  }
   last_finish_ = now;
   state_.number = done_ = std::min(done_ + 1, state_.pieces);
+  if (measured_pieces_ > 0) {
+    over_by_ = now + measured_ / static_cast<double>(measured_pieces_) *
+                         static_cast<double>(state_.pieces - done_);
+  }
   state_.what = what;
   show();
   say();
 }
 
-void Progress::left_at_most(std::optional<double> seconds) {
-  const std::lock_guard lock(mutex_);
-  state_.is_bound = true;
-  over_by_ = seconds ? std::optional(screen_.now() + *seconds) : std::nullopt;
-}
-
 void Progress::left_about(double seconds) {
   const std::lock_guard lock(mutex_);
-  state_.is_bound = false;
   over_by_ = screen_.now() + seconds;
 }
 
@@ -122,21 +123,16 @@ Progress::Form Progress::form() const {
   return form_;
 }
 
-std::optional<double> Progress::left_now(double now) const {
-  if (!over_by_) return {};
-  const double left = std::max(0.0, *over_by_ - now);
-  if (!state_.is_bound) return left;
-  if (done_ == 0) return {};  // how loose it is nobody knows yet
-  const double of_slowest = slowest_ * static_cast<double>(state_.pieces - done_);
-  return left <= loosest_bound * std::max(1.0, of_slowest) ? std::optional(left) : std::nullopt;
+void Progress::estimate(double now) {
+  state_.elapsed = now - begun_;
+  state_.left = over_by_ > now ? std::optional(*over_by_ - now) : std::nullopt;
 }
 
 void Progress::show() {
   const double now = screen_.now();
   if (form_ != Form::line || now - last_line_ < between_redraws) return;
   last_line_ = now;
-  state_.elapsed = now - begun_;
-  state_.left = left_now(now);
+  estimate(now);
   const std::size_t columns = screen_.columns();
   screen_.write(fmt::format(
       "\r{}\033[K", progress_in_words(state_, columns > kept_free ? columns - kept_free : 1)));
@@ -147,8 +143,7 @@ void Progress::say() {
   const double now = screen_.now();
   if (form_ != Form::plain || now < next_plain_) return;
   next_plain_ = now + plain_pause;
-  state_.elapsed = now - begun_;
-  state_.left = left_now(now);
+  estimate(now);
   screen_.write(progress_in_words(state_, no_limit) + "\n");
 }
 

@@ -11,7 +11,7 @@
 
 namespace qddot::inline kit {
 
-// Reports on stderr how far a program is, with an upper bound of the remaining time. It updates one
+// Reports on stderr how far a program is, with an estimate of the remaining time. It updates one
 // line of a terminal, or writes a plain line now and then. It writes only when one of its functions
 // is called, between timed runs: it has no thread that could disturb them. It shows at most ten
 // reports a second. Thread-safe.
@@ -30,9 +30,8 @@ class Progress {
 
   // The least time [s] between two plain lines.
   static constexpr double plain_pause = 30;
-  // A bound of the remaining time is not shown if it is more than so many times the estimate from
-  // the slowest piece so far.
-  static constexpr double loosest_bound = 8;
+  // A piece that takes less time [s] was kept from before, and says nothing of those to come.
+  static constexpr double kept = 1e-3;
 
   // Is silent until start().
   explicit Progress(Screen screen = standard_error()) : screen_(std::move(screen)) {}
@@ -45,11 +44,10 @@ class Progress {
   void begin(std::size_t pieces);
   // Names the work on the first piece that is not finished.
   void now_at(const std::string& what);
-  // Counts a finished piece, measured now or kept from before.
+  // Counts a finished piece, measured now or kept from before. The pieces to come are estimated to
+  // take as long, on average, as those that were measured.
   void finish(const std::string& what);
-  // Sets an upper bound of the remaining time [s]; empty if unknown.
-  void left_at_most(std::optional<double> seconds);
-  // Sets an estimate of the remaining time [s].
+  // Sets the estimate of the remaining time [s].
   void left_about(double seconds);
 
   // Removes the line, before anything else is written to the terminal.
@@ -61,7 +59,7 @@ class Progress {
   double now() const { return screen_.now(); }
 
  private:
-  std::optional<double> left_now(double now) const;
+  void estimate(double now);
   void show();
   void say();
   void clear();
@@ -71,7 +69,8 @@ class Progress {
   Form form_ = Form::none;
   ProgressState state_{};
   std::size_t done_ = 0;
-  double begun_ = 0, last_finish_ = 0, slowest_ = 0;  // [s]
+  double begun_ = 0, last_finish_ = 0, measured_ = 0;  // [s]; measured_: by pieces, in all
+  std::size_t measured_pieces_ = 0;
   double last_line_ = -std::numeric_limits<double>::infinity(), next_plain_ = 0;
   std::optional<double> over_by_{};  // on the clock
   bool is_visible_ = false;

@@ -1,7 +1,6 @@
 #include "experiments/kit/progress_words.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cwchar>
 #include <locale.h>
@@ -49,10 +48,9 @@ std::size_t columns_of(const std::string& text) {
 
 }  // namespace
 
-std::string clock_words(double seconds, bool at_most) {
+std::string clock_words(double seconds) {
   constexpr double longest = 1e9;  // [s], beyond which nobody waits
-  const double shown = std::clamp(seconds, 0.0, longest);
-  const auto whole = static_cast<std::int64_t>(at_most ? std::ceil(shown) : std::floor(shown));
+  const auto whole = static_cast<std::int64_t>(std::clamp(seconds, 0.0, longest));
   if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
@@ -82,10 +80,7 @@ std::string in_columns(const std::string& text, std::size_t columns) {
 std::string progress_in_words(const ProgressState& s, std::size_t columns) {
   const std::string number = s.number > 0 ? fmt::format("{}/{}", s.number, s.pieces) : "";
   std::string times = clock_words(s.elapsed);
-  if (s.left) {
-    times += fmt::format(", {} {} left", s.is_bound ? "at most" : "about",
-                         clock_words(*s.left, s.is_bound));
-  }
+  if (s.left) times += fmt::format(", about {} left", clock_words(*s.left));
   const std::string what = in_columns(s.what, columns);
   std::string head = s.program + (number.empty() ? "" : " " + number);
   const auto room = [&] {

@@ -13,7 +13,6 @@
 #include <suitesparse/cholmod.h>
 #include <sundials/sundials_version.h>
 
-#include "experiments/kit/build_info.hpp"
 #include "qddot/model/kernels/level.hpp"
 #include "qddot/model/kernels/roots.hpp"
 #include "qddot/scene/explain.hpp"

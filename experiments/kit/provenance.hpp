@@ -9,6 +9,16 @@
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "qddot/scene/scene.hpp"
 
+namespace qddot::inline kit::build_info {
+
+// Filled in by build_info.cmake at build time.
+extern const char* const version;      // git describe, or the project's version
+extern const char* const source_hash;  // SHA-256 of src, integrators and experiments
+extern const char* const compiler;
+extern const char* const flags;
+
+}  // namespace qddot::inline kit::build_info
+
 namespace qddot::inline kit {
 
 // The record of how a result was made: command line, version of the code, compiler and flags, the

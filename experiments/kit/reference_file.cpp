@@ -12,11 +12,10 @@
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/shares.hpp"
-#include "experiments/kit/text_hash.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/kit/whole_file.hpp"
-#include "qddot/measure/motion/duration.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/timing.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::inline kit {
@@ -251,12 +250,19 @@ Reference reference_without_end(const nlohmann::json& json) {
                                               .horizon = number(*out, "horizon", never),
                                               .lyapunov = number(*out, "lyapunov", 0)};
   }
+  if (json.contains("modal_shares")) reference.modal_shares = vector(json["modal_shares"]);
   reference.modal_shares_floor = number(json, "modal_shares_floor", 0);
   reference.made_by = json.value("made_by", "");
   const auto scales = json.find("scales");
   if (scales != json.end() && scales->contains("displacement")) {
     reference.scales.displacement = number(*scales, "displacement", 0);
     reference.scales.speed = number(*scales, "speed", 0);
+    for (const auto& part : scales->value("parts", nlohmann::json::array())) {
+      const double extent = part.value("at_rest", false) ? never : 0;
+      reference.scales.parts.push_back({.extent = number(part, "extent", extent),
+                                        .displacement = number(part, "displacement", 0),
+                                        .speed = number(part, "speed", 0)});
+    }
   }
   return reference;
 }

@@ -10,7 +10,6 @@
 
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/catalogue.hpp"
-#include "experiments/kit/command_line.hpp"
 #include "experiments/kit/memory.hpp"
 #include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/program.hpp"
@@ -20,15 +19,6 @@
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::inline kit {
-
-void add_scene_options(CommandLine& line, SceneChoice& choice) {
-  line.add_option("--scene", choice.name, "a generator's name or a scene file");
-  line.add_option(
-          "--no-reduce", choice.no_reduce,
-          fmt::format("a,b,...: reductions of the scene to leave out (default: none), of {}",
-                      fmt::join(reduction_names, ", ")))
-      .delimiter(',');
-}
 
 Scene load(const SceneChoice& choice) {
   require_given(choice.name, "--scene", "a generator's name or a scene file");
@@ -87,7 +77,10 @@ nlohmann::json Subject::about() const {
 }
 
 Subject subject_of(const SceneChoice& choice, double until) {
-  Scene drawn = load(choice);
+  return subject_of(load(choice), choice, until);
+}
+
+Subject subject_of(Scene drawn, const SceneChoice& choice, double until) {
   Scene start = started(drawn, choice);
   ReducedScene reduced(start, reductions_of(choice));
   return {choice.name, std::move(drawn), std::move(start), std::move(reduced), until};

@@ -5,7 +5,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "experiments/kit/command_line.hpp"
 #include "qddot/integrators/method.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "qddot/scene/scene.hpp"
@@ -17,9 +16,6 @@ struct SceneChoice {
   std::string name;                    // a generator's or a file's
   std::vector<std::string> no_reduce;  // names of reductions
 };
-
-// Adds --scene and --no-reduce.
-void add_scene_options(CommandLine& line, SceneChoice& choice);
 
 // Loads the scene of that name, a generator's or a file's, and prints its warnings to stderr.
 // Throws InvalidInput if there is none or it is wrong.
@@ -51,6 +47,8 @@ struct Subject {
 
 // The scene that was chosen, to the time `until` [s]. Throws InvalidInput.
 Subject subject_of(const SceneChoice& choice, double until = 0);
+// The same of a scene that is loaded already.
+Subject subject_of(Scene drawn, const SceneChoice& choice, double until);
 
 // Throws InvalidInput unless the method can run the scene. Some methods need a constant K, others
 // need named stiff springs, and most allow no massless node; the message names the node and the

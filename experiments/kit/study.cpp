@@ -1,22 +1,23 @@
 #include "experiments/kit/study.hpp"
 
 #include <algorithm>
-#include <array>
+#include <chrono>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <omp.h>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/kit/command_line.hpp"
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "qddot/measure/motion/interruption.hpp"
-#include "qddot/measure/reference/no_reference.hpp"
+#include "qddot/measure/reference/reference.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::inline kit {
@@ -25,17 +26,8 @@ namespace {
 // Long enough for a step of the largest scenes [s].
 constexpr double patience_with_a_step = 30;
 
-// What the user asked for, but for where results go and how the program is to be run.
-nlohmann::json options_of(const CommandLine& line) {
-  constexpr std::array other = {"--out",         "--scene",    "--resume",  "--force",
-                                "--time-limit",  "--progress", "--help",    "--version",
-                                "--list-shares", "--share",    "--journal", "--kept"};
-  nlohmann::json options = nlohmann::json::object();
-  for (const auto& [name, values] : line.given()) {
-    if (std::ranges::find(other, name) == other.end()) options[name] = values;
-  }
-  return options;
-}
+// A share counts all that its process does, from loading the scene on.
+const auto process_began = std::chrono::steady_clock::now();
 
 // The status of a study of this key that is complete: each of its tables says so.
 std::optional<int> status_of(const std::vector<std::string>& tables, const nlohmann::json& key) {
@@ -64,39 +56,45 @@ std::set<std::string> roots_of(const std::map<std::string, nlohmann::json>& piec
 
 }  // namespace
 
-void add_resume_option(CommandLine& line) {
-  line.add_flag("--resume",
-                "go on with an interrupted run of the same command: measure only what is missing");
+std::string whole_mark(const std::string& share) { return "whole " + share; }
+
+nlohmann::json whole_record(const nlohmann::json& failure) {
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - process_began;
+  return {{"host", host()},
+          {"date", date_now()},
+          {"seconds", took.count()},
+          {"roots", roots()},
+          {"failure", failure}};
 }
 
-Study::Study(const CommandLine& line, const std::string& folder,
+Study::Study(const StudyCall& call, const std::string& folder,
              const std::vector<std::string>& tables, const nlohmann::json& about,
              const Shares& shares)
-    : program_(line.program()),
+    : program_(call.program),
       path_(folder + "/" + program_ + ".journal"),
-      options_(options_of(line)),
+      options_(call.options),
       key_({{"program", program_},
             {"about", about},
             {"options", options_},
             {"build", build()},
             {"machine", machine()}}),
-      share_(share_of(line)),
-      is_kept_(is_of_kept(line)) {
+      share_(call.share),
+      is_kept_(call.is_of_kept) {
   progress().wipe();  // what was done before may have a line
-  if (is_divided() || lists_shares(line)) {
+  if (is_divided() || call.lists_shares) {
     for (const std::string& option : shares.chosen_by) key_["options"].erase(option);
   }
-  if (lists_shares(line)) {
+  if (call.lists_shares) {
     list(shares);
     return;
   }
   require_folder(folder);
   if (is_share()) {
-    open_share(line, shares);
+    open_share(call, shares);
   } else if (is_kept_) {
     open_kept();
   } else {
-    open(tables, folder, line.has("--resume"));
+    open(tables, folder, call.resumes);
   }
 }
 
@@ -106,12 +104,12 @@ void Study::list(const Shares& shares) {
   completed_ = done;
 }
 
-void Study::open_share(const CommandLine& line, const Shares& shares) {
+void Study::open_share(const StudyCall& call, const Shares& shares) {
   if (std::ranges::find(shares.names, share_) == shares.names.end()) {
     throw InvalidInput(fmt::format("--share: {} is no share of this study; allowed are {}", share_,
                                    fmt::join(shares.names, ", ")));
   }
-  path_ = journal_of(line);
+  path_ = call.journal;
   require_given(path_, "--journal", "the file for the results of the share");
   key_["share"] = share_;
   const Journal::Contents there = Journal::read(path_);
@@ -256,6 +254,28 @@ int Study::conclude_whole(int status) {
 int Study::finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status) {
   for (CsvFile* table : tables) complete(*table, origin, status);
   return conclude(status);
+}
+
+void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work, int threads) {
+  std::exception_ptr trouble, interruption;
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::size_t i = 0; i < count; ++i) {
+    try {
+      work(i);
+    } catch (const Interrupted&) {
+#pragma omp critical
+      interruption = std::current_exception();
+    } catch (...) {  // which cannot leave a thread
+#pragma omp critical
+      trouble = std::current_exception();
+    }
+  }
+  if (trouble) std::rethrow_exception(trouble);
+  if (interruption) std::rethrow_exception(interruption);
+}
+
+void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work) {
+  side_by_side(count, work, omp_get_max_threads());
 }
 
 }  // namespace qddot::inline kit

@@ -9,18 +9,38 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/command_line.hpp"
 #include "experiments/kit/csv.hpp"
 #include "experiments/kit/journal.hpp"
-#include "experiments/kit/shares.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/integrators/method.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 
 namespace qddot::inline kit {
 
-// Adds --resume.
-void add_resume_option(CommandLine& line);
+// The parts of a study that several processes can measure independently.
+struct Shares {
+  std::vector<std::string> names{};
+  // The options that choose the shares. A share does not depend on the others that are chosen.
+  std::vector<std::string> chosen_by{};
+};
+
+// The share that makes the reference of all others.
+inline const std::string reference_share = "reference";
+
+// The name of the piece that marks a share as complete.
+std::string whole_mark(const std::string& share);
+// That piece: the machine, the date and the seconds of the process until now. "failure" says in
+// words why there is no reference to measure against; null if there is one.
+nlohmann::json whole_record(const nlohmann::json& failure);
+
+// The command line of a study.
+struct StudyCall {
+  std::string program;
+  // The options that decide results, with their values.
+  nlohmann::json options = nlohmann::json::object();
+  bool resumes = false, lists_shares = false, is_of_kept = false;
+  std::string share{}, journal{};  // empty if all shares are measured
+};
 
 // A study that is measured piece by piece into tables in one folder and may be interrupted at any
 // time. Each piece is kept in `folder`/PROGRAM.journal when it is measured. The same command with
@@ -38,7 +58,7 @@ class Study {
   // hash. `tables`: the files X.csv in `folder` that it makes. Makes the folder, unless it lists
   // shares. Says on stderr how many pieces of an interrupted run it keeps or measures anew. Throws
   // InvalidInput as Journal does, and for an unknown share.
-  Study(const CommandLine& line, const std::string& folder, const std::vector<std::string>& tables,
+  Study(const StudyCall& call, const std::string& folder, const std::vector<std::string>& tables,
         const nlohmann::json& about, const Shares& shares = {});
   // Removes the journal if nothing was measured.
   ~Study();
@@ -88,7 +108,7 @@ class Study {
 
  private:
   void list(const Shares& shares);
-  void open_share(const CommandLine& line, const Shares& shares);
+  void open_share(const StudyCall& call, const Shares& shares);
   void open_kept();
   void open(const std::vector<std::string>& tables, const std::string& folder, bool resumes);
   int conclude_whole(int status);
@@ -105,5 +125,10 @@ class Study {
   std::vector<CsvFile*> complete_;
   std::vector<WholeFile*> files_;
 };
+
+// Calls work(i) for each i below `count` on so many threads (OpenMP). Throws, when all threads have
+// ended, what one of the calls threw; Interrupted only if nothing else was.
+void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work, int threads);
+void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work);  // on all cores
 
 }  // namespace qddot::inline kit

@@ -1,6 +1,7 @@
 #include "experiments/kit/whole_file.hpp"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <unistd.h>
 #include <utility>
@@ -64,6 +65,12 @@ void WholeFile::commit() {
 
 void WholeFile::fail(int error) const {
   throw CannotWrite(fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
+}
+
+std::string text_hash(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x00000100000001b3ULL;
+  return fmt::format("{:016x}", hash);
 }
 
 }  // namespace qddot::inline kit

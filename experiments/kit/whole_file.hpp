@@ -45,4 +45,7 @@ class WholeFile {
   int lock_ = -1;    // held until the file has its name, so that it is not taken for stale
 };
 
+// The 64-bit FNV-1a hash of a text, as 16 hexadecimal digits.
+std::string text_hash(const std::string& text);
+
 }  // namespace qddot::inline kit

@@ -1,7 +1,6 @@
-#include "experiments/local_global/iterated_newton.hpp"
-
 #include <algorithm>
 
+#include "experiments/local_global/iterated_steps.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/integrators/base/compression.hpp"
 #include "qddot/integrators/base/fixed_step.hpp"

@@ -1,17 +1,30 @@
 #include "experiments/local_global/iterated_steps.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 #include <fmt/format.h>
 
-#include "experiments/local_global/iterated_newton.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::local_global {
 namespace {
+
+// The steps of one solver, and what it takes before the first.
+struct Solved {
+  struct Step {
+    int iterations = 0;
+    double seconds = 0;
+    State end{};
+  };
+
+  const Method* method = nullptr;
+  double analysis = INFINITY, factorization = INFINITY;  // [s]; the latter of a constant matrix
+  std::vector<Step> steps{};
+  std::string failure{};
+};
 
 std::vector<const Method*> solvers() {
   std::vector<const Method*> all;
@@ -41,7 +54,7 @@ Solved solve(const Method& method, const SwingingCloth& cloth, double h, int mos
     const double analysis =
         seconds_of([&] { integrator = make_integrator(method, cloth.system(), options); });
     std::vector<double> times, factorizations;
-    Step step{.iterations = iterations};
+    Solved::Step step{.iterations = iterations};
     // The first of several is not timed.
     for (int i = repeats > 1 ? -1 : 0; i < repeats; ++i) {
       stop_if_interrupted();
@@ -59,7 +72,7 @@ Solved solve(const Method& method, const SwingingCloth& cloth, double h, int mos
       times.push_back(all - constant);
       factorizations.push_back(constant);
     }
-    // What others do on the machine only ever adds to it.
+    // Other work on the machine only ever adds to it.
     step.seconds = std::ranges::min(times);
     solved.analysis = std::min(solved.analysis, analysis);
     solved.factorization = std::min(solved.factorization, std::ranges::min(factorizations));
@@ -75,40 +88,54 @@ double objective(const SwingingCloth& cloth, const State& end) {
 
 }  // namespace
 
-Comparison::Comparison(const SwingingCloth& on, double h, int most, int repeats) : cloth(on) {
-  for (const Method* method : solvers()) all.push_back(solve(*method, on, h, most, repeats));
-  first = objective(on, all.front().steps.front().end);
-  least = std::numeric_limits<double>::infinity();
+Comparison compare(const SwingingCloth& cloth, double h, int most, int repeats, double varied,
+                   bool with_truth) {
+  std::vector<Solved> all;
+  for (const Method* method : solvers()) all.push_back(solve(*method, cloth, h, most, repeats));
+  const double first = objective(cloth, all.front().steps.front().end);
+  double least = INFINITY;
+  State converged;
   for (const Solved& solved : all) {
-    for (const Step& step : solved.steps) {
-      const double g = objective(on, step.end);
+    for (const auto& step : solved.steps) {
+      const double g = objective(cloth, step.end);
       if (g >= least) continue;
       least = g;
       converged = step.end;
     }
   }
-}
-
-double iterations_of_comparison(int most, int repeats) {
-  double sum = 0;
-  for (const Method* method : solvers()) {
-    const int own = method->asks(Need::laplacian) ? most : std::min(most, most_newton_iterations);
-    for (const int count : iteration_counts(own)) sum += count;
+  Comparison result;
+  if (with_truth) result.step_error = cloth.distance(converged, cloth.truth(cloth.start, h));
+  for (const Solved& solved : all) {
+    const std::string& name = solved.method->name;
+    for (const auto& step : solved.steps) {
+      result.rows.push_back({varied, name, step.iterations, step.seconds,
+                             (objective(cloth, step.end) - least) / (first - least),
+                             cloth.distance(step.end, converged), result.step_error});
+    }
+    result.setup[name] = {{"analysis_s", solved.analysis},
+                          {"factorization_s", solved.factorization}};
+    if (!solved.failure.empty()) result.failures.push_back(solved.failure);
   }
-  return sum * (repeats > 1 ? repeats + 1 : 1);
+  return result;
 }
 
-double seconds_of_iterations(const SwingingCloth& cloth, double h, double iterations) {
-  constexpr int some = 10;
-  const auto integrator = make_integrator(*find_method("local_global"), cloth.system(),
-                                          {.step_size = h, .iterations = some});
-  State state = cloth.start;
-  const double seconds = seconds_of([&] { integrator->advance(state, cloth.start.t + h); });
-  return seconds / some * iterations;
-}
-
-double Comparison::relative_error(const Step& step) const {
-  return (objective(cloth, step.end) - least) / (first - least);
+void print(const Comparison& step, double h) {
+  const double own = step.step_error;
+  fmt::print("one step of {:g} s: {:.3g} m from the true motion when converged\n", h, own);
+  fmt::print("{:<24} {:>10} {:>9}  {}\n", "solver", "iterations", "ms",
+             "until no more than a tenth is added to that");
+  for (auto first = step.rows.begin(); first != step.rows.end();) {
+    const auto next = std::find_if(first, step.rows.end(),
+                                   [&](const StepRow& row) { return row.solver != first->solver; });
+    const auto good =
+        std::find_if(first, next, [&](const StepRow& row) { return row.distance <= own / 10; });
+    if (good != next) {
+      fmt::print("{:<24} {:>10} {:>9.3f}\n", good->solver, good->iteration, 1e3 * good->seconds);
+    } else {
+      fmt::print("{:<24} {:>10}\n", first->solver, fmt::format("> {}", (next - 1)->iteration));
+    }
+    first = next;
+  }
 }
 
 }  // namespace qddot::local_global

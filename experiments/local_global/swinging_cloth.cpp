@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "qddot/analysis/frequency_bound.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/reference/reference.hpp"
@@ -43,6 +43,12 @@ State moved(const char* method, const System& system, State state, double durati
 
 }  // namespace
 
+void require_swing(double t, const std::string& option) {
+  if (std::isfinite(t) && t >= 0) return;
+  throw InvalidInput(
+      fmt::format("{} {} is not allowed; it is a time in s, finite and at least 0", option, t));
+}
+
 void require_reachable(int nodes, double stiffness, double duration, const std::string& option) {
   // Gershgorin's bound at a node within: 4 k, 4 k/2 and 4 k/10 pull at it, as much at its
   // neighbours, and its mass is 1/nodes^2.
@@ -72,6 +78,17 @@ double SwingingCloth::distance(const State& a, const State& b) const {
     largest = std::max(largest, (x[i].position - y[i].position).norm());
   }
   return largest;
+}
+
+void require_affordable(int nodes, double stiffness, double h, double until) {
+  constexpr double most_steps = 1e6;
+  if (const double steps = until / h; !(steps <= most_steps)) {
+    throw InvalidInput(fmt::format(
+        "--step-size {:g}: the runs of {:g} s (--until) are {:.3g} steps; allowed are up to {:g}",
+        h, until, steps, most_steps));
+  }
+  require_reachable(nodes, stiffness, h, "--step-size");
+  require_reachable(nodes, stiffness, until, "--until");
 }
 
 }  // namespace qddot::local_global

@@ -6,24 +6,14 @@
 // modes.csv has the lowest and the highest modes by rank. A mode that grows instead of vibrating
 // has omega = -(growth rate); it has w^2 < 0, at a state that is no minimum of the energy. A mode
 // with w^2 = 0 within rounding has omega = 0.
-#include <array>
-#include <cmath>
-#include <stdexcept>
+#include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "experiments/kit/command_line.hpp"
-#include "experiments/kit/csv.hpp"
-#include "experiments/kit/entry.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/scene_choice.hpp"
-#include "qddot/analysis/curvature_signs.hpp"
-#include "qddot/analysis/frequency_bound.hpp"
+#include "experiments/modes/spectrum.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
-#include "qddot/analysis/natural_modes.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/settle.hpp"
 
@@ -31,165 +21,73 @@ namespace qddot::modes {
 namespace {
 
 constexpr int most_modes = 1000;
-constexpr int most_printed = 10;
 
-struct Arguments {
-  std::string scene, out, at;
-  int count = 10;
-};
-
-void declare(CommandLine& line, Arguments& a) {
-  line.add_option("--scene", a.scene, "a generator's name or a scene file");
-  line.add_option("--out", a.out,
-                  "the folder for modes.csv (a mode that grows instead of vibrating has omega = "
-                  "-growth rate), shapes.csv of the lowest ones, and springs.csv");
-  line.add_option("--count", a.count,
-                  "number of modes at each end of the spectrum, 1 to 1000 (default: 10)");
-  line.add_option(
-      "--at", a.at,
-      "the state of the scene: drawn or equilibrium (default: where its motion starts)");
-}
-
-// Angular frequency [rad/s], or minus the rate of growth [1/s].
-double omega(double square) { return std::copysign(std::sqrt(std::abs(square)), square); }
-
-// Both ends of the spectrum, by rank.
-struct Spectrum {
-  Index finite = 0;
-  NaturalModes lowest, highest;  // highest: without the lowest
-  CurvatureSigns signs;          // by rank: growing modes, then those hidden by rounding
-
-  Spectrum(const ReducedScene& scene, Index count)
-      : finite(finite_modes(scene.system())),
-        signs(curvature_signs(scene.system(), scene.initial().q)) {
-    const Vec& q = scene.initial().q;
-    lowest = lowest_modes(scene.system(), q, 2 * count >= finite ? finite : count);
-    highest = highest_modes(scene.system(), q, std::min(count, finite - lowest.squares.size()));
-    for (Index rank = signs.negative; rank < std::min<Index>(first_positive(), finite); ++rank) {
-      const Index high = rank - (finite - highest.squares.size());
-      if (rank < lowest.squares.size()) lowest.squares[rank] = 0;
-      if (high >= 0) highest.squares[high] = 0;
-    }
-  }
-
-  Index first_positive() const { return signs.negative + signs.flat; }
-};
-
-void print(const Spectrum& spectrum) {
-  fmt::print("{:>6}  {:>14}  {:>14}\n", "mode", "omega in rad/s", "frequency in Hz");
-  const auto row = [](Index rank, double square) {
-    const double w = omega(square);
-    fmt::print("{:>6}  {:>14.6g}  {:>14.6g}{}\n", rank, w, w / (2 * M_PI), w < 0 ? "  grows" : "");
-  };
-  const Vec &low = spectrum.lowest.squares, &high = spectrum.highest.squares;
-  const Index shown = std::min<Index>(low.size(), most_printed);
-  for (Index j = 0; j < shown; ++j) row(j + 1, low[j]);
-  if (shown < spectrum.finite) {
-    fmt::print("{:>6}\n", "...");
-    row(spectrum.finite, high.size() > 0 ? high[high.size() - 1] : low[low.size() - 1]);
-  }
-}
-
-void write_spectrum(CsvFile& csv, const Spectrum& spectrum) {
-  const auto rows = [&](Index first_rank, const Vec& squares) {
-    for (Index j = 0; j < squares.size(); ++j) {
-      const double w = omega(squares[j]);
-      csv.row(first_rank + j, w, w / (2 * M_PI));
-    }
-  };
-  rows(1, spectrum.lowest.squares);
-  rows(spectrum.finite - spectrum.highest.squares.size() + 1, spectrum.highest.squares);
-}
-
-std::vector<std::string> shape_header(int dimension) {
-  constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
-  std::vector<std::string> header = {"mode", "node"};
-  for (int d = 0; d < dimension; ++d) header.emplace_back(axes[d]);
-  for (int d = 0; d < dimension; ++d) header.emplace_back(fmt::format("d{}", axes[d]));
-  return header;
-}
-
-// The positions of all nodes and, in each mode, their displacements.
-void write_shapes(CsvFile& csv, const ReducedScene& scene, const Eigen::MatrixXd& shapes) {
-  for (Index j = 0; j < shapes.cols(); ++j) {
-    // A displacement goes through the reduction as a velocity does.
-    const auto nodes = scene.expand({0, scene.initial().q, shapes.col(j)});
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      csv.field(j + 1);
-      csv.field(i);
-      for (int d = 0; d < scene.dimension(); ++d) csv.field(nodes[i].position[d]);
-      for (int d = 0; d < scene.dimension(); ++d) csv.field(nodes[i].velocity[d]);
-      csv.end_row();
-    }
-    csv.flush_if_large();
-  }
-}
-
-bool is_at_equilibrium(const Arguments& a, const Scene& scene) {
-  if (a.at.empty()) return scene.starts_at_equilibrium;
-  if (a.at == "drawn" || a.at == "equilibrium") return a.at == "equilibrium";
-  throw InvalidInput(fmt::format("--at: {} is not allowed; it is drawn or equilibrium", a.at));
-}
-
-int modes(const CommandLine&, const Arguments& a, const std::vector<std::string>& command_line) {
-  require_given(a.scene, "--scene", "a generator's name or a scene file");
-  require_given(a.out, "--out", "the folder for the results");
-  if (a.count < 1 || a.count > most_modes) {
-    throw InvalidInput(
-        fmt::format("--count {} is not allowed; it is a number from 1 to {}", a.count, most_modes));
-  }
-  const Scene drawn = load(a.scene);
-  const bool at_equilibrium = is_at_equilibrium(a, drawn);
-  if (at_equilibrium) progress().stage("finding the equilibrium");
-  const ReducedScene scene(at_equilibrium ? settled(drawn, a.scene) : drawn,
-                           Reductions::all_directions());
-  require_folder(a.out);
-  CsvFile table(a.out + "/modes.csv", {"mode", "omega", "frequency_hz"});
-  CsvFile shapes(a.out + "/shapes.csv", shape_header(drawn.dimension));
-  CsvFile springs(a.out + "/springs.csv", {"i", "j"});
-
-  const System& system = scene.system();
-  const Vec& q = scene.initial().q;
-  progress().stage("finding the modes");
-  const Spectrum spectrum(scene, a.count);
-  const double lanczos = largest_frequency(system, q), bound = frequency_bound(system, q);
-  progress().wipe();
-  const Index shown = std::min<Index>(a.count, spectrum.lowest.squares.size());
-  write_spectrum(table, spectrum);
-  write_shapes(shapes, scene, spectrum.lowest.shapes.leftCols(shown));
-  for (const Spring& spring : drawn.springs) springs.row(spring.nodes[0], spring.nodes[1]);
-
-  const char* place = at_equilibrium ? "at equilibrium" : "as drawn";
-  const CurvatureSigns& signs = spectrum.signs;
-  fmt::print(
-      "{} {}: natural modes of finite frequency: {}, unstable: {}, zero within rounding: {}\n",
-      drawn.name, place, spectrum.finite, signs.negative, signs.flat);
-  print(spectrum);
-  fmt::print("w_max: {:.7g} rad/s by Lanczos, at most {:.7g} by Gershgorin; 2/w_max = {:.5g} s\n",
-             lanczos, bound, 2 / lanczos);
-
-  nlohmann::json origin = provenance(command_line, drawn);
-  origin["at"] = at_equilibrium ? "equilibrium" : "drawn";
-  origin["gravity"] = drawn.gravity;
-  origin["finite_modes"] = spectrum.finite;
-  origin["unstable_directions"] = signs.negative;
-  origin["flat_directions"] = signs.flat;
-  origin["flat_growth_rate_at_most"] = signs.flat_rate;  // infinite becomes null
-  origin["omega_max"] = lanczos;                         // infinite becomes null
-  origin["omega_max_bound"] = bound;
-  for (CsvFile* file : {&table, &shapes, &springs}) file->commit(origin);
-  return done;
+bool is_at_equilibrium(const Argument<std::string>& at, const Scene& scene) {
+  if (at->empty()) return scene.starts_at_equilibrium;
+  if (*at == "drawn" || *at == "equilibrium") return *at == "equilibrium";
+  throw InvalidInput(fmt::format("--at: {} is not allowed; it is drawn or equilibrium", *at));
 }
 
 }  // namespace
 }  // namespace qddot::modes
 
 int main(int argc, char** argv) {
+  using namespace qddot;
   using namespace qddot::modes;
-  return qddot::kit::enter<Arguments>(
-      {.name = "modes",
-       .summary =
-           "Finds the natural modes of a scene: frequencies and shapes of its small motions.",
-       .has_threads = true},
-      declare, modes, argc, argv);
+  Program p({.name = "modes",
+             .summary =
+                 "Finds the natural modes of a scene: frequencies and shapes of its small motions.",
+             .has_threads = true});
+  auto scene = p.drawn_scene();
+  p.out(
+      "the folder for modes.csv (a mode that grows instead of vibrating has omega = -growth "
+      "rate), shapes.csv of the lowest ones, and springs.csv");
+  auto count = p.whole("--count", 10, "number of modes at each end of the spectrum, 1 to 1000")
+                   .within(1, most_modes);
+  auto at = p.word("--at",
+                   "the state of the scene: drawn or equilibrium (default: where its motion "
+                   "starts)");
+  return p.run(argc, argv, [&] {
+    const Scene drawn = load(scene);
+    const bool at_equilibrium = is_at_equilibrium(at, drawn);
+    if (at_equilibrium) progress().stage("finding the equilibrium");
+    const ReducedScene reduced(at_equilibrium ? settled(drawn, scene->name) : drawn,
+                               Reductions::all_directions());
+    require_folder(p.folder());
+    CsvFile table(p.folder() + "/modes.csv", {"mode", "omega", "frequency_hz"});
+    CsvFile shapes(p.folder() + "/shapes.csv", shape_header(drawn.dimension));
+    CsvFile springs(p.folder() + "/springs.csv", {"i", "j"});
+
+    const System& system = reduced.system();
+    const Vec& q = reduced.initial().q;
+    progress().stage("finding the modes");
+    const Spectrum spectrum(reduced, count);
+    const double lanczos = largest_frequency(system, q), bound = frequency_bound(system, q);
+    progress().wipe();
+    const Index shown = std::min<Index>(*count, spectrum.lowest.squares.size());
+    write_spectrum(table, spectrum);
+    write_shapes(shapes, reduced, spectrum.lowest.shapes.leftCols(shown));
+    for (const Spring& spring : drawn.springs) springs.row(spring.nodes[0], spring.nodes[1]);
+
+    const char* place = at_equilibrium ? "at equilibrium" : "as drawn";
+    const CurvatureSigns& signs = spectrum.signs;
+    fmt::print(
+        "{} {}: natural modes of finite frequency: {}, unstable: {}, zero within rounding: {}\n",
+        drawn.name, place, spectrum.finite, signs.negative, signs.flat);
+    print(spectrum);
+    fmt::print("w_max: {:.7g} rad/s by Lanczos, at most {:.7g} by Gershgorin; 2/w_max = {:.5g} s\n",
+               lanczos, bound, 2 / lanczos);
+
+    nlohmann::json origin = provenance(p.command_line(), drawn);
+    origin["at"] = at_equilibrium ? "equilibrium" : "drawn";
+    origin["gravity"] = drawn.gravity;
+    origin["finite_modes"] = spectrum.finite;
+    origin["unstable_directions"] = signs.negative;
+    origin["flat_directions"] = signs.flat;
+    origin["flat_growth_rate_at_most"] = signs.flat_rate;  // infinite becomes null
+    origin["omega_max"] = lanczos;                         // infinite becomes null
+    origin["omega_max_bound"] = bound;
+    for (CsvFile* file : {&table, &shapes, &springs}) file->commit(origin);
+    return done;
+  });
 }

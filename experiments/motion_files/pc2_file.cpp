@@ -1,5 +1,3 @@
-#include "experiments/motion_files/pc2_file.hpp"
-
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -14,6 +12,7 @@
 #include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "experiments/motion_files/frame.hpp"
+#include "experiments/motion_files/motion_formats.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::motion_files {

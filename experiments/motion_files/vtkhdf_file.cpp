@@ -1,5 +1,3 @@
-#include "experiments/motion_files/vtkhdf_file.hpp"
-
 #include <array>
 #include <filesystem>
 #include <utility>
@@ -12,6 +10,7 @@
 #include "experiments/motion_files/cells.hpp"
 #include "experiments/motion_files/frame.hpp"
 #include "experiments/motion_files/hdf5.hpp"
+#include "experiments/motion_files/motion_formats.hpp"
 #include "experiments/motion_files/row_stream.hpp"
 #include "experiments/motion_files/xdmf.hpp"
 #include "qddot/scene/invalid_input.hpp"

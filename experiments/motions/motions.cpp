@@ -14,23 +14,14 @@
 //     up to where it did.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <limits>
-#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "experiments/kit/csv.hpp"
-#include "experiments/kit/entry.hpp"
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/measured_points.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
-#include "experiments/kit/provenance.hpp"
 #include "experiments/kit/reference_file.hpp"
-#include "experiments/kit/scene_choice.hpp"
 #include "experiments/motion_files/motion_file.hpp"
 #include "experiments/motions/chosen_runs.hpp"
 #include "experiments/motions/kept_motions.hpp"
@@ -54,25 +45,6 @@ constexpr double longest_run = 10;          // [s]
 constexpr double longest_reference = 15;    // [s]
 constexpr double patience_with_a_run = 30;  // [s], after an interruption
 
-struct Arguments {
-  SceneChoice scene;
-  std::string out;
-  int frames = 0, runs = 0;
-};
-
-void declare(CommandLine& line, Arguments& a) {
-  line.add_option("--scene", a.scene.name, "a generator's name or a scene file");
-  line.add_option("--frames", a.frames,
-                  "number of frames after the start (default: 100, fewer for large scenes)")
-      .take_last();
-  line.add_option("--runs", a.runs,
-                  "number of runs to keep, the most telling first (default: 120, fewer if these "
-                  "take more than 256 MB or a minute)")
-      .take_last();
-  line.add_option("--out", a.out,
-                  "the folder of work_precision's points.csv, for motions.csv and motions/");
-}
-
 // 0 and the ends of so many equal parts of the time.
 std::vector<double> frame_times(double until, int frames) {
   std::vector<double> times;
@@ -93,8 +65,6 @@ void keep(const std::vector<ChosenRun>& runs, bool all, const Options& options,
   for (const ChosenRun& run : runs) {
     const double left = most_seconds - seconds_since(begin);
     if (!all && (kept.bytes() > most_bytes || left < 0)) return;
-    // The last run is begun before the time is over, and made twice.
-    if (!all) progress().left_at_most(left + 2 * longest_run);
     const Method& method = *run.point->method;
     const std::string words = method.name + " " + knob_in_words(method, run.point->value);
     progress().now_at(words);
@@ -103,75 +73,84 @@ void keep(const std::vector<ChosenRun>& runs, bool all, const Options& options,
   }
 }
 
-int motions(const CommandLine& line, Arguments& a, const std::vector<std::string>& command_line) {
-  require_given(a.out, "--out", "the folder that work_precision wrote points.csv into");
-  if (line.has("--frames")) require_within(a.frames, 1, largest_count, "--frames");
-  if (line.has("--runs")) require_within(a.runs, 1, largest_count, "--runs");
-  const Scene drawn = load(a.scene);
-  const MeasuredPoints study = measured_points(a.out);
-  if (study.scene_hash != content_hash(drawn)) {
-    throw InvalidInput(
-        fmt::format("--scene {}: {}/points.csv is of another scene, or of this one before it was "
-                    "changed; work_precision measures this one",
-                    a.scene.name, a.out));
-  }
-  a.scene.no_reduce = study.no_reduce;
-  const Scene start = started(drawn, a.scene);
-  const ReducedScene scene(start, reductions_of(a.scene));
-  nlohmann::json origin = provenance(command_line, drawn, start, scene);
-  origin["until"] = study.until;
-  origin["study"] = study.key;
-  const Reference reference = reference_for(drawn, start, scene, study.until, a.out, origin);
-  const auto front = fastest_at_each_accuracy(study.points, reference);
-  if (study.points.empty()) {
-    throw InvalidInput(
-        fmt::format("{}/points.csv: it has no runs; work_precision measures some", a.out));
-  }
-  auto runs = chosen_runs(study.points, front);
-  const std::size_t all = runs.size();
-  runs.resize(std::min(all, line.has("--runs") ? static_cast<std::size_t>(a.runs) : most_runs));
-
-  const auto times = frame_times(
-      study.until, line.has("--frames") ? a.frames : usual_number_of_frames(start.nodes.size()));
-  KeptMotions kept(a.out, start, scene, times, origin);
-  wait_for_answer(patience_with_a_run);
-  std::optional<Interruption> why;
-  try {
-    progress().stage("making the reference's motion");
-    const auto moves =
-        reference_motion(times, scene, reference, study.points, study.options, longest_reference);
-    if (moves) kept.add_reference(*moves);
-    keep(runs, line.has("--runs"), study.options, reference, kept);
-  } catch (const Interrupted&) {
-    why = interrupted();
-  }
-  progress().wipe();
-  if (why && kept.runs() < kept.earlier_runs()) {
-    fmt::print(stderr,
-               "motions: interrupted by {}: {} of {} runs were made; the {} former ones stay\n",
-               why->by, kept.runs(), all, kept.earlier_runs());
-    return why->status;
-  }
-  origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
-  origin["displacement"] = reference.scales.displacement;
-  origin["runs_left_out"] = all - kept.runs();
-  kept.finish(origin);
-  fmt::print("{}: {} of {} runs, {} frames each, {:.3g} MB in {}/motions\n",
-             in_one_line(drawn.name), kept.runs(), all, times.size(), 1e-6 * kept.bytes(), a.out);
-  if (!why) return done;
-  fmt::print(stderr, "motions: interrupted by {}: {} of {} runs are kept\n", why->by, kept.runs(),
-             all);
-  return why->status;
-}
-
 }  // namespace
 }  // namespace qddot::motions
 
 int main(int argc, char** argv) {
+  using namespace qddot;
   using namespace qddot::motions;
-  return qddot::kit::enter<Arguments>(
+  Program p(
       {.name = "motions",
        .summary = "Keeps the motions of the runs of a work-precision chart, beside the reference.",
-       .has_threads = true},
-      declare, motions, argc, argv);
+       .has_threads = true});
+  auto scene = p.drawn_scene();
+  auto frames =
+      p.whole("--frames", "number of frames after the start (default: 100, fewer for large scenes)")
+          .last()
+          .within(1, largest_count);
+  auto most = p.whole("--runs",
+                      "number of runs to keep, the most telling first (default: 120, fewer if "
+                      "these take more than 256 MB or a minute)")
+                  .last()
+                  .within(1, largest_count);
+  p.out("the folder of work_precision's points.csv, for motions.csv and motions/",
+        "the folder that work_precision wrote points.csv into");
+  return p.run(argc, argv, [&]() -> int {
+    Scene drawn = load(scene);
+    const MeasuredPoints study = measured_points(p.folder());
+    if (study.scene_hash != content_hash(drawn)) {
+      throw InvalidInput(
+          fmt::format("--scene {}: {}/points.csv is of another scene, or of this one before it was "
+                      "changed; work_precision measures this one",
+                      scene->name, p.folder()));
+    }
+    const Subject subject =
+        subject_of(std::move(drawn), {scene->name, study.no_reduce}, study.until);
+    nlohmann::json origin = p.origin(subject);
+    origin["until"] = study.until;
+    origin["study"] = study.key;
+    const Reference reference = reference_for(subject, p.folder(), origin);
+    const auto front = fastest_at_each_accuracy(study.points, reference);
+    if (study.points.empty()) {
+      throw InvalidInput(
+          fmt::format("{}/points.csv: it has no runs; work_precision measures some", p.folder()));
+    }
+    auto runs = chosen_runs(study.points, front);
+    const std::size_t all = runs.size();
+    runs.resize(std::min(all, most.is_given() ? static_cast<std::size_t>(*most) : most_runs));
+
+    const auto times = frame_times(
+        study.until,
+        frames.is_given() ? *frames : usual_number_of_frames(subject.start.nodes.size()));
+    KeptMotions kept(p.folder(), subject.start, subject.reduced, times, origin);
+    wait_for_answer(patience_with_a_run);
+    std::optional<Interruption> why;
+    try {
+      progress().stage("making the reference's motion");
+      const auto moves = reference_motion(times, subject.reduced, reference, study.points,
+                                          study.options, longest_reference);
+      if (moves) kept.add_reference(*moves);
+      keep(runs, most.is_given(), study.options, reference, kept);
+    } catch (const Interrupted&) {
+      why = interrupted();
+    }
+    progress().wipe();
+    if (why && kept.runs() < kept.earlier_runs()) {
+      fmt::print(stderr,
+                 "motions: interrupted by {}: {} of {} runs were made; the {} former ones stay\n",
+                 why->by, kept.runs(), all, kept.earlier_runs());
+      return why->status;
+    }
+    origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
+    origin["displacement"] = reference.scales.displacement;
+    origin["runs_left_out"] = all - kept.runs();
+    kept.finish(origin);
+    fmt::print("{}: {} of {} runs, {} frames each, {:.3g} MB in {}/motions\n",
+               in_one_line(subject.drawn.name), kept.runs(), all, times.size(), 1e-6 * kept.bytes(),
+               p.folder());
+    if (!why) return done;
+    fmt::print(stderr, "motions: interrupted by {}: {} of {} runs are kept\n", why->by, kept.runs(),
+               all);
+    return why->status;
+  });
 }

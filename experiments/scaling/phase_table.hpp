@@ -5,18 +5,18 @@
 #include <vector>
 
 #include "experiments/scaling/sized_scenes.hpp"
-#include "qddot/measure/trend/power_law.hpp"
+#include "qddot/algebra/straight_line.hpp"
 
 namespace qddot::scaling {
 
-// What one phase of a method takes at one size of a scene: a row of scaling.csv.
+// The cost of one phase of a method at one size of a scene: a row of scaling.csv.
 struct PhaseCost {
   std::string scene;
   double nodes, springs;
-  std::string method;  // empty for what is done before any method is made
+  std::string method;  // empty for phases before any method is made
   std::string phase;
-  double seconds;  // of a step; of a call, where it is called once
-  double bytes = std::numeric_limits<double>::quiet_NaN();  // that it holds; no number: none
+  double seconds;  // of a step; of a call for phases that run once
+  double bytes = std::numeric_limits<double>::quiet_NaN();  // allocated by it; NaN: none
 };
 
 // The growth of a phase's seconds and bytes with the number of nodes, by theory and up to a
@@ -35,7 +35,7 @@ double expected_bytes(const std::vector<PhaseCost>& all, const SizedScenes& scen
 struct Exponent {
   std::string scene, method, phase;
   PowerLaw fit;
-  double theory;  // what theory's law gives, fitted at the same numbers of nodes
+  double theory;  // the exponent by theory, fitted at the same numbers of nodes
   double nodes_from, nodes_to;
 };
 

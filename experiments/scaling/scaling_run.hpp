@@ -4,31 +4,40 @@
 #include <vector>
 
 #include "experiments/kit/study.hpp"
-#include "experiments/scaling/force_rate.hpp"
 #include "experiments/scaling/phase_table.hpp"
+#include "experiments/scaling/step_phases.hpp"
 #include "qddot/algebra/solver.hpp"
 #include "qddot/integrators/method.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot::scaling {
 
-// The limits of a measurement of scaling, and the steps.
+// How far a measurement of scaling goes, and how it steps.
 struct ScalingLimits {
-  double seconds;    // of a step and its analysis
-  double bytes;      // allocated by the process
+  double seconds;    // that a step and its analysis may take
+  double bytes;      // that the process may allocate
   double step_size;  // h of implicit methods [s]
   Reductions reductions;
 };
 
-// A method and the solver of its implicit steps.
+// A method and who solves its implicit steps.
 struct SolvedMethod {
   const Method* method;
   Solver solver;
 
-  // The name in tables: the method's name, with a colon and the solver's if that is not the
+  // As tables name it: the method's name, and behind a colon the solver's if that is not the
   // multifrontal one.
-  std::string name() const;
+  std::string name() const {
+    return solver == Solver::multifrontal ? method->name
+                                          : method->name + ":" + std::string(qddot::name(solver));
+  }
 };
+
+// The methods of those names, each with all solvers if it uses one. Throws InvalidInput unless all
+// can run the scenes with fixed steps, and for unknown and repeated names.
+std::vector<SolvedMethod> solved_methods(const SizedScenes& scenes, const Reductions& reductions,
+                                         const std::vector<std::string>& methods,
+                                         const std::vector<std::string>& solvers);
 
 // One scene at one size: the origin of its numbers, and the rate of its f.
 struct ScalingSize {
@@ -36,15 +45,31 @@ struct ScalingSize {
   double nodes, springs;
   Index unknowns = 0;
   ForceRate force{};
-  double triad = 0;  // [bytes/s], over arrays of the force's size
+  double triad = 0;  // [bytes/s], over arrays of as many bytes as the force's
 };
 
-// Sizes that were not measured: the scene from this number of nodes on, with this method or with
-// any.
+// A scene that was not measured from that many nodes on, with that method or with any.
 struct LeftOut {
-  std::string scene, method;  // empty method: any
+  std::string scene, method;  // no method: any
   double nodes;
   std::string why;
+};
+
+// The results of a scene at one size.
+struct SizeResult {
+  std::vector<ScalingSize> sizes{};    // this one, unless the scene does not fit the limits
+  std::vector<std::string> methods{};  // those that fit the limits
+  std::vector<PhaseCost> costs{};
+  std::vector<LeftOut> left_out{};
+  bool has_failed = false;  // some run did not reach its end
+
+  void leave_out(const std::string& method, const std::string& why) {
+    left_out.push_back({sizes.back().scene, method, sizes.back().nodes, why});
+  }
+  void add(const std::string& method, const std::string& phase, double seconds, double bytes) {
+    const ScalingSize& size = sizes.back();
+    costs.push_back({size.scene, size.nodes, size.springs, method, phase, seconds, bytes});
+  }
 };
 
 // Costs of steps by scene, size, method and phase, from small scenes to large ones. A size with
@@ -66,20 +91,17 @@ class ScalingRun {
   bool has_failed() const { return has_failed_; }
 
  private:
-  // Measures the scene at one size with all methods that fit, and erases those that do not. False
-  // if the scene itself does not fit.
-  bool measure_size(const SizedScenes& scenes, double size, std::vector<SolvedMethod>& methods);
-  void measure_methods(const SizedScenes& scenes, const ReducedScene& scene,
-                       std::vector<SolvedMethod>& methods);
-  void measure_method(const SolvedMethod& solved, const ReducedScene& scene, double step_size);
+  SizeResult measured_size(const SizedScenes& scenes, double size,
+                           std::vector<SolvedMethod> methods) const;
+  void measure_method(const SolvedMethod& solved, const ReducedScene& scene, double step_size,
+                      SizeResult& result) const;
   bool fits(const SizedScenes& scenes, const std::string& method,
-            const std::vector<std::string>& phases, double nodes, double memory);
-  void leave_out(const std::string& method, double nodes, std::string why);
-  void add(const std::string& method, const std::string& phase, double seconds, double bytes);
+            const std::vector<std::string>& phases, double nodes, double memory,
+            SizeResult& result) const;
 
   ScalingLimits limits_;
   std::vector<PhaseCost> costs_;
-  std::vector<ScalingSize> sizes_;  // the last one is being measured
+  std::vector<ScalingSize> sizes_;
   std::vector<LeftOut> left_out_;
   bool has_failed_ = false;
 };

@@ -1,13 +1,9 @@
 #include "experiments/scaling/sized_scenes.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
+#include "experiments/kit/named_choice.hpp"
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::scaling {
 namespace {
@@ -41,12 +37,19 @@ const std::vector<SizedScenes>& sized_scenes() {
 }
 
 const SizedScenes& find_sized_scenes(const std::string& name) {
-  const auto found = std::ranges::find(sized_scenes(), name, &SizedScenes::name);
-  if (found != sized_scenes().end()) return *found;
-  std::vector<std::string> names;
-  for (const SizedScenes& scenes : sized_scenes()) names.push_back(scenes.name);
-  throw InvalidInput(
-      fmt::format("--scenes: {} is not one of them; allowed are {}", name, fmt::join(names, ", ")));
+  return named(name, sized_scenes(), &SizedScenes::name, "--scenes", "one of them");
+}
+
+std::vector<double> sizes_between(double least, double most, int in_a_decade) {
+  std::vector<double> sizes;
+  const double step = 1.0 / in_a_decade;
+  for (int i = 0;; ++i) {
+    const double size = least * std::pow(10, i * step);
+    if (size > most * std::pow(10, -step / 2)) break;
+    sizes.push_back(size);
+  }
+  sizes.push_back(most);
+  return sizes;
 }
 
 }  // namespace qddot::scaling

@@ -23,10 +23,16 @@ struct SizedScenes {
   double (*iterations)(double nodes);
 };
 
+// The fewest and most nodes that scenes are measured with.
+constexpr double least_nodes = 10, most_nodes = 1e7;
+
 // The chain, the cloth and the lattice.
 const std::vector<SizedScenes>& sized_scenes();
 
 // The scenes of that name. Throws InvalidInput if there are none.
 const SizedScenes& find_sized_scenes(const std::string& name);
+
+// So many numbers of nodes a decade from `least` to `most`, both of them among these.
+std::vector<double> sizes_between(double least, double most, int in_a_decade);
 
 }  // namespace qddot::scaling

@@ -9,25 +9,26 @@
 
 namespace qddot::simulate {
 
-Outputs::Outputs(const Arguments& a, const Scene& start, const ReducedScene& scene, double until)
+Outputs::Outputs(const Arguments& a, const Every& every, const Scene& start,
+                 const ReducedScene& scene, double until)
     : scene_(scene),
-      trajectory_times_(samples(a.trajectory_every, until)),
-      energy_times_(samples(a.energy_every, until)),
-      motion_times_(samples(a.motion_every, until)) {
+      trajectory_times_(samples(every.trajectory, until)),
+      energy_times_(samples(every.energy, until)),
+      motion_times_(samples(every.motion, until)) {
   const int d = scene.dimension();
-  if (!a.final_path.empty()) {
+  if (!a.final_path->empty()) {
     final_ = std::make_unique<CsvFile>(a.final_path, node_header(d, {}));
   }
-  if (!a.trajectory_path.empty()) {
+  if (!a.trajectory_path->empty()) {
     trajectory_ = std::make_unique<CsvFile>(a.trajectory_path, node_header(d, {"t"}));
   }
-  if (!a.energy_path.empty()) {
+  if (!a.energy_path->empty()) {
     energy_ = std::make_unique<CsvFile>(
         a.energy_path, std::vector<std::string>{"t", "kinetic", "potential", "total"});
   }
-  if (!a.motion_path.empty()) {
+  if (!a.motion_path->empty()) {
     const motion_files::Fields fields =
-        a.motion_fields.empty()
+        a.motion_fields->empty()
             ? motion_files::Fields{}
             : motion_files::fields_named(a.motion_fields, a.motion_path, "--motion-fields");
     motion_ = motion_files::open_motion(a.motion_path, start, scene, false, fields);

@@ -20,7 +20,8 @@ class Outputs {
  public:
   // `start`: the scene that `scene` was reduced from. The scene must outlive it. Throws
   // InvalidInput if a file cannot be written.
-  Outputs(const Arguments& a, const Scene& start, const ReducedScene& scene, double until);
+  Outputs(const Arguments& a, const Every& every, const Scene& start, const ReducedScene& scene,
+          double until);
 
   // Asks for the times of the samples.
   Observer observer();

@@ -15,27 +15,20 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/catalogue.hpp"
-#include "experiments/kit/command_line.hpp"
-#include "experiments/kit/entry.hpp"
 #include "experiments/kit/interruptible.hpp"
-#include "experiments/kit/method_options.hpp"
-#include "experiments/kit/pace.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/scene_choice.hpp"
 #include "experiments/simulate/answer.hpp"
 #include "experiments/simulate/arguments.hpp"
 #include "experiments/simulate/outputs.hpp"
+#include "experiments/simulate/pace.hpp"
 #include "experiments/simulate/written_scene.hpp"
-#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/stability/diagnosis.hpp"
 #include "qddot/scene/explain.hpp"
 #include "qddot/scene/invalid_input.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot::simulate {
 namespace {
@@ -63,14 +56,7 @@ std::string counts_in_words(const Counts& c) {
   return words;
 }
 
-int explain_only(const Arguments& a) {
-  const Scene start = started(load(a.scene), a.scene);
-  fmt::print("{}", explanation_in_words(explain(start, ReducedScene(start, reductions_of(a.scene))),
-                                        start));
-  return done;
-}
-
-int simulate(const CommandLine& line, Arguments& a, const std::vector<std::string>& command_line) {
+int simulate(const Arguments& a) {
   if (a.list_methods) {
     print_methods(a.csv);
     return done;
@@ -79,59 +65,60 @@ int simulate(const CommandLine& line, Arguments& a, const std::vector<std::strin
     print_generators(a.csv);
     return done;
   }
-  require_given(a.scene.name, "--scene", "a generator's name or a scene file");
-  if (only_writes_scene(line)) {
-    require_distinct_outputs(line, a);
+  require_given(a.scene->name, "--scene", "a generator's name or a scene file");
+  if (only_writes_scene(a.p)) {
+    require_distinct_outputs(a);
     WrittenScene(a.written_scene_path).commit(load(a.scene));
     return done;
   }
-  if (a.explain) return explain_only(a);
-  if (line.has("--accuracy")) return answer(line, a, command_line);
-  if (line.has("--accuracy-of")) {
+  if (a.explain) {
+    const Subject subject = subject_of(a.scene);
+    fmt::print("{}", explanation_in_words(explain(subject.start, subject.reduced), subject.start));
+    return done;
+  }
+  if (a.accuracy.is_given()) return answer(a);
+  if (a.accuracy_of.is_given()) {
     throw InvalidInput("--accuracy-of is given without --accuracy, which it belongs to");
   }
   const Method& method = require_method(a.method);
-  const Options options = checked_options(line, a, method);
-  assign_every(line, a);
-  require_distinct_outputs(line, a);
+  const Options options = checked_options(a, method);
+  const Every every = every_of(a);
+  require_distinct_outputs(a);
   const Scene drawn = load(a.scene);
-  const double until = end_time(a.until, line.has("--until"), drawn);
+  const double until = end_time(a.until, a.until.is_given(), drawn);
   if (method.knob == Knob::step_size) require_step_size(a.step_size, "--step-size", until);
   const Scene start = started(drawn, a.scene);
-  Reductions reductions = reductions_of(a.scene);
-  // Springs in series are one in tension only: who takes the node between them need not care.
-  if (method.is(Trait::accepts_massless)) reductions = reductions.without(Reduction::massless);
-  const ReducedScene scene(start, reductions);
-  require_fit(method, scene, a.scene.name);
-  const Options scaled = with_tolerance_scales(options, scene);
-  require_atol(scaled);
+  const auto model =
+      std::make_shared<const ReducedScene>(reduced_for(method, start, reductions_of(a.scene)));
+  const ReducedScene& scene = *model;
+  require_fit(method, scene, a.scene->name);
+  Simulation run(model, method, options);
+  require_atol(run.options());
 
   WrittenScene written_scene(a.written_scene_path);
-  Outputs output(a, start, scene, until);
+  Outputs output(a, every, start, scene, until);
   written_scene.commit(drawn);
-  State state = scene.initial();
-  output.see(state);
+  output.see(run.state());
   const auto warn = [](const std::string& warning) {
     if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
   };
-  warn(tolerance_warning(scaled));
-  const auto integrator = make_integrator(method, scene.system(), scaled);
+  warn(tolerance_warning(run.options()));
   Summary summary;
   wait_for_answer(patience_with_a_step);
   const double seconds = seconds_of([&] {
-    const Pace pace("simulate", *integrator, until);
-    summary = integrator->advance(state, until, output.observer(), interruption());
+    const Pace pace(run, until);
+    summary = run.advance(until, output.observer(), interruption());
   });
   const auto why = summary.outcome == Outcome::over_budget ? interrupted() : std::nullopt;
 
   if (output.is_asked_for()) {
-    nlohmann::json origin = provenance(command_line, drawn, start, scene);
+    nlohmann::json origin = provenance(a.p.command_line(), drawn, start, scene);
     origin["outcome"] = name(summary.outcome);
     origin["t_reached"] = summary.t_reached;
     origin["energy_growth"] = summary.energy_growth;
     origin["seconds"] = seconds;
     origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
-    output.finish(state, origin);
+    output.finish(run.state(), origin);
   }
   fmt::print("{} on {}: {} at t = {:g} s after {}, in {:.3g} s\n", method.name,
              in_one_line(drawn.name), why ? "interrupted" : name(summary.outcome),
@@ -157,8 +144,9 @@ int simulate(const CommandLine& line, Arguments& a, const std::vector<std::strin
 }  // namespace qddot::simulate
 
 int main(int argc, char** argv) {
-  using namespace qddot::simulate;
-  return qddot::kit::enter<Arguments>(
-      {.name = "simulate", .summary = "Runs one integrator on one scene.", .has_threads = true},
-      declare, simulate, argc, argv);
+  using namespace qddot;
+  Program p(
+      {.name = "simulate", .summary = "Runs one integrator on one scene.", .has_threads = true});
+  const simulate::Arguments arguments{p};
+  return p.run(argc, argv, [&] { return simulate::simulate(arguments); });
 }

@@ -5,7 +5,7 @@
 
 #include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
-#include "qddot/scene/scene_writer.hpp"
+#include "qddot/scene/scene_file.hpp"
 
 namespace qddot::simulate {
 

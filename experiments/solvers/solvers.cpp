@@ -1,5 +1,5 @@
-// What a factorisation of M - h^2 K and a solve with it cost, by solver, against what the machine
-// can do.
+// The cost of a factorisation of M - h^2 K and of a solve with it, by solver, beside what the
+// machine can do.
 //
 //   solvers --scene cloth --no-reduce mirror --out results/cloth
 //

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "experiments/kit/program.hpp"
 #include "qddot/analysis/natural_modes.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -131,6 +132,21 @@ std::vector<AmplitudeRow> varied_rows(const std::string& generator, const std::s
       &reasons);
   if (rows.empty() && !reasons.empty()) throw InvalidInput(reasons.front());
   if (left_out) *left_out = std::move(reasons);
+  return rows;
+}
+
+std::vector<AmplitudeRow> rows_of(const Subject& subject, const Reductions& reductions,
+                                  const std::optional<Scene>& rest, const std::string& vary,
+                                  const std::vector<double>& amplitudes) {
+  std::vector<std::string> left_out;
+  std::vector<AmplitudeRow> rows;
+  if (!vary.empty()) {
+    rows = varied_rows(subject.source, vary, amplitudes, reductions, &left_out);
+  } else if (rest) {
+    rows = scaled_rows(subject.start, *rest, amplitudes, reductions, &left_out);
+  }
+  for (const std::string& why : left_out)
+    say(in_one_line("stability_map: warning: " + why + "; its row is left out"));
   return rows;
 }
 

@@ -39,4 +39,10 @@ std::vector<AmplitudeRow> varied_rows(const std::string& generator, const std::s
                                       const Reductions& reductions,
                                       std::vector<std::string>* left_out = nullptr);
 
+// The rows of the map: those of varied_rows if a parameter is named, else of scaled_rows if the
+// scene has an equilibrium `rest`. Says on stderr which are left out.
+std::vector<AmplitudeRow> rows_of(const Subject& subject, const Reductions& reductions,
+                                  const std::optional<Scene>& rest, const std::string& vary,
+                                  const std::vector<double>& amplitudes);
+
 }  // namespace qddot::stability_map

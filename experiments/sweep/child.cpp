@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/shell_word.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 
 namespace qddot::sweep {
@@ -25,7 +24,7 @@ namespace {
 constexpr int pause = 250;       // [ms]: rare enough to disturb no timed run
 constexpr int patience = 40000;  // [ms]: longer than a study waits for a step
 
-// What a child writes, in memory.
+// The output of a child, in memory.
 class Output {
  public:
   Output() : file_(::memfd_create("output", MFD_CLOEXEC)) {
@@ -47,34 +46,13 @@ class Output {
   int file_;
 };
 
-std::vector<char*> pointers(std::vector<std::string>& words) {
-  std::vector<char*> all;
-  for (std::string& word : words) all.push_back(word.data());
-  all.push_back(nullptr);
-  return all;
-}
-
-// This process's environment with some entries replaced.
-std::vector<std::string> environment_of(const Command& command) {
-  std::vector<std::string> all;
-  for (char** entry = environ; *entry; ++entry) {
-    const std::string text = *entry;
-    bool is_replaced = false;
-    for (const auto& [name, value] : command.environment)
-      is_replaced |= text.starts_with(name + "=");
-    if (!is_replaced) all.push_back(text);
-  }
-  for (const auto& [name, value] : command.environment) all.push_back(name + "=" + value);
-  return all;
-}
-
 // Waits until nobody holds the other end of the pipe, which is when the child has ended.
 void wait_for_end(int pipe, pid_t child) {
   bool is_told = false;
   for (int waited = 0; waited < patience;) {
     pollfd end{pipe, POLLIN, 0};
     if (::poll(&end, 1, pause) > 0) return;
-    if (!measure::interrupted()) continue;
+    if (!interrupted()) continue;
     if (!is_told) ::kill(child, SIGTERM);
     is_told = true;
     waited += pause;
@@ -86,10 +64,7 @@ void wait_for_end(int pipe, pid_t child) {
 
 std::string shell_line(const Command& command) {
   std::string line;
-  for (const auto& [name, value] : command.environment)
-    line += fmt::format("{}={} ", name, kit::shell_word(value));
-  line += kit::shell_word(command.program);
-  for (const std::string& word : command.arguments) line += " " + kit::shell_word(word);
+  for (const std::string& word : command) line += (line.empty() ? "" : " ") + shell_word(word);
   return line;
 }
 
@@ -99,7 +74,7 @@ std::string ChildEnd::cause() const {
   std::size_t end = err.find_last_not_of(" \n");
   if (end == err.npos) return fmt::format("it ended with status {}", status);
   const std::size_t start = err.rfind('\n', end);
-  return kit::in_one_line(err.substr(start == err.npos ? 0 : start + 1, end - start));
+  return in_one_line(err.substr(start == err.npos ? 0 : start + 1, end - start));
 }
 
 std::string program_path(const std::string& name) {
@@ -107,9 +82,10 @@ std::string program_path(const std::string& name) {
 }
 
 ChildEnd run_child(const Command& command) {
-  std::vector<std::string> words = command.arguments, entries = environment_of(command);
-  words.insert(words.begin(), command.program);
-  const auto argv = pointers(words), envp = pointers(entries);
+  Command words = command;
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
   const Output out, err;
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe can be opened");
@@ -123,7 +99,7 @@ ChildEnd run_child(const Command& command) {
     ::dup2(out.file(), STDOUT_FILENO);
     ::dup2(err.file(), STDERR_FILENO);
     ::fcntl(pipe[1], F_SETFD, 0);
-    ::execve(argv[0], argv.data(), envp.data());
+    ::execv(argv[0], argv.data());
     ::_exit(127);
   }
   ::close(pipe[1]);
@@ -137,7 +113,7 @@ ChildEnd run_child(const Command& command) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    throw std::runtime_error(fmt::format("{} cannot be run", command.program));
+    throw std::runtime_error(fmt::format("{} cannot be run", command.front()));
   return {.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
           .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
           .out = out.text(),

@@ -1,7 +1,6 @@
 #include "experiments/sweep/merge.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <filesystem>
 #include <map>
 #include <omp.h>
@@ -13,12 +12,12 @@
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/shares.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/kit/written_table.hpp"
 #include "experiments/sweep/machines.hpp"
-#include "experiments/sweep/missing.hpp"
 #include "experiments/sweep/results.hpp"
 #include "experiments/sweep/scene_folder.hpp"
+#include "experiments/sweep/status.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -26,10 +25,10 @@ namespace qddot::sweep {
 namespace {
 
 // The scenes' parts in the order of the plan, made of the complete ones among these tasks.
-std::vector<ScenePart> parts_of(const std::vector<Task>& tasks,
-                                const std::vector<TaskState>& states, const MachineShare& share,
-                                const std::string& folder) {
-  std::vector<ScenePart> parts;
+std::vector<SceneTasks> parts_of(const std::vector<Task>& tasks,
+                                 const std::vector<TaskState>& states, const MachineShare& share,
+                                 const std::string& folder) {
+  std::vector<SceneTasks> parts;
   std::map<std::string, std::size_t> numbers;
   const auto add = [&](const Task& task) {
     const auto [own, is_new] = numbers.try_emplace(task.folder, parts.size());
@@ -47,38 +46,29 @@ std::vector<ScenePart> parts_of(const std::vector<Task>& tasks,
 
 // Calls work(part) on all cores. Returns the causes of failures by the part's folder.
 template <class Work>
-std::map<std::string, std::string> on_all(const std::vector<ScenePart>& parts, const char* what,
+std::map<std::string, std::string> on_all(const std::vector<SceneTasks>& parts, const char* what,
                                           const Work& work) {
-  std::map<std::string, std::string> failures;
-  std::exception_ptr trouble;
+  std::vector<std::string> causes(parts.size());
   progress().begin(parts.size());
-#pragma omp parallel for schedule(dynamic)
-  for (const ScenePart& part : parts) {
-    std::string cause;
-    try {
-      measure::stop_if_interrupted();
-      cause = work(part);
-    } catch (...) {  // which cannot leave a thread
-#pragma omp critical
-      trouble = std::current_exception();
-    }
-#pragma omp critical
-    {
-      if (!cause.empty()) failures[part.out] = cause;
-      progress().finish(fmt::format("{}: {}", what, part.out));
-    }
-  }
+  side_by_side(parts.size(), [&](std::size_t i) {
+    stop_if_interrupted();
+    causes[i] = work(parts[i]);
+    progress().finish(fmt::format("{}: {}", what, parts[i].out));
+  });
   progress().wipe();
-  if (trouble) std::rethrow_exception(trouble);
+  std::map<std::string, std::string> failures;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!causes[i].empty()) failures[parts[i].out] = causes[i];
+  }
   return failures;
 }
 
 // points.csv of all scenes: the rows of theirs, named by their folders.
-void write_points(const std::string& path, const std::vector<ScenePart>& parts,
+void write_points(const std::string& path, const std::vector<SceneTasks>& parts,
                   const nlohmann::json& origin) {
   const std::vector<std::string> columns = point_columns().header();
   CsvFile csv(path, columns);
-  for (const ScenePart& part : parts) {
+  for (const SceneTasks& part : parts) {
     const WrittenTable table(part.out + "/points.csv", columns);
     for (std::size_t row = 0; row < table.size(); ++row) {
       for (const std::string& column : columns)
@@ -97,11 +87,11 @@ nlohmann::json origin_of(const std::string& folder, const MachineShare& share, b
   return origin;
 }
 
-// What there is over the scenes, in `folder`.
-void write_overview(const std::string& folder, const std::vector<ScenePart>& parts,
+// Writes the tables over all scenes into `folder`.
+void write_overview(const std::string& folder, const std::vector<SceneTasks>& parts,
                     const nlohmann::json& origin) {
   std::vector<SceneResult> results;
-  for (const ScenePart& part : parts) results.push_back(read_result(part.tasks.front(), part.out));
+  for (const SceneTasks& part : parts) results.push_back(read_result(part.tasks.front(), part.out));
   const auto accuracies = accuracies_of(parts.front().tasks.front());
   write_points(folder + "/points.csv", parts, origin);
   write_fastest(folder + "/fastest.csv", results, accuracies, origin);
@@ -117,7 +107,7 @@ void write_overview(const std::string& folder, const std::vector<ScenePart>& par
 
 // Tables, pictures and overview of one kind of machine. False where something failed, which is
 // said.
-bool merge_machine(const TaskFiles& files, const std::string& folder, std::vector<ScenePart> parts,
+bool merge_machine(const TaskFiles& files, const std::string& folder, std::vector<SceneTasks> parts,
                    const MachineShare& share, const Merging& how) {
   if (parts.empty()) return true;
   const auto say = [](const std::map<std::string, std::string>& failures) {
@@ -126,16 +116,17 @@ bool merge_machine(const TaskFiles& files, const std::string& folder, std::vecto
   };
   // Costs are measured where nothing runs beside.
   if (how.by_work) omp_set_num_threads(1);
-  const auto failures = on_all(parts, "tables", [&](const ScenePart& part) {
+  const auto failures = on_all(parts, "tables", [&](const SceneTasks& part) {
     return make_tables(files, part, how.by_work);
   });
   bool is_good = say(failures);
-  std::erase_if(parts, [&](const ScenePart& part) { return failures.contains(part.out); });
+  std::erase_if(parts, [&](const SceneTasks& part) { return failures.contains(part.out); });
   if (parts.empty()) return false;
   const bool has_points = parts.front().tasks.front().program == "work_precision";
   if (has_points) write_overview(folder, parts, origin_of(folder, share, how.by_work));
   if (!how.has_pictures) return is_good;
   omp_set_num_threads(omp_get_num_procs());
+  set_environment_of_scripts();
   is_good = say(on_all(parts, "pictures", draw)) && is_good;
   if (!has_points) return is_good;
   const std::string cause = run_script("sweep/sweep.py", folder);

@@ -9,9 +9,10 @@
 #include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
-#include "experiments/kit/shares.hpp"
-#include "experiments/kit/text_hash.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/kit/whole_file.hpp"
+#include "experiments/sweep/study_file.hpp"
+#include "experiments/sweep/task_files.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -19,7 +20,10 @@
 namespace qddot::sweep {
 namespace {
 
-// What --scene takes.
+namespace fs = std::filesystem;
+constexpr std::size_t most_tasks = 1000000;
+
+// The value of --scene.
 std::string scene_word(const StudyScene& scene, const std::string& study_path,
                        const std::string& folder) {
   if (!scene.text.empty()) {
@@ -34,11 +38,11 @@ std::string scene_word(const StudyScene& scene, const std::string& study_path,
     return path;
   }
   if (scene.source.empty() || find_generator(scene.source)) return scene.source;
-  const auto path = std::filesystem::path(study_path).parent_path() / scene.source;
-  return std::filesystem::absolute(path).lexically_normal().string();
+  const auto path = fs::path(study_path).parent_path() / scene.source;
+  return fs::absolute(path).lexically_normal().string();
 }
 
-// What the program takes to measure the scene by these methods; by all where there are none.
+// The program's arguments for the scene and these methods, or for all methods if there are none.
 std::vector<std::string> arguments_of(const StudyFile& study, const StudyScene& scene,
                                       const std::string& scene_word,
                                       const std::vector<std::string>& methods) {
@@ -58,8 +62,8 @@ std::vector<std::string> arguments_of(const StudyFile& study, const StudyScene& 
   return words;
 }
 
-// What the program says that it can measure apart: its study's key and its shares; or why it
-// refuses.
+// The program's list of what it can measure apart (its study's key and its shares), or the reason
+// why it refuses.
 struct Listed {
   std::vector<std::string> arguments;
   nlohmann::json found{};
@@ -67,9 +71,10 @@ struct Listed {
 };
 
 Listed listed(const StudyFile& study, std::vector<std::string> arguments) {
-  Command command{.program = program_path(study.program), .arguments = arguments};
+  Command command = arguments;
+  command.insert(command.begin(), program_path(study.program));
   for (const char* word : {"--out", ".", "--list-shares", "--progress", "none"})
-    command.arguments.emplace_back(word);
+    command.emplace_back(word);
   const ChildEnd end = run_child(command);
   measure::stop_if_interrupted();
   Listed all{.arguments = std::move(arguments)};
@@ -93,10 +98,10 @@ Listed shares_of(const StudyFile& study, const StudyScene& scene, const std::str
   return listed(study, arguments_of(study, scene, scene_word, fitting));
 }
 
-}  // namespace
-
-std::vector<Task> plan(const StudyFile& study, const std::string& study_path,
-                       const std::string& folder) {
+// The tasks of the study of a file, scene by scene: what its program says of each scene that it can
+// measure apart. Writes scene files that the study asks for into `folder`/scenes.
+std::vector<Task> tasks_of(const StudyFile& study, const std::string& study_path,
+                           const std::string& folder) {
   std::vector<Task> tasks;
   progress().begin(study.scenes.size());
   for (const StudyScene& scene : study.scenes) {
@@ -128,6 +133,35 @@ std::vector<Task> plan(const StudyFile& study, const std::string& study_path,
   }
   progress().wipe();
   return tasks;
+}
+
+}  // namespace
+
+int plan(const std::string& study_path, const std::string& out) {
+  protect_input(study_path);
+  const StudyFile study = read_study(study_path);
+  const std::string folder = fs::absolute(out).lexically_normal().string();
+  const std::string scenes = folder + "/scenes";
+  const bool is_new = !fs::exists(folder), had_scenes = fs::exists(scenes);
+  std::vector<Task> tasks;
+  try {
+    tasks = tasks_of(study, study_path, folder);
+    require_folder(folder);
+  } catch (...) {  // nothing half planned is left behind
+    if (!had_scenes) fs::remove_all(scenes);
+    if (is_new) fs::remove_all(folder);
+    throw;
+  }
+  write_tasks(folder, tasks);
+  const TaskFiles files(folder, /*makes_folders=*/true);
+  const auto kept = std::ranges::count_if(
+      tasks, [&](const Task& task) { return files.contents(task).has_value(); });
+  const auto first = std::ranges::count(tasks, references, &Task::stage);
+  fmt::print("{}: {} scenes, {} references, {} tasks of points", folder, study.scenes.size(), first,
+             std::ssize(tasks) - first);
+  if (kept > 0) fmt::print("; {} of these are measured already", kept);
+  fmt::print("\n");
+  return done;
 }
 
 }  // namespace qddot::sweep

@@ -1,21 +1,13 @@
 #pragma once
 
 #include <string>
-#include <vector>
-
-#include "experiments/sweep/study_file.hpp"
-#include "experiments/sweep/task.hpp"
 
 namespace qddot::sweep {
 
-// The most tasks of a sweep.
-inline constexpr std::size_t most_tasks = 1000000;
-
-// The tasks of the study of a file, scene by scene: what its program
-// says of each scene that it can measure apart. Writes scene files that the study asks for into
-// `folder`/scenes. Throws InvalidInput, in the program's own words, where it takes a scene, a
-// method or an option not, and where there would be too many.
-std::vector<Task> plan(const StudyFile& study, const std::string& study_path,
-                       const std::string& folder);
+// Plans the study of a file: writes its tasks, and scene files that it asks for, into the folder
+// `out`, and prints how many there are. Returns the exit status. Throws InvalidInput, in the
+// program's own words, if it does not take a scene, a method or an option, and if there would be
+// too many tasks.
+int plan(const std::string& study_path, const std::string& out);
 
 }  // namespace qddot::sweep

@@ -74,7 +74,7 @@ struct Crossover {
   const Method *low = nullptr, *high = nullptr;
   double at_low = none, at_high = none;  // ln of the time of the first over that of the second
 
-  // Where both take equally long; no number where one of them did not get there at both ends.
+  // The value at which both take equally long; NaN unless both reached the accuracy at both ends.
   double crossing() const { return equally_long(pair.from(), pair.to(), at_low, at_high); }
   // How many times as long the other takes at either end, at least; no number where that is known
   // at neither.

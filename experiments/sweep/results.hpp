@@ -8,7 +8,7 @@
 
 namespace qddot::sweep {
 
-// What was measured on one scene by work_precision, in its folder.
+// The results of work_precision on one scene, in its folder.
 struct SceneResult {
   std::string label;
   std::size_t entry = 0;  // of the study's list

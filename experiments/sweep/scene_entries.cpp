@@ -15,7 +15,7 @@ namespace {
 
 constexpr int most_draws = 100000, largest_seed = 2000000000;
 
-// What a parameter of a generator may be: values that multiply, or a range that is drawn from.
+// A parameter of a generator: values that multiply, or a range that is drawn from.
 struct Parameter {
   std::string name;
   std::vector<double> values;  // none where it is drawn

@@ -1,12 +1,13 @@
 #include "experiments/sweep/scene_folder.hpp"
 
+#include <cstdlib>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/shares.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "experiments/sweep/work_costs.hpp"
 
@@ -34,7 +35,7 @@ std::string cause_of(const ChildEnd& end) {
 
 }  // namespace
 
-std::string make_tables(const TaskFiles& files, const ScenePart& part, bool by_work) {
+std::string make_tables(const TaskFiles& files, const SceneTasks& part, bool by_work) {
   const Task& first = part.tasks.front();
   require_folder(part.out);
   copy_references(files.folder() + "/" + first.folder, part.out);
@@ -52,22 +53,26 @@ std::string make_tables(const TaskFiles& files, const ScenePart& part, bool by_w
         journal.keep(name, by_work ? sweep::by_work(piece, costs) : piece);
     }
   }
-  Command command{.program = program_path(first.program), .arguments = first.arguments};
+  Command command = first.arguments;
+  command.insert(command.begin(), program_path(first.program));
   for (const auto& word : {"--out", part.out.c_str(), "--kept", "--progress", "none"})
-    command.arguments.emplace_back(word);
+    command.emplace_back(word);
   return cause_of(run_child(command));
 }
 
 std::string run_script(const std::string& script, const std::string& folder) {
-  const std::string experiments = QDDOT_EXPERIMENTS;
-  const std::string page = experiments + "/report";
-  return cause_of(
-      run_child({.program = "/usr/bin/python3",  // Debian's own, which has matplotlib
-                 .arguments = {"-B", experiments + "/" + script, folder},
-                 .environment = {{"PYTHONPATH", experiments + "/plot:" + page}, {"LC_ALL", "C"}}}));
+  // Debian's own Python, which has matplotlib.
+  return cause_of(run_child(
+      {"/usr/bin/python3", "-B", fmt::format("{}/{}", QDDOT_EXPERIMENTS, script), folder}));
 }
 
-std::string draw(const ScenePart& part) {
+void set_environment_of_scripts() {
+  const std::string experiments = QDDOT_EXPERIMENTS;
+  ::setenv("PYTHONPATH", (experiments + "/plot:" + experiments + "/report").c_str(), 1);
+  ::setenv("LC_ALL", "C", 1);
+}
+
+std::string draw(const SceneTasks& part) {
   const std::string program = part.tasks.front().program;
   std::string cause = run_script(fmt::format("{0}/{0}.py", program), part.out);
   if (cause.empty() && program == "work_precision")

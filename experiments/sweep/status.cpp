@@ -2,55 +2,23 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "experiments/kit/csv.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress_words.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/sweep/machines.hpp"
 
 namespace qddot::sweep {
 namespace {
 
 constexpr std::size_t most_shown = 10;
-
-// Expected times of tasks, from finished ones: the mean of all, times two factors for tasks of the
-// same scene and of the same method.
-class Durations {
- public:
-  void add(const Task& task, double seconds) {
-    all_.add(seconds);
-    scenes_[task.folder].add(seconds);
-    shares_[task.share].add(seconds);
-  }
-  bool is_empty() const { return all_.count == 0; }
-  double sum() const { return all_.sum; }
-  double expected(const Task& task) const {
-    return all_.mean() * ratio(scenes_, task.folder) * ratio(shares_, task.share);
-  }
-
- private:
-  struct Mean {
-    double sum = 0;
-    int count = 0;
-
-    void add(double x) {
-      sum += x;
-      ++count;
-    }
-    double mean() const { return sum / count; }
-  };
-
-  double ratio(const std::map<std::string, Mean>& means, const std::string& name) const {
-    const auto own = means.find(name);
-    return own == means.end() || all_.sum == 0 ? 1 : own->second.mean() / all_.mean();
-  }
-
-  Mean all_;
-  std::map<std::string, Mean> scenes_, shares_;
-};
 
 void print_stage(const std::string& stage, const std::map<TaskState::Kind, int>& counts) {
   constexpr std::pair<TaskState::Kind, const char*> words[] = {
@@ -90,15 +58,52 @@ void print_division(const std::vector<Task>& tasks, const std::vector<TaskState>
   }
 }
 
+struct Missing {
+  std::string state, cause, command;
+};
+
+// The references that points wait for, by the folder of their scene.
+std::map<std::string, const TaskState*> absent_references(const std::vector<Task>& tasks,
+                                                          const std::vector<TaskState>& states) {
+  std::map<std::string, const TaskState*> absent;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (tasks[i].share == reference_share && states[i].kind != TaskState::whole)
+      absent[tasks[i].folder] = &states[i];
+  }
+  return absent;
+}
+
+Missing missing(const std::string& folder, const Task& task, const TaskState& state,
+                const TaskState* reference) {
+  const std::string command =
+      shell_line({program_path("sweep"), "run", folder, "--stage", task.stage, "--task", task.id});
+  if (task.share != reference_share && reference && reference->kind == TaskState::without_reference)
+    return {"skipped", "no reference: " + reference->cause, ""};
+  if (task.share != reference_share && reference)
+    return {"waiting", "its reference is not made", command};
+  switch (state.kind) {
+    case TaskState::without_reference:
+      return {"no reference", state.cause, ""};
+    case TaskState::running:
+      return {"running", "at work on " + state.where, ""};
+    case TaskState::begun:
+      return {"begun", state.cause, command};
+    case TaskState::failed:
+      return {"failed", state.cause, command};
+    default:
+      return {"missing", "it was not begun", command};
+  }
+}
+
 }  // namespace
 
 int print_status(const std::string& folder) {
   const std::vector<Task> tasks = read_tasks(folder);
   const TaskFiles files(folder);
   std::map<std::string, std::map<TaskState::Kind, int>> counts;  // by stage
-  std::vector<const Task*> left;
+  std::map<std::string, std::vector<double>> seconds;            // of whole tasks, likewise
+  std::map<std::string, std::size_t> left;
   std::set<std::string> workers, without_reference;
-  Durations durations;
   std::size_t failures = 0, skipped = 0;
   std::vector<TaskState> states;
   for (const Task& task : tasks) {
@@ -110,10 +115,10 @@ int print_status(const std::string& folder) {
     if (state.kind == TaskState::without_reference) without_reference.insert(task.folder);
     ++counts[task.stage][state.kind];
     if (state.is_done()) {
-      durations.add(task, state.seconds);
+      seconds[task.stage].push_back(state.seconds);
       continue;
     }
-    left.push_back(&task);
+    ++left[task.stage];
     if (state.kind == TaskState::running) workers.insert(state.where);
     if (state.kind == TaskState::failed && ++failures <= most_shown)
       fmt::print("failed: {}, {} ({}): {}\n", task.folder, task.share, task.id, state.cause);
@@ -123,24 +128,50 @@ int print_status(const std::string& folder) {
   if (const auto machines = machines_of(tasks, states); machines.size() > 1)
     fmt::print("measured on unlike machines: {}\n", in_words(machines));
   for (const std::string& worker : workers) fmt::print("at work: {}\n", worker);
+  double spent = 0, rest = 0;
+  for (const auto& [stage, own] : seconds) spent += std::accumulate(own.begin(), own.end(), 0.0);
   if (left.empty()) {
-    fmt::print("all is done, in {} of one core\n", clock_words(durations.sum()));
+    fmt::print("all is done, in {} of one core\n", clock_words(spent));
     print_division(tasks, states);
     return done;
   }
-  if (durations.is_empty()) {
-    fmt::print("how long the rest takes is not known yet\n");
-    return done;
+  // Tasks are in a random order, so that the mean of those that are done is that of the rest.
+  for (const auto& [stage, count] : left) {
+    const std::vector<double>& own = seconds[stage];
+    if (own.empty()) {
+      fmt::print("how long the rest takes is not known yet\n");
+      return done;
+    }
+    rest += static_cast<double>(count) * std::accumulate(own.begin(), own.end(), 0.0) /
+            static_cast<double>(own.size());
   }
-  double seconds = 0;
-  for (const Task* task : left) seconds += durations.expected(*task);
-  fmt::print("the rest takes some {} of one core", clock_words(seconds));
+  fmt::print("the rest takes some {} of one core", clock_words(rest));
   if (workers.size() > 1) {
-    fmt::print(", {} of the {} at work", clock_words(seconds / static_cast<double>(workers.size())),
+    fmt::print(", {} of the {} at work", clock_words(rest / static_cast<double>(workers.size())),
                workers.size());
   }
   fmt::print("\n");
   return done;
+}
+
+bool report_missing(const std::string& folder, const std::vector<Task>& tasks,
+                    const std::vector<TaskState>& states) {
+  CsvFile csv(folder + "/missing.csv", {"scene", "share", "id", "state", "cause", "command"});
+  const auto absent = absent_references(tasks, states);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const auto reference = absent.find(tasks[i].folder);
+    if (states[i].kind == TaskState::whole) continue;
+    const Missing what = missing(folder, tasks[i], states[i],
+                                 reference == absent.end() ? nullptr : reference->second);
+    csv.row(tasks[i].folder, tasks[i].share, tasks[i].id, what.state, what.cause, what.command);
+    if (++count > most_shown) continue;
+    fmt::print("{}, {}: {}: {}{}{}\n", tasks[i].folder, tasks[i].share, what.state, what.cause,
+               what.command.empty() ? "" : "; to measure it: ", what.command);
+  }
+  if (count > most_shown) fmt::print("and {} more in {}/missing.csv\n", count - most_shown, folder);
+  csv.commit(provenance({"sweep", "merge", folder}));
+  return count == 0;
 }
 
 }  // namespace qddot::sweep

@@ -14,12 +14,12 @@
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/text_file.hpp"
-#include "qddot/scene/toml_text.hpp"
+#include "qddot/scene/toml_table.hpp"
 
 namespace qddot::sweep {
 namespace {
 
-// What programs take: scenes, methods.
+// A program whose studies can be divided, and whether it takes scenes and methods.
 struct Divisible {
   std::string_view name;
   bool takes_scenes, takes_methods;
@@ -29,7 +29,7 @@ constexpr std::array programs = {
     Divisible{"energy_drift", true, true}, Divisible{"crossover", false, true},
     Divisible{"advice", false, false}};
 
-// What sweep itself tells the programs.
+// The options that sweep itself gives to the programs.
 constexpr std::array own_options = {"out",   "scene",    "methods",   "accuracies", "until",
                                     "share", "journal",  "kept",      "resume",     "list-shares",
                                     "force", "progress", "time-limit"};

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/shell_word.hpp"
 #include "experiments/sweep/task.hpp"
 
 namespace qddot::sweep {
@@ -34,18 +33,16 @@ std::string absolute(const std::string& folder) {
 
 std::string joined(const std::vector<std::string>& options) {
   std::string text;
-  for (const std::string& word : options) text += " " + kit::shell_word(word);
+  for (const std::string& word : options) text += " " + shell_word(word);
   return text;
 }
 
 Command run_of(const std::string& folder, const std::string& stage) {
-  return {.program = program_path("sweep"),
-          .arguments = {"run", absolute(folder), "--stage", stage, "--progress", "plain"}};
+  return {program_path("sweep"), "run", absolute(folder), "--stage", stage, "--progress", "plain"};
 }
 
 std::string merge_of(const std::string& folder) {
-  return shell_line({.program = program_path("sweep"),
-                     .arguments = {"merge", absolute(folder), "--progress", "plain"}});
+  return shell_line({program_path("sweep"), "merge", absolute(folder), "--progress", "plain"});
 }
 
 // One sbatch, whose job's number goes into a variable of its name.
@@ -57,7 +54,7 @@ std::string sbatch(const std::string& folder, const std::string& name, const std
       "{0}=$(sbatch --parsable --job-name=qddot-{0} --ntasks=1 --cpus-per-task=1 "
       "--threads-per-core=1 --requeue --open-mode=append --output={1}{2}{3} --wrap={4}) && echo "
       "\"{0}: job ${0}\"\n",
-      name, kit::shell_word(log), own, joined(how.options), kit::shell_word(script));
+      name, shell_word(log), own, joined(how.options), shell_word(script));
 }
 
 std::string array_script(const std::string& folder, const std::string& stage, std::size_t count) {
@@ -86,10 +83,10 @@ std::string slurm_lines(const std::string& folder, const Submission& how) {
 std::string parallel_lines(const std::string& folder, const Submission& how) {
   const Division division = division_of(folder, how.shards);
   const auto line = [&](const std::string& stage, std::size_t count) {
-    return fmt::format("seq {0} | parallel --use-cores-instead-of-threads --line-buffer{1} {2}",
-                       count, joined(how.options),
-                       kit::shell_word(fmt::format("{} --shard {{}}/{}",
-                                                   shell_line(run_of(folder, stage)), count)));
+    return fmt::format(
+        "seq {0} | parallel --use-cores-instead-of-threads --line-buffer{1} {2}", count,
+        joined(how.options),
+        shell_word(fmt::format("{} --shard {{}}/{}", shell_line(run_of(folder, stage)), count)));
   };
   std::string lines;
   if (division.references > 0) lines += line(references, division.references) + " &&\n";
@@ -98,7 +95,7 @@ std::string parallel_lines(const std::string& folder, const Submission& how) {
 
 int go(const std::string& lines) {
   const int status = std::system(lines.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : kit::failed;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : failed;
 }
 
 }  // namespace qddot::sweep

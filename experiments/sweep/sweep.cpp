@@ -18,184 +18,47 @@
 //  3. merge gives each scene's files to the program, which makes its tables as if it had measured
 //     them by itself. Times of unlike machines are never compared.
 #include <algorithm>
-#include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "experiments/kit/command_line.hpp"
-#include "experiments/kit/entry.hpp"
-#include "experiments/kit/interruptible.hpp"
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
 #include "experiments/sweep/merge.hpp"
 #include "experiments/sweep/plan.hpp"
 #include "experiments/sweep/run.hpp"
 #include "experiments/sweep/status.hpp"
 #include "experiments/sweep/submit.hpp"
-#include "qddot/measure/motion/interruption.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
 namespace {
 
-// A child is given as long as a study waits for a step, and then this process has to say so.
-constexpr double patience = 45;  // [s]
-constexpr int most_shards = 100000;
-
-struct Arguments {
-  std::string action, where;  // STUDY.toml of plan, the sweep's folder of all others
-  std::string out, stage, shard, task, by;
-  bool again = false, per_machine = false, has_no_pictures = false, slurm = false, parallel = false,
-       go = false;
-  int shards = 100;
-};
-
 // The options that each action takes.
-struct Action {
-  std::string_view name;
-  std::vector<std::string> options;
-};
-const std::vector<Action>& actions() {
-  static const std::vector<Action> all = {{"plan", {"--out"}},
-                                          {"run", {"--stage", "--shard", "--task", "--again"}},
-                                          {"merge", {"--per-machine", "--by", "--no-pictures"}},
-                                          {"submit", {"--slurm", "--parallel", "--shards", "--go"}},
-                                          {"status", {}}};
+const std::map<std::string, std::vector<std::string>>& actions() {
+  static const std::map<std::string, std::vector<std::string>> all = {
+      {"plan", {"--out"}},
+      {"run", {"--stage", "--shard", "--task", "--again"}},
+      {"merge", {"--per-machine", "--by", "--no-pictures"}},
+      {"submit", {"--slurm", "--parallel", "--shards", "--go"}},
+      {"status", {}}};
   return all;
 }
 
-void declare(CommandLine& line, Arguments& a) {
-  line.add_option("action", a.action, "plan, run, merge, submit or status");
-  line.add_option("where", a.where, "plan: the study's file; others: the sweep's folder");
-  line.add_option("--out", a.out, "plan: the sweep's folder").take_last();
-  line.add_option("--stage", a.stage, "run: references or points").take_last();
-  line.add_option("--shard", a.shard, "run: I/N, one of N shards of the stage (default: 1/1)")
-      .take_last();
-  line.add_option("--task", a.task, "run: the id of a single task").take_last();
-  line.add_flag("--again", a.again,
-                "run: measure again tasks that another kind of machine has measured");
-  line.add_flag("--per-machine", a.per_machine, "merge: a folder for each kind of machine");
-  line.add_option("--by", a.by, "merge: work, to replace times by counts times costs").take_last();
-  line.add_flag("--no-pictures", a.has_no_pictures, "merge: make tables, but no pictures");
-  line.add_flag("--slurm", a.slurm,
-                "submit: print three lines of sbatch; all words after it go to sbatch");
-  line.add_flag("--parallel", a.parallel,
-                "submit: print three lines of GNU parallel; all words after it go to parallel");
-  line.add_option("--shards", a.shards, "submit: the largest number of jobs for the points")
-      .take_last()
-      .capture_default_str();
-  line.add_flag("--go", a.go, "submit: run these lines");
-}
-
-void require_action(const CommandLine& line, const Arguments& a) {
-  const auto own = std::ranges::find(actions(), a.action, &Action::name);
-  if (own == actions().end()) {
-    throw InvalidInput(fmt::format(
-        "{}; allowed are plan, run, merge, submit and status",
-        a.action.empty() ? "the action is missing" : a.action + " is no action of sweep"));
+void require_action(const Program& program, const std::string& action, const std::string& where) {
+  if (!actions().contains(action)) {
+    throw InvalidInput(
+        fmt::format("{}; allowed are plan, run, merge, submit and status",
+                    action.empty() ? "the action is missing" : action + " is no action of sweep"));
   }
-  for (const Action& other : actions()) {
-    for (const std::string& option : other.options) {
-      if (&other == &*own || !line.has(option)) continue;
+  for (const auto& [other, options] : actions()) {
+    for (const std::string& option : options) {
+      if (other == action || !program.has(option)) continue;
       throw InvalidInput(
-          fmt::format("{} is for sweep {}, not for sweep {}", option, other.name, own->name));
+          fmt::format("{} is for sweep {}, not for sweep {}", option, other, action));
     }
   }
-  require_given(a.where, a.action == "plan" ? "STUDY.toml" : "the sweep's folder",
-                a.action == "plan" ? "the study's file" : "what sweep plan --out made");
-}
-
-int plan_study(const Arguments& a) {
-  require_given(a.out, "--out", "the sweep's folder");
-  protect_input(a.where);
-  const StudyFile study = read_study(a.where);
-  const std::string folder = std::filesystem::absolute(a.out).lexically_normal().string();
-  const std::string scenes = folder + "/scenes";
-  const bool is_new = !std::filesystem::exists(folder),
-             had_scenes = std::filesystem::exists(scenes);
-  std::vector<Task> tasks;
-  try {
-    tasks = plan(study, a.where, folder);
-    require_folder(folder);
-  } catch (...) {  // nothing half planned is left behind
-    if (!had_scenes) std::filesystem::remove_all(scenes);
-    if (is_new) std::filesystem::remove_all(folder);
-    throw;
-  }
-  write_tasks(folder, tasks);
-  const TaskFiles files(folder, /*makes_folders=*/true);
-  const auto kept = std::ranges::count_if(
-      tasks, [&](const Task& task) { return files.contents(task).has_value(); });
-  const auto first = std::ranges::count(tasks, references, &Task::stage);
-  fmt::print("{}: {} scenes, {} references, {} tasks of points", folder, study.scenes.size(), first,
-             std::ssize(tasks) - first);
-  if (kept > 0) fmt::print("; {} of these are measured already", kept);
-  fmt::print("\n");
-  return done;
-}
-
-int run_shard(const CommandLine& line, const Arguments& a) {
-  if (a.stage != references && a.stage != points) {
-    throw InvalidInput(fmt::format("--stage {}; allowed are references and points",
-                                   a.stage.empty() ? "is missing" : a.stage + " is not one"));
-  }
-  if (line.has("--shard") && line.has("--task"))
-    throw InvalidInput("--task is not allowed with --shard; allowed is either");
-  const Shard shard = line.has("--shard") ? shard_of(a.shard) : Shard();
-  const auto tasks = read_tasks(a.where);
-  auto mine = chosen(tasks, a.stage, shard);
-  if (line.has("--task")) {
-    std::erase_if(mine, [&](const Task& task) { return task.id != a.task; });
-    if (mine.empty()) {
-      throw InvalidInput(
-          fmt::format("--task: {} is no task of {} in {}/tasks.jsonl", a.task, a.stage, a.where));
-    }
-  }
-  wait_for_answer(patience);
-  const TaskFiles files(a.where, /*makes_folders=*/true);
-  const ShardEnd end = run_tasks(files, mine, tasks, a.again);
-  fmt::print("{} of {} tasks are done", end.done, mine.size());
-  for (const auto& [count, what] :
-       {std::pair(end.skipped, "are skipped, as there is no reference"),
-        std::pair(end.elsewhere, "are measured elsewhere"),
-        std::pair(end.waiting, "wait for a reference"), std::pair(end.failed, "failed")}) {
-    if (count > 0) fmt::print(", {} {}", count, what);
-  }
-  fmt::print("\n");
-  return end.is_complete() ? done : end_not_reached;
-}
-
-int merge_all(const CommandLine& line, const Arguments& a) {
-  if (line.has("--by") && a.by != "work")
-    throw InvalidInput(fmt::format("--by {} is not allowed; allowed is work", a.by));
-  if (line.has("--by") && a.per_machine)
-    throw InvalidInput("--by is not allowed with --per-machine; allowed is either");
-  return merge(a.where, {.per_machine = a.per_machine,
-                         .by_work = line.has("--by"),
-                         .has_pictures = !a.has_no_pictures});
-}
-
-int submit(const Arguments& a, const std::vector<std::string>& passed_on) {
-  if (a.slurm == a.parallel)
-    throw InvalidInput("submit takes --slurm or --parallel; allowed is exactly one of the two");
-  require_within(a.shards, 1, most_shards, "--shards");
-  const Submission how{.shards = static_cast<std::size_t>(a.shards), .options = passed_on};
-  const std::string lines = a.slurm ? slurm_lines(a.where, how) : parallel_lines(a.where, how);
-  fmt::print("{}", lines);
-  if (!a.go) return done;
-  std::fflush(stdout);
-  return go(lines);
-}
-
-int sweep(const CommandLine& line, const Arguments& a, const std::vector<std::string>& passed_on) {
-  require_action(line, a);
-  if (a.action == "plan") return plan_study(a);
-  if (a.action == "run") return run_shard(line, a);
-  if (a.action == "merge") return merge_all(line, a);
-  if (a.action == "submit") return submit(a, passed_on);
-  return print_status(a.where);
+  require_given(where, action == "plan" ? "STUDY.toml" : "the sweep's folder",
+                action == "plan" ? "the study's file" : "what sweep plan --out made");
 }
 
 // The words after --slurm or --parallel that are not sweep's own go to those as they are.
@@ -223,16 +86,64 @@ Words parted(int argc, char** argv) {
 }  // namespace qddot::sweep
 
 int main(int argc, char** argv) {
+  using namespace qddot;
   using namespace qddot::sweep;
   const Words words = parted(argc, argv);
   std::vector<char*> own;
   for (const std::string& word : words.own) own.push_back(const_cast<char*>(word.c_str()));
-  return qddot::kit::enter<Arguments>(
-      {.name = "sweep",
-       .summary = "Divides a study of many scenes among processes and merges the results."},
-      declare,
-      [&](const auto& line, const Arguments& a, const auto&) {
-        return sweep(line, a, words.passed_on);
-      },
-      static_cast<int>(own.size()), own.data());
+  Program p({.name = "sweep",
+             .summary = "Divides a study of many scenes among processes and merges the results."});
+  auto action = p.word("action", "plan, run, merge, submit or status");
+  auto where = p.word("where", "plan: the study's file; others: the sweep's folder");
+  auto out = p.word("--out", "plan: the sweep's folder").last();
+  auto stage = p.word("--stage", "run: references or points").last();
+  auto shard = p.word("--shard", "run: I/N, one of N shards of the stage (default: 1/1)").last();
+  auto task = p.word("--task", "run: the id of a single task").last();
+  auto again =
+      p.flag("--again", "run: measure again tasks that another kind of machine has measured");
+  auto per_machine = p.flag("--per-machine", "merge: a folder for each kind of machine");
+  auto by = p.word("--by", "merge: work, to replace times by counts times costs").last();
+  auto has_no_pictures = p.flag("--no-pictures", "merge: make tables, but no pictures");
+  auto slurm =
+      p.flag("--slurm", "submit: print three lines of sbatch; all words after it go to sbatch");
+  auto parallel = p.flag(
+      "--parallel", "submit: print three lines of GNU parallel; all words after it go to parallel");
+  auto shards =
+      p.whole("--shards", 100, "submit: the largest number of jobs for the points").last();
+  auto go_on = p.flag("--go", "submit: run these lines");
+  return p.run(static_cast<int>(own.size()), own.data(), [&] {
+    require_action(p, action, where);
+    if (*action == "plan") {
+      require_given(out, "--out", "the sweep's folder");
+      return plan(where, out);
+    }
+    if (*action == "run") {
+      if (*stage != references && *stage != points) {
+        throw InvalidInput(fmt::format("--stage {}; allowed are references and points",
+                                       stage->empty() ? "is missing" : *stage + " is not one"));
+      }
+      if (shard.is_given() && task.is_given())
+        throw InvalidInput("--task is not allowed with --shard; allowed is either");
+      return run_tasks(where, {*stage, *shard, *task, again});
+    }
+    if (*action == "merge") {
+      if (by.is_given() && *by != "work")
+        throw InvalidInput(fmt::format("--by {} is not allowed; allowed is work", *by));
+      if (by.is_given() && per_machine)
+        throw InvalidInput("--by is not allowed with --per-machine; allowed is either");
+      return merge(
+          where,
+          {.per_machine = per_machine, .by_work = by.is_given(), .has_pictures = !has_no_pictures});
+    }
+    if (*action == "status") return print_status(where);
+    if (slurm == parallel)
+      throw InvalidInput("submit takes --slurm or --parallel; allowed is exactly one of the two");
+    require_within(shards, 1, 100000, "--shards");
+    const Submission how{.shards = static_cast<std::size_t>(*shards), .options = words.passed_on};
+    const std::string lines = slurm ? slurm_lines(where, how) : parallel_lines(where, how);
+    fmt::print("{}", lines);
+    if (!go_on) return static_cast<int>(done);
+    std::fflush(stdout);
+    return go(lines);
+  });
 }

@@ -1,8 +1,8 @@
 """Draws which method is the fastest on each of many scenes, at each accuracy.
 
 Call: sweep.py DIR. Reads fastest.csv in DIR, and crossovers.csv and sweep.json if they exist. Reads
-points.csv and its sidecar points.json in the folder of each scene, and reference.json if accuracy
-is that of the energy. Writes fastest.png and fastest.svg to DIR.
+points.csv, its sidecar points.json and chart.json in the folder of each scene. Writes fastest.png
+and fastest.svg to DIR.
 
 A row is a scene, in the order of fastest.csv; at most MOST are drawn. A scene whose folder cannot
 be read is left out and counted.
@@ -11,12 +11,11 @@ be read is left out and counted.
 import os
 import sys
 
-import measurements
-import quantities
 import scene_row
 from crossover_sentences import sentences
-from measurements import BadInput
+from measurements import BadInput, interrupted_by
 from names import one_line
+from record import read_record
 from style import use_style
 from sweep_picture import Study, draw
 from sweep_tables import read_crossovers, read_origin, read_scenes
@@ -24,25 +23,14 @@ from sweep_tables import read_crossovers, read_origin, read_scenes
 MOST = 60
 
 
-def judged_runs(directory, judge):
-    """The runs in a folder with the errors that they are judged by."""
-    if judge == "position":
-        return measurements.read_runs(os.path.join(directory, "points.csv"))
-    reference = measurements.read_reference(os.path.join(directory, "reference.json"))
-    view = quantities.view(directory, quantities.ENERGY, reference)
-    if view is None:
-        raise BadInput(f"{directory} has no errors of the energy.")
-    return view.runs
-
-
 def read_row(directory, scene):
     """The row of a scene; raises BadInput where its folder cannot be read."""
-    runs = judged_runs(directory, scene.judge)
+    record = read_record(directory)
     _, facts = scene_row.read_sidecar(os.path.join(directory, "points.json"))
     return scene_row.Row(
         one_line(scene.folder),
         **facts,
-        **scene_row.of_runs(runs, scene.front),
+        **scene_row.of_record(record, scene.front),
         accuracies=tuple(scene.accuracies),
         margins=scene.margins,
         is_by_energy=scene.judge == "energy",
@@ -88,7 +76,7 @@ def read(folder):
         sentences(crossovers),
         origin.is_work,
         origin.processor or processors,
-        measurements.interrupted_by(path),
+        interrupted_by(path),
     )
 
 

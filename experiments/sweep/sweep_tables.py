@@ -5,8 +5,9 @@ import math
 import os
 from dataclasses import dataclass
 
-from measurements import BadInput, FrontPoint, parse, read_rows
-from scene_row import by_accuracy
+from measurements import BadInput, parse, read_rows
+from record import FrontPoint
+from scene_row import accuracy_key
 
 JUDGES = ("position", "energy")
 
@@ -71,18 +72,14 @@ def read_scenes(path):
 def add_row(path, line, row, scene):
     """Adds the cell of one row of fastest.csv to its scene."""
     accuracy = parse(path, line, row, "accuracy", True)
-    # The method is empty where none reached the accuracy.
-    point = FrontPoint(accuracy, row["method"] or "", math.nan, math.nan)
-    [key] = by_accuracy([point])
+    key = accuracy_key(accuracy)
     if key in scene.accuracies:
         raise BadInput(f"{path}, line {line}: {scene.folder} has its row at {key:g} already.")
     scene.accuracies.append(key)
-    if not point.method:
+    if not row["method"]:  # none reached the accuracy
         return
     time = parse(path, line, row, "time_s", True)
-    scene.front[key] = FrontPoint(
-        accuracy, point.method, parse(path, line, row, "error", False), time
-    )
+    scene.front[key] = FrontPoint(accuracy, row["method"], time)
     scene.lines[key] = line
     if (row["margin"] or "").strip():
         scene.margins[key] = parse(path, line, row, "margin", True)

@@ -7,7 +7,6 @@
 
 #include "experiments/kit/journal.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/text_hash.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -85,13 +84,12 @@ void write_tasks(const std::string& folder, std::vector<Task> tasks) {
 }
 
 Command command_of(const Task& task, const std::string& folder, const std::string& journal) {
-  Command command{.program = program_path(task.program), .arguments = task.arguments};
+  Command command = task.arguments;
+  command.insert(command.begin(), program_path(task.program));
   for (const auto& word :
        {std::string("--out"), folder + "/" + task.folder, std::string("--share"), task.share,
         std::string("--journal"), journal, std::string("--progress"), std::string("none")})
-    command.arguments.push_back(word);
-  // A core each: others measure beside it.
-  command.environment = {{"OMP_NUM_THREADS", "1"}, {"OPENBLAS_NUM_THREADS", "1"}};
+    command.push_back(word);
   return command;
 }
 

@@ -10,7 +10,7 @@
 
 namespace qddot::sweep {
 
-// What one process measures by itself: a share of the study of one scene.
+// A share of the study of one scene, which one process measures by itself.
 struct Task {
   std::string id;       // 16 hexadecimal digits, see id_of
   std::string stage;    // references or points

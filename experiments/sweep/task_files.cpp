@@ -12,7 +12,7 @@
 
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/shares.hpp"
+#include "experiments/kit/study.hpp"
 #include "experiments/kit/whole_file.hpp"
 
 namespace qddot::sweep {

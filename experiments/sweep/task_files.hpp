@@ -11,7 +11,7 @@ namespace qddot::sweep {
 
 using kit::Journal;
 
-// What has become of a task.
+// The state of a task.
 struct TaskState {
   enum Kind {
     whole,              // it is measured
@@ -42,7 +42,7 @@ class TaskFiles {
 
   const std::string& folder() const { return folder_; }
   TaskState state(const Task& task) const;
-  // What a whole task measured; its mark says so. Nothing where it is not whole.
+  // The results of a task, if it is whole, as its mark says.
   std::optional<Journal::Contents> contents(const Task& task) const;
 
   // The file for this process to measure the task into, with the pieces that ended processes have

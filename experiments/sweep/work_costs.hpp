@@ -9,7 +9,7 @@
 
 namespace qddot::sweep {
 
-// What one machine takes [s] for each thing that methods count on a scene; zero where the scene has
+// The time [s] on one machine of each thing that methods count on a scene; zero where the scene has
 // none of it.
 struct WorkCosts {
   double force = 0, stiffness = 0, factorization = 0, solve = 0;

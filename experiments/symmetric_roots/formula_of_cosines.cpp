@@ -8,6 +8,10 @@
 //   theta^2 = arccos(1 - x)^2 = 2 sum_{m>=1} (2 x)^m / (m^2 binomial(2 m, m)).
 #include "experiments/symmetric_roots/formula_of_cosines.hpp"
 
+#include <algorithm>
+#include <array>
+#include <functional>
+
 namespace qddot::spurious_roots {
 namespace {
 
@@ -57,6 +61,20 @@ std::vector<double> palindrome_of(const Polynomial& p) {
   return {sum.begin(), sum.end()};
 }
 
+constexpr std::array bases = {2, 3, 5, 7, 11};
+// A root with a larger cosine is within 0.3 of the motion's own, and the limit is less than that.
+constexpr double lowest = -1, highest = 0.95;
+
+// The digits of the number in a base, mirrored at the point.
+double mirrored(int number, int base) {
+  double sum = 0, place = 1;
+  for (; number > 0; number /= base) {
+    place /= base;
+    sum += number % base * place;
+  }
+  return sum;
+}
+
 }  // namespace
 
 Coefficients coefficients_of(const SymmetricFormula& formula) {
@@ -71,6 +89,16 @@ Coefficients formula_of_cosines(const std::vector<double>& cosines) {
   Polynomial s = quotient(minus_r_over_x, squared_angle_over_x(minus_r_over_x.size()));
   for (Number& number : s) number = -number;
   return {palindrome_of(product(minus_r_over_x, {0, 1})), palindrome_of(s)};
+}
+
+std::vector<double> sampled_cosines(int index, int pairs) {
+  std::vector<double> cosines;
+  for (int i = 0; i < pairs; ++i) {
+    const double share = mirrored(index, bases[static_cast<std::size_t>(i)]);
+    cosines.push_back(lowest + (highest - lowest) * share);
+  }
+  std::ranges::sort(cosines, std::greater());
+  return cosines;
 }
 
 }  // namespace qddot::spurious_roots

@@ -20,4 +20,9 @@ Coefficients coefficients_of(const SymmetricFormula& formula);
 // `cosines` are those of the n phi, each from -1 to 1 and none twice; n >= 1.
 Coefficients formula_of_cosines(const std::vector<double>& cosines);
 
+// Set number `index` of `pairs` cosines, from -1 to 0.95, descending. The sets are points of
+// Halton's sequence (Numerische Mathematik 2 (1960) 84-90), which fills that space evenly and is
+// the same each time. index from 1; pairs from 1 to 5.
+std::vector<double> sampled_cosines(int index, int pairs);
+
 }  // namespace qddot::spurious_roots

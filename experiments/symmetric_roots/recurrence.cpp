@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "qddot/algebra/dense_pairs.hpp"
-#include "qddot/integrators/base/palindrome_roots.hpp"
+#include "qddot/integrators/base/symmetric_formula.hpp"
 
 namespace qddot::spurious_roots {
 namespace {

@@ -4,7 +4,7 @@
 
 namespace qddot::spurious_roots {
 
-// What a formula makes of q'' = -w^2 q, read off the roots of its recurrence rho + h^2 w^2 beta.
+// The motion of a formula on q'' = -w^2 q, by the roots of its recurrence rho + h^2 w^2 beta.
 
 // The least h w at which a root leaves the unit circle, so that the motion grows beyond.
 double stability_limit(const Coefficients& formula);

@@ -14,122 +14,31 @@
 //   energy_swing  the largest energy error over the largest kinetic energy on the scene orbit, in
 //                 5000 steps at each of eight h w from half of --at to --at; 1: a run was ended
 // The last three are empty if the limit is not above --at.
-#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
-#include "experiments/kit/command_line.hpp"
-#include "experiments/kit/csv.hpp"
-#include "experiments/kit/entry.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
-#include "experiments/kit/provenance.hpp"
-#include "experiments/symmetric_roots/orbit_swing.hpp"
-#include "experiments/symmetric_roots/recurrence.hpp"
-#include "experiments/symmetric_roots/sampled_cosines.hpp"
-#include "qddot/integrators/base/palindrome_roots.hpp"
-#include "qddot/integrators/base/symmetric_multistep.hpp"
-#include "qddot/measure/motion/interruption.hpp"
+#include "experiments/symmetric_roots/formula_points.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::spurious_roots {
 namespace {
 
 constexpr int least_steps = 4, most_steps = 12;
-constexpr int most_samples = 100'000;
-constexpr double least_at = 0.01, most_at = 2;  // no formula of more than two steps has more
-constexpr int h_omegas_of_gap = 8;
 constexpr int steps_of_orbit = 5000;
 constexpr double well_apart = 0.2;  // [rad]
 constexpr double much = 0.1;        // of an energy swing
 
-struct Arguments {
-  std::string out;
-  int samples = 1500;
-  double at = 0.4;
-};
-
-void declare(CommandLine& line, Arguments& a) {
-  line.add_option("--out", a.out, "the folder for roots.csv");
-  line.add_option("--samples", a.samples,
-                  "number of sampled sets of roots, for each pair of roots in a set, 1 to 100000")
-      .capture_default_str();
-  line.add_option(
-          "--at", a.at,
-          "the h w of phase errors, and the largest h w of gaps and energy errors, 0.01 to 2")
-      .capture_default_str();
+void require_h_omega(double at, const std::string& option) {
+  constexpr double least = 0.01, most = 2;  // no formula of more than two steps has more
+  if (at >= least && at <= most) return;
+  throw InvalidInput(
+      fmt::format("{} {} is not allowed; it is an h w from {} to {}", option, at, least, most));
 }
 
-// What is known of one formula.
-struct Point {
-  int steps;
-  std::string method;  // empty where it is none of the registry's
-  std::vector<double> cosines;
-  double limit, phase_error, gap, energy_swing;
-};
-
-Point point_of(const Coefficients& formula, std::vector<double> cosines, std::string method,
-               double at, const OrbitSwing& orbit) {
-  const double nothing = std::numeric_limits<double>::quiet_NaN();
-  Point point{.steps = formula.steps(),
-              .method = std::move(method),
-              .cosines = std::move(cosines),
-              .limit = stability_limit(formula),
-              .phase_error = nothing,
-              .gap = nothing,
-              .energy_swing = nothing};
-  if (point.limit > at) {
-    point.phase_error = phase_error(formula, at);
-    std::vector<double> h_omegas;
-    for (int i = 1; i <= h_omegas_of_gap; ++i) h_omegas.push_back(at * i / h_omegas_of_gap);
-    point.gap = root_gap(formula, h_omegas);
-    point.energy_swing = orbit(formula);
-  }
-  return point;
-}
-
-std::vector<Point> registered_points(double at, const OrbitSwing& orbit) {
-  std::vector<Point> points;
-  for (const SymmetricFormula* formula :
-       {&registered::symmetric4_formula(), &registered::symmetric6_formula(),
-        &registered::symmetric8_formula(), &registered::symmetric10_formula()}) {
-    std::vector<double> cosines;
-    for (const auto cosine : cosines_of_roots(formula->cofactor())) {
-      cosines.push_back(cosine.real());
-    }
-    std::ranges::sort(cosines, std::greater());
-    points.push_back(point_of(coefficients_of(*formula), cosines,
-                              fmt::format("symmetric{}", formula->steps), at, orbit));
-  }
-  return points;
-}
-
-// The more pairs of roots, the more sets it takes to fill their space.
-std::vector<Point> sampled_points(int steps, const Arguments& a, const OrbitSwing& orbit) {
-  const int pairs = steps / 2 - 1;
-  std::vector<Point> points;
-  for (int i = 1; i <= pairs * a.samples; ++i) {
-    stop_if_interrupted();
-    progress().now_at(fmt::format("formulas of {} steps, {} of {}", steps, i, pairs * a.samples));
-    const std::vector<double> cosines = sampled_cosines(i, pairs);
-    points.push_back(point_of(formula_of_cosines(cosines), cosines, "", a.at, orbit));
-  }
-  return points;
-}
-
-void write(CsvFile& csv, const std::vector<Point>& points) {
-  for (const Point& p : points) {
-    csv.row(p.steps, p.method, fmt::format("{:.17g}", fmt::join(p.cosines, " ")), p.limit,
-            p.phase_error, p.gap, p.energy_swing);
-  }
-}
-
-void print(const std::string& who, const Point& p) {
+void print(const std::string& who, const FormulaPoint& p) {
   if (std::isnan(p.gap)) {
     fmt::print("{:<28} {:>6.4f}  not stable at --at\n", who, p.limit);
   } else {
@@ -139,9 +48,9 @@ void print(const std::string& who, const Point& p) {
 }
 
 // The points of largest limit: of all, and of those whose roots are well apart.
-void print_largest(int steps, const std::vector<Point>& points) {
-  const Point *largest = nullptr, *apart = nullptr;
-  for (const Point& point : points) {
+void print_largest(int steps, const std::vector<FormulaPoint>& points) {
+  const FormulaPoint *largest = nullptr, *apart = nullptr;
+  for (const FormulaPoint& point : points) {
     if (!largest || point.limit > largest->limit) largest = &point;
     if (point.gap >= well_apart && (!apart || point.limit > apart->limit)) apart = &point;
   }
@@ -150,9 +59,9 @@ void print_largest(int steps, const std::vector<Point>& points) {
 }
 
 // How many of those whose roots are, or are not, well apart are off by much on the orbit.
-void print_share(const char* whose, const std::vector<Point>& points, bool is_apart) {
+void print_share(const char* whose, const std::vector<FormulaPoint>& points, bool is_apart) {
   int all = 0, off = 0;
-  for (const Point& point : points) {
+  for (const FormulaPoint& point : points) {
     if (std::isnan(point.gap) || (point.gap >= well_apart) != is_apart) continue;
     ++all;
     if (point.energy_swing >= much) ++off;
@@ -161,52 +70,59 @@ void print_share(const char* whose, const std::vector<Point>& points, bool is_ap
              whose, well_apart);
 }
 
-int symmetric_roots(const CommandLine&, const Arguments& a,
-                    const std::vector<std::string>& command_line) {
-  require_given(a.out, "--out", "the folder for the results");
-  require_within(a.samples, 1, most_samples, "--samples");
-  if (!(a.at >= least_at && a.at <= most_at)) {
-    throw InvalidInput(
-        fmt::format("--at {} is not allowed; it is an h w from {} to {}", a.at, least_at, most_at));
-  }
-  require_folder(a.out);
-  CsvFile table(a.out + "/roots.csv",
-                {"steps", "method", "cosines", "limit", "phase_error", "gap", "energy_swing"});
-  const OrbitSwing orbit(a.at, steps_of_orbit, most_steps);
-  fmt::print("{:<28} {:>6} {:>11} {:>6} {:>12}  {}\n", "", "limit", "phase error", "gap",
-             "energy swing", "cosines");
-  const std::vector<Point> named = registered_points(a.at, orbit);
-  write(table, named);
-  for (const Point& point : named) print(point.method, point);
-  std::vector<Point> sampled;
-  progress().begin((most_steps - least_steps) / 2 + 1);
-  for (int steps = least_steps; steps <= most_steps; steps += 2) {
-    const std::vector<Point> points = sampled_points(steps, a, orbit);
-    progress().finish(fmt::format("formulas of {} steps are done", steps));
-    progress().wipe();
-    write(table, points);
-    print_largest(steps, points);
-    sampled.insert(sampled.end(), points.begin(), points.end());
-  }
-  print_share("below", sampled, false);
-  print_share("of at least", sampled, true);
-
-  nlohmann::json origin = provenance(command_line);
-  origin["samples"] = a.samples;
-  origin["at"] = a.at;
-  origin["well_apart"] = well_apart;
-  origin["steps_of_orbit"] = steps_of_orbit;
-  table.commit(origin);
-  return done;
-}
-
 }  // namespace
 }  // namespace qddot::spurious_roots
 
 int main(int argc, char** argv) {
+  using namespace qddot;
   using namespace qddot::spurious_roots;
-  return qddot::kit::enter<Arguments>(
-      {.name = "symmetric_roots",
-       .summary = "Charts what the spurious roots of symmetric multistep formulas trade."},
-      declare, symmetric_roots, argc, argv);
+  Program p({.name = "symmetric_roots",
+             .summary = "Charts what the spurious roots of symmetric multistep formulas trade."});
+  auto samples =
+      p.whole("--samples", 1500,
+              "number of sampled sets of roots, for each pair of roots in a set, 1 to 100000")
+          .within(1, 100'000);
+  auto at =
+      p.number("--at", 0.4,
+               "the h w of phase errors, and the largest h w of gaps and energy errors, 0.01 to 2")
+          .check(require_h_omega);
+  auto& table = p.table<FormulaPoint>(
+      "roots.csv",
+      {{"steps", &FormulaPoint::steps},
+       {"method", &FormulaPoint::method},
+       {"cosines",
+        [](const FormulaPoint& r) { return fmt::format("{:.17g}", fmt::join(r.cosines, " ")); }},
+       {"limit", &FormulaPoint::limit},
+       {"phase_error", &FormulaPoint::phase_error},
+       {"gap", &FormulaPoint::gap},
+       {"energy_swing", &FormulaPoint::energy_swing}});
+  return p.run(argc, argv, [&] {
+    return p.write([&] {
+      const OrbitSwing orbit(at, steps_of_orbit, most_steps);
+      fmt::print("{:<28} {:>6} {:>11} {:>6} {:>12}  {}\n", "", "limit", "phase error", "gap",
+                 "energy swing", "cosines");
+      for (const FormulaPoint& point : registered_points(at, orbit)) {
+        table.add(point);
+        print(point.method, point);
+      }
+      std::vector<FormulaPoint> sampled;
+      progress().begin((most_steps - least_steps) / 2 + 1);
+      for (int steps = least_steps; steps <= most_steps; steps += 2) {
+        const std::vector<FormulaPoint> points = sampled_points(steps, samples, at, orbit);
+        progress().finish(fmt::format("formulas of {} steps are done", steps));
+        progress().wipe();
+        for (const FormulaPoint& point : points) table.add(point);
+        print_largest(steps, points);
+        sampled.insert(sampled.end(), points.begin(), points.end());
+      }
+      print_share("below", sampled, false);
+      print_share("of at least", sampled, true);
+      nlohmann::json origin = p.origin();
+      origin.update({{"samples", *samples},
+                     {"at", *at},
+                     {"well_apart", well_apart},
+                     {"steps_of_orbit", steps_of_orbit}});
+      return origin;
+    });
+  });
 }

@@ -9,42 +9,18 @@
 //  2. coverage.csv: for each interval or bound that is printed, how often it holds what is true,
 //     with the 95 % interval of that (Wilson); and the size of a walk over the true one.
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "experiments/kit/command_line.hpp"
-#include "experiments/kit/csv.hpp"
-#include "experiments/kit/entry.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
-#include "experiments/kit/provenance.hpp"
-#include "experiments/kit/study.hpp"
-#include "qddot/measure/motion/interruption.hpp"
+#include "experiments/verdicts/tally.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/trend/sample_steps.hpp"
-#include "qddot/measure/trend/synthetic_errors.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::verdicts {
 namespace {
-
-constexpr int most_seeds = 1000000;
-
-struct Arguments {
-  std::string out;
-  int seeds = 100, cells = many_cells;
-  std::vector<std::string> kinds;
-};
-
-void declare(CommandLine& line, Arguments& a) {
-  line.add_option("--seeds", a.seeds, "runs of each kind").capture_default_str();
-  line.add_option("--cells", a.cells, "samples in an octave of a run").capture_default_str();
-  line.add_option("--kinds", a.kinds, "kinds of errors, each in quotes (default: all)");
-  line.add_option("--out", a.out, "the folder for confusion.csv and coverage.csv");
-}
 
 std::vector<SyntheticKind> chosen_kinds(const std::vector<std::string>& names) {
   std::vector<SyntheticKind> all = synthetic_kinds();
@@ -63,73 +39,6 @@ std::vector<SyntheticKind> chosen_kinds(const std::vector<std::string>& names) {
   return chosen;
 }
 
-bool claims_nothing(Verdict verdict) {
-  return verdict == Verdict::undecided || verdict == Verdict::unknown;
-}
-
-const char* judgement(const SyntheticKind& kind, Verdict verdict) {
-  if (std::ranges::count(kind.right, verdict) > 0) return "right";
-  return claims_nothing(verdict) ? "uncertain" : "wrong";
-}
-
-// How often something that is said with 95 % holds.
-struct Coverage {
-  int said = 0, held = 0;
-
-  void add(bool holds) {
-    ++said;
-    held += holds;
-  }
-  double part() const { return static_cast<double>(held) / said; }
-  // Wilson, J. American Statistical Association 22 (1927) 209-212.
-  Interval interval() const {
-    const double n = said, p = part(), z = 1.959964;
-    const double middle = (p + z * z / (2 * n)) / (1 + z * z / n);
-    const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
-    return {p, middle - half, middle + half};
-  }
-};
-
-// The verdicts on errors of one kind.
-struct Tally {
-  std::map<Verdict, int> verdicts;
-  std::map<std::string, Coverage> coverage;
-  double walk = 0;  // mean size over the true one
-
-  void add(const SyntheticKind& kind, const Trend& trend) {
-    constexpr double duration = synthetic_duration;
-    ++verdicts[trend.verdict];
-    if (kind.drift) {
-      coverage["drift_rate"].add(trend.drift.holds(*kind.drift / duration));
-      coverage["late_drift"].add(trend.late_drift.holds(*kind.drift / duration));
-    }
-    if (kind.rate && trend.rate.value != 0) {
-      coverage["exponential_rate"].add(trend.rate.holds(*kind.rate / duration));
-    }
-    if (kind.widening) coverage["widening"].add(trend.widening.holds(*kind.widening / duration));
-    if (kind.memory && trend.colour == Colour::undecided) {
-      coverage["memory_low"].add(trend.memory <= *kind.memory * duration);
-    }
-    if (kind.period && *kind.period >= 1 && trend.slow_period > 0) {
-      coverage["slow_period_low"].add(trend.slow_period <= *kind.period * duration);
-    }
-    if (kind.walk) walk += trend.walk * std::sqrt(duration) / *kind.walk;
-  }
-};
-
-Tally tally(const SyntheticKind& kind, const Arguments& a) {
-  std::vector<Trend> trends(static_cast<std::size_t>(a.seeds));
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t seed = 0; seed < trends.size(); ++seed) {
-    if (!interrupted()) trends[seed] = synthetic_trend(kind, seed, a.cells);
-  }
-  Tally result;
-  stop_if_interrupted();
-  for (const Trend& trend : trends) result.add(kind, trend);
-  result.walk /= a.seeds;
-  return result;
-}
-
 void print(const SyntheticKind& kind, const Tally& tally, int seeds) {
   std::map<std::string, int> judged;
   std::string words;
@@ -140,18 +49,6 @@ void print(const SyntheticKind& kind, const Tally& tally, int seeds) {
   const double percent = 100.0 / seeds;
   fmt::print("{:<34} {:>6.1f} {:>9.1f} {:>6.1f}   {}\n", kind.name, judged["right"] * percent,
              judged["uncertain"] * percent, judged["wrong"] * percent, words);
-}
-
-void tabulate(Csv& confusion, Csv& coverage, const SyntheticKind& kind, const Tally& own,
-              int seeds) {
-  for (const auto& [verdict, count] : own.verdicts) {
-    confusion.row(kind.name, verdict_name(verdict), count, static_cast<double>(count) / seeds,
-                  judgement(kind, verdict));
-  }
-  for (const auto& [what, c] : own.coverage) {
-    const Interval part = c.interval();
-    coverage.row(kind.name, what, c.said, c.held, part.value, part.low, part.high);
-  }
 }
 
 void print_coverage(const std::vector<SyntheticKind>& kinds, const std::vector<Tally>& tallies) {
@@ -169,58 +66,62 @@ void print_coverage(const std::vector<SyntheticKind>& kinds, const std::vector<T
   }
 }
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Coverage, said, held)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tally, verdicts, coverage, walk)
-
-int verdicts(const CommandLine& line, const Arguments& a,
-             const std::vector<std::string>& command_line) {
-  const auto begin = std::chrono::steady_clock::now();
-  require_given(a.out, "--out", "the folder for the results");
-  require_within(a.seeds, 1, most_seeds, "--seeds");
-  require_within(a.cells, 8, 1 << 20, "--cells");
-  const std::vector<SyntheticKind> kinds = chosen_kinds(a.kinds);
-  require_folder(a.out);
-  Study study(line, a.out, {"confusion.csv", "coverage.csv"}, {});
-  if (const auto status = study.completed()) return *status;
-  CsvFile confusion(a.out + "/confusion.csv", {"kind", "verdict", "count", "part", "judgement"});
-  CsvFile coverage(a.out + "/coverage.csv",
-                   {"kind", "what", "said", "held", "part", "part_low", "part_high"});
-
-  fmt::print("{} runs of each kind; percent of them judged\n{:<34} {:>6} {:>9} {:>6}   {}\n",
-             a.seeds, "kind", "right", "uncertain", "wrong", "verdicts");
-  std::vector<Tally> tallies;
-  study.measure([&] {
-    progress().begin(kinds.size());
-    for (const SyntheticKind& kind : kinds) {
-      progress().now_at(kind.name);
-      const Tally own = study.piece(kind.name, [&] { return nlohmann::json(tally(kind, a)); });
-      progress().finish(kind.name);
-      progress().wipe();
-      print(kind, own, a.seeds);
-      tabulate(confusion, coverage, kind, own, a.seeds);
-      tallies.push_back(own);
-    }
-  });
-  print_coverage(kinds, tallies);
-
-  nlohmann::json origin = provenance(command_line);
-  origin["seeds"] = a.seeds;
-  origin["cells"] = a.cells;
-  for (std::size_t i = 0; i < tallies.size(); ++i) {
-    if (kinds[i].walk) origin["walk_size"][kinds[i].name] = tallies[i].walk;
-  }
-  origin["seconds"] = seconds_since(begin);
-  return study.finish({&confusion, &coverage}, origin, done);
-}
-
 }  // namespace
 }  // namespace qddot::verdicts
 
 int main(int argc, char** argv) {
+  using namespace qddot;
   using namespace qddot::verdicts;
-  return qddot::kit::enter<Arguments>(
-      {.name = "verdicts",
-       .summary = "Finds out how often the verdicts of energy_drift are right.",
-       .has_resume = true},
-      declare, verdicts, argc, argv);
+  Program p({.name = "verdicts",
+             .summary = "Finds out how often the verdicts of energy_drift are right.",
+             .has_resume = true});
+  auto seeds = p.whole("--seeds", 100, "runs of each kind").within(1, 1000000);
+  auto cells = p.whole("--cells", many_cells, "samples in an octave of a run").within(8, 1 << 20);
+  std::vector<std::string> names;
+  p.bind("--kinds", names, "kinds of errors, each in quotes (default: all)");
+  p.out("the folder for confusion.csv and coverage.csv");
+  auto& confusion = p.table("confusion.csv", {"kind", "verdict", "count", "part", "judgement"});
+  auto& coverage =
+      p.table("coverage.csv", {"kind", "what", "said", "held", "part", "part_low", "part_high"});
+  return p.run(argc, argv, [&] {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::vector<SyntheticKind> kinds = chosen_kinds(names);
+    std::vector<Tally> tallies;
+    return p.study(
+        {},
+        [&](Study& study) {
+          fmt::print(
+              "{} runs of each kind; percent of them judged\n{:<34} {:>6} {:>9} {:>6}   {}\n",
+              *seeds, "kind", "right", "uncertain", "wrong", "verdicts");
+          progress().begin(kinds.size());
+          for (const SyntheticKind& kind : kinds) {
+            progress().now_at(kind.name);
+            const Tally own =
+                study.piece(kind.name, [&] { return nlohmann::json(tally(kind, seeds, cells)); });
+            progress().finish(kind.name);
+            progress().wipe();
+            print(kind, own, seeds);
+            for (const auto& [verdict, count] : own.verdicts) {
+              confusion->row(kind.name, verdict_name(verdict), count,
+                             static_cast<double>(count) / seeds, judgement(kind, verdict));
+            }
+            for (const auto& [what, c] : own.coverage) {
+              const Interval part = c.interval();
+              coverage->row(kind.name, what, c.said, c.held, part.value, part.low, part.high);
+            }
+            tallies.push_back(own);
+          }
+        },
+        [&] {
+          print_coverage(kinds, tallies);
+          nlohmann::json origin = p.origin();
+          origin["seeds"] = *seeds;
+          origin["cells"] = *cells;
+          for (std::size_t i = 0; i < tallies.size(); ++i) {
+            if (kinds[i].walk) origin["walk_size"][kinds[i].name] = tallies[i].walk;
+          }
+          origin["seconds"] = seconds_since(begin);
+          return origin;
+        });
+  });
 }

@@ -97,10 +97,6 @@ std::string text(const nlohmann::json& json, const char* member) {
 
 }  // namespace
 
-WholeFile chart_file(const std::string& folder) {
-  return WholeFile(folder + "/chart.json", record::chart_beginning);
-}
-
 void write_chart(WholeFile& file, const Chart& chart, const std::string& scene,
                  const StudyEnd& end) {
   const std::string name =
@@ -116,7 +112,7 @@ void judge(const std::string& folder) {
   const Reference reference = reference_in(folder, kept);
   const WrittenTable table(folder + "/points.csv", {"scene"});
   const Chart chart = chart_of(points, reference, front.accuracies, StabilityMargins(front.w_max));
-  WholeFile file = chart_file(folder);
+  WholeFile file(folder + "/chart.json", record::chart_beginning);
   write_chart(file, chart, table.size() > 0 ? table.text(0, "scene") : text(kept, "scene"),
               {.interrupted_by = text(sidecar, "interrupted"),
                .are_times_of_work = text(sidecar, "times") == "work"});

@@ -7,9 +7,6 @@
 
 namespace qddot::work_precision {
 
-// `folder`/chart.json. Throws InvalidInput if it cannot be written or may not be replaced.
-WholeFile chart_file(const std::string& folder);
-
 // Writes the record of a chart of the scene of that name.
 void write_chart(WholeFile& file, const Chart& chart, const std::string& scene,
                  const StudyEnd& end);

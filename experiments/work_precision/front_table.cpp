@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "qddot/measure/reference/reference_words.hpp"
+#include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/chart_words.hpp"
 
 namespace qddot::work_precision {
@@ -38,6 +38,22 @@ std::vector<std::string> small_margins(const std::vector<FrontRow>& front) {
 }
 
 }  // namespace
+
+const std::vector<std::string> front_columns = {"scene",  "accuracy",  "method",
+                                                "knob",   "value",     "error_position",
+                                                "time_s", "judged_by", "stability_margin"};
+
+void tabulate(Csv& csv, const std::string& scene, const Chart& chart) {
+  const char* judge = name(chart.judge);
+  for (const FrontRow& row : chart.front) {
+    if (const Point* p = row.fastest) {
+      csv.row(scene, row.accuracy, p->method->name, knob_name(p->method->knob), p->value,
+              p->errors.position, p->time, judge, row.stability_margin);
+    } else {
+      csv.row(scene, row.accuracy, "", "", "", "", "", judge, "");
+    }
+  }
+}
 
 void print_front(const std::string& scene, const Chart& chart) {
   const Reference& reference = chart.reference;

@@ -1,24 +1,24 @@
 """Draws which method is the fastest on each of several scenes, at each accuracy.
 
 Call: which_method.py PICTURE.png DIR... Reads what work_precision wrote into each folder: points.csv,
-front.csv and the sidecar points.json. A row is a scene, from soft to stiff: the more steps Verlet must
+its sidecar points.json and chart.json. A row is a scene, from soft to stiff: the more steps Verlet must
 take, the lower.
 """
 
 import os
 import sys
 
-import measurements
 import scene_row
 from fastest_table import Cells, draw_cells, draw_heads, draw_key, sundials_in_words
 from measurements import BadInput
 from names import shown
+from record import read_record
 from sheet import Sheet
 from style import COOL, FAINT, use_style
 
 WIDTH, MARGIN = 10.0, 0.15
 ROW, GAP = 0.66, 0.06
-CELLS = Cells(measurements.DECADES, 1.93, 0.76, ROW, name_depth=0.24, time_depth=ROW - 0.12)
+CELLS = Cells(scene_row.DECADES, 1.93, 0.76, ROW, name_depth=0.24, time_depth=ROW - 0.12)
 TOP, FOOT = 1.66, 0.62
 FACT_SIZE = 8.5
 TITLES = {
@@ -32,12 +32,11 @@ TITLES = {
 
 
 def read(directory):
-    """The row of the scene whose results are in a folder; raises measurements.BadInput where these are
-    not of work_precision."""
-    runs = measurements.read_runs(os.path.join(directory, "points.csv"))
-    front = measurements.read_front(os.path.join(directory, "front.csv"), runs)
+    """The row of the scene whose results are in a folder; raises BadInput where these are not of
+    work_precision."""
+    record = read_record(directory)
     name, facts = scene_row.read_sidecar(os.path.join(directory, "points.json"))
-    methods = scene_row.of_runs(runs, scene_row.by_accuracy(front))
+    methods = scene_row.of_record(record, scene_row.by_accuracy(record.judged.front))
     return scene_row.Row(TITLES.get(name, shown(name)), **facts, **methods)
 
 

@@ -1,7 +1,6 @@
 """Draws the work-precision chart of one experiment: time of a run against error reached.
 
-Call: work_precision.py DIR [--all]. Reads points.csv, front.csv and, if it exists, reference.json
-in DIR. Writes chart and chart_energy there, as .png and .svg. chart is over the position error. If
+Call: work_precision.py DIR [--all]. Reads points.csv and chart.json in DIR. Writes chart and chart_energy there, as .png and .svg. chart is over the position error. If
 the end is beyond the horizon of a chaotic motion, it is over the kind of error that still means
 something. chart_energy is over the energy error. Up to a dozen methods stand out; others are pale
 and failures are counted. --all names every method and shows its failed runs.
@@ -14,13 +13,12 @@ from matplotlib.lines import Line2D
 
 import causes
 import failures
-import measurements
-import quantities
 from band import draw_band
-from caveats import caveats
 from chart import Chart
 from emphasis import Everything, Prominent
+from measurements import BadInput
 from names import shown
+from record import read_record, sweeps
 from sheet import Sheet
 from style import FAINT, STOCK, number, use_style
 
@@ -46,13 +44,13 @@ def axes_height(runs, emphasis):
     return 4.35 + 0.08 * max(0, labelled - ROOMY_METHODS)
 
 
-def draw_header(sheet, scene, quantity, reference, sentences):
+def draw_header(sheet, study, view):
     """Title and subtitle; and what a reader must know before the errors."""
-    end = "T" if reference.until is None else f"T = {number(reference.until)} s"
-    title = f"{scene}: time of a run against {quantity.title} {end}"
+    end = "T" if study.until is None else f"T = {number(study.until)} s"
+    title = f"{shown(study.scene)}: time of a run against {view.quantity.title} {end}"
     sheet.text(MARGIN, 0.25, title, size=14, weight="bold", va="center")
-    sheet.text(MARGIN, 0.54, quantity.subtitle, size=10, color=FAINT, va="center")
-    for line, words in enumerate(sentences):
+    sheet.text(MARGIN, 0.54, view.subtitle, size=10, color=FAINT, va="center")
+    for line, words in enumerate(study.caveats):
         top = 0.83 + HORIZON * line
         sheet.text(MARGIN, top, words, size=10, color=WARNING, va="center")
 
@@ -116,25 +114,24 @@ def panel_height(view, emphasis):
     return band_height(view) + axes_height(view.runs, emphasis) + AXIS_TEXT
 
 
-def draw(views, reference, sentences, fallback_scene, everything):
-    """The whole picture of one view and more below it as a sheet; of every method, or with those
-    that stand out. `sentences`: what a reader must know before the errors."""
+def draw(study, views, everything):
+    """The whole picture of one view of a study and more below it as a sheet; of every method, or
+    with those that stand out."""
     main, *more = views
     emphasis = Everything(views) if everything else Prominent(views)
     strip = failures if everything else causes
-    failed = failures.failing(measurements.sweeps(main.runs))
-    header = HEADER + HORIZON * len(sentences)
+    failed = failures.failing(sweeps(main.runs))
+    header = HEADER + HORIZON * len(study.caveats)
     panels = sum(panel_height(view, emphasis) for view in views)
     strip_top = header + panels + HEADING * len(more)
     sheet = Sheet(WIDTH, strip_top + strip.strip_height(failed))
-    scene = reference.scene or (main.runs[0].scene if main.runs else "") or fallback_scene
-    draw_header(sheet, shown(scene), main.quantity, reference, sentences)
+    draw_header(sheet, study, main)
     draw_panel(sheet, header, main, emphasis)
     draw_key(sheet, header - KEY, emphasis)
     top = header + panel_height(main, emphasis)
     for view in more:
         sheet.rule(top)
-        sheet.text(MARGIN, top + HEADING / 2, view.quantity.subtitle, size=10, va="center")
+        sheet.text(MARGIN, top + HEADING / 2, view.subtitle, size=10, va="center")
         draw_panel(sheet, top + HEADING, view, emphasis)
         top += HEADING + panel_height(view, emphasis)
     if failed:
@@ -142,18 +139,13 @@ def draw(views, reference, sentences, fallback_scene, everything):
     return sheet
 
 
-def pictures(directory, reference):
+def pictures(study):
     """The views of each picture by its name: beyond the horizon, others stand in the place of the
     positions."""
-    energy = quantities.view(directory, quantities.ENERGY, reference)
-    if reference.horizon and energy:
-        others = (quantities.MOMENTUM, quantities.MODES)
-        more = [quantities.view(directory, other, reference) for other in others]
-        yield "chart", [energy, *filter(None, more)]
-    else:
-        yield "chart", [quantities.view(directory, quantities.POSITION, reference)]
-    if energy:
-        yield "chart_energy", [energy]
+    others = ("momentum", "modes") if study.is_beyond_horizon else ()
+    yield "chart", [study.judged, *(study.views[name] for name in others if name in study.views)]
+    if "energy" in study.views:
+        yield "chart_energy", [study.views["energy"]]
 
 
 def main(arguments):
@@ -166,17 +158,12 @@ def main(arguments):
     directory = directories[0]
     use_style()
     try:
-        reference = measurements.read_reference(os.path.join(directory, "reference.json"))
-        table = os.path.join(directory, "points.csv")
-        known = caveats(
-            reference, measurements.interrupted_by(table), measurements.are_times_of_work(table)
-        )
-        for name, views in pictures(directory, reference):
-            folder = os.path.basename(os.path.abspath(directory))
-            sheet = draw(views, reference, known, folder, everything)
+        study = read_record(directory)
+        for name, views in pictures(study):
+            sheet = draw(study, views, everything)
             for extension in ("png", "svg"):
                 sheet.save(os.path.join(directory, f"{name}.{extension}"))
-    except measurements.BadInput as error:
+    except BadInput as error:
         print(error, file=sys.stderr)
         return 2
     return 0

@@ -37,6 +37,7 @@ PROGRAMS = {
     "modes": 8,
     "work_precision": 8,
     "convergence": 8,
+    "reversal": 4,
     "stability_map": 8,
     "energy_drift": 8,
     "exchange": 6,

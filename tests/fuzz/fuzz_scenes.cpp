@@ -17,7 +17,6 @@
 
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_file.hpp"
-#include "qddot/scene/scene_writer.hpp"
 #include "tests/fuzz/corpus.hpp"
 #include "tests/fuzz/mutator.hpp"
 #include "tests/scene/same_scene.hpp"

@@ -16,7 +16,7 @@ class Commands:
         names = self.methods["step_size"] * 2 + self.methods["rtol"]
         if self.program == "stock_sundials":
             names = [name for name in self.methods["rtol"] if name + "_klu" in self.methods["rtol"]]
-        elif self.program in ("convergence", "exchange", "scaling"):
+        elif self.program in ("convergence", "reversal", "exchange", "scaling"):
             names = self.methods["step_size"]
         return ",".join(random.choice(names) for _ in range(random.randint(1, 2)))
 

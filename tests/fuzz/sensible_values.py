@@ -62,6 +62,7 @@ SENSIBLE = {
     "--first": ["11000000", "11000002"],
     "--reference-seconds": ["0.2", "0.5"],
     "--samples": ["1", "5"],
+    "--steps": ["1e-4", "2e-4,1e-4"],
 }
 OF_A_PROGRAM = {
     ("symmetric_roots", "--at"): (0.1, 1),

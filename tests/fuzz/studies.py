@@ -11,6 +11,7 @@ STUDIES = {
     "work_precision": "--scene steady.toml --methods verlet,rk4,ida --repeats 1"
     " --point-limit 100 --until 0.01",
     "convergence": "--scene steady.toml --methods verlet,rk4,implicit_midpoint --until 0.01",
+    "reversal": "--scene steady.toml --methods verlet,rk4 --steps 1e-3,1e-4 --until 0.01",
     "stability_map": "--scene steady.toml --methods verlet,rk4 --columns 6 --amplitudes 0.03,0.3"
     " --cell-limit 100"
     " --until 0.01",
@@ -50,6 +51,8 @@ LONG_STUDIES = {
     "convergence": "--scene larger.toml"
     " --methods verlet,rk4,blanes_moan4,implicit_midpoint,trapezoidal,bdf2"
     " --until 0.05",
+    "reversal": "--scene larger.toml --methods verlet,rk4,blanes_moan4,implicit_midpoint"
+    " --steps 1e-3,1e-4,5e-5 --until 0.5",
     "stability_map": "--scene larger.toml --methods verlet,rk4,implicit_euler,bdf2,hht --columns 12"
     " --amplitudes 0.03,0.1,0.3,1 --cell-limit 1000 --until 0.1",
     "energy_drift": "--scene larger.toml --methods verlet,rk4,dprkn6,implicit_midpoint,hht"

@@ -1,10 +1,8 @@
-#include <algorithm>
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/kit/progress.hpp"
-#include "experiments/kit/shared_seconds.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 BOOST_AUTO_TEST_SUITE(progress)
@@ -37,31 +35,30 @@ const ProgressState state{.program = "work_precision",
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(a_bound_is_rounded_up_and_the_time_that_is_over_down) {
+BOOST_AUTO_TEST_CASE(times_are_rounded_down_to_seconds) {
   BOOST_TEST(clock_words(0) == "0:00");
   BOOST_TEST(clock_words(63.9) == "1:03");
-  BOOST_TEST(clock_words(129.1, true) == "2:10");
   BOOST_TEST(clock_words(3600) == "1:00:00");
-  BOOST_TEST(clock_words(3599.5, true) == "1:00:00");
+  BOOST_TEST(clock_words(3599.5) == "59:59");
   BOOST_TEST(clock_words(-1) == "0:00");
   BOOST_TEST(clock_words(1e300) == clock_words(1e9));
 }
 
 BOOST_AUTO_TEST_CASE(a_state_is_one_line) {
   BOOST_TEST(progress_in_words(state, 80) ==
-             "work_precision 12/56  verlet h = 0.0005  1:03, at most 2:10 left");
+             "work_precision 12/56  verlet h = 0.0005  1:03, about 2:09 left");
   ProgressState other = state;
   other.left.reset();
   BOOST_TEST(progress_in_words(other, 80) == "work_precision 12/56  verlet h = 0.0005  1:03");
-  other = {.program = "simulate", .what = "t = 1 of 2 s", .left = 10.9, .is_bound = false};
+  other = {.program = "simulate", .what = "t = 1 of 2 s", .left = 10.9};
   BOOST_TEST(progress_in_words(other, 80) == "simulate  t = 1 of 2 s  0:00, about 0:10 left");
 }
 
 BOOST_AUTO_TEST_CASE(few_columns_leave_the_times) {
   BOOST_TEST(progress_in_words(state, 60) ==
-             "work_precision 12/56  verlet h = 0.  1:03, at most 2:10 left");
-  BOOST_TEST(progress_in_words(state, 39) == "12/56  verlet   1:03, at most 2:10 left");
-  BOOST_TEST(progress_in_words(state, 20) == "12/56  1:03, at most");
+             "work_precision 12/56  verlet h = 0.00  1:03, about 2:09 left");
+  BOOST_TEST(progress_in_words(state, 39) == "12/56  verlet h   1:03, about 2:09 left");
+  BOOST_TEST(progress_in_words(state, 20) == "12/56  1:03, about 2");
   for (std::size_t columns = 0; columns < 90; ++columns)
     BOOST_TEST(progress_in_words(state, columns).size() <= columns);
 }
@@ -87,14 +84,14 @@ BOOST_AUTO_TEST_CASE(a_terminal_s_line_says_what_is_measured) {
   BOOST_TEST(shown.last() == line("bench 1/3  verlet  0:05"));
   shown.now += 5;
   shown.progress.finish("verlet is done");
-  BOOST_TEST(shown.last() == line("bench 1/3  verlet is done  0:10"));
+  BOOST_TEST(shown.last() == line("bench 1/3  verlet is done  0:10, about 0:20 left"));
   shown.now += 1;
   shown.progress.now_at("rk4");
-  BOOST_TEST(shown.last() == line("bench 2/3  rk4  0:11"));
-  shown.columns = 15;  // three are left free
+  BOOST_TEST(shown.last() == line("bench 2/3  rk4  0:11, about 0:19 left"));
+  shown.columns = 34;  // three are left free
   shown.now += 1;
   shown.progress.now_at("rk4 again");
-  BOOST_TEST(shown.last() == line("2/3  r  0:12"));
+  BOOST_TEST(shown.last() == line("2/3  rk4  0:12, about 0:18 left"));
 }
 
 BOOST_AUTO_TEST_CASE(it_is_written_at_most_ten_times_a_second) {
@@ -139,8 +136,10 @@ BOOST_AUTO_TEST_CASE(plain_lines_say_what_is_done_and_are_half_a_minute_apart) {
     shown.progress.finish("verlet is done");
   }
   const std::vector<std::string> expected = {
-      "bench 1/100  verlet is done  0:01\n", "bench 31/100  verlet is done  0:31\n",
-      "bench 61/100  verlet is done  1:01\n", "bench 91/100  verlet is done  1:31\n"};
+      "bench 1/100  verlet is done  0:01, about 1:39 left\n",
+      "bench 31/100  verlet is done  0:31, about 1:09 left\n",
+      "bench 61/100  verlet is done  1:01, about 0:39 left\n",
+      "bench 91/100  verlet is done  1:31, about 0:09 left\n"};
   BOOST_TEST(shown.written == expected, boost::test_tools::per_element());
   shown.progress.wipe();
   BOOST_TEST(shown.written.size() == expected.size());
@@ -155,7 +154,7 @@ BOOST_AUTO_TEST_CASE(what_is_over_soon_is_quiet) {
     shown.progress.finish("verlet is done");
   }
   BOOST_TEST_REQUIRE(shown.written.size() == 1u);
-  BOOST_TEST(shown.last() == "bench 30/40  verlet is done  0:30\n");
+  BOOST_TEST(shown.last() == "bench 30/40  verlet is done  0:30, about 0:10 left\n");
 }
 
 BOOST_AUTO_TEST_CASE(none_says_nothing) {
@@ -168,44 +167,25 @@ BOOST_AUTO_TEST_CASE(none_says_nothing) {
   BOOST_TEST(shown.written.empty());
 }
 
-BOOST_AUTO_TEST_CASE(a_bound_runs_down_and_is_said_where_it_is_of_use) {
+BOOST_AUTO_TEST_CASE(the_time_left_is_that_of_the_pieces_to_come_at_the_pace_of_those_measured) {
   Shown shown;
   shown.progress.start("bench", Progress::Form::line);
-  shown.progress.begin(11);
-  shown.progress.left_at_most(100);
+  shown.progress.begin(8);
   shown.progress.now_at("a");
-  BOOST_TEST(shown.last() == line("bench 1/11  a  0:00"));  // nobody knows yet of how much use
+  BOOST_TEST(shown.last() == line("bench 1/8  a  0:00"));  // nobody knows yet
+  shown.progress.finish("a");                              // kept from before
   shown.now += 10;
-  shown.progress.left_at_most(800);  // ten pieces like the slowest take 100 s
-  shown.progress.finish("a");
-  BOOST_TEST(shown.last() == line("bench 1/11  a  0:10, at most 13:20 left"));
-  shown.now += 15;
-  shown.progress.now_at("b");
-  BOOST_TEST(shown.last() == line("bench 2/11  b  0:25, at most 13:05 left"));
-  shown.progress.left_at_most(1300);
-  shown.now += 0.5;
-  shown.progress.now_at("b");
-  BOOST_TEST(shown.last() == line("bench 2/11  b  0:25"));
-  shown.progress.left_at_most({});
-  shown.now += 1;
-  shown.progress.now_at("b");
-  BOOST_TEST(shown.last() == line("bench 2/11  b  0:26"));
-}
-
-BOOST_AUTO_TEST_CASE(work_that_threads_share_takes_no_longer_than_is_said) {
-  // Pieces of these seconds, each taken by the first thread that is free, in any order.
-  std::vector<double> pieces = {1, 2, 3, 3, 5, 8};
-  for (const int threads : {1, 2, 3, 8}) {
-    double worst = 0;
-    do {
-      std::vector<double> busy_until(static_cast<std::size_t>(threads));
-      for (const double piece : pieces) *std::ranges::min_element(busy_until) += piece;
-      worst = std::max(worst, std::ranges::max(busy_until));
-    } while (std::ranges::next_permutation(pieces).found);
-    BOOST_TEST(worst <= shared_seconds_at_most(22, 8, threads));
-  }
-  BOOST_TEST(shared_seconds_at_most(22, 8, 1) == 22);
-  BOOST_TEST(shared_seconds_at_most(0, 0, 2) == 0);
+  shown.progress.finish("b");
+  BOOST_TEST(shown.last() == line("bench 2/8  b  0:10, about 1:00 left"));
+  shown.now += 4;
+  shown.progress.now_at("c");
+  BOOST_TEST(shown.last() == line("bench 3/8  c  0:14, about 0:56 left"));
+  shown.now += 16;
+  shown.progress.finish("c");
+  BOOST_TEST(shown.last() == line("bench 3/8  c  0:30, about 1:15 left"));
+  shown.now += 100;
+  shown.progress.now_at("d");
+  BOOST_TEST(shown.last() == line("bench 4/8  d  2:10"));
 }
 
 BOOST_AUTO_TEST_CASE(another_word_is_refused) {

@@ -59,7 +59,9 @@ BOOST_AUTO_TEST_CASE(an_answer_has_its_error_bar_in_words_and_beside_its_file) {
   const Method& method = *find_method(name);
   BOOST_TEST(origin.at("is_reached") == true);
   BOOST_TEST(origin.at("error_estimate").get<double>() <= 1e-6);
-  BOOST_TEST(origin.at("error_estimate_kind") == "compared");
+  // Which check is the cheaper one is decided by measured times.
+  const std::string kind = origin.at("error_estimate_kind");
+  BOOST_TEST((kind == "compared" || kind == "refined"), kind);
   BOOST_TEST(origin.at("accuracy_of") == "positions");
   BOOST_TEST(origin.at("advised_by") == "forecast");
   BOOST_TEST(origin.at("horizon").is_null());
@@ -105,7 +107,7 @@ BOOST_AUTO_TEST_CASE(the_study_judges_what_was_claimed) {
 }
 
 BOOST_AUTO_TEST_CASE(figures_are_those_of_the_cases_they_are_of) {
-  using advice_study::CaseResult;
+  using judged_advice::CaseResult;
   std::vector<CaseResult> cases;
   for (int i = 1; i <= 10; ++i) {
     cases.push_back({.accuracy = 1e-3,
@@ -121,7 +123,7 @@ BOOST_AUTO_TEST_CASE(figures_are_those_of_the_cases_they_are_of) {
   cases[0].error_estimate = 0.5e-4;  // a bar that does not hold
   cases[9].error = 2e-3;             // a claim that does not
   cases.push_back({.left_out = "no reference", .is_claimed = true, .error = 1});
-  const auto figures = advice_study::worth_of(cases);
+  const auto figures = judged_advice::worth_of(cases);
   const auto value = [&](const std::string& name) {
     for (const auto& figure : figures) {
       if (figure.name == name) return figure.value;

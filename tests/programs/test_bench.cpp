@@ -167,10 +167,12 @@ class Limited final : public Peer {
 BOOST_FIXTURE_TEST_CASE(steps_are_closer_near_a_limit_whosever_they_are, Given) {
   Limited peer;
   std::vector<double> reported;
-  const Sweep all = measure_ladder(
-      peer, ForceKind::ours, problem, {.repeats = 1},
-      [](const std::string&, const auto& take) { return take(); },
-      [&](const Measured& point) { reported.push_back(point.value); });
+  const PeerLadder all = measure_ladder(peer, ForceKind::ours, problem, {.repeats = 1},
+                                        [&](const std::string&, const auto& take) {
+                                          const Measured point = take();
+                                          reported.push_back(point.value);
+                                          return point;
+                                        });
   const auto values = peer.values(problem);
   BOOST_TEST(reported.size() == all.points.size());
   BOOST_TEST(all.points.size() > values.size());
@@ -192,11 +194,11 @@ BOOST_AUTO_TEST_CASE(ratios_are_at_equal_or_better_error) {
     return p;
   };
   constexpr auto good = Outcome::reached_end, cut = Outcome::over_budget;
-  std::vector<Sweep> sweeps(2);
-  sweeps[0].points = {point(1e-3, 1, good), point(1e-5, 6, good), point(0, 9, cut)};
-  sweeps[1].is_ours = sweeps[1].is_smallest = true;
-  sweeps[1].points = {point(5e-5, 1, good), point(1e-5, 2, good), point(1e-7, 3, good)};
-  const auto all = ratios(sweeps, true, {1e-2, 1e-4, 1e-6, 1e-8});
+  std::vector<PeerLadder> ladders(2);
+  ladders[0].points = {point(1e-3, 1, good), point(1e-5, 6, good), point(0, 9, cut)};
+  ladders[1].is_ours = ladders[1].is_smallest = true;
+  ladders[1].points = {point(5e-5, 1, good), point(1e-5, 2, good), point(1e-7, 3, good)};
+  const auto all = ratios(ladders, true, {1e-2, 1e-4, 1e-6, 1e-8});
   BOOST_TEST(all.size() == 4u);
   BOOST_TEST(all[0].ratio == 1.0 / 1.0);  // of 1e-3, for which the fastest of ours does
   BOOST_TEST(all[1].ratio == 6.0 / 2.0);  // of 1e-5, which is what theirs has

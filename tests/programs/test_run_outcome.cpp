@@ -1,6 +1,5 @@
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/kit/command_line.hpp"
 #include "experiments/stability_map/outcome_map.hpp"
 #include "experiments/stability_map/run_outcome.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
@@ -156,12 +155,11 @@ BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
     cells.push_back({&method_named("verlet"), &row, h_omega, 0});
   }
   const MapSettings settings{.until = 20, .tolerated = 0.5, .seconds = 10};
-  CommandLine line("", "map");
-  add_resume_option(line);
-  std::vector<std::optional<RunOutcome>> all;
+  StudyCall call{.program = "map"};
+  stability_map::Outcomes all;
   {
-    Study study(line, folder.path(), {}, {});
-    all = run_outcomes(study, cells, settings, [](std::size_t) {});
+    Study study(call, folder.path(), {}, {});
+    run_outcomes(study, cells, settings, all);
   }
   BOOST_TEST(all[0]->outcome == "bounded");
   BOOST_TEST(all[1]->outcome == "bounded");
@@ -177,11 +175,11 @@ BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
   BOOST_TEST(predicted_growth_rate(cells[2]) > 1);
 
   // What the journal holds is believed, and what is missing is run.
-  line.parse("--resume");
-  Study study(line, folder.path(), {}, {});
+  call.resumes = true;
+  Study study(call, folder.path(), {}, {});
   cells.push_back({&method_named("verlet"), &row, 1.5, 0});
-  const auto resumed = run_outcomes(
-      study, cells, MapSettings{.until = 30, .tolerated = 0.5, .seconds = 10}, [](std::size_t) {});
+  stability_map::Outcomes resumed;
+  run_outcomes(study, cells, MapSettings{.until = 30, .tolerated = 0.5, .seconds = 10}, resumed);
   for (std::size_t i = 0; i < 3; ++i) {
     BOOST_TEST(resumed[i]->outcome == all[i]->outcome);
     BOOST_TEST(resumed[i]->growth_rate == all[i]->growth_rate);

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/scaling/phase_table.hpp"
-#include "qddot/measure/trend/power_law.hpp"
+#include "qddot/algebra/straight_line.hpp"
 #include "tests/programs/process.hpp"
 
 BOOST_AUTO_TEST_SUITE(scaling)

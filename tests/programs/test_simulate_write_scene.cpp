@@ -1,7 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/scene/scene_file.hpp"
-#include "qddot/scene/scene_writer.hpp"
 #include "tests/programs/process.hpp"
 
 BOOST_AUTO_TEST_SUITE(simulate_write_scene)

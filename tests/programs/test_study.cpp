@@ -7,7 +7,6 @@
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/energy_drift/drift_record.hpp"
-#include "experiments/kit/command_line.hpp"
 #include "experiments/kit/point_record.hpp"
 #include "experiments/kit/study.hpp"
 #include "qddot/integrators/registry.hpp"
@@ -23,14 +22,12 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// A study `map` in the folder, with or without --resume, of a table t.csv.
+// A study `map` in the folder of a table t.csv; `options`: "", --size N, --resume or both.
 struct Case {
-  Case(const Folder& folder, const std::string& options, const nlohmann::json& about = {})
-      : line("", "map") {
-    add_resume_option(line);
-    line.add_option("--size", size, "");
-    line.parse(options);
-    study.emplace(line, folder.path(), std::vector<std::string>{"t.csv"}, about);
+  Case(const Folder& folder, const std::string& options, const nlohmann::json& about = {}) {
+    StudyCall call{.program = "map", .resumes = options.ends_with("--resume")};
+    if (options.starts_with("--size ")) call.options["--size"] = {options.substr(7, 1)};
+    study.emplace(call, folder.path(), std::vector<std::string>{"t.csv"}, about);
   }
   // The piece, and whether it was made now.
   std::pair<nlohmann::json, bool> piece(const std::string& name, const nlohmann::json& value) {
@@ -42,8 +39,6 @@ struct Case {
     return {found, is_made};
   }
 
-  CommandLine line;
-  double size = 0;
   std::optional<Study> study;
 };
 

@@ -39,6 +39,30 @@ Table crossovers(const std::vector<SceneResult>& results) {
 
 }  // namespace
 
+BOOST_AUTO_TEST_CASE(the_fastest_of_each_scene_has_the_next_method_and_its_margin) {
+  const Folder folder;
+  sweep::write_fastest(folder / "fastest.csv",
+                       {scene(1, {point("verlet", 3), point("verlet", 2), point("ida", 5)}),
+                        scene(2, {point("ida", 1, 5e-2)})},
+                       {1e-1, 1e-2}, nlohmann::json::object());
+  const Table table = read_csv(folder / "fastest.csv");
+  BOOST_TEST_REQUIRE(table.rows.size() == 4u);
+  for (const std::size_t row : {0u, 1u}) {
+    BOOST_TEST(table.text(row, "method") == "verlet");
+    BOOST_TEST(table.value(row, "time_s") == 2);
+    BOOST_TEST(table.text(row, "runner_up") == "ida");
+    BOOST_TEST(table.value(row, "margin") == 2.5);
+  }
+  BOOST_TEST(table.text(2, "method") == "ida");
+  BOOST_TEST(table.text(2, "margin") == "");
+  BOOST_TEST(table.text(3, "method") == "");
+}
+
+BOOST_AUTO_TEST_CASE(the_columns_of_crossovers_are_these) {
+  BOOST_TEST(crossovers({}).header ==
+             "along,accuracy,low,high,crossing,scene_low,scene_high,method_low,method_high,margin");
+}
+
 BOOST_AUTO_TEST_CASE(two_methods_cross_where_they_take_equally_long) {
   // verlet takes k / 1 s, ida 10 s: equal at k = 10, a hundred and ten times apart at the ends.
   // Given out of order, and with a method that is never the fastest.

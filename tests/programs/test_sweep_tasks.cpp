@@ -216,46 +216,6 @@ BOOST_AUTO_TEST_CASE(a_time_limit_ends_it_in_order_and_the_next_call_goes_on) {
   check_as_one_process(sweep);
 }
 
-BOOST_AUTO_TEST_CASE(the_table_over_scenes_names_the_fastest_its_margin_and_the_crossovers) {
-  const Sweep sweep(R"(scenes = [{ generator = "oscillator", stiffness = [1, 100, 10000] }]
-until = 1
-methods = ["explicit_euler", "verlet"]
-accuracies = [0.1, 1e-3]
-[options]
-point-limit = 1
-repeats = 1
-)");
-  BOOST_TEST(sweep.go_and_merge().status == 0);
-  const Table fastest = read_csv(sweep.out + "/fastest.csv");
-  BOOST_TEST_REQUIRE(fastest.rows.size() == 6u);
-  for (std::size_t row = 0; row < 6; ++row) {
-    const std::string scene = fastest.text(row, "scene");
-    // The same from the scene's own points.
-    const Table points = read_csv(fmt::format("{}/{}/points.csv", sweep.out, scene));
-    std::map<std::string, double> times;
-    for (std::size_t i = 0; i < points.rows.size(); ++i) {
-      if (points.text(i, "outcome") != "reached_end" ||
-          points.value(i, "error_position_at_most") > fastest.value(row, "accuracy"))
-        continue;
-      const auto [own, is_new] =
-          times.try_emplace(points.text(i, "method"), points.value(i, "time_s"));
-      own->second = std::min(own->second, points.value(i, "time_s"));
-    }
-    const auto best =
-        std::ranges::min_element(times, {}, [](const auto& one) { return one.second; });
-    BOOST_TEST_REQUIRE((best != times.end()));
-    BOOST_TEST(fastest.text(row, "method") == best->first);
-    BOOST_TEST(fastest.value(row, "time_s") == best->second);
-    const std::string other = best->first == "verlet" ? "explicit_euler" : "verlet";
-    if (!times.contains(other)) continue;
-    BOOST_TEST(fastest.text(row, "runner_up") == other);
-    BOOST_TEST(fastest.value(row, "margin") == times.at(other) / best->second);
-  }
-  const Table crossovers = read_csv(sweep.out + "/crossovers.csv");
-  BOOST_TEST(crossovers.header ==
-             "along,accuracy,low,high,crossing,scene_low,scene_high,method_low,method_high,margin");
-}
-
 BOOST_AUTO_TEST_CASE(other_studies_are_divided_in_the_same_way) {
   const std::map<std::string, std::string> studies = {
       {"stability_map",

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/bench/peer_ladder.hpp"
+#include "experiments/bench/ratios.hpp"
+#include "experiments/bench/same_steps.hpp"
+#include "experiments/kit/scene_choice.hpp"
+#include "experiments/kit/study.hpp"
+
+namespace qddot::bench {
+
+// The accuracies at which peers and our methods are compared.
+inline const std::vector<double> accuracies = {1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+
+// A scene with its end time, and our methods beside the peers on it.
+struct Comparison {
+  // `word`: a generator's name or a scene file, with @T behind it for another end time T [s].
+  // Throws InvalidInput if there is no such scene, or no end time.
+  explicit Comparison(const std::string& word);
+
+  // Measures the ladders of our methods on both systems and of the peers, and then each peer beside
+  // the method that takes the same steps. Each point is a piece of the study; results are added as
+  // they come. Keeps the reference in
+  // `folder` with `origin`. Throws Interrupted, InvalidInput and NoReference.
+  void measure(const std::vector<std::string>& methods, const std::vector<Peer*>& peers,
+               const Pace& pace, Study& study, const std::string& folder,
+               const nlohmann::json& origin);
+
+  SceneChoice choice;
+  Scene drawn;
+  double until;  // [s]
+  std::vector<PeerLadder> ladders{};
+  std::vector<SameSteps> same_steps{};
+  bool is_complete = false;
+  // Unknowns of the system that peers get, and of the smallest one.
+  Index unknowns = 0, fewest_unknowns = 0;
+};
+
+}  // namespace qddot::bench
