@@ -6,17 +6,17 @@ import math
 import sys
 from dataclasses import dataclass
 
-from page_data import DATA, NOTHING, ROOT, record, rows, seconds, small, times
+from page_data import DATA, NOTHING, ROOT, BadPage, record, rows, seconds, small, times
 
 sys.path.append(str(ROOT / "experiments/plot"))
-import measurements  # noqa: E402 (the pictures' own reader of work_precision's tables)
+from record import Run, read_record  # noqa: E402 (the pictures' own reader of work_precision's record)
 
 
 @dataclass(frozen=True)
 class Fastest:
     """The fastest run to an accuracy, or none (then all is a dash)."""
 
-    run: measurements.Run | None
+    run: Run | None
 
     @property
     def method(self):
@@ -44,25 +44,35 @@ class Fastest:
 
 
 @functools.cache
+def view(study):
+    """What a chart says of its runs by the error that judges them."""
+    record(study)
+    return read_record(str(DATA / study)).judged
+
+
 def runs(study):
     """All runs of a chart."""
-    record(study)
-    return tuple(measurements.read_runs(str(DATA / study / "points.csv")))
+    return view(study).runs
+
+
+def ranked(study, accuracy):
+    """The fastest run of each method that reaches an accuracy on a chart, the fastest first."""
+    for known, found in view(study).ranked.items():
+        if math.isclose(known, accuracy):
+            return found
+    raise BadPage(f"the chart of {study} has no fastest method to {accuracy:g}")
 
 
 def fastest(study, accuracy, of=None, but=()):
     """The fastest run whose error is at most the accuracy. of: a family ("sundials",
     "hand-written"), a method's name, or a list of names; but: names to leave out."""
     names = [of] if isinstance(of, str) else of
-    found = [
+    wanted = (
         run
-        for run in runs(study)
-        if (names is None or run.family in names or run.method in names)
-        and run.method not in but
-        and not run.failure
-        and run.bound <= accuracy
-    ]
-    return Fastest(min(found, key=lambda run: run.time) if found else None)
+        for run in ranked(study, accuracy)
+        if (names is None or run.family in names or run.method in names) and run.method not in but
+    )
+    return Fastest(next(wanted, None))
 
 
 def ratio(slow, fast):

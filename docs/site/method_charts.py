@@ -32,21 +32,20 @@ def runs_of(chart):
 
 @functools.cache
 def fastest_of(chart):
-    """For each accuracy the time of the fastest run of each method that reaches it."""
-    times = {accuracy: {} for accuracy in ACCURACIES}
-    for method, runs in runs_of(chart).items():
-        for accuracy in ACCURACIES:
-            good = [run.time for run in runs if not run.failure and run.bound <= accuracy]
-            if good:
-                times[accuracy][method] = min(good)
-    return times
+    """For each accuracy the time of each method that reaches it, the fastest first."""
+    if not is_measured(chart):
+        return {accuracy: {} for accuracy in ACCURACIES}
+    return {
+        accuracy: {run.method: run.time for run in chart_data.ranked(chart, accuracy)}
+        for accuracy in ACCURACIES
+    }
 
 
 def time_to(method, chart, accuracy):
     """Its time in s and how many times that of the fastest method; None where it is not reached."""
     times = fastest_of(chart)[accuracy]
     own = times.get(method)
-    return None if own is None else (own, own / min(times.values()))
+    return None if own is None else (own, own / next(iter(times.values())))
 
 
 def failures(method, chart):
@@ -112,11 +111,9 @@ def example(method):
     None where it has none."""
     for chart in ("cloth", "framed_cloth"):
         good = [run for run in runs_of(chart).get(method, ()) if not run.failure]
-        to_it = [run for run in good if run.bound <= 1e-3]
-        if to_it:
-            return min(to_it, key=lambda run: run.time)
         if good:
-            return min(good, key=lambda run: run.bound)
+            to_it = (run for run in chart_data.ranked(chart, 1e-3) if run.method == method)
+            return next(to_it, None) or min(good, key=lambda run: run.at_most)
     return None
 
 

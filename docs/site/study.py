@@ -179,6 +179,20 @@ def rounded(cell):
         return cell
 
 
+def shortened(chart):
+    """The record of a chart with the errors that judge it alone, and its numbers in six digits."""
+
+    def six(value):
+        if isinstance(value, dict):
+            return {key: six(part) for key, part in value.items()}
+        if isinstance(value, list):
+            return [six(part) for part in value]
+        return float(f"{value:.6g}") if isinstance(value, float) else value
+
+    judges = [one for one in chart["quantities"] if one["name"] == chart["judged_by"]]
+    return six(chart | {"quantities": judges})
+
+
 def keep(file, target, columns=None):
     """Copies a result, whole or not at all; a table with these columns, or all, in six digits."""
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -193,7 +207,11 @@ def keep(file, target, columns=None):
     elif file.suffix == ".json":
         facts = json.loads(file.read_text(encoding="utf-8"))
         kept = {key: value for key, value in facts.items() if key not in UNKEPT}
-        write_whole(target, json.dumps(kept, indent=1) + "\n")
+        if file.name == "chart.json":
+            text = json.dumps(shortened(kept), separators=(",", ":"))
+        else:
+            text = json.dumps(kept, indent=1)
+        write_whole(target, text + "\n")
     else:
         part = target.with_name(target.name + ".part")
         shutil.copyfile(file, part)

@@ -5,8 +5,8 @@ from itertools import groupby
 from matplotlib import ticker
 from matplotlib.text import Text
 
-import measurements
 from labels import LEADER_FROM, Ink, place_labels
+from record import sweeps
 from sheet import DPI
 from style import FAINT, FRONT, power_of_ten, seconds, widened
 
@@ -21,7 +21,7 @@ class Chart:
     def __init__(self, axes, view, emphasis):
         self.axes = axes
         self.view = view
-        self.sweeps = measurements.sweeps(view.runs)
+        self.sweeps = sweeps(view.runs)
         self.good = [run for run in view.runs if not run.failure]
         self.looks = emphasis.looks
         self.strokes = {
@@ -150,13 +150,11 @@ class Chart:
     def front_corners(self):
         """The staircase of the shortest time that reaches each error or a smaller one."""
         corners = []
-        counting = [run for run in self.good if run.counts]
-        # An error is known to be reached if it is at least the run's upper bound.
-        bounds = [(max(run.bound, self.smallest), run.time) for run in counting]
-        for error, time in sorted(bounds):
-            if not corners or time < corners[-1][1]:
-                corners += [(error, corners[-1][1])] if corners else []
-                corners.append((error, time))
+        for run in reversed(self.view.staircase):
+            # An error is known to be reached if it is at least the run's upper bound.
+            error = max(run.at_most, self.smallest)
+            corners += [(error, corners[-1][1])] if corners else []
+            corners.append((error, run.time))
         return corners + [(self.axes.get_xlim()[1], corners[-1][1])] if corners else []
 
     def draw_front(self):
@@ -193,10 +191,10 @@ class Chart:
     def draw_doubts(self, sweep, style):
         """Draws the range of a run's error, from its lower to its upper bound, if these are
         apart."""
-        for run in sweep:
+        for run in sweep if self.view.floor else []:
             if run.failure or not run.is_uncertain:
                 continue
-            left, right = max(run.known[0], self.axes.get_xlim()[0]), run.known[1]
+            left, right = max(run.at_least, self.axes.get_xlim()[0]), run.at_most
             self.axes.plot([left, right], [run.time] * 2, linewidth=0.9, zorder=2.2, **style)
 
     def pixels(self, position):

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from matplotlib.colors import to_hex, to_rgb
 
-import measurements
 from prominent import looks_by_prominence, strong_methods
+from record import sweeps
 from style import FAINT, assign_looks, family_look
 
 LABEL_SIZE = 9.5
@@ -69,7 +69,7 @@ class Everything:
     @staticmethod
     def is_crowded(view):
         """Whether a view has so many lines that some stand back."""
-        return len(measurements.sweeps(view.runs)) > CROWD
+        return len(sweeps(view.runs)) > CROWD
 
     def stroke(self, view, sweep):
         """How the line of a sweep is drawn among those of a view."""
@@ -101,7 +101,7 @@ class Prominent:
     def __init__(self, views):
         main = views[0]
         known = identities(main.runs)
-        strong = strong_methods(main.runs, main.front)
+        strong = strong_methods(main)
         self.shown = [method for method in known if method in strong]
         self.looks = looks_by_prominence(known, strong)
         drawn = {run.method for view in views for run in view.runs if not run.failure}

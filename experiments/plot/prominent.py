@@ -1,20 +1,23 @@
 """Chooses the methods of a work-precision study that stand out: a reader would choose among
 them."""
 
-from measurements import fastest_at_each_accuracy
 from style import assign_looks
 
 MOST = 12
 
 
-def best(runs):
-    """The method that is the fastest of these runs at most of the accuracies 1e-1, ... 1e-9; where
-    none reaches the first, the one of the smallest error; None where no run is a point."""
-    fastest = [point.method for point in fastest_at_each_accuracy(runs)]
+def best(view, runs):
+    """The method that is the fastest of these runs of a view at most of the accuracies 1e-1, ...
+    1e-9; where none reaches the first, the one of the smallest error; None where no run is a
+    point."""
+    methods = {run.method for run in runs}
+    ranked = ([run.method for run in runs_there] for runs_there in view.ranked.values())
+    reaching = ([name for name in names if name in methods] for names in ranked)
+    fastest = [names[0] for names in reaching if names]
     if fastest:
         return max(fastest, key=fastest.count)
     good = [run for run in runs if not run.failure]
-    return min(good, key=lambda run: run.bound).method if good else None
+    return min(good, key=lambda run: run.at_most).method if good else None
 
 
 def kinds(runs):
@@ -31,16 +34,14 @@ def kinds(runs):
     return [groups[key] for key in sorted(groups, key=lambda key: key[0])]
 
 
-def strong_methods(runs, front):
-    """The names of the methods that stand out, at most MOST: those of the front, the coarsest
-    accuracy first, then the best of each kind that has none among them.
-
-    runs: measurements.Run of one study; front: its measurements.FrontPoint. Where no more than
-    MOST methods have a point at all, these are all of them.
-    """
-    strong = list(dict.fromkeys(point.method for point in front))
+def strong_methods(view):
+    """The names of the methods that stand out in a record.View, at most MOST: those of its front,
+    the coarsest accuracy first, then the best of each kind that has none among them. Where no more
+    than MOST methods have a point at all, these are all of them."""
+    runs = view.runs
+    strong = list(dict.fromkeys(point.method for point in view.front))
     for kind in kinds(runs):
-        method = best(kind)
+        method = best(view, kind)
         if method and not any(run.method in strong for run in kind):
             strong.append(method)
     drawn = list(dict.fromkeys(run.method for run in runs if not run.failure))

@@ -4,9 +4,11 @@ import json
 import math
 from dataclasses import dataclass, field
 
-import measurements
+from measurements import BadInput
 from method_kinds import kind_of
 from style import seconds
+
+DECADES = tuple(10.0**-digit for digit in range(1, 10))
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ class Row:
     ratios: dict
     kinds: dict
     methods: int
-    accuracies: tuple = measurements.DECADES
+    accuracies: tuple = DECADES
     margins: dict = field(default_factory=dict)
     is_by_energy: bool = False
 
@@ -64,9 +66,14 @@ class Row:
         return found
 
 
+def accuracy_key(accuracy):
+    """An accuracy, to the digits that tell two accuracies apart."""
+    return float(f"{accuracy:.3g}")
+
+
 def by_accuracy(front):
-    """The points of a front by their accuracies, to the digits that tell two accuracies apart."""
-    return {float(f"{point.accuracy:.3g}"): point for point in front}
+    """The points of a front by their accuracies."""
+    return {accuracy_key(point.accuracy): point for point in front}
 
 
 def counted(number, noun):
@@ -90,13 +97,17 @@ def read_sidecar(path):
             "processor": about["cpu"],
         }
     except (OSError, LookupError, ValueError, TypeError, AttributeError) as error:
-        raise measurements.BadInput(f"{path} cannot be read: {error}.") from error
+        raise BadInput(f"{path} cannot be read: {error}.") from error
 
 
-def of_runs(runs, front):
-    """What a row says of methods: `runs` of one scene, and their front by accuracy."""
-    sundials = [run for run in runs if run.family == "sundials"]
-    best = by_accuracy(measurements.fastest_at_each_accuracy(sundials, front))
+def of_record(record, front):
+    """What a row says of methods: the record.Record of one scene, and a front by accuracy."""
+    runs = record.judged.runs
+    best = {
+        accuracy_key(row["accuracy"]): runs[row["sundials"]]
+        for row in record.rows
+        if row["sundials"] is not None
+    }
     return {
         "front": front,
         "ratios": {key: best[key].time / point.time for key, point in front.items() if key in best},

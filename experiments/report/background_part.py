@@ -4,7 +4,6 @@ reference, and what made it all."""
 import math
 import shlex
 
-from caveats import caveats
 from style import number, seconds
 from study_folder import is_number, look, number_or_none
 
@@ -59,21 +58,21 @@ def left_out_part(sidecar):
 def reference_part(study):
     """The page's `reference`: how it was made, to what it is certified, and until when the motion
     can be known."""
-    file, reference = study.reference_file, study.reference
+    file = study.reference
     if not file:
         return []
-    rounding = file.get("rounding_effect")
-    rate = reference.lyapunov
-    symmetric = reference.symmetric_until
+    chaos = file if study.record.is_beyond_horizon else {}
+    rate = chaos.get("lyapunov")
+    symmetric = look(file, "out_of_symmetry", "horizon") if file.get("only_symmetric") else None
     return labelled(
         ("made by", file.get("made_by")),
         ("positions certified to", in_words(file.get("certified_position"))),
         ("velocities certified to", in_words(file.get("certified_velocity"))),
         ("energy certified to", in_words(file.get("certified_energy"))),
-        ("one rounding of the start moves the end by", in_words(rounding)),
-        ("horizon", reference.horizon and in_words(reference.horizon, "s")),
-        ("errors grow ten times in", rate and seconds(math.log(10) / rate)),
-        ("symmetry lasts until", symmetric and in_words(symmetric, "s")),
+        ("one rounding of the start moves the end by", in_words(file.get("rounding_effect"))),
+        ("horizon", in_words(chaos.get("horizon"), "s")),
+        ("errors grow ten times in", seconds(math.log(10) / rate) if rate else None),
+        ("symmetry lasts until", in_words(symmetric, "s")),
         ("largest displacement", in_words(look(file, "scales", "displacement"), "m")),
         ("largest speed", in_words(look(file, "scales", "speed"), "m/s")),
         ("largest kinetic energy", in_words(look(file, "scales", "kinetic"), "J")),
@@ -119,27 +118,20 @@ def sentence(words):
     return line[:1].upper() + line[1:]
 
 
-def chaos_in_words(reference):
-    """The error below which rounding decides; None if it decides nothing, or if the horizon says
-    more."""
-    limit = reference.chaotic_below
-    if limit is None or reference.horizon or limit <= (reference.certified or 0.0):
-        return None
-    return (
-        "The motion is chaotic: position errors below"
-        f" {number(limit)} depend on how a method rounds."
-    )
-
-
 def study_notes(study):
     """What a reader must know of the study and its motion first, in sentences."""
-    known = caveats(study.reference, study.interruption, study.sidecar.get("times") == "work")
-    notes = [sentence(words) for words in known]
-    notes += filter(None, [chaos_in_words(study.reference)])
-    if not study.reference_file:
+    record = study.record
+    notes = [sentence(words) for words in record.caveats]
+    limit = record.views["position"].chaotic_below
+    if limit and not record.is_beyond_horizon:
+        notes.append(
+            f"The motion is chaotic: position errors below {number(limit)} depend on how a method"
+            " rounds."
+        )
+    if not study.reference:
         notes.append("There is no reference.json: what the errors are certified to is not known.")
     if not study.sidecar:
         notes.append("There is no points.json: how the runs were made is not known.")
-    if all(run.failure for run in study.judged_runs()):
+    if all(run.failure for run in study.runs):
         notes.append("No run gave a point.")
     return notes

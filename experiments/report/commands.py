@@ -76,7 +76,7 @@ class RunCommands:
 
     def __init__(self, study):
         self.scene = scene_argument(study.sidecar)
-        self.until = study.until
+        self.until = study.record.until
         self.options = study_options(study.sidecar)
         self.takes = {name: note.get("takes") for name, note in study.method_notes.items()}
 

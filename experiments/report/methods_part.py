@@ -1,14 +1,8 @@
 """The methods of a study as the page shows them: colours, marks, families and the line on each."""
 
-from measurements import fastest_at_each_accuracy
 from prominent import looks_by_prominence, strong_methods
 from style import STOCK, family_look
 from study_folder import look
-
-
-def family_title(name):
-    """A family's name for people."""
-    return family_look(name).title
 
 
 def dash(family):
@@ -30,12 +24,11 @@ def family_entry(name, family):
 
 def methods_part(study):
     """The page's `families` and `methods`, the latter in the order of the points."""
-    runs = study.judged_runs()
-    known = {run.method: (run.family, run.stock_of) for run in runs}
-    strong = strong_methods(runs, fastest_at_each_accuracy(runs))
+    known = {run.method: (run.family, run.stock_of) for run in study.runs}
+    strong = strong_methods(study.record.judged)
     looks = looks_by_prominence(known, strong)
     notes = study.method_notes
-    orders = {row["method"]: row.get("order") for row in study.rows}
+    orders = {row["method"]: row.get("order") for _, row in study.rows}
     families, methods = {}, []
     for method, (family, stock_of) in known.items():
         drawn = looks[method].family

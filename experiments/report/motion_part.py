@@ -5,7 +5,6 @@ import math
 import os
 from dataclasses import dataclass
 
-from answers import knob_in_words
 from budget import fit
 from commands import study_options
 from encoding import distances_blob, index_blob, positions_blob, quantised
@@ -41,7 +40,7 @@ def distance_unit(study, directory):
     nothing moves."""
     sources = (
         read_json(os.path.join(directory, "motions.json")).get("displacement"),
-        look(study.reference_file, "scales", "displacement"),
+        look(study.reference, "scales", "displacement"),
     )
     known = [value for value in map(number_or_none, sources) if value and value > 0]
     return known[0] if known else None
@@ -62,7 +61,7 @@ def is_of_another_study(study, origin):
     pairs = (
         (run_options(origin), run_options(study.sidecar)),
         (look(origin, "scene", "hash"), look(study.sidecar, "scene", "hash")),
-        (number_or_none(origin.get("until")), study.until),
+        (number_or_none(origin.get("until")), study.record.until),
     )
     return any(None not in pair and pair[0] != pair[1] for pair in pairs)
 
@@ -108,6 +107,7 @@ class Encoder:
         self.unit = distance_unit(study, study.directory)
         methods = list(dict.fromkeys(run.method for run in study.runs))
         self.methods = {name: index for index, name in enumerate(methods)}
+        self.knobs = [run.knob_words for run in study.runs]
         self.points = {}
         for index, run in enumerate(study.runs):
             self.points.setdefault((run.method, run.knob, run.value), index)
@@ -115,11 +115,12 @@ class Encoder:
     def entry(self, row, motion, frames):
         """What the page says of a run beside its blobs."""
         label = row.method or row.role
-        if math.isfinite(row.value):
-            label += f" at {knob_in_words(row.knob, row.value)}"
+        point = self.points.get((row.method, row.knob, row.value))
+        if point is not None:
+            label += f" at {self.knobs[point]}"
         return {
             "role": "reference" if row.role == "reference" else "run",
-            "point": self.points.get((row.method, row.knob, row.value)),
+            "point": point,
             "method": self.methods.get(row.method),
             "label": label,
             "why": row.why,

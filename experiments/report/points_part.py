@@ -3,12 +3,9 @@ stand over."""
 
 import math
 import os
-from dataclasses import replace
 
-import measurements
-import quantities
 from commands import RunCommands
-from style import number
+from measurements import parse
 
 NUMBERS = (
     "t_reached",
@@ -39,10 +36,10 @@ COUNTS = (
     "stability_limited_steps",
 )
 NAMES = {
-    quantities.POSITION.column: "positions at the end",
-    quantities.ENERGY.column: "energy on the way",
-    quantities.MOMENTUM.column: "momenta on the way",
-    quantities.MODES.column: "energy in the modes",
+    "position": "positions at the end",
+    "energy": "energy on the way",
+    "momentum": "momenta on the way",
+    "modes": "energy in the modes",
 }
 
 
@@ -55,12 +52,9 @@ def read_column(study, name):
     """A column's numbers, None where there is none, as in a column that is missing. Raises BadInput
     for a cell that is no number."""
     if name not in study.columns:
-        return [None] * len(study.runs)
+        return [None] * len(study.rows)
     path = os.path.join(study.directory, "points.csv")
-    return [
-        finite(measurements.parse(path, line, row, name, False))
-        for line, row in measurements.read_rows(path, (name,))
-    ]
+    return [finite(parse(path, line, row, name, False)) for line, row in study.rows]
 
 
 def whole(values):
@@ -95,7 +89,7 @@ def points_part(study):
         "value": [run.value for run in study.runs],
         "knob": [run.knob for run in study.runs],
         "outcome": [run.outcome for run in study.runs],
-        "cause": [cause(run, sentences) for run in study.judged_runs()],
+        "cause": [cause(run, sentences) for run in study.runs],
     }
     points |= {name: read_column(study, name) for name in NUMBERS}
     points |= {name: whole(read_column(study, name)) for name in ("timed_runs", *counts)}
@@ -103,33 +97,22 @@ def points_part(study):
     return {"points": points, "counts": counts}
 
 
-def position_view(study):
-    """The view of the position errors, which needs no front."""
-    reference = study.reference
-    subtitle = quantities.POSITION.subtitle + quantities.lengths(reference.displacements)
-    words = reference.certified and f"reference certified to {number(reference.certified)}"
-    quantity = replace(quantities.POSITION, subtitle=subtitle)
-    return quantities.View(quantity, study.runs, [], reference.certified, words)
-
-
-def quantity_entry(view):
+def quantity_entry(name, view):
     """One entry of the page's `quantities`."""
     counts = [run.counts for run in view.runs]
     return {
-        "column": view.quantity.column,
-        "name": NAMES[view.quantity.column],
+        "column": view.column,
+        "name": NAMES[name],
         "axis": view.quantity.axis,
-        "subtitle": view.quantity.subtitle,
+        "subtitle": view.subtitle,
         "floor": view.floor,
         "floor_words": view.floor_words or None,
         "counts": None if all(counts) else counts,
+        "failures": [run.failure or None for run in view.runs],
     }
 
 
 def quantities_part(study):
     """The kinds of error that a chart may show; answers are judged by the first."""
-    others = (quantities.ENERGY, quantities.MOMENTUM, quantities.MODES)
-    views = [quantities.view(study.directory, other, study.reference) for other in others]
-    entries = [quantity_entry(view) for view in (position_view(study), *filter(None, views))]
-    judge = quantities.ENERGY if study.judged_by == "energy" else quantities.POSITION
-    return sorted(entries, key=lambda entry: entry["column"] != judge.column)
+    views = sorted(study.record.views.items(), key=lambda item: item[0] != study.record.judged_by)
+    return [quantity_entry(name, view) for name, view in views]

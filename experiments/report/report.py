@@ -1,6 +1,6 @@
 """Makes one HTML file of what a study left in a folder, with its motions, that opens by itself.
 
-Call: report.py DIR. Reads DIR/points.csv and whatever else is there of front.csv, reference.json,
+Call: report.py DIR. Reads DIR/points.csv, DIR/chart.json and whatever else is there of reference.json,
 motions.csv with its motions, motions_energy.csv and pictures, and writes DIR/report.html.
 """
 
@@ -32,13 +32,13 @@ def measured_parts(study):
     command = page_command(study.sidecar)
     found = answers(study)
     content = {
-        "title": study.scene,
-        "until": study.until,
+        "title": study.record.scene,
+        "until": study.record.until,
         "command": [command] if command else [],
         "notes": study_notes(study) + notes,
         "answers": found,
         "answers_note": answers_note(found),
-        "judged_by": study.judged_by,
+        "judged_by": study.record.judged_by,
         **methods_part(study),
         **points_part(study),
         "quantities": quantities_part(study),
@@ -58,8 +58,8 @@ def page_of(directory):
     def page(motion, blobs, notes):
         """The page with this motion."""
         whole = content | {"notes": content["notes"] + notes, "motion": motion}
-        static = static_part(whole, study.judged_runs(), chart)
-        return html(study.scene, whole, blobs, static)
+        static = static_part(whole, study.runs, chart)
+        return html(study.record.scene, whole, blobs, static)
 
     room = MOST_BYTES - WORDS_ON_MOTIONS - len(page(None, {}, []).encode("utf-8", "replace"))
     return page(*motion_part(study, room))

@@ -2,7 +2,6 @@
 
 from html import escape
 
-from answers import knob_in_words
 from style import number, seconds
 
 COLUMNS = (
@@ -38,9 +37,8 @@ def cells(answer, runs):
     if answer["next"]:
         other = runs[answer["next"]["point"]].method
         following = f"{other}, {how_long(answer['next']['ratio'])}"
-    knob = knob_in_words(run.knob, run.value)
     figures = (number(run.error), seconds(run.time))
-    return (accuracy, run.method, knob, *figures, following, answer["warning"] or "")
+    return (accuracy, run.method, run.knob_words, *figures, following, answer["warning"] or "")
 
 
 def row(tag, texts):

@@ -3,7 +3,6 @@
 
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
-#include "python/extension/words.hpp"
 #include "qddot/analysis/equilibrium.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/natural_modes.hpp"

@@ -51,4 +51,8 @@ void add_analyses(py::module_& module);
 void add_measures(py::module_& module);
 void add_exchange(py::module_& module);
 
+// The sentence with the programs' options as Python spells them: step_size for --step-size, and
+// keep for --no-reduce.
+std::string in_python(const std::string& sentence);
+
 }  // namespace qddot::python

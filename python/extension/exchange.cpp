@@ -1,6 +1,6 @@
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
-#include "qddot/measure/exchange/exchange_words.hpp"
+#include "qddot/measure/exchange/energy_exchange.hpp"
 #include "qddot/measure/exchange/excitation.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 

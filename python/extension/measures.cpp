@@ -1,14 +1,13 @@
 #include <chrono>
 
+#include "experiments/record/chart_record.hpp"
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
-#include "python/extension/words.hpp"
 #include "qddot/measure/advice/advise.hpp"
 #include "qddot/measure/motion/simulation.hpp"
-#include "qddot/measure/reference/reference_words.hpp"
-#include "qddot/measure/speed/judgement.hpp"
+#include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/work_precision.hpp"
-#include "qddot/measure/trend/scene_trend.hpp"
+#include "qddot/measure/trend/drift_run.hpp"
 
 namespace qddot::python {
 namespace {
@@ -77,8 +76,17 @@ std::vector<const Method*> methods_named(const Names& names) {
   return chosen;
 }
 
-// The points of all methods, and the rows of the front with the points' numbers. `report`: None, or
-// a callable that is called with each point.
+// A point's record with the bounds of its position error.
+py::dict record_with_bounds(const Point& point, const Reference& reference) {
+  py::dict record = record_of(point);
+  const Known position = judged(point, reference, Quantity::position).bounds;
+  record["error_position_at_least"] = position.at_least;
+  record["error_position_at_most"] = position.at_most;
+  return record;
+}
+
+// The points of all methods, and what the chart says of them as JSON (see chart_record.hpp).
+// `report`: None, or a callable that is called with each point.
 py::dict work_precision_of(const HeldReference& held, const Names& names, double seconds,
                            int repeats, const py::dict& given, const py::object& report) {
   const Effort effort{
@@ -87,15 +95,15 @@ py::dict work_precision_of(const HeldReference& held, const Names& names, double
     if (report.is_none()) return stop_if_interrupted();
     try {
       const py::gil_scoped_acquire acquired;
-      report(record_of(point));
+      report(record_with_bounds(point, held.reference));
     } catch (...) {
       remember(std::current_exception());
       throw;
     }
     stop_if_interrupted();
   };
-  WorkPrecision chart;
-  std::vector<FrontRow> front;
+  WorkPrecision measured;
+  std::string chart;
   outside(1, [&](const std::stop_token&) {
     std::optional<Watch> watch;
     Effort watched = effort;
@@ -103,29 +111,14 @@ py::dict work_precision_of(const HeldReference& held, const Names& names, double
       watch.emplace(*held.model.start, *held.model.reduced, held.reference.end.t, held.reference);
       watched.watch = &*watch;
     }
-    chart = work_precision(*held.model.reduced, held.reference, methods_named(names), watched, see);
-    front = chart.front();
-    add_stability_margins(front, StabilityMargins(*held.model.reduced));
+    measured =
+        work_precision(*held.model.reduced, held.reference, methods_named(names), watched, see);
+    chart = record::chart_record(measured.chart(*held.model.reduced), "null");
   });
-  py::list points, rows;
-  for (const Point& point : chart.points) {
-    py::dict record = record_of(point);
-    const Known position = known(point.errors.position, held.reference.certified.position);
-    record["error_position_at_least"] = position.at_least;
-    record["error_position_at_most"] = position.at_most;
-    points.append(record);
-  }
-  const auto number = [&](const Point* point) -> py::object {
-    if (!point) return py::none();
-    return py::int_(point - chart.points.data());
-  };
-  for (const FrontRow& row : front) {
-    rows.append(py::dict(arg("accuracy") = row.accuracy, arg("fastest") = number(row.fastest),
-                         arg("hand_written") = number(row.fastest_hand_written),
-                         arg("sundials") = number(row.fastest_sundials),
-                         arg("stability_margin") = row.stability_margin));
-  }
-  return py::dict(arg("points") = points, arg("front") = rows);
+  py::list points;
+  for (const Point& point : measured.points)
+    points.append(record_with_bounds(point, held.reference));
+  return py::dict(arg("points") = points, arg("chart") = chart);
 }
 
 py::object candidate(const std::optional<Candidate>& c) {

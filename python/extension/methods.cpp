@@ -1,7 +1,7 @@
 #include <array>
 
 #include "python/extension/bindings.hpp"
-#include "qddot/integrators/find_outcome.hpp"
+#include "qddot/integrators/integrator.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 
 namespace qddot::python {

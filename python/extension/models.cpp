@@ -2,7 +2,6 @@
 
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
-#include "python/extension/words.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/model/differenced_stiffness.hpp"
 #include "qddot/scene/explain.hpp"

@@ -2,8 +2,7 @@
 // and NumPy arrays, and holds scenes, models and references.
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
-#include "python/extension/words.hpp"
-#include "qddot/measure/reference/no_reference.hpp"
+#include "qddot/measure/reference/reference.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::python {

@@ -2,7 +2,6 @@
 
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
-#include "python/extension/words.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/simulation.hpp"
@@ -105,7 +104,7 @@ py::dict answer(const Model& model, double until, double accuracy, const std::st
   py::dict record(arg("is_reached") = found.is_reached, arg("why") = in_python(found.why),
                   arg("error_estimate") = found.error_estimate,
                   arg("error_estimate_kind") = name(found.error_estimate_kind),
-                  arg("advised_by") = found.advised_by, arg("horizon") = found.horizon,
+                  arg("advised_by") = name(found.advised_by), arg("horizon") = found.horizon,
                   arg("lyapunov") = found.lyapunov, arg("runs") = found.runs,
                   arg("seconds") = found.seconds.run, arg("seconds_in_all") = found.seconds.total(),
                   arg("summary") = record_of(found.summary));

@@ -2,7 +2,6 @@
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/scene_arrays.hpp"
 #include "qddot/scene/scene_file.hpp"
-#include "qddot/scene/scene_writer.hpp"
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::python {

@@ -1,7 +1,7 @@
-#include "python/extension/words.hpp"
-
 #include <algorithm>
 #include <regex>
+
+#include "python/extension/bindings.hpp"
 
 namespace qddot::python {
 

@@ -18,16 +18,19 @@ _drawing = os.path.join(os.path.dirname(__file__), "drawing")
 def save(
     folder: str | os.PathLike[str],
     tables: dict[str, NDArray[Any]],
+    record: dict[str, Any],
     scene: str,
     reference: dict[str, Any],
 ) -> None:
-    """Writes each table as a CSV file of its name, and reference.json."""
+    """Writes each table as a CSV file of its name, the record as chart.json, and reference.json."""
     os.makedirs(folder, exist_ok=True)
     for name, rows in tables.items():
         with open(os.path.join(folder, f"{name}.csv"), "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(rows.dtype.names or ())
             writer.writerows([_cell(value) for value in row.tolist()] for row in rows)
+    with open(os.path.join(folder, "chart.json"), "w", encoding="utf-8") as file:
+        json.dump(record, file)
     with open(os.path.join(folder, "reference.json"), "w", encoding="utf-8") as file:
         json.dump(_reference(scene, reference), file, indent=1)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import sys
@@ -56,37 +57,37 @@ class WorkPrecision:
     """Times and errors of every method, from coarse to fine, against a reference.
 
     points: a structured array with the columns of points.csv, fit for pandas.DataFrame(points).
-    front: the fastest point at each accuracy, with the best of each family. A notebook shows the
-    chart, if matplotlib is installed.
+    front: the fastest point at each accuracy, with the best of each family. record: what all of this
+    means, as chart.json has it. A notebook shows the chart, if matplotlib is installed.
     """
 
     reference: Reference
     points: NDArray[Any] = field(repr=False)
     front: NDArray[Any] = field(repr=False)
     scene: str
-
-    def _judged(self) -> NDArray[np.float64]:
-        """Upper bounds of the errors that decide each point's accuracy."""
-        # Positions are unknown beyond the horizon.
-        column = "error_energy_max" if self.reference.beyond_horizon else "error_position_at_most"
-        error = np.array(self.points[column], dtype=float)
-        error[self.points["outcome"] != "reached_end"] = np.inf
-        return np.where(np.isnan(error), np.inf, error)
+    record: dict[str, Any] = field(repr=False)
 
     def best(self, accuracy: float) -> Point | None:
         """The fastest point that is known to reach the accuracy; None if there is none."""
-        good = np.flatnonzero(self._judged() <= accuracy)
-        if good.size == 0:
+        judge = self.record["judged_by"]
+        [view] = [view for view in self.record["quantities"] if view["name"] == judge]
+        columns = zip(view["counts"], view["at_most"], self.record["times"])
+        good = [
+            i
+            for i, (counts, at_most, time) in enumerate(columns)
+            if counts and at_most is not None and at_most <= accuracy and time
+        ]
+        if not good:
             return None
         row = self.points[good[np.argmin(self.points["time_s"][good])]]
         names = Point.__dataclass_fields__
         return Point(**{name: row[name].item() for name in names})
 
     def save(self, folder: str | os.PathLike[str]) -> None:
-        """Writes points.csv, front.csv and reference.json into the folder, as the program
+        """Writes points.csv, front.csv, chart.json and reference.json into the folder, as the program
         work_precision does. Pictures are drawn from these files."""
         tables = {"points": self.points, "front": self.front}
-        save(folder, tables, self.scene, self.reference._record)
+        save(folder, tables, self.record, self.scene, self.reference._record)
 
     def draw(self, path: str | os.PathLike[str]) -> None:
         """Draws the chart into a PNG or SVG file. Raises RuntimeError if matplotlib is missing."""
@@ -204,10 +205,8 @@ def work_precision(
 
     def report(record: dict[str, Any]) -> None:
         assert see is not None
-        at_most = record["error_position"] + certified
-        see(Point(**{name: record.get(name, at_most) for name in Point.__dataclass_fields__}))
+        see(Point(**{name: record[name] for name in Point.__dataclass_fields__}))
 
-    certified = exact.certified.position
     try:
         made = _qddot.work_precision(
             exact._held, list(methods), limit, repeats, {}, report if see else None
@@ -220,19 +219,20 @@ def work_precision(
         record["scene"] = scene
         record["knob"] = str(record["knob"])
     points = _table(COLUMNS, made["points"])
-    return WorkPrecision(exact, points, _front(made), scene)
+    chart = json.loads(made["chart"]) | {"scene": scene}
+    return WorkPrecision(exact, points, _front(made["points"], chart), scene, chart)
 
 
-def _front(made: dict[str, Any]) -> NDArray[Any]:
+def _front(points: list[dict[str, Any]], chart: dict[str, Any]) -> NDArray[Any]:
     names = (
         "accuracy method knob value error_position time_s stability_margin hand_written "
         "hand_written_time_s sundials sundials_time_s"
     ).split()
     rows = []
-    for row in made["front"]:
+    for row in chart["rows"]:
         best, own, sundials = (
-            made["points"][row[which]] if row[which] is not None else None
-            for which in ("fastest", "hand_written", "sundials")
+            points[row[which]] if row[which] is not None else None
+            for which in ("point", "hand_written", "sundials")
         )
         nothing = {
             "method": "",
@@ -246,7 +246,7 @@ def _front(made: dict[str, Any]) -> NDArray[Any]:
             {
                 "accuracy": row["accuracy"],
                 **{name: best[name] for name in nothing},
-                "stability_margin": row["stability_margin"],
+                "stability_margin": math.nan if row["margin"] is None else row["margin"],
                 "hand_written": own["method"],
                 "hand_written_time_s": own["time_s"],
                 "sundials": sundials["method"],

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Whether the parts of the pictures read tables, choose the front, place labels and word numbers
-as they say."""
+"""Whether the parts of the pictures read tables and records, choose what stands out, place labels
+and word numbers as they say."""
 
+import json
 import math
 import tempfile
 import unittest
@@ -12,122 +13,125 @@ import causes
 import emphasis
 import failures
 import labels
-import measurements
 import names
 import prominent
-import quantities
+import record
 import style
-from measurements import BadInput, Run
+from measurements import BadInput
+from record import FrontPoint, Run
 
-HEADER = "scene,method,family,stock_of,knob,value,outcome,error_position,time_s\n"
+HEADER = "scene,method,family,stock_of,knob,value,outcome,time_s\n"
+A_ROW = "s,ida_klu,sundials,ida,rtol,1e-4,reached_end,0.5\n"
 
 
 def a_run(method="verlet", value=1e-3, error=1e-3, time=1.0, **others):
-    """A run that reached the end."""
+    """A run that reached the end, or one that ended in another way."""
     facts = {"scene": "s", "family": "hand-written", "stock_of": "", "knob": "step_size"}
-    facts |= {"method": method, "value": value, "outcome": "reached_end", "error": error}
-    return Run(**(facts | {"time": time} | others))
+    facts |= {"method": method, "value": value, "time": time, "solves": 0, "knob_words": "h = 1 s"}
+    facts |= {"error": error, "at_least": error, "at_most": error, "counts": True}
+    outcome = others.setdefault("outcome", "reached_end")
+    failure = "" if outcome == "reached_end" else outcome.replace("_", " ")
+    facts |= {"is_uncertain": False, "failure": failure.replace("newton", "Newton")}
+    return Run(**(facts | others))
 
 
-class Tables(unittest.TestCase):
-    """Reading of points.csv and front.csv."""
+def a_view(runs):
+    """The view of these runs, with the front that they make."""
+    good = sorted((run for run in runs if not run.failure), key=lambda run: run.time)
+    accuracies = [10.0**-digit for digit in range(1, 10)]
+    ranked = {a: [run for run in good if run.at_most <= a] for a in accuracies}
+    front = [
+        FrontPoint(accuracy, fastest[0].method, fastest[0].time)
+        for accuracy, fastest in ranked.items()
+        if fastest
+    ]
+    return record.View("", record.QUANTITIES["position"], "", runs, front, ranked, [])
+
+
+class Records(unittest.TestCase):
+    """Reading of points.csv and chart.json."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        self.path = str(Path(folder.name) / "points.csv")
+        self.folder = folder.name
+        self.position = {"name": "position", "column": "error_position", "floor": 1e-9}
+        self.position |= {"floor_words": "certified", "rounding_decides_below": None}
+        self.position |= {"errors": [2e-3], "at_least": [1e-3], "at_most": [3e-3], "counts": [True]}
+        self.position |= {"is_uncertain": [True], "failures": [""], "staircase": [0]}
+        row = {"accuracy": 1e-2, "point": 0, "ranked": [0]}
+        self.position["front"] = [row, row | {"accuracy": 1e-3, "point": None, "ranked": []}]
+        self.chart = {"scene": "s", "until": 2, "judged_by": "position", "caveats": ["careful"]}
+        self.chart |= {"displacements": [0.5, 2], "knobs": ["rtol = 1e-4"], "rows": [row]}
+        self.chart["quantities"] = [self.position]
 
-    def runs(self, text, **options):
-        """The runs of a table with this text."""
-        Path(self.path).write_text(text, encoding="utf-8")
-        return measurements.read_runs(self.path, **options)
+    def read(self, table=HEADER + A_ROW):
+        """The record of a folder with this table."""
+        Path(self.folder, "points.csv").write_text(table, encoding="utf-8")
+        Path(self.folder, "chart.json").write_text(json.dumps(self.chart), encoding="utf-8")
+        return record.read_record(self.folder)
 
-    def refusal(self, text):
-        """Why a table with this text is refused."""
+    def refusal(self, table=HEADER + A_ROW):
+        """Why a folder with this table is refused."""
         with self.assertRaises(BadInput) as refused:
-            self.runs(text)
-        return str(refused.exception).replace(self.path, "FILE")
+            self.read(table)
+        return str(refused.exception).replace(self.folder, "DIR")
 
-    def test_cells_become_a_run(self):
-        (run,) = self.runs(HEADER + "s,ida_klu,sundials,ida,rtol,1e-4,reached_end,2e-3,0.5\n")
+    def test_a_row_and_its_judgement_become_a_run(self):
+        view = self.read().judged
+        (run,) = view.runs
         self.assertEqual((run.method, run.family, run.stock_of), ("ida_klu", "sundials", "ida"))
-        self.assertEqual((run.value, run.error, run.time), (1e-4, 2e-3, 0.5))
-        self.assertEqual(run.failure, "")
-        self.assertFalse(run.is_uncertain)
+        self.assertEqual((run.value, run.time, run.knob_words), (1e-4, 0.5, "rtol = 1e-4"))
+        self.assertEqual((run.error, run.at_least, run.at_most), (2e-3, 1e-3, 3e-3))
+        self.assertTrue(run.is_uncertain and run.counts and not run.failure)
+        self.assertEqual(view.front, [FrontPoint(1e-2, "ida_klu", 0.5)])
+        self.assertEqual((view.ranked, view.staircase), ({1e-2: [run], 1e-3: []}, [run]))
+        self.assertTrue(view.subtitle.endswith(" in the node's own part, 0.5 to 2 m"))
 
-    def test_a_table_need_not_say_whose_stock_way_a_method_is(self):
-        header = HEADER.replace(",stock_of", "")
-        (run,) = self.runs(header + "s,verlet,hand-written,step_size,1e-4,reached_end,2e-3,0.5\n")
-        self.assertEqual(run.stock_of, "")
+    def test_an_error_that_is_not_known_is_no_number(self):
+        self.position["errors"] = [None]
+        self.assertTrue(math.isnan(self.read().judged.runs[0].error))
 
     def test_a_table_need_not_say_the_families_or_solves_of_methods(self):
-        (run,) = self.runs(
-            "scene,method,knob,value,outcome,error_position,time_s\n"
-            "s,verlet,step_size,1e-4,reached_end,2e-3,0.5\n"
-        )
-        self.assertEqual((run.family, run.solves), ("", 0))
-
-    def test_what_is_no_point_says_why(self):
-        row = "s,verlet,hand-written,,step_size,1e-3,{}\n"
-        ends = {
-            "newton_failed,,": "Newton failed",
-            "reached_end,,1": "error not measured",
-            "reached_end,1e9,1": "error above 3",
-            "reached_end,1e-3,": "not timed",
-        }
-        runs = self.runs(HEADER + "".join(row.format(end) for end in ends))
-        self.assertEqual([run.failure for run in runs], list(ends.values()))
+        (run,) = self.read(
+            "scene,method,knob,value,outcome,time_s\ns,verlet,step_size,1e-4,reached_end,0.5\n"
+        ).judged.runs
+        self.assertEqual((run.family, run.stock_of, run.solves), ("", "", 0))
 
     def test_a_refusal_names_file_line_and_cell(self):
-        row = "s,verlet,hand-written,,step_size,{},reached_end,1e-3,1\n"
+        row = "s,verlet,hand-written,,step_size,{},reached_end,1\n"
         self.assertEqual(
             self.refusal(HEADER + row.format("1e-3") + row.format("tiny")),
-            "FILE, line 3: value is 'tiny', not a number.",
+            "DIR/points.csv, line 3: value is 'tiny', not a number.",
         )
         self.assertEqual(
             self.refusal(HEADER + row.format("-1")),
-            "FILE, line 2: value must be a positive number.",
+            "DIR/points.csv, line 2: value must be a positive number.",
         )
-        self.assertEqual(self.refusal(HEADER.replace(",time_s", "")), "FILE has no column time_s.")
         self.assertEqual(
-            self.refusal(HEADER + "s,,hand-written,,step_size,1,reached_end,1,1\n"),
-            "FILE, line 2: method, knob and outcome must not be empty.",
+            self.refusal(HEADER.replace(",time_s", "")), "DIR/points.csv has no column time_s."
+        )
+        self.assertEqual(
+            self.refusal(HEADER + "s,,hand-written,,step_size,1,reached_end,1\n"),
+            "DIR/points.csv, line 2: method, knob and outcome must not be empty.",
         )
 
-    def test_a_front_is_of_methods_that_ran(self):
-        Path(self.path).write_text("accuracy,method,error_position,time_s\n1e-3,rk4,1e-4,1\n")
-        with self.assertRaisesRegex(BadInput, "line 2: there are no runs of rk4"):
-            measurements.read_front(self.path, [a_run("verlet")])
-        (point,) = measurements.read_front(self.path, [a_run("rk4")])
-        self.assertEqual((point.accuracy, point.method), (1e-3, "rk4"))
+    def test_a_record_of_another_table_is_refused(self):
+        self.assertRegex(self.refusal(HEADER + A_ROW + A_ROW), "^DIR/chart.json cannot be read: ")
+        del self.chart["knobs"]
+        self.assertEqual(self.refusal(), "DIR/chart.json cannot be read: 'knobs'.")
+
+    def test_without_a_record_it_is_said_what_makes_one(self):
+        Path(self.folder, "points.csv").write_text(HEADER + A_ROW, encoding="utf-8")
+        with self.assertRaisesRegex(BadInput, "missing: work_precision --judge .* makes it"):
+            record.read_record(self.folder)
 
 
 class Front(unittest.TestCase):
-    """The fastest method at each accuracy."""
-
-    def front(self, *runs):
-        """The front as {exponent of the accuracy: method}."""
-        points = measurements.fastest_at_each_accuracy(runs)
-        return {round(math.log10(point.accuracy)): point.method for point in points}
-
-    def test_the_fastest_of_those_accurate_enough(self):
-        coarse, fine = a_run("coarse", error=5e-3, time=1), a_run("fine", error=5e-5, time=9)
-        self.assertEqual(
-            self.front(coarse, fine), {-1: "coarse", -2: "coarse", -3: "fine", -4: "fine"}
-        )
-
-    def test_what_is_not_known_counts_against_a_run(self):
-        uncertain = a_run("uncertain", error=5e-3, known=(4e-3, 2e-2))
-        self.assertTrue(uncertain.is_uncertain)
-        self.assertEqual(self.front(uncertain), {-1: "uncertain"})
-
-    def test_failures_and_other_motions_are_not_on_it(self):
-        self.assertEqual(self.front(a_run(outcome="diverged"), a_run(counts=False)), {})
+    """The band of the fastest methods."""
 
     def test_neighbouring_accuracies_of_one_method_are_one_stretch(self):
-        points = measurements.fastest_at_each_accuracy(
-            [a_run("a", error=5e-4), a_run("b", error=5e-6, time=2)]
-        )
+        points = a_view([a_run("a", error=5e-4), a_run("b", error=5e-6, time=2)]).front
         half = math.sqrt(10)
         (first, high, top), (second, bottom, low) = (
             (method, low, high) for method, low, high in band.stretches(points)
@@ -145,7 +149,7 @@ class Prominent(unittest.TestCase):
 
     def strong(self, runs):
         """Their names, with the front that these runs make."""
-        return prominent.strong_methods(runs, measurements.fastest_at_each_accuracy(runs))
+        return prominent.strong_methods(a_view(runs))
 
     def crowd(self, count=20):
         """Methods that are slower than all others, with a point each."""
@@ -194,15 +198,13 @@ class Emphasis(unittest.TestCase):
             a_run("fast", error=1e-6),
             *(a_run(f"m{i}", 1e-3, 1e-2, 9 + i) for i in range(count)),
         ]
-        return quantities.View(
-            quantities.POSITION, runs, measurements.fastest_at_each_accuracy(runs)
-        )
+        return a_view(runs)
 
     def strokes(self, kind, count):
         """The strokes of its lines by method."""
         view = self.view(count)
         chosen = kind([view])
-        return {s[0].method: chosen.stroke(view, s) for s in measurements.sweeps(view.runs)}
+        return {s[0].method: chosen.stroke(view, s) for s in record.sweeps(view.runs)}
 
     def test_what_stands_out_has_full_colour_and_a_name_and_the_rest_is_pale(self):
         strokes = self.strokes(emphasis.Prominent, 40)
@@ -231,7 +233,7 @@ class Emphasis(unittest.TestCase):
         stock = a_run("bdf_klu", 1e-3, 1e-2, 30, family="sundials", stock_of="bdf")
         erk = a_run("erk", 1e-3, 1e-2, 20, family="sundials")
         runs = [*self.view(20).runs, own, stock, erk]
-        view = quantities.View(quantities.POSITION, runs, [])
+        view = a_view(runs)
         chosen = emphasis.Prominent([view])
         self.assertIn("bdf_klu", chosen.shown)
         self.assertNotIn("bdf", chosen.shown)

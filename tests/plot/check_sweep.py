@@ -4,12 +4,13 @@ their times and margins, where they change, and what is left out. Nothing may ov
 
 import csv
 import json
+import shutil
 import sys
 import unittest
 from itertools import combinations
 from xml.etree import ElementTree
 
-from check_charts import COLUMNS, EXPLICIT, HandMade, a_sweep, crowd, draw
+from check_charts import COLUMNS, EXPLICIT, SOLVING, HandMade, a_sweep, crowd, draw, judge
 from crossover_sentences import sentences
 from names import one_line
 from scene_title import cut, draw_title, in_two
@@ -42,15 +43,23 @@ def a_crossover(accuracy=1e-4, low=100.0, high=1000.0, crossing=312.4, along="no
 def write_table(path, columns, rows):
     """A CSV file."""
     with open(path, "w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([columns, *rows])
+        csv.writer(file, lineterminator="\n").writerows([columns, *rows])
 
 
 class Sweep(HandMade):
     """Tests on a sweep in a folder of its own."""
 
+    def setUp(self):
+        super().setUp()
+        self.scenes = []
+
     def write_scene(self, name):
         """The folder of a scene with the runs of a crowd of methods."""
         folder = self.folder / name
+        if self.scenes:  # all have the same runs
+            shutil.copytree(self.folder / self.scenes[0], folder)
+            return
+        self.scenes.append(name)
         folder.mkdir()
         columns = COLUMNS.split()
         runs = crowd(2) + [run for method in LONG_METHODS for run in a_sweep(method, 1e-3)]
@@ -59,6 +68,8 @@ class Sweep(HandMade):
         about = {"scene": {"name": "made", "nodes": 2, "springs": 1}, "until": 2}
         about |= {"cpu": "a processor", "reduced": {"largest_stable_step": 0.01}}
         (folder / "points.json").write_text(json.dumps(about))
+        (folder / "reference.json").write_text(json.dumps({"until": 2}))
+        judge(folder)
 
     def write_sweep(self, scenes, rows=None, crossovers=(), about=None):
         """A sweep over these scenes; without rows each has one method at all accuracies."""
@@ -92,13 +103,13 @@ class WhatIsSaid(Sweep):
 
     def test_the_fastest_method_its_time_and_its_margin(self):
         rows = [a_cell("chain_3", "1e-2", time="2.13e-3"), a_cell("chain_3", "1e-4", margin="")]
-        rows += [a_cell("chain_3", "1.0000000000000001e-06", "midpoint", margin="31.4")]
+        rows += [a_cell("chain_3", "1.0000000000000001e-06", SOLVING, margin="31.4")]
         self.write_sweep(["chain_3"], rows)
         texts = self.texts()
         for words in ("chain_3", "2 nodes, 2 s, 200 steps", *ACCURACIES, "position error at most"):
             self.assertIn(words, texts)
         # One stretch over two accuracies.
-        self.assertEqual((texts.count(EXPLICIT), texts.count("midpoint")), (1, 1))
+        self.assertEqual((texts.count(EXPLICIT), texts.count(SOLVING)), (1, 1))
         self.assertEqual((texts.count("2.1 ms"), texts.count("1 ms")), (1, 2))
         self.assertEqual([text for text in texts if text.endswith("×")], ["1.3×", "31×", "0.3 ×"])
         self.assertIn("implicit", texts)
@@ -163,12 +174,15 @@ class WhatIsSaid(Sweep):
     def test_chaotic_scenes_are_judged_by_their_energy(self):
         self.write_sweep(["a"], [a_cell("a", "1e-2", judge="energy")])
         # The positions say nothing: of SUNDIALS the run of h = 1e-2 is good by its energy alone.
+        known = {"until": 2, "beyond_horizon": True, "horizon": 1, "lyapunov": 20}
+        (self.folder / "a" / "reference.json").write_text(json.dumps(known))
         path = self.folder / "a" / "points.csv"
         with open(path, newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         for row in rows:
             row["error_position"] = "1"
         write_table(path, rows[0].keys(), [row.values() for row in rows])
+        judge(self.folder / "a")
         texts = self.texts()
         for words in ("2 nodes, 2 s, 200 steps, by energy", "error at most", "0.3 ×"):
             self.assertIn(words, texts)

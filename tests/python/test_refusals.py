@@ -340,6 +340,18 @@ class Meaning(unittest.TestCase):
             chaotic.or_raise()
         self.assertTrue(chaotic.message)
 
+    def test_the_best_run_of_a_chaotic_motion_is_that_motion(self):
+        # One step of local_global keeps the energy well, in other modes.
+        chain = qddot.scenes.chain(nodes=4, stiffness=1000)
+        methods = ["local_global", "blanes_moan6"]
+        chart = qddot.work_precision(chain, 12, methods, point_limit=0.2, repeats=1)
+        self.assertTrue(chart.reference.beyond_horizon)
+        coarse = chart.points[chart.points["method"] == "local_global"][0]
+        self.assertLess(coarse["error_energy_max"], 0.5)
+        self.assertEqual(chart.best(0.5).method, "blanes_moan6")
+        self.assertEqual(chart.best(1e-3).method, "blanes_moan6")
+        self.assertEqual(chart.record["judged_by"], "energy")
+
     def test_a_chart_is_its_points(self):
         chart = qddot.work_precision(CLOTH, 0.1, ["verlet", "implicit_midpoint"], point_limit=0.05)
         self.assertEqual(set(chart.points["method"]), {"verlet", "implicit_midpoint"})
@@ -356,7 +368,8 @@ class Meaning(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             chart.save(folder)
             self.assertEqual(
-                sorted(os.listdir(folder)), ["front.csv", "points.csv", "reference.json"]
+                sorted(os.listdir(folder)),
+                ["chart.json", "front.csv", "points.csv", "reference.json"],
             )
             table = problems.read_table(os.path.join(folder, "points.csv"))
             self.assertTrue(np.array_equal(table["time_s"], chart.points["time_s"], equal_nan=True))

@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 
 import made_folder
+import made_sweeps
 import page
 import report
 from decoding import Page, elements
@@ -36,7 +37,7 @@ class Names(Folder):
     def named(self, name):
         """The page of a scene of this name."""
         made_folder.make_folder(self.folder, side=3, frames=3, runs=1)
-        self.edit("reference.json", lambda content: content.update(scene=name))
+        self.edit("chart.json", lambda content: content.update(scene=name))
 
         def change(content):
             content["scene"]["name"] = content["cpu"] = content["command_line"][2] = name
@@ -47,7 +48,7 @@ class Names(Folder):
         rows = self.rows("motions.csv")
         rows[1]["why"] = name.encode("utf-8", "replace").decode().replace("\x00", "")
         self.rewrite("motions.csv", rows)
-        return self.page()
+        return self.packed()
 
     def test_hostile_names_are_text(self):
         harmless = [tag for tag, _, _ in elements(self.named("cloth").text)]
@@ -83,7 +84,8 @@ class Missing(Folder):
         self.assertEqual((data["until"], data["command"]), (None, []))
         self.assertEqual((data["left_out"], data["reference"]), (None, []))
         self.assertEqual(set(data["points"]["command"]), {None})
-        self.assertEqual(data["quantities"][0]["floor"], None)
+        # The bounds of the errors in the table tell it.
+        self.assertAlmostEqual(data["quantities"][0]["floor"], made_sweeps.CERTIFIED, delta=1e-15)
         self.assertIsNotNone(data["answers"][0]["point"])
         self.assertRegex(" ".join(data["notes"]), "no reference.json.* no points.json")
 
@@ -314,7 +316,7 @@ class Broken(Folder):
             "[" * 9999,
         ):
             (self.folder / "points.json").write_text(text)
-            self.assertEqual(self.page().data["command"], [])
+            self.assertEqual(self.packed().data["command"], [])
 
     def test_broken_points_are_refused_in_one_sentence(self):
         before = (self.folder / "report.html").exists()

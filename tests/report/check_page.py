@@ -7,6 +7,7 @@ from selenium.webdriver.common.keys import Keys
 
 from browser import Browser
 from check_page_motion import Moving  # They run with the tests of this file.
+from made_sweeps import judge
 from packed_folder import Folder
 from page_in_browser import CHOSEN, Page
 
@@ -222,6 +223,7 @@ class Odd(Page):
             table.rewrite("points.csv", rows)
             for name in ("front.csv", "front.json", "motions.csv"):
                 (folder / name).unlink()
+            judge(folder)
 
         self.load(self.packed("failures", spoil))
         self.assertIn("No run gave a point", self.browser.text("#chart"))
@@ -246,7 +248,7 @@ class Odd(Page):
             table.rewrite("points.csv", rows)
             table.edit("points.json", lambda content: content["scene"].update(name=HOSTILE))
             table.edit("points.json", spoil_methods)
-            table.edit("reference.json", lambda content: content.update(scene=HOSTILE))
+            table.edit("chart.json", lambda content: content.update(scene=HOSTILE))
 
         page = self.packed("hostile", spoil)
         self.load(page)

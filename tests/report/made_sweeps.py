@@ -2,7 +2,12 @@
 
 import csv
 import json
+import os
+import subprocess
 from dataclasses import dataclass
+from pathlib import Path
+
+PROGRAMS = Path(os.environ.get("QDDOT_BIN", "build/bin")).resolve()
 
 CERTIFIED = 4e-13
 UNTIL = 0.5
@@ -15,9 +20,7 @@ COLUMNS = (
     "error_modal_shares,error_position_at_least,error_position_at_most,energy_growth,stock_of"
 ).split(",")
 
-FRONT_COLUMNS = (
-    "scene,accuracy,method,knob,value,error_position,time_s,judged_by,stability_margin"
-).split(",")
+FRONT_COLUMNS = "scene,accuracy,method,value,stability_margin".split(",")
 
 OUTCOMES = {
     "diverged": "the motion grew without bound: take a smaller step or an implicit method",
@@ -99,26 +102,18 @@ def point(scene, method, value, adaptive):
     return row
 
 
-def front(scene, rows):
-    """The rows of front.csv: the fastest of the points at each accuracy; verlet's steps leave 4 %
-    to their limit of stability."""
-    table = []
-    for accuracy in (10.0**-digit for digit in range(1, 10)):
-        known = [
-            row
-            for row in rows
-            if row["outcome"] == "reached_end" and row["error_position_at_most"] <= accuracy
-        ]
-        line = dict.fromkeys(FRONT_COLUMNS, "")
-        line |= {"scene": scene, "accuracy": accuracy, "judged_by": "position"}
-        if known:
-            best = min(known, key=lambda row: row["time_s"])
-            for name in ("method", "knob", "value", "error_position", "time_s"):
-                line[name] = best[name]
-            if best["method"] == "verlet":
-                line["stability_margin"] = 0.04
-        table.append(line)
-    return table
+def front(scene):
+    """The rows of front.csv, of which the record takes the accuracies and how much a step of verlet
+    leaves to its limit of stability: 4 %."""
+    rows = [{"scene": scene, "accuracy": 10.0**-digit} for digit in range(1, 10)]
+    rows[0] |= {"method": "verlet", "value": STEP_SIZES[1], "stability_margin": 0.04}
+    return rows
+
+
+def judge(folder):
+    """Makes the record of the tables in a folder."""
+    words = [PROGRAMS / "work_precision", "--judge", folder, "--force"]
+    subprocess.run(words, capture_output=True, check=True)
 
 
 def write_table(path, columns, rows):
@@ -190,14 +185,15 @@ def reference(scene, displacement):
 
 
 def write_study(folder, scene, dimension, nodes, springs, displacement):
-    """Writes points.csv, front.csv, their sidecar and reference.json; returns the rows of the
+    """Writes points.csv, front.csv, their sidecar, reference.json and chart.json; returns the rows of the
     points."""
     rows = points(scene)
     write_table(folder / "points.csv", COLUMNS, rows)
-    write_table(folder / "front.csv", FRONT_COLUMNS, front(scene, rows))
+    write_table(folder / "front.csv", FRONT_COLUMNS, front(scene))
     for name in ("points.json", "front.json"):
         text = json.dumps(sidecar(scene, dimension, nodes, springs), indent=2)
         (folder / name).write_text(text + "\n", encoding="utf-8")
     text = json.dumps(reference(scene, displacement), indent=1)
     (folder / "reference.json").write_text(text + "\n", encoding="utf-8")
+    judge(folder)
     return rows

@@ -13,6 +13,7 @@ import made_folder
 import page
 import report
 from decoding import Page
+from made_sweeps import judge
 
 TEMPLATE = (
     "<!DOCTYPE html><html><head><title>{{title}}</title><!-- qddot:style --></head><body>"
@@ -51,7 +52,12 @@ class Folder(unittest.TestCase):
         return status, said.getvalue()
 
     def page(self):
-        """The page of the folder as it is now."""
+        """The page of the folder as it is now, its record made anew."""
+        judge(self.folder)
+        return self.packed()
+
+    def packed(self):
+        """The page of the folder with the record that it has."""
         self.assertEqual(self.call(), (0, ""))
         return Page(self.folder / "report.html")
 

@@ -25,21 +25,18 @@ export const familiesWithMethods = report.families
   }))
   .filter(({ members }) => members.length);
 
-// Errors above this are another motion: as the pictures of the experiments have it.
-const MOST_ERROR = 3;
+// The kind of error in a column.
+const quantityOf = (column) => report.quantities.find((one) => one.column === column);
 
 /** Whether a run is a mark among the errors of a quantity over an ordinate. */
 export const isDrawn = (point, column, ordinate) =>
-  points.outcome[point] === "reached_end" &&
-  isKnown(points[column]?.[point]) &&
-  points[column][point] <= MOST_ERROR &&
-  points[ordinate]?.[point] > 0;
+  quantityOf(column)?.failures[point] === null && points[ordinate]?.[point] > 0;
 
 /** Why a run is no such mark, in words; null where its error or cost was not measured. */
 export function whyNot(point, column) {
   if (points.outcome[point] !== "reached_end") return words.plain(points.outcome[point]);
   if (points.cause[point]) return points.cause[point];
-  return points[column]?.[point] > MOST_ERROR ? `error above ${MOST_ERROR}` : null;
+  return isKnown(points[column]?.[point]) ? quantityOf(column).failures[point] : null;
 }
 
 /** The knob of a run with its value: "h = 0.0005 s". */
@@ -112,7 +109,7 @@ export const state = {
 };
 
 /** The kind of error that the chart stands over. */
-export const chosenQuantity = () => report.quantities.find(({ column }) => column === state.column);
+export const chosenQuantity = () => quantityOf(state.column);
 
 // A browser may refuse a page on disk to change its address; the choice stands all the same.
 function write(how) {
