@@ -41,26 +41,6 @@
 namespace qddot::exchange {
 namespace {
 
-// Methods of fixed step among those named; of the others it is said that they are left out.
-std::vector<const Method*> of_fixed_step(const std::vector<std::string>& list,
-                                         const Subject& subject) {
-  std::vector<const Method*> selected, others;
-  for (const Method* method : select_methods(list, subject)) {
-    (method->knob == Knob::step_size ? selected : others).push_back(method);
-  }
-  if (selected.empty()) {
-    throw InvalidInput(
-        fmt::format("--methods: none of {} has a fixed step; allowed are methods "
-                    "whose knob is step_size in simulate --list-methods --csv",
-                    fmt::join(list, ", ")));
-  }
-  for (const Method* method : others) {
-    fmt::print("{} is left out: it chooses its steps by itself, so that it has no h w\n",
-               method->name);
-  }
-  return selected;
-}
-
 // The steps h = (h w)/w are allowed, and the time has ten of the longest.
 void require_steps(const std::vector<double>& h_omegas, const Excitation& excitation) {
   for (const double h_omega : h_omegas) {
@@ -111,7 +91,7 @@ int main(int argc, char** argv) {
   return p.run(argc, argv, [&] {
     Subject subject = subject_of(scene, until);
     require_reference_exists(subject);
-    const auto selected = of_fixed_step(methods, subject);
+    const auto selected = fixed_step_among(methods, subject);
     const Excitation excitation = [&] {
       Excitation e =
           excitation_of(subject.start, std::move(subject.reduced), subject.until, subject.source);

@@ -157,6 +157,25 @@ std::vector<const Method*> select_fixed_step(const std::vector<std::string>& lis
   return selected;
 }
 
+std::vector<const Method*> fixed_step_among(const std::vector<std::string>& list,
+                                            const Subject& subject) {
+  std::vector<const Method*> selected, others;
+  for (const Method* method : select_methods(list, subject)) {
+    (method->knob == Knob::step_size ? selected : others).push_back(method);
+  }
+  if (selected.empty()) {
+    throw InvalidInput(
+        fmt::format("--methods: none of {} has a fixed step; allowed are methods "
+                    "whose knob is step_size in simulate --list-methods --csv",
+                    fmt::join(list, ", ")));
+  }
+  for (const Method* method : others) {
+    fmt::print("{} is left out: it chooses its steps by itself, so that it has no h w\n",
+               method->name);
+  }
+  return selected;
+}
+
 std::vector<std::string> names_of(const std::vector<const Method*>& methods) {
   std::vector<std::string> names;
   for (const Method* method : methods) names.push_back(method->name);

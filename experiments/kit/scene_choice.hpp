@@ -68,6 +68,11 @@ std::vector<const Method*> select_methods(const std::vector<std::string>& list,
 std::vector<const Method*> select_fixed_step(const std::vector<std::string>& list,
                                              const Subject& subject);
 
+// The methods of fixed steps among these. Prints a sentence for each other one, which is left out.
+// Throws InvalidInput if none is left.
+std::vector<const Method*> fixed_step_among(const std::vector<std::string>& list,
+                                            const Subject& subject);
+
 // The methods' names.
 std::vector<std::string> names_of(const std::vector<const Method*>& methods);
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/node_table.hpp"
@@ -76,6 +77,23 @@ void Outputs::finish(const State& state, const nlohmann::json& origin) {
     if (file) file->commit();
   }
   if (motion_) motion_->commit();
+}
+
+std::string counts_in_words(const Counts& c) {
+  std::string words =
+      fmt::format("{} steps, {} force and {} stiffness evaluations, {} factorisations", c.steps,
+                  c.force_evaluations, c.stiffness_evaluations, c.factorizations);
+  if (c.indefinite_factorizations > 0) {
+    words += fmt::format(", {} of them indefinite", c.indefinite_factorizations);
+  }
+  if (c.order_sum > 0) {
+    words +=
+        fmt::format(", mean order {:.2f}, lowered {} times", order_mean(c), c.order_reductions);
+  }
+  if (c.stability_limited_steps > 0) {
+    words += fmt::format(", {} steps held to the stability limit", c.stability_limited_steps);
+  }
+  return words;
 }
 
 }  // namespace qddot::simulate

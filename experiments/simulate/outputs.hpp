@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -41,5 +42,8 @@ class Outputs {
   std::unique_ptr<motion_files::MotionFile> motion_;
   std::optional<BackgroundObserver> behind_;  // writes while the run goes on
 };
+
+// The counts of a run in words.
+std::string counts_in_words(const Counts& counts);
 
 }  // namespace qddot::simulate

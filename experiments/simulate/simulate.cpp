@@ -39,23 +39,6 @@ constexpr double shortest_patience = 1, longest_patience = 5;
 // The time [s] that an interruption waits for the present step.
 constexpr double patience_with_a_step = 60;
 
-std::string counts_in_words(const Counts& c) {
-  std::string words =
-      fmt::format("{} steps, {} force and {} stiffness evaluations, {} factorisations", c.steps,
-                  c.force_evaluations, c.stiffness_evaluations, c.factorizations);
-  if (c.indefinite_factorizations > 0) {
-    words += fmt::format(", {} of them indefinite", c.indefinite_factorizations);
-  }
-  if (c.order_sum > 0) {
-    words +=
-        fmt::format(", mean order {:.2f}, lowered {} times", order_mean(c), c.order_reductions);
-  }
-  if (c.stability_limited_steps > 0) {
-    words += fmt::format(", {} steps held to the stability limit", c.stability_limited_steps);
-  }
-  return words;
-}
-
 int simulate(const Arguments& a) {
   if (a.list_methods) {
     print_methods(a.csv);
