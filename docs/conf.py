@@ -23,7 +23,7 @@ exclude_patterns = ["pages", "site", "data", "scenes"]
 
 myst_heading_anchors = 3
 
-# What Doxygen reads in the headers (docs/Doxyfile).
+# Doxygen's reading of the headers (docs/Doxyfile).
 breathe_projects = {"qddot": str(ROOT / "results/docs/doxygen/xml")}
 breathe_default_project = "qddot"
 breathe_default_members = ("members", "undoc-members")
@@ -69,7 +69,7 @@ def link_files(app, doctree):
             else:
                 page = Path(app.outdir, docname)
                 place = Path(os.path.relpath(path, page.parent)).as_posix()
-            # What held the text of a cross-reference has its looks, too.
+            # The node that held the text of a cross-reference has its looks, too.
             text = link[0].children if link.children and link[0].children else link.children
             link.replace_self(nodes.reference("", "", *text, refuri=place))
 

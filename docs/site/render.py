@@ -21,7 +21,7 @@ from energy_words import energy_in_words
 from page_data import ROOT
 
 PAGES = ROOT / "docs/pages"
-# What a template can call.
+# The functions that a template can call.
 CALLS = {**page_data.FUNCTIONS, **chart_data.FUNCTIONS, "energy_in_words": energy_in_words}
 NOTICE = "<!-- Made by ./run docs from {source}. Change that file, not this one. -->\n\n"
 

@@ -3,7 +3,7 @@
 #include "experiments/kit/point_record.hpp"
 #include "qddot/integrators/registry.hpp"
 
-// What nlohmann::json looks for in the namespace of these types.
+// nlohmann::json looks for these functions in the namespace of the types.
 namespace qddot::inline measure {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Interval, value, low, high)

@@ -15,8 +15,8 @@ struct PathPoint {
 };
 const Columns<PathPoint>& path_columns();
 
-// What became of a run, one row. `until`: how far it should have come [s]; `compensated`: whether
-// methods that can were asked to keep what rounding takes from their sums.
+// The row of a run. `until`: its asked end [s]; `compensated`: whether methods that can were asked
+// for compensated sums.
 struct SummaryRow {
   const DriftRun& run;
   double until;

@@ -1,4 +1,4 @@
-// Where the energy goes: for every method, whether its energy error stays bounded, drifts, is
+// The long-run energy error of every method: whether it stays bounded, drifts, is
 // dissipated, blows up or is nothing but round-off, over 10^5 to 10^7 steps.
 //
 //   energy_drift --scene cloth --out results/cloth

@@ -101,7 +101,7 @@ def spread(wanted, step, low, high):
                 places[i - 1] -= overlap / 2
                 places[i] += overlap / 2
         places = np.clip(places, low, high)
-    # What the limits have pushed together.
+    # The limits may have pushed labels together.
     for i in range(1, len(places)):
         places[i] = max(places[i], places[i - 1] + step)
     result = np.empty_like(places)

@@ -1,4 +1,4 @@
-// Where a scene comes to rest: a stable minimum of its potential energy, downhill from the drawn
+// The static shape of a scene: a stable minimum of its potential energy, downhill from the drawn
 // positions.
 //
 //   equilibrium --scene cloth --final rest.csv

@@ -24,7 +24,7 @@ RIGHT, TOP, BOTTOM = 0.25, 1.0, 0.55
 LABELS, CHARACTER, LEAST_WIDTH = 0.45, 0.082, 11.3
 REFERENCE_HEIGHT, HEADS = 1.45, 0.3
 HIGHEST = 1.45
-# Where there are more springs, those are drawn that come to have the most energy.
+# If there are more springs, those with the largest energies are drawn.
 MOST_SPRINGS = 5
 SPRINGS = (COOL[0], WARM[0], COOL[1], WARM[4], COOL[2])
 SUM = INK

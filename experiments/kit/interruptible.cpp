@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr int status_of_signal = 130, status_of_limit = 3;
-// What the pipe to the watcher carries beside the numbers of signals.
+// Bytes in the pipe to the watcher that are no numbers of signals.
 constexpr char wake = 0, finish = 127;
 
 struct Shared {

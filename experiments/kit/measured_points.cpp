@@ -33,7 +33,7 @@ const std::vector<std::string> columns = {"method",
                                           "steps",
                                           "energy_growth"};
 
-// What of a study's options decides how a method runs.
+// The options of a study that decide how a method runs.
 constexpr std::array of_a_run = {"--no-reduce",  "--max-order",       "--stability-detection",
                                  "--iterations", "--solve-tolerance", "--spectral-radius",
                                  "--solver"};

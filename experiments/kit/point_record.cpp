@@ -5,7 +5,7 @@
 #include "experiments/kit/progress.hpp"
 #include "qddot/integrators/registry.hpp"
 
-// What nlohmann::json looks for in the namespace of these types.
+// nlohmann::json looks for these functions in the namespace of the types.
 namespace qddot::inline measure {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, position, velocity, energy)

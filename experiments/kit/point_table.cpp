@@ -18,7 +18,7 @@ double measured(const Row& row, double x) {
   const bool is = row.point.outcome == Outcome::reached_end;
   return is ? x : std::numeric_limits<double>::quiet_NaN();
 }
-// What is known of the position error.
+// The bounds of the position error.
 Known position(const Row& row) { return known(row.point.errors.position, row.certified); }
 
 }  // namespace

@@ -393,7 +393,7 @@ int Program::write(const std::function<nlohmann::json()>& fill) {
 }
 
 StudyCall Program::study_call() const {
-  // Where results go and how the program is to be run decides no result.
+  // These options say where results go and how the program runs; they decide no result.
   constexpr std::array other = {"--out",         "--scene",    "--resume",  "--force",
                                 "--time-limit",  "--progress", "--help",    "--version",
                                 "--list-shares", "--share",    "--journal", "--kept"};

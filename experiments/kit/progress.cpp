@@ -30,7 +30,7 @@ std::size_t columns_of_stderr() {
   return size.ws_col;
 }
 
-// What cannot be written is lost: no result depends on it.
+// Text that cannot be written is lost: no result depends on it.
 void write_to_stderr(std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());

@@ -10,7 +10,7 @@
 namespace qddot::inline kit {
 namespace {
 
-// What it says must have so many columns before the program's name may take any.
+// The least columns for the present work; the program's name takes only others.
 constexpr std::size_t least_of_what = 8;
 constexpr const char* between = "  ";
 

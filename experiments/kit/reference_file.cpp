@@ -174,7 +174,7 @@ Reference made(const ReducedScene& scene, const Scene& start, double until,
 
 std::string file_in(const std::string& folder) { return folder + "/reference.json"; }
 
-// What a reference in a file is of.
+// The key of a reference file: scene, end, code and accuracy.
 nlohmann::json key_of(const Scene& drawn, const ReducedScene& scene, double until,
                       std::optional<double> needed) {
   nlohmann::json key = {{"scene_hash", content_hash(drawn)},

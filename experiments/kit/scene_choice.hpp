@@ -41,7 +41,7 @@ struct Subject {
   double until = 0;      // [s]; 0 if the program has times of its own
 
   const System& system() const { return reduced.system(); }
-  // What a study of it depends on: hash, name and time.
+  // The facts that decide a study of it: hash, name and time.
   nlohmann::json about() const;
 };
 

@@ -29,7 +29,7 @@ FONT_SIZE = 9.5
 LEAST_ERROR = 1e-10
 LEAST_DISTANCE = 1e-8
 
-# What the line means, over iterations and over time, and where that is said.
+# The meaning of the line, over iterations and over time, and the place of these words.
 OWN_ERROR = (
     ("yellow: nearer to the\nconverged step than\nthat is to the truth", (0.43, 0.2)),
     (

@@ -15,7 +15,7 @@ NEAR = 3.0
 MATTERS = 0.1
 CROWD = 24
 BACKGROUND = 0.3
-# What is left of a family's colour in the cloud of pale lines, and how much a label minds hiding it.
+# The share of a family's colour in the cloud of pale lines, and a label's cost of hiding it.
 PALE = 0.22
 PALE_INK = 0.15
 

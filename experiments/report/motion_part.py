@@ -15,7 +15,7 @@ from study_folder import is_number, look, number_or_none, read_json
 
 # Which runs are made, how often and for how long they may go on: another study has the same runs.
 OF_THE_STUDY_ALONE = ("--methods", "--repeats", "--point-limit")
-# What stands around a blob in the page.
+# The characters around a blob in the page.
 FRAME_OF_BLOB = len('<script type="text/plain" id="p1000"></script>\n')
 
 
@@ -220,7 +220,7 @@ def motion_part(study, room):
         part, blobs, more = pack(study, opened, energies, room)
         if part is None:
             return None, {}, notes + more
-        # What is missing of the motions is said beside them.
+        # Missing motions are named beside the others.
         return part | {"notes": notes + part["notes"]}, blobs, []
     except BadInput as error:
         reason = in_folder(error, study.directory).removesuffix(".")

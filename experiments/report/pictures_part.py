@@ -79,7 +79,7 @@ def pictures_part(directory):
     for picture in (CHART, *PICTURES):
         try:
             uri = data_uri(directory, picture)
-        # What Pillow raises for a file that is no whole picture.
+        # Pillow raises these for a file that is no whole picture.
         except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
             notes.append(f"{picture.file} is no picture that can be read.")
             continue

@@ -22,7 +22,7 @@ from study_folder import read_study
 
 # A page of any scene; browsers read as much in a moment, and mails take it.
 MOST_BYTES = 8_000_000
-# What sentences on the motions and all but their blobs may take of that.
+# The part of it for sentences on the motions and all but their blobs.
 WORDS_ON_MOTIONS = 20_000
 
 

@@ -1,4 +1,4 @@
-// Where is each method stable, by theory and measured: on an oscillator, in the natural modes of a
+// Is each method stable, by theory and measured: on an oscillator, in the natural modes of a
 // scene, and in its whole nonlinear motion?
 //
 //   stability_map --scene pendulum --out results/pendulum

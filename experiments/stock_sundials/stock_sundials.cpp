@@ -1,4 +1,4 @@
-// What do SUNDIALS' implicit methods gain from the second-order structure? Each of them runs with
+// The gain of SUNDIALS' implicit methods by the second-order structure. Each of them runs with
 // the n x n matrix M - gamma^2 K, and as its users run it, with KLU on 2n x 2n.
 //
 //   stock_sundials --scene cloth --until 0.1 --out results/cloth

@@ -4,7 +4,7 @@ from names import shown
 
 ONE_LINE_SIZES, TWO_LINES_SIZES = (10.5, 10, 9.5, 9, 8.5), (8.5, 8, 7.5)
 STYLE = {"weight": "bold", "va": "center", "linespacing": 1.0}
-# Where a name may be broken: after these.
+# A name may be broken after these.
 ENDS = "_-., =+"
 
 

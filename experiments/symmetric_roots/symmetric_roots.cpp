@@ -1,4 +1,4 @@
-// What do the spurious roots of symmetric multistep formulas trade? The study compares how large
+// The trade of spurious roots in symmetric multistep formulas. The study compares how large
 // steps may be, how large the phase error is, and how far the roots stay apart.
 //
 //   symmetric_roots --out results/symmetric_roots

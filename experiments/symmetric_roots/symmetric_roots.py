@@ -30,7 +30,7 @@ NEAR, APART = 0.13, 0.5
 LEAST_GAP = 0.01
 LARGEST_GAP = 2.2
 
-# What is along the axes of two panels each.
+# The axes' words, of two panels each.
 LIMIT = "vibrations stay bounded up to hω ="
 GAP = "smallest angle between two roots, rad"
 

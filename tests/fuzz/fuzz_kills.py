@@ -106,8 +106,8 @@ class Study:
             if ended.status != 130:
                 found.append(f"{which.name}: status {ended.status}, 130 is documented")
             names = os.listdir(results) if os.path.isdir(results) else []
-            # What an earlier kill left goes when a run first writes there, which this one may not
-            # have come to.
+            # A run removes the leftovers of an earlier kill when it first writes there, which this
+            # one may not have come to.
             names = [
                 n for n in names if not (n.endswith(".part") and os.path.join(results, n) in before)
             ]

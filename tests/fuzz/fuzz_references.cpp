@@ -28,7 +28,7 @@ namespace {
 
 // Far below what a double resolves, and far above what quadruple precision does.
 constexpr double plain_tolerance = 1e-24;
-// Where a kink of f or a spring that turns over holds the steps down, the truth is given up.
+// The truth is given up if a kink of f or a spring that turns over holds the steps down.
 constexpr int most_plain_steps = 1000;
 
 struct Tally {

@@ -4,7 +4,7 @@
 //
 // Each input is one of the corpus with random changes, read without a file system. A scene that is
 // taken must be valid and within the limits; a part of them is written and read back, to the bit.
-// What is refused must be refused by InvalidInput in one line. Anything else ends the program with
+// A refusal must be an InvalidInput of one line. Anything else ends the program with
 // status 1 after the input.
 #include <algorithm>
 #include <csignal>
@@ -27,7 +27,7 @@ extern "C" void __sanitizer_set_death_callback(void (*callback)()) __attribute__
 namespace qddot {
 namespace {
 
-// What is being read, to be shown if the program dies of it.
+// The present input, to be shown if the program dies of it.
 std::string input;
 std::uint64_t input_seed;
 

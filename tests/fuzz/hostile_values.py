@@ -17,7 +17,7 @@ EDGE_TEXTS = [
     "x/x/" * 750, "%s%n", "{}", "\\", ",", ",,", "a,b", "two words", "-", "-h", "--help", "*",
     "~", "a=b", "@1", "chain@nan",
 ]
-# What there is in a sandbox, and what is not.
+# Files of a sandbox, and some that it does not have.
 PATHS = [
     "scene.toml", "./scene.toml", "sub/../scene.toml", "end.json", "end.csv", "notes.txt",
     "body.obj", "mine", "mine/points.csv", "results", "folder", "folder/", "fifo", "locked.toml",

@@ -89,7 +89,7 @@ struct Range {
   std::size_t start, size;
 };
 
-// Where the words, or where the lines, stand in a text: the parts between bytes of `separators`.
+// The places of the words, or of the lines, in a text: its parts between bytes of `separators`.
 std::vector<Range> parts(const std::string& text, std::string_view separators) {
   std::vector<Range> all;
   for (std::size_t start = 0; start < text.size();) {

@@ -71,7 +71,7 @@ OF_A_PROGRAM = {
     ("energy_drift", "--step-size"): (1e-6, 2e-5),
     ("exchange", "--scene"): ["fpu", "scene.toml"],
 }
-# What makes a run short, or possible at all, is nearly always given.
+# Options that make a run short, or possible at all, are nearly always given.
 NEEDED = {
     "--scene",
     "--out",

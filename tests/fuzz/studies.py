@@ -34,7 +34,7 @@ STUDIES = {
     "bench": "steady.toml@0.01 --methods verlet --repeats 1 --point-limit 100 --peers odeint",
 }
 
-# What else writes files, and the studies into the folder "results".
+# All programs that write files; the studies write into the folder "results".
 COMMANDS = {name: f"{words} --out results" for name, words in STUDIES.items()} | {
     "simulate": "--scene steady.toml --method verlet --step-size 1e-4 --until 0.02"
     " --final results/final.csv --trajectory results/trajectory.csv --energy results/energy.csv"

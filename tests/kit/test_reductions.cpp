@@ -1,4 +1,4 @@
-// What the programs say of what was reduced, and that it can be left out.
+// The programs name the reductions, and each can be left out.
 #include <cmath>
 
 #include <boost/test/unit_test.hpp>
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(a_step_beyond_the_stable_one_is_warned_of_with_both_numbers
   BOOST_TEST(contains(simulate("kahan_li8", "0.312", "1").err, {"3.0964/w_max = 0.3096 s"}));
   BOOST_TEST(simulate("implicit_euler", "0.5", "1").err == "");
   BOOST_TEST(simulate("exact", "0.5", "1").err == "");
-  // Where it blows up, one sentence says both.
+  // If it blows up, one sentence says both.
   const Exit blown = simulate("verlet", "1", "200");
   BOOST_TEST(complains(blown, 3, "simulate", {"grew without bound", "2/w_max = 0.2 s"}), blown.err);
 }

@@ -14,7 +14,7 @@ using namespace qddot;
 
 namespace {
 
-// What is said of a method on a scene; empty where it fits.
+// The refusal of a method on a scene; empty if it fits.
 std::string said(const Method& method, const Scene& scene) {
   return refusal_of([&] { require_fit(method, ReducedScene(scene), scene.name); });
 }

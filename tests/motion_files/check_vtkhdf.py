@@ -243,7 +243,7 @@ def check_failed_run(place):
         for data in (found, root["PointData/velocity"][...], root["PointData/kinetic_energy"][...]):
             assert np.isfinite(data).all()
         assert len(xdmf_frames(place.path("d.xdmf"))) == frames
-    # What the next frame would hold is beyond 32-bit floats, in its kinetic energies first.
+    # The next frame's kinetic energies would be beyond 32-bit floats.
     if frames < len(positions):
         assert (velocities[frames] ** 2).sum(axis=1).max() * 0.5 / 25 > np.finfo("f4").max / 2
 

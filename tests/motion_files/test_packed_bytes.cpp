@@ -76,7 +76,7 @@ BOOST_AUTO_TEST_CASE(long_numbers_are_shuffled_likewise) {
 }
 
 #ifdef __x86_64__
-// What of the processor's state is in use (XINUSE): bit 2 is the upper halves of the vectors.
+// The processor's state in use (XINUSE): bit 2 is the upper halves of the vectors.
 __attribute__((target("xsave"))) bool are_upper_halves_in_use() { return _xgetbv(1) >> 2 & 1; }
 
 BOOST_AUTO_TEST_CASE(upper_halves_of_vectors_are_clear_after_it) {

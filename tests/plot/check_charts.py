@@ -204,7 +204,7 @@ class WhichMethod(HandMade):
         # The steps of SUNDIALS take three times as long.
         self.assertIn("3.0 ×", texts)
         self.assertTrue([text for text in texts if "one core of a processor" in text])
-        # What is missing is said, and no picture is written.
+        # The missing file is named, and no picture is written.
         picture.unlink()
         sidecar.write_text("{}")
         done = draw("work_precision/which_method.py", picture, self.folder)

@@ -124,7 +124,7 @@ class WhatIsSaid(Sweep):
         texts = self.texts()
         heads = [text for text in texts if text in ("1e-1", "3e-4", "1e-6")]
         self.assertEqual(heads, ["1e-1", "3e-4", "1e-6"])
-        # What was not asked for is no failure.
+        # A cell that nobody asked for is no failure.
         self.assertNotIn("–", texts)
 
     def test_a_scene_without_an_answer_shows_dashes(self):

@@ -250,7 +250,7 @@ work_precision --scene massless.toml --methods verlet OUT | massless.toml | node
 work_precision --scene flying.toml --methods verlet OUT | --until | missing
 """
 
-# What each program's tables are called; a folder in such a place is found before anything is measured.
+# The names of each program's tables; a folder in such a place is found before anything is measured.
 TAKEN = {
     "work_precision --scene orbit --until 0.1": ("points.csv", "front.csv", "reference.json"),
     "crossover --ratios 1": ("points.csv", "crossover.csv", "kinds.csv", "points.json"),

@@ -93,7 +93,7 @@ inline Exit run(const std::string& program, std::vector<std::string> arguments) 
   return Started(program, std::move(arguments)).end();
 }
 
-// What simulate says of a run, but for the time that it took.
+// The words of simulate on a run, without the time that it took.
 inline std::string untimed(const Exit& run) { return run.out.substr(0, run.out.rfind(", in ")); }
 
 // Whether a program complained as it should: its status, and on stderr one line that starts with

@@ -1,4 +1,4 @@
-// What is asked for by its accuracy: advise, and simulate --accuracy.
+// Runs that are asked for by their accuracy: advise, and simulate --accuracy.
 #include <cmath>
 
 #include <boost/test/unit_test.hpp>

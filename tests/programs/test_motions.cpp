@@ -158,7 +158,7 @@ BOOST_AUTO_TEST_CASE(only_motions_of_the_folder_are_replaced) {
   own.folder.write("motions.csv", spoiled);
   BOOST_TEST(own.keep({"--runs", "1", "--frames", "2"}).status == 0);
   BOOST_TEST(read_all(own.folder / "mine.vtkhdf") == "mine");
-  // What somebody else put in the place of a motion stays as well.
+  // A file that somebody else put in the place of a motion stays as well.
   const std::string first = read_csv(own.folder / "motions.csv").text(1, "file");
   for (const char* part : {"", ".json"}) std::filesystem::remove(own.folder / first + part);
   own.folder.write(first, "mine");

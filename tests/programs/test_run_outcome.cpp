@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
   BOOST_TEST(std::abs(predicted_growth_rate(cells[0])) < 1e-12);
   BOOST_TEST(predicted_growth_rate(cells[2]) > 1);
 
-  // What the journal holds is believed, and what is missing is run.
+  // Pieces of the journal are believed, and missing ones are run.
   call.resumes = true;
   Study study(call, folder.path(), {}, {});
   cells.push_back({&method_named("verlet"), &row, 1.5, 0});

@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(phases_of_every_scene_and_size_add_up_to_the_step) {
   }
   BOOST_TEST((chains == std::set<double>{30, 95, 300}));
   BOOST_TEST((cloths == std::set<double>{25, 100, 289}));
-  // What comes before any method, an explicit one, and an implicit one with each of two solvers.
+  // The phases before any method, an explicit one, and an implicit one with each of two solvers.
   BOOST_TEST(steps.size() == 6u * 4);
   for (const auto& [key, phases] : steps) {
     const std::string& method = std::get<2>(key);

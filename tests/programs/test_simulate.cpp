@@ -31,7 +31,7 @@ std::string triangle(int dimension) {
       vector(2.3, -0.4, 0.1), vector(-0.3, 0.7, 0.2));
 }
 
-// What the program should write: the library's own run, seen at the given times.
+// The expected output: the library's own run, seen at the given times.
 struct Expected {
   ReducedScene scene;
   std::vector<State> states;

@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(above_its_limit_an_explicit_method_diverges_and_says_so) {
       result.err);
   BOOST_TEST(is_finite(end));
   BOOST_TEST(std::abs(end.value(1, "vx")) > 1e20);
-  // What was sampled before is there, to the last sample before the end.
+  // All samples before the end are there.
   BOOST_TEST(is_finite(energy));
   BOOST_TEST(energy.rows.size() == std::floor(t_reached) + 1);
 }

@@ -273,7 +273,7 @@ BOOST_AUTO_TEST_CASE(a_full_disk_is_said_and_nothing_is_half_written) {
   BOOST_TEST(WEXITSTATUS(status) == 3);
   BOOST_TEST(contains(read_all(sweep.folder / "said"), {"cannot be written"}));
   BOOST_TEST(sweep.measured().size() == 2u);
-  // Where not even that can be said, it ends in order all the same.
+  // If not even that can be said, it ends in order all the same.
   const int silent =
       std::system(fmt::format("bash -c 'exec 2>{}; ulimit -f 0; exec {}/sweep run {} "
                               "--stage points >/dev/null'",

@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(spurious_roots_have_the_cosines_they_are_made_of) {
     // The motion's own double root is known to the root of the rounding.
     BOOST_TEST(angles[0] < 1e-6);
     for (std::size_t i = 0; i < cosines.size(); ++i) {
-      // Where roots are 0.1 apart, a product of up to four such distances divides the rounding.
+      // For roots 0.1 apart, a product of up to four such distances divides the rounding.
       BOOST_TEST(std::abs(std::cos(angles[i + 1]) - cosines[i]) < 1e-11);
     }
   }

@@ -128,7 +128,7 @@ class Callables(unittest.TestCase):
                     RuntimeError, rf"force: it kept {name} .*{name}\.copy\(\)"
                 ):
                     qddot.solve(system, "verlet", step_size=0.1, until=1, q0=[1.0, 2.0])
-        # What was kept whole has become a copy, which nobody else writes to.
+        # An array that was kept whole has become a copy, which nobody else writes to.
         self.assertTrue(np.array_equal(kept[0], [1.0, 2.0]) and kept[0].base is not None)
         kept.clear()
 
@@ -187,7 +187,7 @@ class Callables(unittest.TestCase):
                 study()
 
     def test_what_a_library_takes_for_its_own_failure_is_raised_all_the_same(self):
-        # Where a largest frequency is not found, no margin of stability is known, and that is all.
+        # If a largest frequency is not found, only the margin of stability is unknown.
         is_armed = False
 
         def stiffness(q):

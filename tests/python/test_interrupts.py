@@ -16,7 +16,7 @@ import numpy as np
 import problems
 import qddot
 
-# What each script does until Ctrl-C comes, by itself for many minutes.
+# The work of each script until Ctrl-C comes, by itself for many minutes.
 ENDLESS = {
     "run": "qddot.solve(cloth, 'verlet', step_size=1e-7, until=1e3)",
     "implicit": "qddot.solve(cloth, 'implicit_midpoint', step_size=1e-6, until=1e3)",

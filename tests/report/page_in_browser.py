@@ -13,7 +13,7 @@ import report
 from browser import Browser
 
 CHOSEN = "return qddotReport.state.run"
-# Where the mark of a run is in the window, in px, once it is scrolled to where it can be seen.
+# The place of a run's mark in the window, in px, once it is scrolled into view.
 PLACE = """
 const [id, wanted, done] = arguments;
 const drawing = document.getElementById(id);

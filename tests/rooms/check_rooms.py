@@ -56,7 +56,7 @@ MAY_SEE = {
     # A peer is SUNDIALS by itself, whose handles are there.
     "experiments/bench": KIT | {"integrators/sundials"},
 }
-# What a library of data in, data out does not know.
+# Code that a library of data in, data out may not have.
 NOT_IN_A_LIBRARY = re.compile(r"#include <(CLI/|nlohmann/)|fmt::print|std::c(out|err)\b|\bprintf\(")
 
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
