@@ -113,7 +113,8 @@ BOOST_AUTO_TEST_CASE(processes_with_unlike_roots_measure_one_study) {
   const Sweep sweep;
   with_roots("processor", [&] { BOOST_TEST(sweep.go("references").status == 0); });
   with_roots(other, [&] {
-    const Exit first = sweep.go("points", {"--shard", "1/2"});
+    const std::string id = sweep.task("chain", "verlet").at("id");
+    const Exit first = sweep.go("points", {"--task", id});
     BOOST_TEST(first.status == 0, first.err);
   });
   with_roots("processor", [&] {
