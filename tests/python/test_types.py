@@ -10,7 +10,7 @@ import unittest
 import qddot
 
 PACKAGE = os.path.dirname(qddot.__file__)
-# Members that pybind11 gives every class, and no stub can say.
+# Members that pybind11 gives every class; the module's typed interface cannot name them.
 ALLOWED = r"""
 qddot\._qddot\.(Model|Reference|Scene)
 qddot\._qddot\.(Model|Reference|Scene)\.__init__
