@@ -50,6 +50,10 @@ class Search {
   // for `seconds` at most. Returns the fastest run that is known to reach it.
   const Trial* race(const Trial* answer, double accuracy, double seconds);
 
+  // A run with more steps of an implicit method that missed the accuracy or diverged. It has the
+  // number of steps that the order predicts, or one step if the method was not tried. Empty if that
+  // takes `seconds` or more. Needs a forecast.
+  std::optional<Candidate> more_steps(const Method& method, double accuracy, double seconds) const;
   // Makes the run unless it was made before, for `seconds` at most.
   void try_once(const Candidate& candidate, double seconds);
 
@@ -123,7 +127,6 @@ class Search {
   std::optional<Candidate> coarser_check_of(const Trial& trial, double accuracy) const;
   std::optional<Candidate> check_of(const Trial& trial, double accuracy) const;
   std::optional<Candidate> fresh(double accuracy) const;
-  std::optional<Candidate> more_steps(const Method& method, double accuracy, double seconds) const;
   std::optional<Candidate> unknown(const Trial& answer, double accuracy, double left) const;
   std::optional<Candidate> promised(double accuracy, double seconds, bool explicitly) const;
   std::optional<Candidate> unseen(double accuracy, double seconds) const;

@@ -24,9 +24,6 @@ double seconds_of_race(const Trial& answer) {
 
 }  // namespace
 
-// A run with more steps of an implicit method that missed the accuracy or diverged. It has the
-// number of steps that the order predicts, or one step if the method was not tried. Empty if that
-// takes `seconds` or more.
 std::optional<Candidate> Search::more_steps(const Method& method, double accuracy,
                                             double seconds) const {
   constexpr double fewest = 1.2, most = 6, infinite = std::numeric_limits<double>::infinity();
