@@ -1,6 +1,7 @@
 #include "qddot/scene/reduce/reduced.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -57,6 +58,30 @@ Reduced::Reduced(const Scene& scene, const Reductions& reductions)
   leave_out_static_springs(springs);
   build(divide(springs, reductions), springs, reductions);
   check(scene);
+}
+
+Reduced::Reduced(std::shared_ptr<const System> system, State initial, int dimension)
+    : is_own_(true),
+      dimension_(dimension),
+      system_(std::move(system)),
+      initial_(std::move(initial)) {
+  if (!system_) throw std::invalid_argument("there is no system");
+  const Index n = system_->size();
+  if (dimension_ < 1 || dimension_ > 3 || n % dimension_ != 0) {
+    throw std::invalid_argument(fmt::format(
+        "dimension {} is not allowed; it is 1, 2 or 3 and divides the {} unknowns", dimension_, n));
+  }
+  if (initial_.q.size() != n || initial_.v.size() != n) {
+    throw std::invalid_argument(
+        fmt::format("the start has {} positions and {} velocities, and the system {} unknowns",
+                    initial_.q.size(), initial_.v.size(), n));
+  }
+  nodes_.resize(static_cast<std::size_t>(n / dimension_));
+  Index first = 0;
+  for (Node& node : nodes_) {
+    node.mass = system_->mass()[first];
+    first += dimension_;
+  }
 }
 
 void Reduced::leave_out_pins() {
@@ -214,6 +239,7 @@ void Reduced::check(const Scene& scene) const {
 
 void Reduced::expand(const State& state, bool falls, std::vector<Node>& nodes) const {
   if (nodes.empty()) nodes = nodes_;
+  if (is_own_) return expand_own(state, nodes);
   Index at = 0;
   for (const Part& part : parts_) {
     const Index n = part.initial().q.size();
@@ -231,7 +257,21 @@ void Reduced::expand(const State& state, bool falls, std::vector<Node>& nodes) c
   for (const Series& series : series_) series.place(nodes);
 }
 
+void Reduced::expand_own(const State& state, std::vector<Node>& nodes) const {
+  Index at = 0;
+  for (Node& node : nodes) {
+    node.position.head(dimension_) = state.q.segment(at, dimension_);
+    node.velocity.head(dimension_) = state.v.segment(at, dimension_);
+    at += dimension_;
+  }
+}
+
 std::vector<std::vector<std::size_t>> Reduced::nodes_by_part() const {
+  if (is_own_) {
+    std::vector<std::size_t> all(nodes_.size());
+    std::iota(all.begin(), all.end(), 0);
+    return {all};
+  }
   std::vector<std::vector<std::size_t>> nodes;
   std::vector<std::size_t> part_of(nodes_.size(), parts_.size());
   for (const Part& part : parts_) {
@@ -247,6 +287,7 @@ std::vector<std::vector<std::size_t>> Reduced::nodes_by_part() const {
 }
 
 std::vector<Index> Reduced::unknowns_by_part() const {
+  if (is_own_) return {system_->size()};
   std::vector<Index> unknowns;
   for (const Part& part : parts_) unknowns.push_back(part.initial().q.size());
   return unknowns;
@@ -254,6 +295,10 @@ std::vector<Index> Reduced::unknowns_by_part() const {
 
 std::vector<std::size_t> Reduced::massless_nodes() const {
   std::vector<std::size_t> massless;
+  for (Index first = 0; is_own_ && first < system_->size(); first += dimension_) {
+    if ((system_->mass().segment(first, dimension_).array() == 0).any())
+      massless.push_back(static_cast<std::size_t>(first / dimension_));
+  }
   for (const Part& part : parts_) {
     for (const std::size_t node : part.nodes()) {
       if (nodes_[node].mass == 0) massless.push_back(node);

@@ -10,29 +10,32 @@
 #include "qddot/scene/reduce/part_members.hpp"
 #include "qddot/scene/reduce/reductions.hpp"
 #include "qddot/scene/reduce/series.hpp"
-#include "qddot/scene/reduce/way_back.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot::reduce {
 
 // The contents of a ReducedScene and the steps that make it; the functions are documented there.
-class Reduced final : public WayBack {
+class Reduced {
  public:
   Reduced(const Scene& scene, const Reductions& reductions);
+  // Of a caller's own system: it has no part, and its nodes are its unknowns.
+  Reduced(std::shared_ptr<const System> system, State initial, int dimension);
 
-  const System& system() const override { return *system_; }
-  const State& initial() const override { return initial_; }
-  int dimension() const override { return dimension_; }
-  const std::vector<Finding>& findings() const override { return findings_; }
-  const std::vector<Part>& parts() const override { return parts_; }
+  const System& system() const { return *system_; }
+  const State& initial() const { return initial_; }
+  int dimension() const { return dimension_; }
+  const std::vector<Finding>& findings() const { return findings_; }
+  const std::vector<Part>& parts() const { return parts_; }
 
-  void expand(const State& state, bool falls, std::vector<Node>& nodes) const override;
-  double kinetic(const State& state) const override;
-  double potential(const State& state) const override;
-  double energy(const State& state) const override;
-  std::vector<std::size_t> massless_nodes() const override;
-  std::vector<std::vector<std::size_t>> nodes_by_part() const override;
-  std::vector<Index> unknowns_by_part() const override;
+  // Does ReducedScene::expand if `falls`, else expand_beside_falls. `nodes`: empty, or the result
+  // of an earlier call.
+  void expand(const State& state, bool falls, std::vector<Node>& nodes) const;
+  double kinetic(const State& state) const;
+  double potential(const State& state) const;
+  double energy(const State& state) const;
+  std::vector<std::size_t> massless_nodes() const;
+  std::vector<std::vector<std::size_t>> nodes_by_part() const;
+  std::vector<Index> unknowns_by_part() const;
 
  private:
   // A node that moves in closed form, x = x0 + v0 t + 1/2 g t^2. It is on no spring, or in a part
@@ -47,6 +50,8 @@ class Reduced final : public WayBack {
   // Calls action(part, its q, its v) for each part that falls as a whole.
   template <class Action>
   void for_falling(const State& state, const Action& action) const;
+
+  void expand_own(const State& state, std::vector<Node>& nodes) const;
 
   // The steps of the reduction, in order.
   void leave_out_pins();
@@ -69,15 +74,16 @@ class Reduced final : public WayBack {
     findings_.push_back({reduction, std::move(what)});
   }
 
+  bool is_own_ = false;      // of a caller's own system, not of a scene
   std::vector<Node> nodes_;  // as drawn, with condensed ones at their places
   int dimension_;
-  Eigen::Vector3d gravity_;
+  Eigen::Vector3d gravity_{0, 0, 0};
   std::optional<double> stiff_above_;
   std::vector<Series> series_;
   std::vector<Flying> flying_;
   std::size_t resting_ = 0;  // parts that rest in their fall
   std::vector<Part> parts_;
-  std::unique_ptr<System> system_;
+  std::shared_ptr<const System> system_;
   double static_energy_ = 0;  // of springs between pinned nodes, and of the parts' origins
   State initial_;
   std::vector<Finding> findings_;

@@ -11,7 +11,7 @@ namespace qddot {
 
 namespace reduce {
 class Part;
-class WayBack;
+class Reduced;
 }  // namespace reduce
 
 // The smallest System that moves exactly as a scene does. It also tells what is left out and why,
@@ -37,8 +37,9 @@ class ReducedScene {
   // equilibrium. Throws std::logic_error, in a sentence, if the start differs from the scene's for
   // every set of reductions: a defect of this class.
   explicit ReducedScene(const Scene& scene, const Reductions& reductions = {});
-  // Takes a system of the caller's own without any reduction: each node has `dimension` unknowns,
-  // node after node. Throws std::invalid_argument, in a sentence, if the sizes are not allowed.
+  // Takes a system of the caller's own, of which nothing is left out: node i has the unknowns
+  // dimension i to dimension (i + 1) - 1, none is pinned, and all energy is the system's. Throws
+  // std::invalid_argument, in a sentence, if the dimension or the sizes are not allowed.
   ReducedScene(std::shared_ptr<const System> system, State initial, int dimension);
   ~ReducedScene();
   ReducedScene(ReducedScene&&) noexcept;
@@ -79,7 +80,7 @@ class ReducedScene {
   std::vector<Index> unknowns_by_part() const;
 
  private:
-  std::unique_ptr<const reduce::WayBack> way_back_;
+  std::unique_ptr<const reduce::Reduced> reduced_;
 };
 
 }  // namespace qddot
