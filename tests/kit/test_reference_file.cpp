@@ -9,7 +9,8 @@
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_file.hpp"
-#include "tests/programs/process.hpp"
+#include "tests/folder.hpp"
+#include "tests/fragments.hpp"
 
 BOOST_AUTO_TEST_SUITE(reference_file)
 

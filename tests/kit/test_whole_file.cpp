@@ -3,7 +3,8 @@
 #include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
-#include "tests/programs/process.hpp"
+#include "tests/folder.hpp"
+#include "tests/fragments.hpp"
 
 BOOST_AUTO_TEST_SUITE(whole_file)
 

@@ -11,7 +11,8 @@
 #include "experiments/kit/study.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
-#include "tests/programs/process.hpp"
+#include "tests/folder.hpp"
+#include "tests/fragments.hpp"
 
 BOOST_AUTO_TEST_SUITE(study)
 
