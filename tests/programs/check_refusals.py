@@ -31,9 +31,37 @@ SCENES = {
     "bytes.toml": "\xff\xfe\x01",
 }
 
+STUDIES = "work_precision,convergence,stability_map,energy_drift,exchange,stock_sundials,reversal"
 # A command line a line, and what its sentence has to hold. For {a,b} each of these stands, and {} (or
-# {0}, {1} for several) for the same one on the right. "OUT" is short for "--out out".
+# {0}, {1} for several) for the same one on the right. "OUT" is short for "--out out", and STUDIES are
+# those of a scene by several methods.
 TABLE = """
+{STUDIES,modes,motions,solvers,advise --accuracy 1e-3} OUT | --scene is missing
+{simulate,simulate --write-scene s.toml,equilibrium} | --scene is missing
+{STUDIES,modes,motions,solvers} --scene fpu | --out is missing
+{crossover,local_global,scaling,symmetric_roots,verdicts,advice} | --out is missing
+{STUDIES,modes,solvers} --scene carpet OUT | carpet | allowed
+{simulate --write-scene s.toml,equilibrium} --scene carpet | carpet | allowed
+{STUDIES} --scene fpu --methods leapfrog OUT | --methods: leapfrog is not a method | allowed
+{crossover,scaling} --methods leapfrog OUT | --methods: leapfrog is not a method | allowed
+{work_precision,energy_drift,stock_sundials} --scene fpu --methods ida,ida OUT | --methods: ida is named twice
+{exchange,reversal,stability_map} --scene fpu --methods verlet,verlet OUT | --methods: verlet is named twice
+solvers --scene cloth --solvers klu,klu OUT | --solvers: klu is named twice; allowed is once
+{work_precision,convergence,exchange} --scene fpu --no-reduce gravity OUT | --no-reduce | gravity | allowed are pins, duplicates, massless
+{scaling --no-reduce gravity OUT,simulate --scene chain --explain --no-reduce gravity} | --no-reduce | gravity is not a reduction
+{crossover --ratios 1,local_global,symmetric_roots} --scene cloth OUT | --scene
+{work_precision,stock_sundials} --scene orbit --step-size 1 OUT | --step-size
+work_precision --scene orbit {--point-limit,--until} {0,nan} OUT | {} {} is not allowed | greater than 0
+energy_drift --scene orbit {--step-size,--until,--rtol,--method-limit} {0,nan} OUT | {} {} is not allowed | greater than 0
+exchange --scene fpu {--h-omega,--until,--every} {0,nan} OUT | {} {} is not allowed | greater than 0
+stability_map --scene orbit {--until,--cell-limit,--tolerated,--amplitudes} {0,nan} OUT | {} {} is not allowed | greater than 0
+stock_sundials --scene orbit {--rtol,--point-limit} {0,nan} OUT | {} {} is not allowed | greater than 0
+crossover --ratios 1 {--until,--point-limit} {0,nan} OUT | {} {} is not allowed | greater than 0
+local_global {--stiffness,--step-size,--until,--stiffnesses} {0,nan} OUT | {} {} is not allowed | greater than 0
+scaling {--step-size,--point-limit,--memory-limit,--least-nodes,--most-nodes} {0,nan} OUT | {} {} is not allowed
+simulate --scene cloth --time-limit {0,nan} | --time-limit {} is not allowed | greater
+{work_precision --scene orbit,stock_sundials --scene orbit,crossover --ratios 1,local_global} --repeats {0,1001} OUT | --repeats {1} | from 1 to 1000
+
 advise --scene orbit --until 1 OUT | --accuracy is missing
 advise --scene orbit --until 1 --accuracy {0,nan,1e-40,10} OUT | --accuracy | from 1e-14 | below 1
 simulate --scene orbit --until 1 --accuracy {0,nan,1e-40,10} --final f.csv | --accuracy | from 1e-14 | below 1
@@ -42,7 +70,6 @@ simulate --scene orbit --until 1 --accuracy 1e-3 --rtol 1e-3 --final f.csv | --r
 simulate --scene orbit --until 1 --accuracy 1e-3 --accuracy-of speed | --accuracy-of speed | positions, path and energy
 simulate --scene orbit --until 1 --accuracy-of path --method verlet --step-size 0.1 | --accuracy-of
 
-simulate | --scene | missing
 simulate --scene oscillator --method {ida,arkode_dirk2,dprkn8} --rtol 1e-30 --final f.csv | --rtol 1e-30 | 1e-15
 simulate --scene flying.toml --method verlet --step-size 0.1 --final f.csv | --until | missing | greater than 0
 simulate --scene empty.toml --method verlet --step-size 0.1 --final f.csv | empty.toml | nodes
@@ -59,15 +86,10 @@ simulate --scene . --method verlet --step-size 0.1 --final f.csv | .:
 simulate --scene oscillator --method verlet --step-size 0.1 --final f.csv --energy {f.csv,./f.csv,f.json,f} --every 1 | {}
 simulate --scene orbit --method verlet --step-size 0.01 --every 0.1 --trajectory g.csv --energy e.csv --every 0.2 | --every | 0.1 | --trajectory
 simulate --scene orbit --method verlet --step-size 0.01 --every 0.1 | --every | --trajectory | --energy | --motion
-simulate --scene cloth --time-limit 0 | --time-limit 0 | greater
 
-simulate --scene orbit --write-scene s.toml --final f.csv | --method | missing
-simulate --scene orbit --write-scene s.toml --energy e.csv --every 1 | --method | missing
 simulate --scene orbit --write-scene s.toml {--step-size,--until} 0.1 | --method | missing
 simulate --scene orbit --method verlet --step-size 0.1 --final f.csv --energy e.csv --every 1 --write-scene {f.csv,./f.csv,f.json,e.csv,e.json} | --write-scene | {} | another output | allowed
 simulate --scene dimension.toml --write-scene s.toml | dimension.toml:1 | dimension
-simulate --scene carpet --write-scene s.toml | carpet
-simulate --write-scene s.toml | --scene | missing
 simulate --scene orbit --write-scene '' | --write-scene
 simulate --scene orbit --write-scene none/s.toml | none/s.toml | cannot be written | allowed
 simulate --scene orbit --method verlet --step-size 0.1 --write-scene s.toml --final none/f.csv | none/f.csv | cannot be written
@@ -88,54 +110,32 @@ simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.0
 simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion a:b.vtkhdf | a:b.vtkhdf | colons
 simulate --scene huge.toml --method verlet --step-size 1e-4 --until 0.05 --every 0.01 --motion {m.vtkhdf,m.pc2} | 32-bit
 
-crossover --ratios 1 | --out | missing
 crossover --ratios {0,0.5,nan,1e10} OUT | --ratios | from 1 to 1e+09
 crossover --ratios 10,1,10 OUT | --ratios: 10 | twice
 crossover --ratios 10,many OUT | --ratios | many | allowed
 crossover --nodes {3,1001} --ratios 1 OUT | --nodes | {} | from 4 to 1000
-crossover --nodes 5 --ratios 1 {--until,--point-limit} {0,nan} OUT | {} | {} | greater than 0
 crossover --nodes 5 --ratios 1 --family carpet OUT | --family | carpet | allowed | whole
-crossover --nodes 5 --ratios 1 --methods leapfrog OUT | --methods | leapfrog | allowed
-crossover --nodes 5 --ratios 1 --methods ida,ida OUT | --methods | ida | twice
 crossover --nodes 5 --ratios 1 --methods exact OUT | exact | allowed
 crossover --nodes 5 --ratios 1 --until 0.01 --methods arkode_imex3 OUT | arkode_imex3 | stiff
-crossover --nodes 5 --ratios 1 --scene cloth OUT | --scene
 
-energy_drift OUT | --scene is missing
-energy_drift --scene orbit | --out is missing
-energy_drift --scene nothing OUT | nothing
-energy_drift --scene orbit --step-size 0 OUT | --step-size 0 | greater than 0
-energy_drift --scene orbit --until -1 OUT | --until -1 | greater than 0
 energy_drift --scene orbit --step-size 1 --until 0.5 OUT | --until 0.5 | 0.5 steps
 energy_drift --scene orbit --step-size 1e-9 --until 1e9 OUT | 1e+18 steps
-energy_drift --scene orbit --rtol 0 OUT | --rtol 0 | greater than 0
-energy_drift --scene orbit --method-limit 0 OUT | --method-limit 0
-energy_drift --scene orbit --methods nothing OUT | nothing is not a method
 energy_drift --scene flying.toml OUT | --step-size is missing | flying.toml
 
-equilibrium | --scene is missing
-equilibrium --scene nothing | nothing
 equilibrium --scene cloth --final '' | --final is missing
 equilibrium --scene cloth --final none/e.csv | none/e.csv
 equilibrium --scene cloth --finall x | --finall
 
-exchange OUT | --scene | missing
-exchange --scene fpu | --out | missing
 exchange --scene cloth OUT | cloth: stiff_above: it is missing
 exchange --scene framed_cloth OUT | framed_cloth | without energy
-exchange --scene fpu {--h-omega,--until,--every} {0,nan} OUT | {} | {} | greater than 0
 exchange --scene fpu --h-omega 1,0.1,1 OUT | --h-omega: 1 is named twice
 exchange --scene fpu --h-omega 5e-324 OUT | --h-omega | h = 0 | greater than 0
 exchange --scene fpu --h-omega 1e-18 OUT | --h-omega 1e-18 | at least
 exchange --scene fpu --until 0.9 OUT | --until 0.9 | ten steps | 1 s
 exchange --scene fpu --every 21 OUT | --every 21 | tenth
-exchange --scene fpu --methods leapfrog OUT | leapfrog is not a method
 exchange --scene fpu --methods rodas4,cvode_bdf OUT | rodas4, cvode_bdf | fixed step
-exchange --scene fpu --methods verlet,verlet OUT | verlet is named twice
 exchange --scene fpu --methods exact OUT | exact needs a K
-exchange --scene fpu --no-reduce walls OUT | walls is not a reduction
 
-local_global | --out | missing
 local_global --step-size 1e-300 OUT | --step-size | at least
 local_global --step-size 1e300 OUT | --step-size | not allowed
 local_global --step-size 1e6 OUT | --step-size | at most | 1e+07 steps
@@ -146,12 +146,8 @@ local_global --swing 1e6 OUT | --swing | at most
 local_global --iterations 1000000000 OUT | --iterations | 100000
 local_global --nodes {2,401} OUT | --nodes | {} | from 3 to 400
 local_global --resolutions 4,2 OUT | --resolutions 2 | from 3 to 400
-local_global --stiffnesses 1,0 OUT | --stiffnesses 0 | greater than 0
 local_global --iterations 0 OUT | --iterations 0 | from 1 to
-local_global --repeats 0 OUT | --repeats 0 | from 1 to 1000
-local_global {--stiffness,--step-size,--until} {0,nan} OUT | {} | {} | greater than 0
 local_global --swing -1 OUT | --swing -1 | at least 0
-local_global --scene cloth OUT | --scene
 
 simulate --scene orbit --method ida --rtol 1e-3 --max-order {0,-1,6,100} | --max-order {} is not allowed | from 1 to 5
 simulate --scene orbit --method ida --rtol 1e-3 --max-order {text,1.5,nan,99999999999999999999} | --max-order | {} | allowed is a number
@@ -172,89 +168,50 @@ work_precision --scene orbit --methods ida --max-order 13 OUT | --max-order 13 |
 work_precision --scene orbit --methods hht --spectral-radius 1.5 OUT | --spectral-radius 1.5 | from 0 to 1
 simulate --scene orbit --method exact --step-size 1 | orbit | exact | verlet
 work_precision --scene orbit --methods exact OUT | orbit | exact
-simulate --scene chain --explain --no-reduce gravity | --no-reduce | gravity | allowed are pins, duplicates, massless
-{work_precision,convergence} --scene chain --no-reduce gravity OUT | --no-reduce | gravity | allowed are pins, duplicates, massless
 
-modes OUT | --scene is missing
-modes --scene cloth | --out is missing
-modes --scene nothing OUT | nothing
 modes --scene cloth --count {0,1001} OUT | --count {} | from 1 to 1000
 modes --scene cloth --count many OUT | --count | many
 modes --scene cloth --at rest OUT | --at: rest | drawn or equilibrium
 modes --scene falling.toml --at equilibrium OUT | falling.toml | falls for ever
 
-motions --scene pendulum | --out is missing
-motions --out . | --scene is missing
 
 reversal --scene pendulum --steps -1 OUT | --steps -1 is not allowed
 reversal --scene pendulum --methods ida OUT | ida chooses its steps by itself
-reversal --scene pendulum --methods leap OUT | leap is not a method
 
-scaling | --out | missing
 scaling --scenes chain,rope OUT | rope | chain, cloth, lattice
 scaling --scenes chain,chain OUT | chain | twice
-scaling --methods verlett OUT | verlett | verlet
 scaling --solvers lu OUT | --solvers: lu | conjugate_gradients
 scaling --solvers cholmod,cholmod OUT | cholmod | twice
 scaling --methods dprkn8 OUT | dprkn8 | fixed step
 scaling --most-nodes 1e8 OUT | --most-nodes | 1e+07
 scaling --least-nodes 2000 --most-nodes 1000 OUT | --least-nodes 2000 | --most-nodes 1000
 scaling --sizes 0 OUT | --sizes 0 | from 1 to
-scaling --no-reduce nothing OUT | nothing | not a reduction
-scaling {--step-size,--point-limit,--memory-limit,--least-nodes,--most-nodes} {0,nan} OUT | {} | {}
 
 solvers --scene cloth --solvers multifrontal,lu OUT | --solvers: lu is not a solver; allowed are multifrontal, cholmod, eigen, klu
-solvers --scene cloth --solvers klu,klu OUT | --solvers: klu is named twice; allowed is once
 
-stability_map --scene pendulum | --out
-stability_map --scene nowhere OUT | nowhere
-stability_map --scene pendulum --methods verlt OUT | --methods | verlt | allowed
 stability_map --scene pendulum --columns 0 OUT | --columns | 0 | 1 to
 stability_map --scene pendulum --low -1 OUT | --low | -1
 stability_map --scene pendulum --low 3 --high 2 OUT | --high | 2 | 3
 stability_map --scene pendulum --vary colour OUT | colour | mass
-stability_map --scene oscillator --amplitudes 0 OUT | --amplitudes | 0
 stability_map --scene strut --vary compression --amplitudes 1e9,2 OUT | compression = 1000000000 | not allowed
-stability_map --scene pendulum --cell-limit nan OUT | --cell-limit
-stability_map --scene pendulum --tolerated 0 OUT | --tolerated | 0
-stability_map --scene pendulum --until -2 OUT | --until | -2
 
-stock_sundials --scene pendulum | --out | missing
-stock_sundials OUT | --scene | missing
-stock_sundials --scene carpet OUT | carpet | allowed
 stock_sundials --scene pendulum --methods {verlet,arkode_erk4,arkode_trbdf2,cvode_adams,ida_klu} OUT | --methods | {} | stock | allowed
 stock_sundials --scene pendulum --methods ida,verlet OUT | --methods | verlet
-stock_sundials --scene pendulum --methods leapfrog OUT | --methods | leapfrog | allowed
-stock_sundials --scene pendulum --methods ida,ida OUT | --methods | ida | twice
-stock_sundials --scene pendulum {--rtol,--point-limit} {0,nan} OUT | {} | {} | greater than 0
-stock_sundials --scene pendulum --rtol 1e-3,0 OUT | --rtol 0 | greater than 0
 stock_sundials --scene pendulum --rtol 1e-3,1e300 OUT | --rtol 1e+300 | below 1
 stock_sundials --scene pendulum --rtol text OUT | --rtol | text | allowed
-stock_sundials --scene pendulum --step-size 1 OUT | --step-size
 
-symmetric_roots | --out is missing
-symmetric_roots --samples 0 OUT | --samples 0 | from 1 to 100000
 symmetric_roots --samples 100001 OUT | --samples 100001
 symmetric_roots --samples many OUT | --samples | many
 symmetric_roots --at {0,2.1,nan} OUT | --at | {} | from 0.01 to 2
-symmetric_roots --scene cloth OUT | --scene
 
-verdicts | --out is missing
 verdicts --seeds 0 OUT | --seeds 0
 verdicts --cells 1 OUT | --cells 1
 verdicts --kinds nothing OUT | no kind "nothing" | random walk
 
-work_precision OUT | --scene | missing
-work_precision --scene orbit | --out | missing
-work_precision --scene carpet OUT | carpet | allowed
 work_precision --scene orbit --out /proc/none | --out | /proc/none | allowed
 work_precision --scene orbit --out /etc/passwd | /etc/passwd | allowed
-work_precision --scene orbit --methods verlet,ida,verlet OUT | --methods | verlet | twice
-work_precision --scene orbit {--point-limit,--until} {0,nan} OUT | {} | {} | not allowed | greater than 0
 work_precision --scene orbit OUT {--point-limit,--until} {text,} | {} | {}
-{work_precision --scene orbit,stock_sundials --scene pendulum,crossover --ratios 1} --repeats {0,1001} OUT | --repeats {1} | from 1 to 1000
 work_precision --scene orbit --repeats {1.5,text,99999999999999999999} OUT | --repeats | {}
-work_precision --scene orbit --step-size 1 OUT | --step-size
 work_precision --scene massless.toml --methods verlet OUT | massless.toml | nodes[1].mass | allowed
 work_precision --scene flying.toml --methods verlet OUT | --until | missing
 """
@@ -268,7 +225,7 @@ TAKEN = {
     "stability_map --scene orbit --until 1": ("map.csv", "limits.csv"),
 }
 # Studies of a sweep, and what the sentence holds beside the file's name.
-STUDIES = """
+SWEEPS = """
 scenes = ["cloth"]; method = ["verlet"] | study.toml:2: method: it is an unknown key; allowed are
 scenes = [] | :1: scenes: [] is not allowed
 until = 1 | scenes: it is missing
@@ -319,7 +276,7 @@ def lines_of(text):
 
 def expanded(command, fragments):
     """The command lines of a line of the table, each with its fragments."""
-    command = re.sub(r"\bOUT\b", "--out out", command)
+    command = re.sub(r"\bOUT\b", "--out out", command).replace("STUDIES", STUDIES)
     choices = [choice.split(",") for choice in re.findall(r"\{(.*?)\}", command)]
     for values in itertools.product(*choices):
         rest = iter(values)
@@ -354,7 +311,7 @@ class Refusals(Programs):
                 self.refused(command, *fragments)
 
     def test_studies_of_a_sweep(self):
-        for text, fragments in lines_of(STUDIES):
+        for text, fragments in lines_of(SWEEPS):
             write("study.toml", text.replace("; ", "\n").replace("MANY", MANY) + "\n")
             with self.subTest(text):
                 self.refused("sweep plan study.toml --out S", "study.toml", *fragments)
