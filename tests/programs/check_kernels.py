@@ -1,7 +1,7 @@
 """Runs are the same to the bit at every width of the kernels and with all kinds of roots.
 
-Springs are added in the same order at every width, all operations are the same, and so are roots and
-quotients. The lowest level has no fused products and rounds otherwise.
+Springs are added in the same order at every width, all operations are the same, and so are roots
+and quotients. The lowest level has no fused products and rounds otherwise.
 """
 
 import os

@@ -13,30 +13,14 @@ from programs import Programs, words_of
 from studies import STUDIES, write_scenes
 
 COLUMNS = 60
+PROGRESS = r"\r([^\r\n\x1b]*)\x1b\[K"
 LONG = "--scene steady.toml --repeats 1000 --point-limit 1000 --until 0.02"
 
 
-def rows_of(written):
-    """The rows of a terminal on which this was written, wiped lines left out, and all lines of
-    progress that were there (which a carriage return begins and ESC [K cuts at the cursor)."""
-    rows, column, seen = [""], 0, []
-    for piece in re.findall(r"\r\n|\r|\n|\x1b\[K|[^\r\n\x1b]+|\x1b", written):
-        if piece in ("\n", "\r\n"):
-            rows, column = [*rows, ""], 0
-        elif piece == "\r":
-            column = 0
-        elif piece == "\x1b[K":
-            rows[-1] = rows[-1][:column]
-            seen.append(rows[-1])
-        else:  # a lone escape, as of a colour, stays to be seen
-            rows[-1] = rows[-1][:column] + piece + rows[-1][column + len(piece) :]
-            column += len(piece)
-    return [row for row in rows if row], [line for line in seen if line]
-
-
 def in_terminal(line, interrupt_at="", term="xterm"):
-    """The exit status, the rows and the lines of progress of a command line in a terminal of its own. It
-    is interrupted by Ctrl-C once it has written the fragment."""
+    """The exit status, what stays and the lines of progress of a command in a terminal of its own.
+    Such a line stands between a carriage return and ESC [K; an empty one wipes it at the end. The
+    command is interrupted by Ctrl-C once it has written the fragment."""
     master, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
 
@@ -60,7 +44,10 @@ def in_terminal(line, interrupt_at="", term="xterm"):
             os.write(master, b"\x03")
             interrupt_at = ""
     os.close(master)
-    return process.wait(), *rows_of(written.decode())
+    text = written.decode().replace("^C", "")
+    seen = re.findall(PROGRESS, text)
+    is_wiped = seen[-1:] in ([], [""])
+    return process.wait(), re.sub(PROGRESS, "", text) if is_wiped else text, seen
 
 
 class Progress(Programs):
@@ -72,8 +59,8 @@ class Progress(Programs):
         for program in "convergence energy_drift exchange stability_map work_precision".split():
             with self.subTest(program):
                 line = f"{program} {STUDIES[program]} --out {program}"
-                status, rows, seen = in_terminal(line)
-                self.assertEqual((status, rows), (0, []))
+                status, left, seen = in_terminal(line)
+                self.assertEqual((status, left), (0, ""))
                 self.assertTrue(any(re.search(r"\d:\d\d", line) for line in seen), seen)
                 self.assertLess(max(map(len, seen)), COLUMNS)
 
@@ -85,17 +72,16 @@ class Progress(Programs):
             (study + " --resume", "/", "kept from before"),
             (cloth, "t = ", ""),
         ):
-            status, rows, seen = in_terminal(line, fragment)
+            status, said, seen = in_terminal(line, fragment)
             self.assertEqual(status, 130)
-            said = re.sub(r"\^C", "", "".join(rows))
-            self.assertRegex(said, f"^{line.split()[0]}: .*interrupted by SIGINT")
+            self.assertRegex(said, f"(?s)^{line.split()[0]}: .*interrupted by SIGINT")
             self.assertIn(words, said)
             self.assertTrue(seen)
 
     def test_a_pipe_and_a_dumb_terminal_get_none_of_it(self):
         line = f"work_precision {STUDIES['work_precision']} --out out"
         self.assertEqual(in_terminal(line, term="dumb")[0::2], (0, []))
-        self.assertEqual(in_terminal(line + " --progress none"), (0, [], []))
+        self.assertEqual(in_terminal(line + " --progress none"), (0, "", []))
         self.assertNotRegex(self.done(line).stderr, "[\r\x1b]")
 
 

@@ -4,23 +4,24 @@ import math
 import os
 import unittest
 
-from programs import Programs, header, read, run, sidecar, study, table, write
+from programs import (
+    CHAOS, Programs, header, node, pin, read, scene, sidecar, spring, study, table, write,
+)  # fmt: skip
 
 # n masses of 1 kg on springs of 100 N/m between two walls in 1D, at rest:
 # w_j = 20 sin(j pi / (2 (n + 1))) rad/s.
 ROW = 30
-CHAOS = 'until = 12\n[generator]\nkind = "chain"\nnodes = 4\nstiffness = 1000\n'
 
 
 def row(n):
-    ends = (0, n + 1)
-    nodes = [f"{{position = [{i}], {'pinned = true' if i in ends else 'mass = 1'}}}" for i in range(n + 2)]
-    springs = [f"{{nodes = [{i}, {i + 1}], stiffness = 100}}" for i in range(n + 1)]
-    return f"dimension = 1\nnodes = [{', '.join(nodes)}]\nsprings = [{', '.join(springs)}]\n"
+    nodes = [pin(0), *(node(i, mass=1) for i in range(1, n + 1)), pin(n + 1)]
+    return scene(nodes, [spring(i, i + 1, 100) for i in range(n + 1)])
 
 
 FILES = {"row.toml": row(ROW)}
-CONVERGENCE = "convergence --scene pendulum --until 1 --methods verlet,blanes_moan6,kahan_li8 --out out"
+CONVERGENCE = (
+    "convergence --scene pendulum --until 1 --methods verlet,blanes_moan6,kahan_li8 --out out"
+)
 REVERSAL = (
     "reversal --scene pendulum --until 1 --steps 0.01,0.005 --methods verlet,rk4,implicit_euler"
     " --out out"
@@ -57,7 +58,8 @@ TABLES = {
     DRIFT: (
         {
             "drift": "method,t,energy,relative_error,knob,value",
-            "summary": "method,outcome,drift_rate,drift_rate_low,drift_rate_high,oscillation,verdict,knob,value,",
+            "summary": "method,outcome,drift_rate,drift_rate_low,drift_rate_high,oscillation,"
+            "verdict,knob,value,",
             "tolerance": "method,rtol,periods,outcome,drift_rate,drift_rate_low,drift_rate_high,"
             "energy_error_end,steps,time_s",
         },
@@ -156,16 +158,16 @@ class Rest(Programs):
 
     def test_nodes_at_rest_are_written_as_simulate_writes_them(self):
         # The pendulum hangs longer by its weight over its stiffness.
-        for scene, columns, end in (
+        for drawn, columns, end in (
             ("oscillator", "node,x,vx", {"node": 1, "x": 0, "vx": 0}),
             ("pendulum", "node,x,y,z,vx,vy,vz", {"z": -1 - 9.81 / 1000, "vx": 0, "vz": 0}),
             ("lattice", "node,x,y,z,vx,vy,vz", {"vx": 0}),
         ):
-            ended = self.done(f"equilibrium --scene {scene} --final e.csv")
+            ended = self.done(f"equilibrium --scene {drawn} --final e.csv")
             self.assertEqual((header("e.csv"), ended.stderr), (columns, ""))
             for name, value in end.items():
                 self.near(table("e.csv")[1][name], value, 1e-12)
-            self.holds(ended.stdout, scene, "largest force", "energy", "isolated minimum")
+            self.holds(ended.stdout, drawn, "largest force", "energy", "isolated minimum")
             origin = sidecar("e.json")
             self.assertEqual((origin["outcome"], origin["isolated"]), ("reached", True))
             smallest = f"{origin['smallest_eigenvalue']:.6g} N/m"
@@ -174,11 +176,12 @@ class Rest(Programs):
 
     def test_scenes_that_are_loose_or_never_rest(self):
         self.holds(self.done("equilibrium --scene pair").stdout, "not known to be isolated")
-        write("falling.toml", "dimension = 1\ngravity = [-1]\nnodes = [{position = [0], mass = 1}]\n")
+        write("falling.toml", scene([node(0, mass=1)], gravity=[-1]))
         self.complains(
             "equilibrium --scene falling.toml --final e.csv", 3, "no equilibrium", "falls for ever"
         )
-        self.assertEqual((sidecar("e.json")["outcome"], sidecar("e.json")["residual"]), ("unbounded", 1))
+        origin = sidecar("e.json")
+        self.assertEqual((origin["outcome"], origin["residual"]), ("unbounded", 1))
         self.done("modes --scene falling.toml --out out")
 
     def test_both_ends_of_the_spectrum_have_their_closed_forms(self):
@@ -195,9 +198,10 @@ class Rest(Programs):
         self.assertEqual(len(shapes), 4 * (ROW + 2))
         for one in shapes:
             self.assertEqual(one["x"], one["node"])
-            sine = math.sin(one["mode"] * one["node"] * math.pi / (ROW + 1)) * math.sqrt(2 / (ROW + 1))
-            self.near(abs(one["dx"]), abs(sine), 1e-9)
-        self.assertEqual([one["j"] for one in done.table("out/springs.csv")], list(range(1, ROW + 2)))
+            sine = math.sin(one["mode"] * one["node"] * math.pi / (ROW + 1))
+            self.near(abs(one["dx"]), abs(sine) * math.sqrt(2 / (ROW + 1)), 1e-9)
+        ends = [one["j"] for one in done.table("out/springs.csv")]
+        self.assertEqual(ends, list(range(1, ROW + 2)))
         self.assertEqual(done.sidecar("out/modes.json")["finite_modes"], ROW)
         self.assertEqual(done.sidecar("out/modes.json")["at"], "drawn")
 
@@ -211,26 +215,15 @@ class Rest(Programs):
 
     def test_growth_soft_modes_and_zeros(self):
         # A mass on a spring that its weight compresses: w^2 = -g/l sideways and k/m along.
-        write(
-            "upright.toml",
-            "dimension = 2\ngravity = [0, -10]\n"
-            "nodes = [{position = [0, 0], pinned = true}, {position = [0, 0.9], mass = 1}]\n"
-            "springs = [{nodes = [0, 1], stiffness = 100, rest_length = 1}]\n",
-        )
+        nodes, springs = [pin(0, 0), node(0, 0.9, mass=1)], [spring(0, 1, 100, rest_length=1)]
+        write("upright.toml", scene(nodes, springs, gravity=[0, -10]))
         # The same beside a stiff spring: -g/l to the rounding of k, 1e-15 of 1e11 / s^2.
-        write(
-            "stands.toml",
-            "dimension = 2\ngravity = [0, -10]\n"
-            "nodes = [{position = [0, 0], pinned = true}, {position = [0, 1], mass = 0.01}]\n"
-            "springs = [{nodes = [0, 1], stiffness = 1e9, rest_length = 1.0000000001}]\n",
-        )
+        nodes = [pin(0, 0), node(0, 1, mass=0.01)]
+        springs = [spring(0, 1, 1e9, rest_length=1.0000000001)]
+        write("stands.toml", scene(nodes, springs, gravity=[0, -10]))
         # The second mass on its spring of 0.001 N/m, whose other end gives way by 1e-12 of it.
-        write(
-            "soft.toml",
-            "dimension = 1\nnodes = [{position = [0], pinned = true}, {position = [1], mass = 1}, "
-            "{position = [2], mass = 1}]\nsprings = [{nodes = [0, 1], stiffness = 1e9}, "
-            "{nodes = [1, 2], stiffness = 0.001}]\n",
-        )
+        nodes = [pin(0), node(1, mass=1), node(2, mass=1)]
+        write("soft.toml", scene(nodes, [spring(0, 1, 1e9), spring(1, 2, 0.001)]))
         for words, said, omegas, tolerance in (
             ("upright.toml", "unstable: 1", [-math.sqrt(10 / 0.9), 10], 1e-12),
             ("upright.toml --at equilibrium", "unstable: 0", [math.sqrt(10 / 1.1)], 1e-12),
@@ -248,12 +241,8 @@ class Rest(Programs):
         self.holds(ended.stdout, "0.001 N/m", "an isolated minimum")
 
     def test_a_massless_node_that_nothing_holds_has_no_modes(self):
-        write(
-            "loose.toml",
-            "dimension = 2\nuntil = 1\nnodes = [{position = [0, 0], pinned = true}, "
-            "{position = [1, 0], mass = 0}, {position = [2, 0], mass = 1, velocity = [1, 0]}]\n"
-            "springs = [{nodes = [0, 1], stiffness = 100}, {nodes = [1, 2], stiffness = 100}]\n",
-        )
+        nodes = [pin(0, 0), node(1, 0, mass=0), node(2, 0, mass=1, velocity=[1, 0])]
+        write("loose.toml", scene(nodes, [spring(0, 1, 100), spring(1, 2, 100)], until=1))
         for line in ("modes --scene loose.toml", "stability_map --scene loose.toml --methods ida"):
             self.complains(f"{line} --out out", 3, "massless node")
 
@@ -323,16 +312,12 @@ class Energies(Programs):
         line = "energy_drift --scene orbit --until 100 --methods verlet,rk4 --compensated --out out"
         self.done(line)
         self.assertEqual([one["compensated"] for one in table("out/summary.csv")], ["yes", "no"])
-        write(
-            "joint.toml",
-            "dimension = 2\ngravity = [0, -9.81]\n"
-            "nodes = [{position = [0, 0], pinned = true}, {position = [2, 0], pinned = true}, "
-            "{position = [1, 0], mass = 0}, {position = [1, -1], mass = 1}]\n"
-            "springs = [{nodes = [0, 2], stiffness = 100, rest_length = 0.9}, "
-            "{nodes = [1, 2], stiffness = 100, rest_length = 0.9}, {nodes = [2, 3], stiffness = 50}]\n",
-        )
-        self.done("energy_drift --scene joint.toml --methods bdf2,implicit_euler --until 20 --out out2")
-        self.assertIn("dissipates", table("out2/summary.csv")[1]["verdict"])
+        nodes = [pin(0, 0), pin(2, 0), node(1, 0, mass=0), node(1, -1, mass=1)]
+        springs = [spring(i, 2, 100, rest_length=0.9) for i in (0, 1)]
+        write("joint.toml", scene(nodes, [*springs, spring(2, 3, 50)], gravity=[0, -9.81]))
+        line = "energy_drift --scene joint.toml --methods bdf2,implicit_euler --until 20 --out joint"
+        self.done(line)
+        self.assertIn("dissipates", table("joint/summary.csv")[1]["verdict"])
 
     def test_verdicts_are_seldom_wrong_and_intervals_hold_what_is_true(self):
         done = made(VERDICTS)
@@ -349,7 +334,8 @@ class Energies(Programs):
         self.assertLessEqual(count(judgement="wrong"), 11)
         for kind in (  # each is told nearly always
             "noise", "sine, period T/4", "large drift over noise", "loss of a third, exponential",
-            "loss of 0.3 in the first fifth", "amplitude that grows as t", "blow-up", "round-off walk",
+            "loss of 0.3 in the first fifth", "amplitude that grows as t", "blow-up",
+            "round-off walk",
         ):  # fmt: skip
             self.assertGreaterEqual(count(kind=kind, judgement="right"), 2, kind)
         # And a walk is never claimed to be anything.
@@ -371,7 +357,7 @@ class Exchanges(Programs):
             self.near(h * 50, one["h_omega"], 1e-12)  # w to rounding
             self.near(t / h, round(t / h), 1e-8)  # whole steps
             if t == 0:
-                # The chain's positions of up to 70 m are right to 2e-14 m, k = 1250 N/m over 0.03 m.
+                # The chain's positions of up to 70 m are right to 2e-14 m, k = 1250 N/m on 0.03 m.
                 self.near(energy, spring in (0, "sum"), 1e-12)
             if spring == "sum":
                 self.near(energy, total, 1e-12 * energy)
@@ -415,14 +401,9 @@ class Exchanges(Programs):
 
     def test_springs_of_several_parts_are_followed_and_the_fastest_part_sets_w(self):
         # Two chains side by side. The second is softer and has no energy, so that it rests.
-        write(
-            "two.toml",
-            "dimension = 1\nuntil = 10\nstiff_above = 50\n"
-            "nodes = [{position = [0], mass = 2}, {position = [1.1], mass = 2},"
-            "{position = [10], mass = 1}, {position = [11], pinned = true}]\n"
-            "springs = [{nodes = [0, 1], stiffness = 400, rest_length = 1},"
-            "{nodes = [2, 3], stiffness = 100, rest_length = 1}]\n",
-        )
+        nodes = [node(0, mass=2), node(1.1, mass=2), node(10, mass=1), pin(11)]
+        springs = [spring(0, 1, 400, rest_length=1), spring(2, 3, 100, rest_length=1)]
+        write("two.toml", scene(nodes, springs, until=10, stiff_above=50))
         self.done("exchange --scene two.toml --methods verlet --h-omega 0.5 --out out")
         self.near(sidecar("out/summary.json")["omega"], 20, 1e-11)  # sqrt(400 / 1) against 10
         self.assertEqual(table("out/summary.csv")[1]["verdict"], "as it should: no exchange so far")
@@ -447,7 +428,8 @@ class Stability(Programs):
             self.near(one["h_limit_predicted"] / limit, 1, 1e-12)
             self.near(one["h_limit_measured"] / limit, 1, 1e-8)
             self.near(one["relative_difference"], 0, 1e-8)
-        self.assertEqual((implicit["h_limit_predicted"], implicit["h_limit_measured"]), (None, None))
+        for name in ("h_limit_predicted", "h_limit_measured"):
+            self.assertIsNone(implicit[name])
         self.holds(ended.stdout, "verlet", "2.828427125", "grows at every h", "none")
 
     def test_the_map_has_a_row_for_each_run_and_theory_beside_it(self):
@@ -466,13 +448,13 @@ class Stability(Programs):
         self.near(made(MAP).sidecar("out/map.json")["omega_max"], 10, 1e-11)
 
     def test_cells_beyond_all_numbers_and_all_steps_are_outcomes(self):
-        self.map("--scene oscillator --amplitudes 1 --methods verlet --low 1 --high 1e300 --columns 2")
+        verlet = "--scene oscillator --methods verlet --columns 2 "
+        self.map(verlet + "--amplitudes 1 --low 1 --high 1e300")
         one, other = table("out/map.csv")
         self.assertEqual(one["outcome"], "bounded")
         self.assertNotEqual(other["outcome"], "bounded")
         self.assertIsNone(other["predicted_growth_rate"])
-        long = "--until 1.7976931348623157e308 --columns 2 --cell-limit 0.003"
-        ended = self.map(f"--scene oscillator --methods verlet {long}")
+        ended = self.map(verlet + "--until 1.7976931348623157e308 --cell-limit 0.003")
         self.assertIn("over_budget", ended.stdout)
 
     def test_rows_vary_a_parameter_of_the_generator(self):

@@ -1,12 +1,14 @@
 """The chart of methods: its tables, the reference and the record beside them, and its motions."""
 
-import json
 import math
 import os
 import shutil
 import unittest
 
-from programs import Programs, header, read, rows_of, run, sidecar, study, table, write
+from programs import (
+    CHAOS, Programs, header, node, pin, read, rows_of, run, scene, sidecar, spring, study, table,
+    write,
+)  # fmt: skip
 
 COLUMNS = (
     "scene,method,knob,value,outcome,t_reached,error_position,error_velocity,error_energy,time_s,"
@@ -14,14 +16,15 @@ COLUMNS = (
     "solves,newton_iterations,"
 )
 MEASURED = "error_position error_velocity error_energy time_s time_min_s setup_s".split()
-# The oscillator runs long enough for Verlet to overflow above its limit; short runs make first-order
-# methods run out of time.
+# The oscillator runs long enough for Verlet to overflow above its limit; short runs make methods of
+# first order run out of time.
 CHARTS = {
     ("oscillator", "verlet,implicit_euler,arkode_dirk4,exact", 20),
     ("orbit", "explicit_euler,kahan_li8,ida", 0.5),
 }
 ORBIT = (
-    "work_precision --scene orbit --until 0.1 --methods verlet --accuracies 1e-2 --repeats 1 --out ."
+    "work_precision --scene orbit --until 0.1 --methods verlet --accuracies 1e-2 --repeats 1"
+    " --out ."
 )
 JUDGED = (
     "work_precision --scene oscillator --until 2 --methods verlet,rk4,ida,implicit_midpoint"
@@ -32,25 +35,27 @@ MOVED = (
     "work_precision --scene pendulum --until 1 --methods explicit_euler,verlet,kahan_li8,ida"
     " --point-limit 0.2 --repeats 1 --accuracies 1e-1,1e-3,1e-5 --out ."
 )
-CHAOS = 'until = 12\n[generator]\nkind = "chain"\nnodes = 4\nstiffness = 1000\n'
 # Three springs in a row between two pins, compressed.
-STRUT = "dimension = 2\nuntil = 0.7\nnodes = [{}]\nsprings = [{}]\n".format(
-    ", ".join(
-        f"{{position = [{x}, 0.0], velocity = [{v}, 0.0], mass = 0.1, pinned = {pinned}}}"
-        for x, v, pinned in ((0, 0, "true"), (0.9, 0.1, "false"), (1.8, -0.2, "false"), (2.7, 0, "true"))
-    ),
-    ", ".join(f"{{nodes = [{i}, {i + 1}], stiffness = 1000, rest_length = 1}}" for i in range(3)),
+STRUT = scene(
+    [
+        pin(0, 0),
+        node(0.9, 0, velocity=[0.1, 0], mass=0.1),
+        node(1.8, 0, velocity=[-0.2, 0], mass=0.1),
+        pin(2.7, 0),
+    ],
+    [spring(i, i + 1, 1000, rest_length=1) for i in range(3)],
+    until=0.7,
 )
 
 
 def charts():
     """The two charts, each with its scene, methods and horizon."""
-    for scene, methods, until in CHARTS:
+    for drawn, methods, until in CHARTS:
         line = (
-            f"work_precision --scene {scene} --until {until} --methods {methods} --point-limit 0.3"
+            f"work_precision --scene {drawn} --until {until} --methods {methods} --point-limit 0.3"
             " --repeats 1 --out deep/er"
         )
-        yield study(line), scene, methods.split(","), until
+        yield study(line), drawn, methods.split(","), until
 
 
 def reached(rows):
@@ -65,7 +70,7 @@ def copy_of(done, *names):
 class Charts(Programs):
     def test_it_writes_its_tables_and_their_sidecars(self):
         methods = {row["name"]: row for row in rows_of(run("simulate --list-methods --csv").stdout)}
-        for done, scene, names, _ in charts():
+        for done, drawn, names, _ in charts():
             out = done / "deep/er"
             written = "chart.json front.csv front.json points.csv points.json reference.json"
             self.assertEqual((sorted(os.listdir(out)), done.err), (written.split(), ""))
@@ -85,23 +90,23 @@ class Charts(Programs):
             self.assertEqual(origin["outcomes"].keys(), outcomes)
             self.assertTrue(all(origin["outcomes"].values()))
             reduced = origin["reduced"]
-            self.assertEqual(reduced["unknowns"], 2 if scene == "orbit" else 1)
+            self.assertEqual(reduced["unknowns"], 2 if drawn == "orbit" else 1)
             self.near(reduced["omega_max"], 10, 1e-9)
             self.assertEqual((reduced["parts"], reduced["unstable_directions"]), (1, 0))
 
     def test_each_method_has_its_points_in_the_order_asked_for(self):
-        for done, scene, names, _ in charts():
+        for done, drawn, names, _ in charts():
             rows = done.table("deep/er/points.csv")
             self.assertEqual(list(dict.fromkeys(row["method"] for row in rows)), names)
             for one, next_one in zip(rows, rows[1:]):
-                self.assertEqual(one["scene"], scene)
+                self.assertEqual(one["scene"], drawn)
                 self.assertEqual(one["knob"] == "rtol", one["method"] in ("ida", "arkode_dirk4"))
                 if one["method"] == next_one["method"]:
                     self.assertLess(next_one["value"], one["value"])
 
     def test_what_was_measured_is_there_and_the_rest_is_empty(self):
         outcomes = set()
-        for done, scene, _, until in charts():
+        for done, drawn, _, until in charts():
             rows = done.table("deep/er/points.csv")
             certified = done.sidecar("deep/er/reference.json")["certified_position"]
             outcomes |= {row["outcome"] for row in rows}
@@ -119,7 +124,7 @@ class Charts(Programs):
                 self.assertEqual(row["error_position_at_least"], max(error - certified, 0))
                 self.assertGreaterEqual(row["error_energy_max"], row["error_energy"])
                 # The orbit turns about its pin; the oscillator has nothing that turns.
-                self.assertEqual(row["error_momentum_max"] is None, scene == "oscillator")
+                self.assertEqual(row["error_momentum_max"] is None, drawn == "oscillator")
                 self.assertIsNone(row["error_modal_shares"])
             self.assertTrue(
                 any(row["error_energy_max"] > 2 * row["error_energy"] for row in reached(rows))
@@ -127,9 +132,9 @@ class Charts(Programs):
         self.assertLessEqual({"reached_end", "diverged", "over_budget"}, outcomes)
 
     def test_errors_are_those_of_the_closed_form(self):
-        for done, scene, _, _ in charts():
+        for done, drawn, _, _ in charts():
             rows = reached(done.table("deep/er/points.csv"))
-            rows = [row for row in rows if scene == "oscillator" and row["method"] == "verlet"]
+            rows = [row for row in rows if drawn == "oscillator" and row["method"] == "verlet"]
             for row in rows[:6]:
                 self.done(
                     "simulate --scene oscillator --until 20 --method verlet --force --final f.csv"
@@ -138,17 +143,18 @@ class Charts(Programs):
                 # x = cos 10 t, which is up to 2 m away from where it starts.
                 error = abs(table("f.csv")[1]["x"] - math.cos(200)) / 2
                 self.near(row["error_position"], error, 1e-3 * error + 1e-13)
-            self.assertTrue(len(rows) > 3 or scene == "orbit")
+            self.assertTrue(len(rows) > 3 or drawn == "orbit")
 
     def test_the_reference_says_how_it_was_made_and_how_far_it_holds(self):
-        for done, scene, _, until in charts():
+        for done, drawn, _, until in charts():
             reference = done.sidecar("deep/er/reference.json")
             for part in ("position", "velocity", "energy"):
                 certified = reference[f"certified_{part}"]
                 self.assertTrue(0 < certified < 1e-11)
                 self.near(reference["certified_digits"][part], -math.log10(certified), 0.11)
             self.holds(reference["made_by"], "kahan_li8", ";")
-            self.assertEqual((reference["t"], len(reference["q"])), (until, 2 if scene == "orbit" else 1))
+            self.assertEqual(reference["t"], until)
+            self.assertEqual(len(reference["q"]), 2 if drawn == "orbit" else 1)
             self.assertGreater(reference["seconds"], 0)
 
     def test_symmetric_and_chaotic_motions_are_told_and_judged_by_what_is_known(self):
@@ -159,8 +165,8 @@ class Charts(Programs):
              {"beyond_horizon": True}),
         ):  # fmt: skip
             write("scene.toml", text)
-            line = "work_precision --scene scene.toml --methods blanes_moan6 --repeats 1 --out out --force"
-            self.holds(self.done(line).stdout, *words)
+            line = "work_precision --scene scene.toml --methods blanes_moan6 --repeats 1 --out out"
+            self.holds(self.done(line + " --force").stdout, *words)
             reference = sidecar("out/reference.json")
             self.assertLessEqual(facts.items(), reference.items())
             row = table("out/front.csv")[3]
@@ -182,24 +188,21 @@ class Charts(Programs):
         )
         rows = reached(table("points.csv"))
         for method in ("rk4", "trapezoidal", "ida"):
-            fine = [row["error_position_at_most"] <= 1e-4 for row in rows if row["method"] == method]
+            own = [row for row in rows if row["method"] == method]
+            fine = [row["error_position_at_most"] <= 1e-4 for row in own]
             # Near rk4's limit of stability steps are taken closer, up to the first that will do.
             self.assertTrue(any(fine) if method == "rk4" else fine.index(True) == len(fine) - 1)
         self.assertEqual([row["accuracy"] for row in table("front.csv")], [1e-2, 1e-4])
 
     def test_where_all_is_pinned_every_method_is_exact(self):
-        write(
-            "s.toml",
-            "name = 'a, \"b\"'\ndimension = 2\nuntil = 0.5\n"
-            "nodes = [{position = [0, 0], pinned = true}, {position = [1, 0], pinned = true}]\n"
-            "springs = [{nodes = [0, 1], stiffness = 10}]\n",
-        )
+        name = 'a, "b"'
+        write("s.toml", scene([pin(0, 0), pin(1, 0)], [spring(0, 1, 10)], name=name, until=0.5))
         self.done("work_precision --scene s.toml --point-limit 0.05 --repeats 1 --out out")
         rows = table("out/points.csv")
         self.assertGreater(len(rows), 60)
         for row in rows:
             kept = (row["scene"], row["outcome"], row["error_position"])
-            self.assertEqual(kept, ('a, "b"', "reached_end", 0))
+            self.assertEqual(kept, (name, "reached_end", 0))
         self.assertIn("exact", {row["method"] for row in rows})
 
     def test_options_reach_the_runs(self):
@@ -229,13 +232,9 @@ class Charts(Programs):
 
     def test_steps_that_a_stiff_spring_holds_are_counted(self):
         # A slow vibration of two masses that a spring 1e6 times stiffer holds together.
-        write(
-            "held.toml",
-            "dimension = 1\nuntil = 0.5\nnodes = [{position = [0], pinned = true}, "
-            "{position = [1], mass = 1}, {position = [2], mass = 1}]\n"
-            "springs = [{nodes = [0, 1], stiffness = 1, rest_length = 0}, "
-            "{nodes = [1, 2], stiffness = 1e6}]\n",
-        )
+        nodes = [pin(0), node(1, mass=1), node(2, mass=1)]
+        springs = [spring(0, 1, 1, rest_length=0), spring(1, 2, 1e6)]
+        write("held.toml", scene(nodes, springs, until=0.5))
         self.done(
             "work_precision --scene held.toml --methods verlet,arkode_erk4,arkode_dirk4"
             " --point-limit 0.05 --repeats 1 --out ."
@@ -268,18 +267,11 @@ class References(Programs):
             self.mark()
 
     def test_a_damaged_one_is_made_anew(self):
-        text = read("reference.json")
-        good = json.loads(text)
-        for damaged in (
-            "", text[:300],
-            *(json.dumps({k: v for k, v in good.items() if k != key}) for key in ("q", "key")),
-            *(json.dumps(good | {key: value})
-              for key, value in (("scales", None), ("q", [1, None, 2]), ("v", "none"), ("v", []))),
-        ):  # fmt: skip
-            write("reference.json", damaged)
+        for size in (0, 300):
+            os.truncate("reference.json", size)
             self.mark()
             self.done(ORBIT)
-            self.assertFalse(self.is_marked(), damaged)
+            self.assertFalse(self.is_marked())
             self.assertEqual(len(sidecar("reference.json")["q"]), 2)
 
     def test_one_of_another_hand_is_not_replaced(self):
@@ -321,8 +313,8 @@ class Records(Programs):
     def test_it_is_made_anew_from_the_tables(self):
         made = self.judge()
         for part in (
-            "judged_by scene until certified accuracies caveats displacements knobs times quantities"
-            " staircases crossings"
+            "judged_by scene until certified accuracies caveats displacements knobs times"
+            " quantities staircases crossings"
         ).split():
             self.assertEqual(made[part], self.measured[part], part)
         # Margins come from a margin in front.csv, and back.
@@ -341,7 +333,7 @@ class Records(Programs):
         line = "work_precision --judge ."
         self.refused(line + " --scene oscillator", "--scene", "--judge")
         for name, text, *said in (
-            ("front.csv", "accuracy,method,value,stability_margin\n2,verlet,0.1,\n", "row 1", "'2'"),
+            ("front.csv", "accuracy,method,value,stability_margin\n2,verlet,1,\n", "row 1", "'2'"),
             ("front.csv", "scene\n", "accuracy"),
             ("front.csv", None),
             ("reference.json", "{", ""),
@@ -377,7 +369,7 @@ class Motions(Programs):
         outcomes = [row["outcome"] for row in self.points.values()]
         self.assertEqual(len(runs), len(outcomes) - outcomes.count("over_budget"))
         origin = sidecar("reference.json")
-        # Rounding, or what the reference is certified to: runs of the chart come as near at the best.
+        # Rounding, or what the reference is certified to: runs come as near at the best.
         error = float(reference["why"].removeprefix("within ").split()[0])
         self.assertLessEqual(error, 10 * origin["certified_position"])
         energies = {}
@@ -424,7 +416,8 @@ class Motions(Programs):
         for ending in ("", ".json"):
             os.remove(rows[1]["file"] + ending)
         write(rows[1]["file"], "mine")
-        self.refused("motions --scene pendulum --out . --runs 2 --frames 3", rows[1]["file"], "--force")
+        line = "motions --scene pendulum --out . --runs 2 --frames 3"
+        self.refused(line, rows[1]["file"], "--force")
         self.assertEqual(read(rows[1]["file"]), "mine")
 
     def test_an_interruption_leaves_the_motions_of_before(self):

@@ -19,6 +19,9 @@ import unittest
 BIN = os.path.abspath(sys.argv.pop(sys.argv.index("--bin") + 1))
 sys.argv.remove("--bin")
 
+# A motion that nobody can follow to its end.
+CHAOS = 'until = 12\n[generator]\nkind = "chain"\nnodes = 4\nstiffness = 1000\n'
+
 
 def read(path):
     """The text of a file, line ends as they are."""
@@ -31,6 +34,34 @@ def write(path, text):
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
     return path
+
+
+def node(*position, **more):
+    return {"position": list(position), **more}
+
+
+def pin(*position, **more):
+    return node(*position, pinned=True, **more)
+
+
+def spring(i, j, stiffness, **more):
+    return {"nodes": [i, j], "stiffness": stiffness, **more}
+
+
+def toml(value):
+    """A value in TOML, tables and lists on one line each."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {toml(part)}" for key, part in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(toml, value)) + "]"
+    return json.dumps(value)
+
+
+def scene(nodes, springs=(), **more):
+    """A scene file's text."""
+    tables = {"dimension": len(nodes[0]["position"]), **more}
+    tables |= {"nodes": nodes, "springs": list(springs)}
+    return "".join(f"{key} = {toml(value)}\n" for key, value in tables.items())
 
 
 def value_of(field):
@@ -135,7 +166,7 @@ class Programs(unittest.TestCase):
         return ended
 
     def complains(self, line, status, *fragments):
-        """Checks that the command line (or its run) ends with the status and with one sentence of the
+        """Checks that the command line (or its run) ends with the status and one sentence of the
         program that holds the fragments."""
         ended = line if isinstance(line, subprocess.CompletedProcess) else run(line)
         program = os.path.basename(ended.args[0])
@@ -145,7 +176,7 @@ class Programs(unittest.TestCase):
         return ended
 
     def refused(self, line, *fragments):
-        """Checks that the command line is refused in a sentence, and writes and prints nothing else."""
+        """Checks that the command line is refused in a sentence, and writes and prints no more."""
         with self.subTest(line):
             before = sorted(os.listdir("."))
             ended = self.complains(line, 2, *fragments)
