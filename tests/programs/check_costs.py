@@ -384,8 +384,8 @@ class Advice(Programs):
         self.holds(advised.stdout, "none: the motion is chaotic", "energy")
 
     def test_the_study_judges_what_was_claimed(self):
-        self.done("advice --cases 3 --first 11000000 --repeats 1 --reference-seconds 1 --out out")
-        self.assertEqual(len(table("out/cases.csv")), 3)
+        self.done("advice --cases 1 --first 11000000 --repeats 1 --reference-seconds 1 --out out")
+        self.assertEqual(len(table("out/cases.csv")), 1)
         self.assertGreaterEqual(len(table("out/worth.csv")), 9)
 
 

@@ -280,7 +280,7 @@ class Tasks(Sweeps):
 
     def test_a_time_limit_ends_it_in_order_and_the_next_call_goes_on(self):
         self.sweep(measured="references")
-        calls, limit = 0, 0.1  # it grows, since a busy machine might measure nothing in that time
+        calls, limit = 0, 0.05  # it grows, since a busy machine might measure nothing in that time
         while (ended := run(f"{POINTS} --time-limit {limit}")).returncode != 0:
             self.complains(ended, 3, "interrupted by --time-limit")
             calls, limit = calls + 1, 1.2 * limit
