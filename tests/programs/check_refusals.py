@@ -1,23 +1,18 @@
-"""What programs refuse: status 2, nothing on stdout, one sentence on stderr, and no file written.
-
-usage: check_refusals.py --bin FOLDER [unittest options]
-"""
+"""Refusals: status 2, nothing on stdout, one sentence on stderr, and no file written."""
 
 import itertools
 import os
 import re
 import unittest
 
-from programs import Programs, rows_of, run, write
+from programs import Programs, node, pin, rows_of, run, scene, spring, write
 
 ONE_NODE = "nodes = [{position = [0], mass = 1}]\n"
 SCENES = {
     "flying.toml": "dimension = 1\n" + ONE_NODE,
     "falling.toml": "dimension = 1\ngravity = [-1]\n" + ONE_NODE,
-    "massless.toml": "dimension = 1\nuntil = 1\nnodes = [{position = [0], pinned = true}, "
-    "{position = [1], mass = 0}]\nsprings = [{nodes = [0, 1], stiffness = 1}]\n",
-    "huge.toml": "dimension = 1\nnodes = [{position = [0.0], pinned = true}, "
-    "{position = [1e60], mass = 1.0}]\nsprings = [{nodes = [0, 1], stiffness = 100.0}]\n",
+    "massless.toml": scene([pin(0), node(1, mass=0)], [spring(0, 1, 1)], until=1),
+    "huge.toml": scene([pin(0), node(1e60, mass=1)], [spring(0, 1, 100)]),
     # Malformed ones.
     "empty.toml": "",
     "syntax.toml": "dimension = = 1\n",

@@ -1,4 +1,4 @@
-"""What simulate writes and says: tables, sidecars, scenes, lists, warnings and why a run failed."""
+"""simulate: its tables, sidecars, scenes, lists and warnings, and why a run failed."""
 
 import math
 import os
@@ -283,7 +283,7 @@ class Scenes(Programs):
 
 
 class Warnings(Programs):
-    """What is said beside a run that goes on, and of one that fails."""
+    """Sentences beside a run that goes on, and on one that fails."""
 
     def test_each_is_said_where_it_is_so(self):
         grows = f"{math.log(2) / (2 * 0.1):.3g}/s"  # sqrt(1 + h^2 w^2) a step of 0.1 s
@@ -306,7 +306,7 @@ class Warnings(Programs):
             ("cvode_bdf --until 30 --rtol 1e-6", 0),
             ("cvode_bdf --until 30 --rtol 1e-2", 0, "the energy grew to", "lower --rtol"),
             ("cvode_adams --until 30 --rtol 1e-2", 0, "warning", "the energy grew to"),
-            # Where it fails, one sentence says all.
+            # One sentence says all of a run that fails.
             ("verlet --step-size 1 --until 200", 3, "grew without bound", "2/w_max = 0.2 s"),
             ("explicit_euler --step-size 0.1 --until 100", 3, "vibrations grow at every h", grows),
         ):  # fmt: skip
@@ -328,7 +328,7 @@ class Warnings(Programs):
             line + "0.25", 3, "it failed in step", "h w_max is 2.5 at the start",
             "verlet's limit of 2", "smaller step", "at this h ", "implicit_euler",
         ).stderr  # fmt: skip
-        # What was reached is there, with all samples before the end.
+        # The end that was reached is there, with all samples before it.
         reached = sidecar("f.json")["t_reached"]
         self.assertEqual(sidecar("f.json")["outcome"], "diverged")
         self.assertIn(f"{reached:g} of 100 s", said)

@@ -1,4 +1,4 @@
-"""What studies of methods write: their tables, and closed forms of what stands in them."""
+"""Studies of methods: their tables, and closed forms of the numbers there."""
 
 import math
 import os
@@ -44,7 +44,7 @@ MAP = (
 VERDICTS = "verdicts --seeds 3 --cells 512 --out out"
 ROOTS = "symmetric_roots --samples 6 --at 0.5 --out out"
 
-# Of each study the header of its tables (or how that begins), and words that it says.
+# The headers of each study's tables (or how they begin), and words that it says.
 TABLES = {
     CONVERGENCE: (
         {"order": "method,h,error_position,error_velocity,observed_order"},

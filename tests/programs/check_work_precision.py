@@ -79,7 +79,7 @@ class Charts(Programs):
             for name in ("points.json", "front.json", "reference.json"):
                 keys = "command_line scene version compiler flags cpu libraries date"
                 self.assertLessEqual(set(keys.split()), sidecar(f"{out}/{name}").keys())
-            # What those say who show them.
+            # The sidecar has the words for those who show the points.
             origin, rows = sidecar(out + "/points.json"), table(out + "/points.csv")
             self.assertEqual([note["name"] for note in origin["methods"]], names)
             for note in origin["methods"]:

@@ -114,7 +114,7 @@ def started(line):
 
 
 class Study:
-    """What a command line has said and written, in a folder that lasts to the end of all tests."""
+    """The words and files of a command line, in a folder that lasts to the end of all tests."""
 
     def __init__(self, line, files=()):
         folder = tempfile.TemporaryDirectory()
