@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <string>
 #include <unistd.h>
@@ -23,6 +24,11 @@ inline std::string listing(const std::string& folder) {
   std::string all;
   for (const std::string& name : names) all += name + ' ';
   return all;
+}
+
+inline std::string read_all(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 // A fresh folder for a test's files, gone at its end.

@@ -3,7 +3,6 @@
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/kit/progress.hpp"
-#include "qddot/scene/invalid_input.hpp"
 
 BOOST_AUTO_TEST_SUITE(progress)
 
@@ -157,16 +156,6 @@ BOOST_AUTO_TEST_CASE(what_is_over_soon_is_quiet) {
   BOOST_TEST(shown.last() == "bench 30/40  verlet is done  0:30, about 0:10 left\n");
 }
 
-BOOST_AUTO_TEST_CASE(none_says_nothing) {
-  Shown shown;
-  shown.progress.start("bench", Progress::Form::none);
-  shown.progress.begin(1);
-  shown.progress.now_at("verlet");
-  shown.progress.finish("verlet");
-  shown.progress.wipe();
-  BOOST_TEST(shown.written.empty());
-}
-
 BOOST_AUTO_TEST_CASE(the_time_left_is_that_of_the_pieces_to_come_at_the_pace_of_those_measured) {
   Shown shown;
   shown.progress.start("bench", Progress::Form::line);
@@ -186,10 +175,6 @@ BOOST_AUTO_TEST_CASE(the_time_left_is_that_of_the_pieces_to_come_at_the_pace_of_
   shown.now += 100;
   shown.progress.now_at("d");
   BOOST_TEST(shown.last() == line("bench 4/8  d  2:10"));
-}
-
-BOOST_AUTO_TEST_CASE(another_word_is_refused) {
-  BOOST_CHECK_THROW(start_progress("bench", "loud"), qddot::InvalidInput);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

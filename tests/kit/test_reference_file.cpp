@@ -9,7 +9,8 @@
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_file.hpp"
-#include "tests/programs/process.hpp"
+#include "tests/folder.hpp"
+#include "tests/fragments.hpp"
 
 BOOST_AUTO_TEST_SUITE(reference_file)
 
@@ -26,27 +27,23 @@ Reference kept(const std::string& name, double horizon, const Folder& folder) {
                        {{"command_line", "test"}, {"compiler", "test"}, {"made", "here"}});
 }
 
+// The reference as a file brings it back, which has to say the same when it is written again.
+Reference read_back(const Reference& made) {
+  const nlohmann::json written = to_json(made);
+  const Reference read = reference_from_json(nlohmann::json::parse(written.dump()));
+  BOOST_TEST(to_json(read).dump() == written.dump());
+  return read;
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(json_brings_back_every_bit) {
   const Reference made = make_reference(ReducedScene(load_scene("pair")), 0.3, 1);
-  const nlohmann::json written = nlohmann::json::parse(to_json(made).dump());
-  const Reference read = reference_from_json(written);
+  const Reference read = read_back(made);
   BOOST_TEST((read.end.q == made.end.q && read.end.v == made.end.v));
-  BOOST_TEST(read.end.t == made.end.t);
-  BOOST_TEST(read.energy == made.energy);
-  BOOST_TEST(read.scales.displacement == made.scales.displacement);
-  BOOST_TEST(read.scales.speed == made.scales.speed);
-  BOOST_TEST(read.scales.kinetic == made.scales.kinetic);
-  BOOST_TEST(read.certified.position == made.certified.position);
-  BOOST_TEST(read.certified.velocity == made.certified.velocity);
-  BOOST_TEST(read.certified.energy == made.certified.energy);
-  BOOST_TEST(read.rounding_effect == made.rounding_effect);
-  BOOST_TEST(read.perturbation_growth == made.perturbation_growth);
   BOOST_TEST(made.perturbation_growth > 0);
   BOOST_TEST((std::isinf(made.horizon) && std::isinf(read.horizon)));
-  BOOST_TEST(read.made_by == made.made_by);
-  BOOST_TEST(read.seconds == made.seconds);
+  const nlohmann::json written = to_json(made);
   for (const char* part : {"position", "velocity", "energy"}) {
     const double certified = written.at(fmt::format("certified_{}", part));
     const double digits = written.at("certified_digits").at(part);
@@ -55,7 +52,7 @@ BOOST_AUTO_TEST_CASE(json_brings_back_every_bit) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(json_brings_back_a_horizon) {
+BOOST_AUTO_TEST_CASE(json_brings_back_what_is_known_of_chaos_symmetry_and_parts) {
   Reference made;
   made.end = {2, Vec::Ones(2), Vec::Ones(2)};
   made.certified = {0.1, 0.1, 1e-9};
@@ -64,40 +61,26 @@ BOOST_AUTO_TEST_CASE(json_brings_back_a_horizon) {
   made.lyapunov = 27.1;
   made.modal_shares = Vec{{0.1, 0.3, 0.6}};
   made.modal_shares_floor = 1e-3;
-  const nlohmann::json written = nlohmann::json::parse(to_json(made).dump());
+  nlohmann::json written = to_json(made);
   BOOST_TEST((written.at("beyond_horizon") == true && written.at("chaotic") == true));
-  const Reference read = reference_from_json(written);
-  BOOST_TEST(read.horizon == made.horizon);
-  BOOST_TEST(read.lyapunov == made.lyapunov);
-  BOOST_TEST((read.modal_shares == made.modal_shares));
-  BOOST_TEST(read.modal_shares_floor == made.modal_shares_floor);
-}
-
-BOOST_AUTO_TEST_CASE(json_brings_back_symmetry_and_the_scales_of_parts) {
-  Reference made;
-  made.end = {2, Vec::Ones(2), Vec::Ones(2)};
+  BOOST_TEST(read_back(made).horizon == made.horizon);
+  BOOST_TEST((read_back(made).modal_shares == made.modal_shares));
+  made.horizon = std::numeric_limits<double>::infinity();
   made.certified = {1e-9, 1e-9, 1e-9};
   made.scales = {.displacement = 3, .speed = 4, .kinetic = 5};
   made.scales.parts = {{.nodes = {1, 2}, .extent = 7, .displacement = 3, .speed = 4},
                        {.nodes = {4}, .extent = 8, .displacement = 1e-10, .speed = 1e-9}};
   made.is_reduced_by_symmetry = true;
   made.out_of_symmetry = OutOfSymmetry{.effect = 0.3, .horizon = 1.5, .lyapunov = 66};
-  const nlohmann::json written = nlohmann::json::parse(to_json(made).dump());
+  written = to_json(made);
   BOOST_TEST(written.at("only_symmetric") == true);
   BOOST_TEST(contains(written.at("scales").at("of").get<std::string>(), {"divided by", "[m/s]"}));
-  const Reference read = reference_from_json(written);
+  const Reference read = read_back(made);
   BOOST_TEST((read.is_reduced_by_symmetry && read.is_only_symmetric()));
-  BOOST_TEST(read.out_of_symmetry->effect == 0.3);
-  BOOST_TEST(read.out_of_symmetry->lyapunov == 66);
   BOOST_TEST_REQUIRE(read.scales.parts.size() == 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const PartScale &was = made.scales.parts[i], &is = read.scales.parts[i];
-    BOOST_TEST((is.nodes == was.nodes && is.extent == was.extent));
-    BOOST_TEST((is.displacement == was.displacement && is.speed == was.speed));
-  }
+  BOOST_TEST((read.scales.parts[0].nodes == made.scales.parts[0].nodes));
   made.out_of_symmetry->horizon = std::numeric_limits<double>::infinity();
-  const Reference never = reference_from_json(nlohmann::json::parse(to_json(made).dump()));
-  BOOST_TEST((std::isinf(never.out_of_symmetry->horizon) && !never.is_only_symmetric()));
+  BOOST_TEST(!read_back(made).is_only_symmetric());
 }
 
 BOOST_AUTO_TEST_CASE(json_that_is_no_reference_is_refused) {

@@ -3,7 +3,8 @@
 #include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
-#include "tests/programs/process.hpp"
+#include "tests/folder.hpp"
+#include "tests/fragments.hpp"
 
 BOOST_AUTO_TEST_SUITE(whole_file)
 
@@ -28,15 +29,13 @@ BOOST_AUTO_TEST_CASE(nothing_stands_at_its_place_before_the_commit) {
   file.write("half");
   BOOST_TEST(!std::filesystem::exists(folder / "a.txt"));
   file.write(" and half");
+  file.complete();
+  BOOST_TEST(!std::filesystem::exists(folder / "a.txt"));
   file.commit();
   BOOST_TEST(folder.listing() == "a.txt ");
   BOOST_TEST(read_all(folder / "a.txt") == "half and half");
-}
-
-BOOST_AUTO_TEST_CASE(nothing_is_left_where_it_is_not_committed) {
-  const Folder folder;
-  { WholeFile(folder / "a.txt").write("half"); }
-  BOOST_TEST(folder.listing() == "");
+  { WholeFile(folder / "b.txt").write("half"); }  // which is not committed
+  BOOST_TEST(folder.listing() == "a.txt ");
 }
 
 BOOST_AUTO_TEST_CASE(an_older_file_stays_until_the_commit_and_goes_with_it) {
@@ -98,23 +97,6 @@ BOOST_AUTO_TEST_CASE(files_that_qddot_did_not_write_stay) {
   BOOST_TEST(refusal(folder / "s.toml") == "");
   folder.write("s.toml", signed_text("name = 'a'\n") + "# changed since\n");
   BOOST_TEST(contains(refusal(folder / "s.toml"), {"s.toml", "--force"}));
-}
-
-BOOST_AUTO_TEST_CASE(a_complete_file_waits_for_its_name) {
-  const Folder folder;
-  WholeFile file(folder / "a.txt");
-  file.write("all");
-  file.complete();
-  BOOST_TEST(!std::filesystem::exists(folder / "a.txt"));
-  file.commit();
-  BOOST_TEST(read_all(folder / "a.txt") == "all");
-}
-
-BOOST_AUTO_TEST_CASE(negative_control_a_listing_shows_what_is_left) {
-  const Folder folder;
-  WholeFile file(folder / "a.txt");
-  BOOST_TEST(folder.listing() != "");
-  BOOST_TEST(refusal(folder / "b.txt") == "");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,7 +1,4 @@
-"""The line that says how far a study is, in a terminal and elsewhere.
-
-usage: check_progress.py --bin FOLDER [unittest options]
-"""
+"""The line that says how far a study is, in a terminal and elsewhere."""
 
 import fcntl
 import os
@@ -9,40 +6,21 @@ import pty
 import re
 import struct
 import subprocess
-import sys
-import tempfile
 import termios
 import unittest
 
+from programs import Programs, words_of
 from studies import STUDIES, write_scenes
 
-BIN = os.path.abspath(sys.argv.pop(sys.argv.index("--bin") + 1))
-sys.argv.remove("--bin")
 COLUMNS = 60
-LONG = "--scene steady.toml --repeats 1000 --point-limit 1000 --until 0.02".split()
+PROGRESS = r"\r([^\r\n\x1b]*)\x1b\[K"
+LONG = "--scene steady.toml --repeats 1000 --point-limit 1000 --until 0.02"
 
 
-def rows_of(written):
-    """The rows of a terminal on which this was written, wiped lines left out, and all lines of
-    progress that were there (which a carriage return begins and ESC [K cuts at the cursor)."""
-    rows, column, seen = [""], 0, []
-    for piece in re.findall(r"\r\n|\r|\n|\x1b\[K|[^\r\n\x1b]+|\x1b", written):
-        if piece in ("\n", "\r\n"):
-            rows, column = [*rows, ""], 0
-        elif piece == "\r":
-            column = 0
-        elif piece == "\x1b[K":
-            rows[-1] = rows[-1][:column]
-            seen.append(rows[-1])
-        else:  # a lone escape, as of a colour, stays to be seen
-            rows[-1] = rows[-1][:column] + piece + rows[-1][column + len(piece) :]
-            column += len(piece)
-    return [row for row in rows if row], [line for line in seen if line]
-
-
-def in_terminal(argv, interrupt_at="", term="xterm"):
-    """The exit status, the rows and the lines of progress of a program in a terminal of its own. It is
-    interrupted by Ctrl-C once it has written the fragment."""
+def in_terminal(line, interrupt_at="", term="xterm"):
+    """The exit status, what stays and the lines of progress of a command in a terminal of its own.
+    Such a line stands between a carriage return and ESC [K; an empty one wipes it at the end. The
+    command is interrupted by Ctrl-C once it has written the fragment."""
     master, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
 
@@ -51,7 +29,7 @@ def in_terminal(argv, interrupt_at="", term="xterm"):
         fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 
     process = subprocess.Popen(
-        argv, stdin=slave, stdout=subprocess.DEVNULL, stderr=slave,
+        words_of(line), stdin=slave, stdout=subprocess.DEVNULL, stderr=slave,
         env=os.environ | {"TERM": term}, preexec_fn=own_terminal,
     )  # fmt: skip
     os.close(slave)
@@ -66,55 +44,45 @@ def in_terminal(argv, interrupt_at="", term="xterm"):
             os.write(master, b"\x03")
             interrupt_at = ""
     os.close(master)
-    return process.wait(), *rows_of(written.decode())
+    text = written.decode().replace("^C", "")
+    seen = re.findall(PROGRESS, text)
+    is_wiped = seen[-1:] in ([], [""])
+    return process.wait(), re.sub(PROGRESS, "", text) if is_wiped else text, seen
 
 
-class Progress(unittest.TestCase):
+class Progress(Programs):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
+        super().setUp()
         write_scenes(".")
 
     def test_every_study_has_a_line_that_fits_and_is_wiped_at_the_end(self):
-        for program in (
-            "convergence",
-            "energy_drift",
-            "exchange",
-            "stability_map",
-            "work_precision",
-        ):
+        for program in "convergence energy_drift exchange stability_map work_precision".split():
             with self.subTest(program):
-                argv = [f"{BIN}/{program}", *STUDIES[program].split(), "--out", program]
-                status, rows, seen = in_terminal(argv)
-                self.assertEqual((status, rows), (0, []))
+                line = f"{program} {STUDIES[program]} --out {program}"
+                status, left, seen = in_terminal(line)
+                self.assertEqual((status, left), (0, ""))
                 self.assertTrue(any(re.search(r"\d:\d\d", line) for line in seen), seen)
                 self.assertLess(max(map(len, seen)), COLUMNS)
 
     def test_an_interruption_wipes_it_and_what_was_measured_counts(self):
-        for argv, fragment, words in [
-            ([f"{BIN}/work_precision", *LONG, "--out", "out"], "1/", "--resume"),
-            ([f"{BIN}/work_precision", *LONG, "--out", "out", "--resume"], "/", "kept from before"),
-            (
-                f"{BIN}/simulate --scene cloth --method verlet --step-size 1e-5 --until 1e5".split(),
-                "t = ",
-                "",
-            ),
-        ]:
-            status, rows, seen = in_terminal(argv, fragment)
+        study = f"work_precision {LONG} --out out"
+        cloth = "simulate --scene cloth --method verlet --step-size 1e-5 --until 1e5"
+        for line, fragment, words in (
+            (study, "1/", "--resume"),
+            (study + " --resume", "/", "kept from before"),
+            (cloth, "t = ", ""),
+        ):
+            status, said, seen = in_terminal(line, fragment)
             self.assertEqual(status, 130)
-            said = re.sub(r"\^C", "", "".join(rows))
-            self.assertRegex(said, f"^{os.path.basename(argv[0])}: .*interrupted by SIGINT")
+            self.assertRegex(said, f"(?s)^{line.split()[0]}: .*interrupted by SIGINT")
             self.assertIn(words, said)
             self.assertTrue(seen)
 
     def test_a_pipe_and_a_dumb_terminal_get_none_of_it(self):
-        argv = [f"{BIN}/work_precision", *STUDIES["work_precision"].split(), "--out", "out"]
-        self.assertEqual(in_terminal(argv, term="dumb")[0::2], (0, []))
-        self.assertEqual(in_terminal([*argv, "--progress", "none"]), (0, [], []))
-        run = subprocess.run(argv, capture_output=True, text=True, check=True)
-        self.assertNotRegex(run.stderr, "[\r\x1b]")
+        line = f"work_precision {STUDIES['work_precision']} --out out"
+        self.assertEqual(in_terminal(line, term="dumb")[0::2], (0, []))
+        self.assertEqual(in_terminal(line + " --progress none"), (0, "", []))
+        self.assertNotRegex(self.done(line).stderr, "[\r\x1b]")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,9 @@
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/stability_map/outcome_map.hpp"
 #include "experiments/stability_map/run_outcome.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/settle.hpp"
-#include "tests/folder.hpp"
 #include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(run_outcome)
@@ -61,30 +59,6 @@ BOOST_AUTO_TEST_CASE(symplectic_methods_are_bounded_below_their_limit_and_diverg
   }
 }
 
-BOOST_AUTO_TEST_CASE(explicit_euler_dies_slowly_at_its_rate_at_any_step) {
-  for (const double hw : {0.05, 0.2, 1.0}) {
-    const double h = hw / w;
-    const RunOutcome result = oscillator()("explicit_euler", h, 400 / hw * h);
-    BOOST_TEST(result.outcome == "diverged");
-    // |1 + i h w| a step, without any transient.
-    BOOST_TEST(result.growth_rate == std::log1p(hw * hw) / (2 * h),
-               boost::test_tools::tolerance(1e-6));
-  }
-  // It is slow: over a hundred short steps nothing is to be seen.
-  BOOST_TEST(oscillator()("explicit_euler", 0.01 / w, 1 / w).outcome == "bounded");
-}
-
-BOOST_AUTO_TEST_CASE(implicit_euler_leaks_at_its_rate) {
-  for (const double hw : {0.1, 1.0}) {
-    const double h = hw / w;
-    const RunOutcome result = oscillator()("implicit_euler", h, 100 * h);
-    BOOST_TEST(result.outcome == "leaked");
-    BOOST_TEST(result.growth_rate == -std::log1p(hw * hw) / (2 * h),
-               boost::test_tools::tolerance(1e-6));
-  }
-  BOOST_TEST(oscillator()("trapezoidal", 100 / w, 100).outcome == "bounded");
-}
-
 BOOST_AUTO_TEST_CASE(
     a_stable_methods_fail_on_a_stiff_pendulum_that_linear_theory_knows_nothing_of) {
   // h w = 16 for the spring, 33 steps a swing: bounded, as linear theory has it.
@@ -131,62 +105,6 @@ BOOST_AUTO_TEST_CASE(few_iterations_converge_to_another_motion) {
   const Case chain("chain", {{"nodes", 40}, {"stiffness", 1e5}});
   BOOST_TEST(chain("local_global", 0.02, 0.5, 1).outcome == "unconverged");
   BOOST_TEST(chain("local_global", 1e-4, 0.02, 10).outcome != "unconverged");
-}
-
-BOOST_AUTO_TEST_CASE(time_that_is_up_is_an_outcome) {
-  const RunOutcome result =
-      stability_map::run_outcome(method_named("verlet"), {.step_size = 1e-7}, oscillator().scene,
-                                 {.until = 1e4, .seconds = 0.05});
-  BOOST_TEST(result.outcome == "over_budget");
-  BOOST_TEST(result.t_reached < 1e4);
-}
-
-BOOST_AUTO_TEST_CASE(maps_are_the_same_on_all_cores_and_go_on_where_they_were) {
-  const Folder folder;
-  AmplitudeRow row{.amplitude = 1,
-                   .scene = std::make_unique<ReducedScene>(oscillator().drawn),
-                   .rest_energy = oscillator().rest_energy,
-                   .omega_max = w,
-                   .buckling_rate = 0,
-                   .modes = {}};
-  row.modes = sampled_modes(row.scene->system(), row.scene->initial().q, 3);
-  std::vector<Cell> cells;
-  for (const double h_omega : {0.5, 1.9, 2.1}) {
-    cells.push_back({&method_named("verlet"), &row, h_omega, 0});
-  }
-  const MapSettings settings{.until = 20, .tolerated = 0.5, .seconds = 10};
-  StudyCall call{.program = "map"};
-  stability_map::Outcomes all;
-  {
-    Study study(call, folder.path(), {}, {});
-    run_outcomes(study, cells, settings, all);
-  }
-  BOOST_TEST(all[0]->outcome == "bounded");
-  BOOST_TEST(all[1]->outcome == "bounded");
-  BOOST_TEST(all[2]->outcome == "diverged");
-  for (std::size_t i = 0; i < 3; ++i) {
-    const RunOutcome alone = stability_map::run_outcome(
-        *cells[i].method, {.step_size = cells[i].h_omega / w}, *row.scene,
-        {row.rest_energy, settings.tolerated, settings.until, 10});
-    BOOST_TEST(all[i]->growth_rate == alone.growth_rate);
-    BOOST_TEST(all[i]->energy_max == alone.energy_max);
-  }
-  BOOST_TEST(std::abs(predicted_growth_rate(cells[0])) < 1e-12);
-  BOOST_TEST(predicted_growth_rate(cells[2]) > 1);
-
-  // Pieces of the journal are believed, and missing ones are run.
-  call.resumes = true;
-  Study study(call, folder.path(), {}, {});
-  cells.push_back({&method_named("verlet"), &row, 1.5, 0});
-  stability_map::Outcomes resumed;
-  run_outcomes(study, cells, MapSettings{.until = 30, .tolerated = 0.5, .seconds = 10}, resumed);
-  for (std::size_t i = 0; i < 3; ++i) {
-    BOOST_TEST(resumed[i]->outcome == all[i]->outcome);
-    BOOST_TEST(resumed[i]->growth_rate == all[i]->growth_rate);
-    BOOST_TEST(resumed[i]->counts.force_evaluations == all[i]->counts.force_evaluations);
-  }
-  BOOST_TEST(resumed[0]->t_reached == 20);
-  BOOST_TEST(resumed[3]->t_reached == 30);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

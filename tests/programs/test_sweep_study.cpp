@@ -3,10 +3,10 @@
 #include <set>
 
 #include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
 
 #include "experiments/sweep/study_file.hpp"
-#include "qddot/scene/invalid_input.hpp"
-#include "tests/programs/process.hpp"
+#include "tests/folder.hpp"
 
 BOOST_AUTO_TEST_SUITE(sweep_study)
 
@@ -28,15 +28,6 @@ std::vector<std::string> labels(const std::string& scenes, const std::string& mo
 }
 
 using Labels = std::vector<std::string>;
-
-void check_refused_study(const std::string& text, const std::vector<std::string>& fragments) {
-  const Folder folder;
-  const std::string study = folder.write("study.toml", text);
-  const Exit end = run("sweep", {"plan", study, "--out", folder / "S"});
-  BOOST_TEST(complains(end, 2, "sweep", fragments), text + ": " + end.err);
-  BOOST_TEST(contains(end.err, {"study.toml"}), end.err);
-  BOOST_TEST(folder.listing() == "study.toml ", folder.listing());
-}
 
 }  // namespace
 
@@ -104,51 +95,6 @@ BOOST_AUTO_TEST_CASE(drawn_scenes_with_lists_multiply) {
   std::set<std::string> distinct;
   for (const StudyScene& scene : scenes) distinct.insert(scene.label);
   BOOST_TEST(distinct.size() == 10u);
-}
-
-BOOST_AUTO_TEST_CASE(what_is_wrong_is_said_with_file_line_field_and_value) {
-  check_refused_study("scenes = [\"cloth\"]\nmethod = [\"verlet\"]\n",
-                      {"study.toml:2: method: it is an unknown key; allowed are"});
-  check_refused_study("scenes = []\n", {":1: scenes: [] is not allowed"});
-  check_refused_study("until = 1\n", {"scenes: it is missing"});
-  check_refused_study("scenes = [\"cloth\"]\nuntil = 0\n", {":2: until: 0 is not allowed"});
-  check_refused_study("scenes = [\"cloth\"]\nuntil = [1, 1]\n", {":2: until: [1, 1]", "each once"});
-  check_refused_study("scenes = [\"cloth\"]\nmethods = []\n", {":2: methods: []"});
-  check_refused_study("scenes = [\"cloth\"]\nmethods = [\"verlt\"]\n", {":2: methods: [", "verlt"});
-  check_refused_study("scenes = [\"cloth\"]\nmethods = [\"ida\", \"ida\"]\n",
-                      {"ida is named twice"});
-  check_refused_study("scenes = [\"cloth\"]\naccuracies = [2]\n", {":2: accuracies: [2", "1e-14"});
-  check_refused_study("program = \"modes\"\nscenes = [\"cloth\"]\n", {":1: program: ", "modes"});
-  check_refused_study("program = \"advice\"\nscenes = [\"cloth\"]\n", {"scenes: advice draws"});
-  check_refused_study("program = \"advice\"\nmethods = [\"ida\"]\n",
-                      {"methods: advice takes none"});
-  check_refused_study("program = \"energy_drift\"\nscenes = [\"orbit\"]\naccuracies = [1e-3]\n",
-                      {"accuracies: only work_precision"});
-  check_refused_study("scenes = [{ generator = \"chain\", nodes = [] }]\n",
-                      {"scenes[0].nodes: [] is not allowed"});
-  check_refused_study("scenes = [{ generator = \"chain\", node = 3 }]\n",
-                      {"scenes[0].node: it is no parameter of chain"});
-  check_refused_study("scenes = [{ generator = \"chains\" }]\n", {"scenes[0].generator"});
-  check_refused_study("scenes = [{ generator = \"chain\", file = \"a\" }]\n", {"exactly one"});
-  check_refused_study("scenes = [{ generator = \"chain\", nodes = { from = 1, to = 9 } }]\n",
-                      {"scenes[0].nodes.count: it is missing"});
-  check_refused_study("scenes = [{ generator = \"chain\", seed = 1 }]\n", {"draws: it is missing"});
-  check_refused_study("scenes = [{ generator = \"chain\", draws = 3 }]\n", {"scenes[0].draws"});
-  check_refused_study("scenes = [{ generator = \"chain\", nodes = 1e9 }]\n", {"chain", "nodes"});
-  check_refused_study("scenes = [\"nowhere.toml\"]\n", {"nowhere"});
-  check_refused_study("scenes = [3]\n", {":1: scenes: [3] is not allowed"});
-  check_refused_study("scenes = [\"pendulum\"]\n[options]\nout = \"x\"\n", {":3: options.out"});
-  check_refused_study("scenes = [\"pendulum\"]\n[options]\npoint-limt = 3\n", {"--point-limt"});
-  check_refused_study("scenes = [\"pendulum\"]\n[options]\nrepeats = 0\n", {"--repeats 0"});
-  check_refused_study("scenes = [", {"this is not TOML"});
-}
-
-BOOST_AUTO_TEST_CASE(too_many_scenes_are_refused_before_any_is_made) {
-  const std::string hundred = "{ from = 1, to = 1e6, count = 100 }";
-  std::string text = "scenes = [{ generator = \"chain\"";
-  for (const char* name : {"length", "mass", "stiffness", "gravity"})
-    text += fmt::format(", {} = {}", name, hundred);
-  check_refused_study(text + " }]\n", {"multiply to 1e+08 scenes", "100000"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

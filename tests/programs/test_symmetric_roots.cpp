@@ -1,8 +1,6 @@
 #include <cmath>
-#include <sstream>
 
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include "experiments/symmetric_roots/formula_of_cosines.hpp"
 #include "experiments/symmetric_roots/orbit_swing.hpp"
@@ -11,7 +9,6 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
 #include "qddot/scene/scene_file.hpp"
-#include "tests/programs/process.hpp"
 #include "tests/symmetric_formulas.hpp"
 
 BOOST_AUTO_TEST_SUITE(symmetric_roots)
@@ -59,11 +56,6 @@ double off_circle(const Coefficients& formula, double h_omega) {
     worst = std::max({worst, std::abs(y.imag()), std::abs(y.real()) - 1});
   }
   return worst;
-}
-
-Exit run_it(const Folder& folder, std::vector<std::string> words) {
-  words.insert(words.end(), {"--out", folder / "out"});
-  return run("symmetric_roots", words);
 }
 
 }  // namespace
@@ -190,52 +182,6 @@ BOOST_AUTO_TEST_CASE(samples_are_mirrored_digits_in_descending_order) {
     BOOST_TEST(std::ranges::is_sorted(cosines, std::greater()));
     BOOST_TEST((cosines.front() < 0.95 && cosines.back() > -1));
   }
-}
-
-BOOST_AUTO_TEST_CASE(a_table_has_the_registrys_formulas_and_the_sampled_ones) {
-  const Folder folder;
-  const Exit result = run_it(folder, {"--samples", "6", "--at", "0.5"});
-  BOOST_TEST_REQUIRE(result.status == 0, result.err);
-  BOOST_TEST(contains(
-      result.out, {"symmetric4", "symmetric10", "k = 12: largest limit", "with a gap below 0.2"}));
-  const Table table = read_csv(folder / "out/roots.csv");
-  BOOST_TEST(table.header == "steps,method,cosines,limit,phase_error,gap,energy_swing");
-  BOOST_TEST_REQUIRE(table.rows.size() == 4U + 6 * (1 + 2 + 3 + 4 + 5));
-  int unstable = 0;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const auto steps = static_cast<int>(table.value(i, "steps"));
-    std::istringstream words(table.text(i, "cosines"));
-    std::vector<double> cosines;
-    for (double cosine = 0; words >> cosine;) cosines.push_back(cosine);
-    BOOST_TEST(std::ssize(cosines) == steps / 2 - 1);
-    BOOST_TEST(table.text(i, "method") ==
-               (i < symmetric_formulas().size() ? symmetric_formulas()[i].name : ""));
-    const Coefficients formula = formula_of_cosines(cosines);
-    // Cosines of the registry's are computed from its coefficients and known to 1e-14.
-    BOOST_TEST(std::abs(table.value(i, "limit") - stability_limit(formula)) < 1e-12);
-    const bool is_stable = table.value(i, "limit") > 0.5;
-    for (const char* name : {"phase_error", "gap", "energy_swing"}) {
-      BOOST_TEST((table.text(i, name) != "") == is_stable);
-    }
-    if (is_stable) {
-      BOOST_TEST(std::abs(table.value(i, "phase_error") - phase_error(formula, 0.5)) < 1e-12);
-    } else {
-      ++unstable;
-    }
-  }
-  BOOST_TEST((unstable > 0 && unstable < 90));
-  const auto origin = nlohmann::json::parse(read_all(folder / "out/roots.json"));
-  BOOST_TEST(origin.at("at").get<double>() == 0.5);
-  BOOST_TEST(origin.at("samples").get<int>() == 6);
-  BOOST_TEST(listing(folder / "out") == "roots.csv roots.json ");
-}
-
-BOOST_AUTO_TEST_CASE(the_same_command_gives_the_same_table) {
-  const Folder one, other;
-  for (const Folder* folder : {&one, &other}) {
-    BOOST_TEST(run_it(*folder, {"--samples", "2"}).status == 0);
-  }
-  BOOST_TEST(read_all(one / "out/roots.csv") == read_all(other / "out/roots.csv"));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

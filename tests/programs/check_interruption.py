@@ -1,0 +1,90 @@
+"""Runs and studies that are interrupted or killed: what they reached is there, and they go on."""
+
+import glob
+import os
+import signal
+import time
+import unittest
+
+from programs import Programs, read, sidecar, started, table, write
+
+# A run that is long, into long.csv.
+LONG = (
+    "simulate --scene oscillator --method verlet --step-size 1e-9 --until 1e3 --final long.csv"
+)
+SHORT = "simulate --scene oscillator --method verlet --step-size 0.01 --until 1 --final "
+STUDY = (
+    "work_precision --scene pendulum --methods verlet,rk4,blanes_moan4,ida,trapezoidal,bdf2,hht"
+    " --accuracies 1e-5 --repeats 3 --until 20 --out ended"
+)
+
+
+def wait_for(pattern, text=""):
+    """Waits until there is a file of such a name that holds the text, at most two minutes."""
+    for _ in range(12000):
+        for path in glob.glob(pattern):
+            with open(path, "rb") as file:
+                if text.encode() in file.read():
+                    return
+        time.sleep(0.01)
+
+
+class Interruption(Programs):
+    def test_signals_end_a_run_with_what_it_reached(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = started(LONG + " --force")
+            wait_for("long.json.*part")
+            time.sleep(0.1)
+            ended = self.signalled(process, number)
+            self.complains(ended, 130, "interrupted", number.name, "of 1000 s reached")
+            self.assertEqual(sorted(os.listdir(".")), ["long.csv", "long.json"])
+            self.assertEqual(len(table("long.csv")), 2)
+            self.assertEqual(sidecar("long.json")["interrupted"], number.name)
+            self.assertLess(sidecar("long.json")["t_reached"], 1e3)
+
+    def test_a_time_limit_ends_a_run_in_order(self):
+        self.complains(LONG + " --time-limit 0.3", 3, "--time-limit", "reached")
+        self.assertEqual(sidecar("long.json")["interrupted"], "--time-limit")
+        self.done(SHORT + "a.csv --time-limit 1e9")  # which ends by itself
+        self.assertIsNone(sidecar("a.json")["interrupted"])
+
+    def test_a_study_that_is_killed_goes_on_to_the_same_points(self):
+        line = "convergence --scene oscillator --methods verlet,rk4 --until 20 --out "
+        self.done(line + "whole")
+        process = started(line + "half")
+        wait_for("half/convergence.journal")
+        self.assertEqual(self.signalled(process, signal.SIGKILL).returncode, -signal.SIGKILL)
+        self.done(line + "half --resume")
+        self.assertEqual(read("half/order.csv"), read("whole/order.csv"))
+        self.assertEqual(sorted(os.listdir("half")), sorted(os.listdir("whole")))
+
+    def test_a_study_that_is_interrupted_has_its_tables_and_goes_on(self):
+        process = started(STUDY)
+        # A study whose journal has no piece yet has nothing to save.
+        wait_for("ended/work_precision.journal", "outcome")
+        ended = self.signalled(process, signal.SIGINT)
+        self.complains(ended, 130, "interrupted by SIGINT", "--resume")
+        before = len(table("ended/points.csv"))
+        self.assertEqual(sidecar("ended/points.json")["interrupted"], "SIGINT")
+        self.done(STUDY + " --resume")
+        self.assertIsNone(sidecar("ended/points.json")["interrupted"])
+        self.assertGreaterEqual(len(table("ended/points.csv")), before)
+        self.assertIn("nothing is missing", self.done(STUDY + " --resume").stderr)
+
+    def test_unfinished_files_of_the_dead_go_and_those_of_the_living_stay(self):
+        for name in ("a.csv.999999.part", "a.csv.part", "notes.part"):
+            write(name, "the user's, or half")
+        living = started(LONG)
+        wait_for("long.json.*part")
+        self.done(SHORT + "b.csv")
+        there = os.listdir(".")
+        self.assertNotIn("a.csv.999999.part", there)
+        self.assertLessEqual({"a.csv.part", "notes.part"}, set(there))
+        self.assertTrue(glob.glob("long.csv.*"), there)
+        self.assertEqual(self.signalled(living, signal.SIGTERM).returncode, 130)
+        left = "a.csv.part b.csv b.json long.csv long.json notes.part"
+        self.assertEqual(sorted(os.listdir(".")), left.split())
+
+
+if __name__ == "__main__":
+    unittest.main()
