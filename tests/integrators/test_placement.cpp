@@ -149,14 +149,4 @@ BOOST_AUTO_TEST_CASE(a_scene_moved_turned_and_renumbered_moves_in_the_same_way) 
   }
 }
 
-BOOST_AUTO_TEST_CASE(gravity_that_does_not_turn_with_the_scene_is_noticed) {
-  std::mt19937 random(1);
-  const Case c = cases().front();
-  const std::vector<Node> plain = c.run(c.scene, {});
-  const Placement placement(random, c.scene.nodes.size());
-  Scene moved = placement.of(c.scene, random);
-  moved.gravity = c.scene.gravity;
-  BOOST_TEST(apart(plain, placement.back(c.run(moved, {}))).positions > 1e-2);
-}
-
 BOOST_AUTO_TEST_SUITE_END()

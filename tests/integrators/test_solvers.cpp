@@ -18,25 +18,23 @@ std::vector<Method> methods_with_solver() {
 
 // Fixed steps are the same ones, solved to 1e-10 and less of what changes in each; steps that are
 // chosen may fall elsewhere, and agree to some tolerances.
-BOOST_AUTO_TEST_CASE(every_method_ends_in_the_same_state_with_every_solver) {
+BOOST_DATA_TEST_CASE(every_method_ends_in_the_same_state_with_every_solver, methods_with_solver(),
+                     method) {
   const Problem p = hammock(3);
-  const auto system = make_mass_spring(p.network);
   BOOST_TEST(methods_with_solver().size() >= 20u);
-  for (const Method& method : methods_with_solver()) {
-    Options options = options_of(method, 0.01, 1e-6);
-    options.solve_tolerance = 1e-10;
-    options.solver = Solver::multifrontal;
-    const Run reference = run(method, *system, p.initial, 1, options);
-    BOOST_TEST(reference.summary.message == "", method.name);
-    for (const auto& [solver, name] : solver_names) {
-      BOOST_TEST_CONTEXT(method.name << " with " << name) {
-        options.solver = solver;
-        const Run r = run(method, *system, p.initial, 1, options);
-        BOOST_TEST(r.summary.message == "");
-        const bool is_fixed = method.knob == Knob::step_size;
-        BOOST_TEST(distance(r.state, reference.state) < (is_fixed ? 1e-7 : 1e-3));
-        if (is_fixed) BOOST_TEST(r.summary.counts.steps == reference.summary.counts.steps);
-      }
+  Options options = options_of(method, 0.01, 1e-6);
+  options.solve_tolerance = 1e-10;
+  options.solver = Solver::multifrontal;
+  const Run reference = run(method, p, 1, options);
+  BOOST_TEST(reference.summary.message == "", method.name);
+  for (const auto& [solver, name] : solver_names) {
+    BOOST_TEST_CONTEXT(method.name << " with " << name) {
+      options.solver = solver;
+      const Run r = run(method, p, 1, options);
+      BOOST_TEST(r.summary.message == "");
+      const bool is_fixed = method.knob == Knob::step_size;
+      BOOST_TEST(distance(r.state, reference.state) < (is_fixed ? 1e-7 : 1e-3));
+      if (is_fixed) BOOST_TEST(r.summary.counts.steps == reference.summary.counts.steps);
     }
   }
 }
@@ -77,12 +75,10 @@ BOOST_AUTO_TEST_CASE(rodas4_is_as_accurate_with_conjugate_gradients_as_with_fact
     };
     for (double& mass : p.network.node_mass) mass *= power(-3, 0);
     for (auto& link : p.network.links) link.law.stiffness *= power(0, 3);
-    const auto system = make_mass_spring(p.network);
-    const Run exact = run(method_named("dprkn12"), *system, p.initial, 0.01, {.rtol = 1e-13});
+    const Run exact = run(method_named("dprkn12"), p, 0.01, {.rtol = 1e-13});
     for (const double rtol : {1e-4, 1e-6, 1e-8}) {
       const auto error = [&](Solver solver) {
-        const Run r =
-            run(method_named("rodas4"), *system, p.initial, 0.01, {.rtol = rtol, .solver = solver});
+        const Run r = run(method_named("rodas4"), p, 0.01, {.rtol = rtol, .solver = solver});
         BOOST_TEST(r.summary.message == "");
         return distance(r.state, exact.state);
       };

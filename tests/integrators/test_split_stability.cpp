@@ -6,7 +6,6 @@
 #include "integrators/sundials/arkode.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "tests/integrators/scenes.hpp"
-#include "tests/integrators/split_relay.hpp"
 
 BOOST_AUTO_TEST_SUITE(split_stability)
 

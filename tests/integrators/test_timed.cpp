@@ -33,56 +33,38 @@ State twice(const State& s) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(no_time_is_taken_unless_it_is_asked_for) {
-  const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
-  for (const Method& method : general_methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const Seconds s =
-          run(method, *system, p.initial, 0.5, options_for(method, false)).summary.seconds;
-      for (const double time : {s.force, s.stiffness, s.factorization, s.solve}) {
-        BOOST_TEST(time == 0);
-      }
-    }
-  }
+BOOST_DATA_TEST_CASE(times_are_taken_if_asked_for_and_change_nothing_else, general_methods(),
+                     method) {
+  const Run a = run(method, hammock(2), 0.5, options_for(method, false));
+  const Run b = run(method, hammock(2), 0.5, options_for(method, true));
+  BOOST_TEST(sum(a.summary.seconds) == 0);
+  BOOST_TEST(sum(b.summary.seconds) > 0);
+  BOOST_TEST(same(a.state, b.state));
+  BOOST_TEST(a.summary.counts == b.summary.counts);
 }
 
-BOOST_AUTO_TEST_CASE(times_are_those_of_what_is_counted_and_add_up_to_less_than_the_run) {
+BOOST_DATA_TEST_CASE(times_are_those_of_what_is_counted_and_add_up_to_less_than_the_run,
+                     general_methods(), method) {
   const Problem p = hammock(2);
   const auto whole = make_mass_spring(p.network), divided = two_parts();
-  for (const Method& method : general_methods()) {
-    for (const bool is_divided : {false, true}) {
-      BOOST_TEST_CONTEXT(method.name << (is_divided ? " on two parts" : "")) {
-        const System& system = is_divided ? *divided : *whole;
-        const auto integrator = make_integrator(method, system, options_for(method, true));
-        for (int repeat = 0; repeat < 2; ++repeat) {  // of the second, too, only its own
-          State state = is_divided ? twice(p.initial) : p.initial;
-          const auto start = std::chrono::steady_clock::now();
-          const Summary summary = integrator->advance(state, 0.5);
-          const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-          const Seconds& s = summary.seconds;
-          BOOST_TEST(summary.message == "");
-          BOOST_TEST(sum(s) <= time.count());
-          BOOST_TEST(s.force > 0);
-          BOOST_TEST((s.stiffness > 0) == (summary.counts.stiffness_evaluations > 0));
-          if (method.family != Family::sundials) continue;  // their solves are their own
-          BOOST_TEST((s.factorization > 0) == (summary.counts.factorizations > 0));
-          BOOST_TEST((s.solve > 0) == (summary.counts.solves > 0));
-        }
+  for (const bool is_divided : {false, true}) {
+    BOOST_TEST_CONTEXT(method.name << (is_divided ? " on two parts" : "")) {
+      const System& system = is_divided ? *divided : *whole;
+      const auto integrator = make_integrator(method, system, options_for(method, true));
+      for (int repeat = 0; repeat < 2; ++repeat) {  // of the second, too, only its own
+        State state = is_divided ? twice(p.initial) : p.initial;
+        const auto start = std::chrono::steady_clock::now();
+        const Summary summary = integrator->advance(state, 0.5);
+        const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+        const Seconds& s = summary.seconds;
+        BOOST_TEST(summary.message == "");
+        BOOST_TEST(sum(s) <= time.count());
+        BOOST_TEST(s.force > 0);
+        BOOST_TEST((s.stiffness > 0) == (summary.counts.stiffness_evaluations > 0));
+        if (method.family != Family::sundials) continue;  // their solves are their own
+        BOOST_TEST((s.factorization > 0) == (summary.counts.factorizations > 0));
+        BOOST_TEST((s.solve > 0) == (summary.counts.solves > 0));
       }
-    }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(timing_changes_nothing_else) {
-  const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
-  for (const Method& method : general_methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const Run a = run(method, *system, p.initial, 0.5, options_for(method, false));
-      const Run b = run(method, *system, p.initial, 0.5, options_for(method, true));
-      BOOST_TEST(same(a.state, b.state));
-      BOOST_TEST(a.summary.counts == b.summary.counts);
     }
   }
 }

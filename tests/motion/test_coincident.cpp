@@ -5,9 +5,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/registry.hpp"
 #include "qddot/scene/reduce/part.hpp"
-#include "tests/measure.hpp"
+#include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(coincident)
@@ -231,11 +230,7 @@ BOOST_AUTO_TEST_CASE(pairs_that_part_are_four_images_of_one_node) {
   check_all(scene);
   // Each moves away from the mirror at its own side with 1 m/s, held back by 4 x 100 N/m.
   const auto nodes_at = [&](const Reductions& reductions) {
-    const ReducedScene some(scene, reductions);
-    State state = some.initial();
-    make_integrator(*find_method("kahan_li8"), some.system(), {.step_size = 1e-3})
-        ->advance(state, 0.1);
-    return some.expand(state);
+    return nodes_after(scene, reductions, method_named("kahan_li8"), 1e-3, 0.1);
   };
   const auto all = nodes_at(Reductions()), drawn = nodes_at(Reductions::only({Reduction::pins}));
   // A hundred steps of numbers around one.

@@ -1,8 +1,8 @@
 // The motion of a reduced scene is that of the scene: all nodes, with each reduction and without.
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/registry.hpp"
 #include "qddot/scene/reduce/part.hpp"
+#include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(reduced_motion)
@@ -14,14 +14,7 @@ namespace {
 // All nodes at time `until`, by a method of fixed step.
 std::vector<Node> end_of(const Scene& scene, const Reductions& reductions, double until, double h,
                          const char* method = "kahan_li8") {
-  const ReducedScene reduced(scene, reductions);
-  State state = reduced.initial();
-  // Implicit methods are solved to rounding, so that ends can be compared.
-  const auto integrator = make_integrator(*find_method(method), reduced.system(),
-                                          {.step_size = h, .solve_tolerance = 1e-12});
-  const Summary summary = integrator->advance(state, until);
-  BOOST_TEST_REQUIRE(summary.message == "");
-  return reduced.expand(state);
+  return nodes_after(scene, reductions, method_named(method), h, until);
 }
 
 // The difference of the ends, relative to the largest displacement of a node.
