@@ -11,8 +11,7 @@ using namespace qddot;
 
 namespace {
 
-// By then also explicit methods have looked at K some ten times.
-constexpr double until = 30;  // s
+constexpr double until = 4;  // s, in which explicit methods too look at K more than once
 Options options_for(const Method& method) { return options_of(method, 0.01, 1e-6); }
 
 using Spoil = void (*)(double& entry);
@@ -37,12 +36,12 @@ struct Spoiled {
       half.after_force = [pass](const ConstVec&, MutableVec f) { pass(f[0]); };
     }
   }
-  // The number of evaluations in a run to `t_end` that goes well.
-  int evaluations(double t_end) {
+  // The number of evaluations in a run that goes well.
+  int evaluations() {
     calls = 0;
     first_bad = std::numeric_limits<int>::max();
     State state = problem.initial;
-    BOOST_TEST(integrator->advance(state, t_end).message == "");
+    BOOST_TEST(integrator->advance(state, until).message == "");
     return calls;
   }
   Run run(int first, Spoil how) {
@@ -75,7 +74,7 @@ void for_all_spoiled(const Method& method, const Check& check) {
   for (std::size_t which = 0; which < Relay(*system).all().size(); ++which) {
     for (const bool in_matrix : {false, true}) {
       Spoiled spoiled(method, which, in_matrix);
-      const int all = spoiled.evaluations(1);
+      const int all = spoiled.evaluations();
       for (const int first_bad : {1, std::max(2, all / 2)}) {
         if (all < first_bad) continue;
         BOOST_TEST_CONTEXT((in_matrix ? "stiffness " : "force ")
@@ -87,8 +86,12 @@ void for_all_spoiled(const Method& method, const Check& check) {
   }
 }
 
-// The state is one of the run of a system that is not spoiled, but for tolerances where steps are
-// chosen by what is left, and iterations begin anew.
+// The error of a state of a run that has ended early: none but for tolerances where steps are
+// chosen by what is left and iterations begin anew, and where a force at the end is to complete the
+// state.
+double allowed(const Method& method) {
+  return method.knob == Knob::rtol || method.recurrence_roots ? 1e-2 : 1e-6;
+}
 void check_ended_early(const Method& method, const Spoiled& spoiled, const Run& r) {
   BOOST_TEST(is_finite(r.state));
   BOOST_TEST(r.state.t < until);
@@ -98,7 +101,7 @@ void check_ended_early(const Method& method, const Spoiled& spoiled, const Run& 
   }
   const State right =
       run(method, *spoiled.system, spoiled.problem.initial, r.state.t, options_for(method)).state;
-  BOOST_TEST(distance(r.state, right) < (method.knob == Knob::rtol ? 1e-2 : 1e-6));
+  BOOST_TEST(distance(r.state, right) < allowed(method));
 }
 
 // Runs that failed leave nothing behind in the integrator.
@@ -124,6 +127,7 @@ BOOST_DATA_TEST_CASE(an_exception_in_the_system_comes_out_as_itself, methods(), 
 
 BOOST_DATA_TEST_CASE(what_is_no_number_is_named, methods(), method) {
   for_all_spoiled(method, [&](Spoiled& spoiled, int first_bad, bool in_matrix) {
+    if (in_matrix && !method.is(Trait::implicit)) return;  // which only bound their steps by it
     const Run r = spoiled.run(first_bad, lose_it);
     const auto outcome = r.summary.outcome;
     // Library methods take it for a matrix that is of no use.
@@ -154,7 +158,7 @@ BOOST_DATA_TEST_CASE(a_run_can_be_stopped_between_two_steps, methods(), method) 
   BOOST_TEST((r.state.t > 0 && r.state.t < 5));
   BOOST_TEST(r.summary.t_reached == r.state.t);
   const State right = run(method, *system, p.initial, r.state.t, options).state;
-  BOOST_TEST(distance(r.state, right) < (method.knob == Knob::rtol ? 1e-2 : 1e-6));
+  BOOST_TEST(distance(r.state, right) < allowed(method));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -18,10 +18,16 @@ State step(const Method& method, const System& system, const State& start, doubl
   BOOST_REQUIRE(r.summary.counts.steps == 1);
   return r.state;
 }
+State step(const Method& method, const Problem& p, double h, int iterations) {
+  return step(method, *make_mass_spring(p.network), p.initial, h, iterations);
+}
 
 // The energy that the step minimises.
 double energy(const System& system, const State& start, const State& end) {
   return system.kinetic(end.v - start.v) + system.potential(end.q);
+}
+double energy(const Problem& p, const State& end) {
+  return energy(*make_mass_spring(p.network), p.initial, end);
 }
 
 Problem without_quartic(Problem p) {

@@ -6,6 +6,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "tests/integrators/scenes.hpp"
+#include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(placement)
 
@@ -21,14 +22,10 @@ struct Case {
   Scene scene;
   double h, t_end;
 
-  std::vector<Node> run(const Scene& drawn, const Reductions& reductions) const {
-    return nodes_after(drawn, reductions, method_named("verlet"), h, t_end);
+  std::vector<Node> run(const Scene& placed, const Reductions& reductions) const {
+    return nodes_after(placed, reductions, method_named("verlet"), h, t_end);
   }
 };
-
-Scene drawn(const char* generator, const GeneratorValues& values) {
-  return generate(*find_generator(generator), values, "test");
-}
 
 std::vector<Case> cases() {
   std::mt19937 random(6);
@@ -37,10 +34,10 @@ std::vector<Case> cases() {
   body.nodes.front().pinned = true;
   add_random_body(random, 3, {0, 5, 0}, body);
   add_random_body(random, 1, {0, 9, 0}, body);
-  return {{"cloth", drawn("cloth", {{"nodes", 8}}), 1e-3, 0.2},
-          {"chain", drawn("chain", {{"nodes", 12}}), 1e-4, 0.1},
-          {"pair", drawn("pair", {}), 1e-2, 2},
-          {"pendulum", drawn("pendulum", {}), 1e-2, 2},
+  return {{"cloth", draw("cloth", {{"nodes", 8}}), 1e-3, 0.2},
+          {"chain", draw("chain", {{"nodes", 12}}), 1e-4, 0.1},
+          {"pair", draw("pair", {}), 1e-2, 2},
+          {"pendulum", draw("pendulum", {}), 1e-2, 2},
           {"random bodies", body, 1e-2, 1}};
 }
 
@@ -55,15 +52,8 @@ struct Placement {
     std::ranges::shuffle(number, random);
   }
   Scene of(const Scene& scene, std::mt19937& random) const {
-    Scene moved = scene;
-    moved.gravity = turn * scene.gravity;
-    for (std::size_t i = 0; i < number.size(); ++i) {
-      Node& node = moved.nodes[number[i]] = scene.nodes[i];
-      node.position = turn * node.position + shift;
-      node.velocity = turn * node.velocity;
-    }
+    Scene moved = renumbered(turned(scene, turn, shift), number);
     for (Spring& spring : moved.springs) {
-      for (std::size_t& end : spring.nodes) end = number[end];
       if (random() % 2 == 0) std::swap(spring.nodes[0], spring.nodes[1]);
     }
     std::ranges::shuffle(moved.springs, random);

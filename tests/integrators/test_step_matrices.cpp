@@ -210,8 +210,8 @@ BOOST_AUTO_TEST_CASE(no_implicit_matrix_grows_at_any_step_and_the_alphas_damp_as
 
 BOOST_AUTO_TEST_CASE(the_spectral_radius_asked_for_is_the_one_that_is_had) {
   for (const double rho : {0.5, 0.7, 1.0}) {
-    for (const auto& [method, matrix] :
-         {std::pair("generalized_alpha", chung_hulbert), std::pair("hht", hilber_hughes_taylor)}) {
+    for (const auto& [method, matrix] : {std::pair("generalized_alpha", &chung_hulbert),
+                                         std::pair("hht", &hilber_hughes_taylor)}) {
       const Formula formula{method, [&, m = matrix](double hw) { return m(hw, rho); }};
       BOOST_TEST(defect(formula, 2, 50, rho) < rounding(formula, 2));
     }

@@ -2,7 +2,6 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "tests/fragments.hpp"
 #include "tests/integrators/scenes.hpp"
 
 BOOST_AUTO_TEST_SUITE(sundials)
@@ -51,20 +50,6 @@ BOOST_AUTO_TEST_CASE(our_counts_and_those_of_sundials_fit_together) {
       BOOST_TEST(c.newton_iterations >= c.steps);
       BOOST_TEST(c.factorizations >= c.stiffness_evaluations);
       BOOST_TEST(c.stiffness_evaluations > 0);
-    }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(the_summary_of_a_method_names_its_library_and_table) {
-  const std::map<std::string, std::string> tables = {{"arkode_dirk2", "ARKODE_SDIRK_2_1_2"},
-                                                     {"arkode_dirk3", "ARKODE_KVAERNO_4_2_3"},
-                                                     {"arkode_dirk4", "ARKODE_SDIRK_5_3_4"},
-                                                     {"arkode_dirk5", "ARKODE_ESDIRK547L2SA_7_4_5"},
-                                                     {"ida", "BDF of order 1 to 5"}};
-  for (const auto& [method, table] : tables) {
-    BOOST_TEST_CONTEXT(method) {
-      const Method& m = method_named(method);
-      BOOST_TEST(contains(m.summary, {table, "SUNDIALS", std::to_string(m.order)}));
     }
   }
 }
