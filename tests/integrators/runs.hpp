@@ -93,6 +93,10 @@ inline std::vector<Method> methods_with(Trait trait) {
 inline std::vector<Method> methods_with(Option option) {
   return methods_where([&](const Method& m) { return m.listens_to(option); });
 }
+// The methods that repeat another by the stock way of SUNDIALS.
+inline std::vector<Method> stock_methods() {
+  return methods_where([](const Method& method) { return !method.stock_of.empty(); });
+}
 inline std::ostream& operator<<(std::ostream& out, const Method& method) {
   return out << method.name;
 }
@@ -247,6 +251,18 @@ inline Network linear_chain(int n, double mass, double stiffness) {
   for (int i = 0; i + 1 < n; ++i) network.links.push_back({i, i + 1, {stiffness}});
   network.anchors = {{0, {0, 0, 0}, {stiffness}}, {n - 1, {n + 1.0, 0, 0}, {stiffness}}};
   return network;
+}
+
+// n masses in 2D at rest along x between pins at 0 and n + 1, on springs of this law; each is
+// beside(i) m off the row.
+inline Problem row_between_pins(int n, double mass, const SpringLaw& law,
+                                const std::function<double(int)>& beside) {
+  Problem p{{.dimension = 2, .node_mass = Vec::Constant(n, mass)}, {}};
+  p.network.anchors = {{0, {0, 0, 0}, law}, {n - 1, {n + 1.0, 0, 0}, law}};
+  for (int i = 0; i + 1 < n; ++i) p.network.links.push_back({i, i + 1, law});
+  p.initial = {0, Vec(2 * n), Vec::Zero(2 * n)};
+  for (int i = 0; i < n; ++i) p.initial.q.segment<2>(2 * i) << i + 1, beside(i);
+  return p;
 }
 
 }  // namespace tests

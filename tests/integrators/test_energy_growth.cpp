@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(methods_with_soft_springs_above_their_limit_say_so_with_rea
       BOOST_TEST(fine.summary.message == "");
       BOOST_TEST(fine.summary.energy_growth < 1.5);
       // A few steps at h w = 3 or 6, far beyond the limits of all of them.
-      const bool is_mri = std::string_view(name).starts_with("arkode");
+      const bool is_mri = method_named(name).asks(Need::split_forces);
       const Run coarse =
           run(method_named(name), p, is_mri ? 0.6 : 1.8, {.step_size = is_mri ? 0.3 : 0.6});
       BOOST_TEST(coarse.summary.message == "");

@@ -62,21 +62,6 @@ double rounding(double w, double t, double steps, Index n) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(oscillator_follows_its_closed_form_at_small_and_absurdly_large_steps) {
-  const Oscillator o;
-  const double amplitude = std::hypot(o.x0, o.v0 / o.omega());
-  for (const double periods : {0.25, 1.0, 300.7}) {
-    const double t = periods * o.period();
-    for (const double h : {0.01, 0.37, 2 / o.omega(), 17.0, 1e9}) {
-      const Run r = run_exact(o.problem(), t, h);
-      const double tolerance =
-          amplitude * rounding(o.omega(), t, static_cast<double>(r.summary.counts.steps), 1);
-      BOOST_TEST(std::abs(r.state.q[0] - o.position(t)) < tolerance);
-      BOOST_TEST(std::abs(r.state.v[0] - o.velocity(t)) < tolerance * o.omega());
-    }
-  }
-}
-
 BOOST_AUTO_TEST_CASE(chain_follows_its_closed_form_at_small_and_absurdly_large_steps) {
   const Chain chain;
   const double w = Chain::omega(Chain::n);

@@ -78,9 +78,8 @@ Verdict judge(const Method& method, int dimension, double rtol = 1e-6) {
 }
 
 std::vector<Method> accepting(Knob knob) {
-  std::vector<Method> list = methods_of(knob);
-  std::erase_if(list, [](const Method& method) { return !method.is(Trait::accepts_massless); });
-  return list;
+  return methods_where(
+      [&](const Method& m) { return m.is(Trait::accepts_massless) && m.knob == knob; });
 }
 
 // The force on a massless node [N] that Newton's iteration of an adaptive method leaves. The place

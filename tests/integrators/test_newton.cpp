@@ -16,15 +16,8 @@ constexpr double mass = 0.1, stiffness = 1e4;
 // A chain along x in 2D between pins at 0 and 6 m whose springs are 1/0.7 of their room long. It is
 // at rest, bent by `bend` m to one side and the other.
 Problem strut(double bend) {
-  Problem p{{.dimension = 2, .node_mass = Vec::Constant(masses, mass)}, {}};
-  const SpringLaw law{.stiffness = stiffness, .rest_length = 1 / 0.7};
-  p.network.anchors = {{0, {0, 0, 0}, law}, {masses - 1, {masses + 1, 0, 0}, law}};
-  for (int i = 0; i + 1 < masses; ++i) p.network.links.push_back({i, i + 1, law});
-  p.initial = {0, Vec(2 * masses), Vec::Zero(2 * masses)};
-  for (int i = 0; i < masses; ++i) {
-    p.initial.q.segment<2>(2 * i) << i + 1, (i % 2 == 0 ? bend : -bend) * (1 + 0.1 * i);
-  }
-  return p;
+  return row_between_pins(masses, mass, {.stiffness = stiffness, .rest_length = 1 / 0.7},
+                          [=](int i) { return (i % 2 == 0 ? bend : -bend) * (1 + 0.1 * i); });
 }
 
 // An implicit Euler step as a minimisation over v.

@@ -50,12 +50,6 @@ double time_of_slack() {
   return (std::acos(-sag / r) - phase) / w;
 }
 
-std::vector<Method> accepting_massless() {
-  std::vector<Method> list = general_methods();
-  std::erase_if(list, [](const Method& method) { return !method.is(Trait::accepts_massless); });
-  return list;
-}
-
 }  // namespace
 
 BOOST_DATA_TEST_CASE(compression_between_two_steps_is_seen_and_its_time_told,
@@ -90,7 +84,7 @@ BOOST_AUTO_TEST_CASE(long_steps_of_damping_methods_over_a_stiff_spring_raise_no_
 }
 
 BOOST_DATA_TEST_CASE(who_keeps_a_massless_node_notices_that_its_place_is_no_longer_stable,
-                     accepting_massless(), method) {
+                     methods_with(Trait::accepts_massless), method) {
   for (const int dimension : {2, 3}) {
     BOOST_TEST_CONTEXT(method.name << " in dimension " << dimension) {
       const Problem p = thrown(dimension);
@@ -114,7 +108,7 @@ BOOST_DATA_TEST_CASE(who_keeps_a_massless_node_notices_that_its_place_is_no_long
 }
 
 BOOST_DATA_TEST_CASE(what_would_fold_across_the_line_that_a_plane_scene_is_left_with_is_noticed,
-                     accepting_massless(), method) {
+                     methods_with(Trait::accepts_massless), method) {
   Scene scene{.dimension = 2, .gravity = {0, -9.81, 0}};
   scene.nodes = {{.position = {0, 0, 0}, .pinned = true},
                  {.position = {0, -0.95, 0}, .mass = 0},

@@ -2,8 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/block_diagonal_system.hpp"
-#include "tests/integrators/runs.hpp"
+#include "tests/integrators/parts.hpp"
 
 BOOST_AUTO_TEST_SUITE(timed)
 
@@ -17,18 +16,6 @@ Options options_for(const Method& method, bool is_timed) {
   Options options = options_of(method, 0.01, 1e-5);
   options.timed = is_timed;
   return options;
-}
-
-std::unique_ptr<System> two_parts() {
-  std::vector<std::unique_ptr<System>> parts;
-  for (int i = 0; i < 2; ++i) parts.push_back(make_mass_spring(hammock(2).network));
-  return std::make_unique<BlockDiagonalSystem>(std::move(parts));
-}
-State twice(const State& s) {
-  State both{s.t, Vec(2 * s.q.size()), Vec(2 * s.q.size())};
-  both.q << s.q, s.q;
-  both.v << s.v, s.v;
-  return both;
 }
 
 }  // namespace
@@ -45,16 +32,15 @@ BOOST_DATA_TEST_CASE(times_are_taken_if_asked_for_and_change_nothing_else, gener
 
 BOOST_DATA_TEST_CASE(times_are_those_of_what_is_counted_and_add_up_to_less_than_the_run,
                      general_methods(), method) {
-  const Problem p = hammock(2);
-  const auto whole = make_mass_spring(p.network), divided = two_parts();
-  for (const bool is_divided : {false, true}) {
-    BOOST_TEST_CONTEXT(method.name << (is_divided ? " on two parts" : "")) {
-      const System& system = is_divided ? *divided : *whole;
-      const auto integrator = make_integrator(method, system, options_for(method, true));
+  const Part one = part(hammock(2));
+  for (const int count : {1, 2}) {
+    const Together parts(std::vector(static_cast<std::size_t>(count), one));
+    BOOST_TEST_CONTEXT(count << " parts") {
+      const auto integrator = make_integrator(method, *parts.system, options_for(method, true));
       for (int repeat = 0; repeat < 2; ++repeat) {  // of the second, too, only its own
-        State state = is_divided ? twice(p.initial) : p.initial;
+        State state = parts.start;
         const auto start = std::chrono::steady_clock::now();
-        const Summary summary = integrator->advance(state, 0.5);
+        const Summary summary = integrator->advance(state, start_time + 0.5);
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
         const Seconds& s = summary.seconds;
         BOOST_TEST(summary.message == "");
