@@ -128,7 +128,7 @@ BOOST_DATA_TEST_CASE(adaptive_methods_come_as_near_to_the_one_in_series_as_their
       double last = INFINITY;
       for (const double rtol : {1e-4, 1e-6, 1e-8}) {
         const Verdict verdict = judge(method, dimension, rtol);
-        BOOST_TEST(verdict.difference < 1000 * rtol);  // as in the suite `sundials`
+        BOOST_TEST(verdict.difference < 1000 * rtol);  // as in the suite `accuracy`
         // Two errors, each of up to some 300 tolerances, may cancel at one tolerance.
         BOOST_TEST(verdict.difference < std::max(last, 300 * rtol));
         BOOST_TEST(verdict.force < balance(rtol));
