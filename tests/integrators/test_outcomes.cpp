@@ -36,7 +36,7 @@ BOOST_DATA_TEST_CASE(a_start_or_an_end_that_is_no_number_is_refused, general_met
     BOOST_TEST_CONTEXT(method.name << " " << bad) {
       const Options options = options_of(method, 0.01, 1e-4);
       State bad_t = p.initial, bad_q = bad_t, bad_v = bad_t;
-      bad_t.t = bad;
+      bad_t.t = nan;
       bad_q.q[3] = bad;
       bad_v.v[0] = bad;
       BOOST_TEST(name(run(method, {p.network, bad_t}, 1, options).summary.outcome) == "not_finite");

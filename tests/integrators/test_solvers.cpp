@@ -20,7 +20,7 @@ constexpr double by_rounding = 1e-10, by_coarse_rates = 1e-8;
 // chosen may fall elsewhere, and agree to some tolerances.
 BOOST_DATA_TEST_CASE(every_method_ends_in_the_same_state_with_every_solver,
                      methods_with(Option::solver), method) {
-  const Problem p = hammock(3);
+  const Problem p = problem_for(method, 3);
   BOOST_TEST(methods_with(Option::solver).size() >= 20u);
   Options options = options_of(method, 0.01, 1e-6);
   options.solve_tolerance = 1e-10;
