@@ -1,5 +1,3 @@
-#include <random>
-
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/integrators/base/nystrom.hpp"
@@ -98,37 +96,6 @@ BOOST_AUTO_TEST_CASE(a_step_is_the_formula_of_its_pair) {
       // Rounding of numbers of 5 by 1e-16 in a few dozen operations.
       BOOST_TEST(distance(r.state, formula(pair, *c.system, c.start, h)) < 1e-13);
       BOOST_TEST(distance(r.state, formula(pair, *c.system, c.start, 1.001 * h)) > 1e-6);
-    }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(a_step_of_a_pair_errs_by_its_order_and_one) {
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal(0, 0.5);
-  for (const KnownMotion& c : {linear(), nonlinear()}) {
-    for (const auto& [name, pair] : pairs()) {
-      // There are 20 starts, as errors of single ones vanish by chance at some h. h w goes from 1
-      // to 4 down to a value above the influence of rounding.
-      constexpr int count = 5;
-      Vec logs(count), q = Vec::Zero(count), v = q;
-      for (int start = 0; start < 20; ++start) {
-        State begin = c.start;
-        for (double& speed : begin.v) speed += normal(random);
-        double h = pair.order == 12 ? 0.16 : pair.order == 8 ? 0.08 : 0.04;
-        for (int i = 0; i < count; ++i, h *= 0.85) {
-          const State end = formula(pair, *c.system, begin, h), exact = c.after(begin, h);
-          logs[i] = std::log(h);
-          q[i] += (end.q - exact.q).squaredNorm();
-          v[i] += (end.v - exact.v).squaredNorm();
-        }
-      }
-      const double in_q = slope(logs, q.array().log() / 2), in_v = slope(logs, v.array().log() / 2);
-      BOOST_TEST_CONTEXT(name << ": " << in_q << " in q, " << in_v << " in v") {
-        BOOST_TEST(std::abs(in_v - (pair.order + 1)) < 0.5);
-        // The order in q is the smaller one, and may be higher by one.
-        BOOST_TEST(in_q > pair.order + 0.5);
-        BOOST_TEST(in_q < pair.order + 2.5);
-      }
     }
   }
 }

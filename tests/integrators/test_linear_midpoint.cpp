@@ -3,8 +3,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/algebra/effective_mass.hpp"
-#include "qddot/analysis/largest_frequency.hpp"
-#include "tests/integrators/scenes.hpp"
+#include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(linear_midpoint)
 
@@ -152,28 +151,6 @@ BOOST_AUTO_TEST_CASE(stiff_springs_become_rods) {
   // Negative control: what explicit methods make of it.
   const Run r = run(method_named("verlet"), pendulum(1e6), t_end, {.step_size = h});
   BOOST_TEST(name(r.summary.outcome) == "diverged");
-}
-
-BOOST_AUTO_TEST_CASE(a_frame_ten_thousand_times_stiffer_does_not_bound_the_steps) {
-  for (const double frame : {1e7, 1e11}) {
-    const ReducedScene scene(generate(*find_generator("framed_cloth"),
-                                      {{"nodes", 8}, {"frame_stiffness", frame}}, "framed_cloth"));
-    const System& system = scene.system();
-    const State& start = scene.initial();
-    const double t_end = 0.1;
-    const double h = 1 / frequency_bound(*split_of(system)->soft, start.q);
-    BOOST_TEST(h * frequency_bound(system, start.q) > 30);
-    for (const Form& form : forms()) {
-      const Method& method = method_named(form.name);
-      const State end = run(method, system, start, t_end, {.step_size = h}).state;
-      const State fine = run(method, system, start, t_end, {.step_size = h / 16}).state;
-      const double motion = distance(fine.q, start.q);
-      BOOST_TEST(motion > 0.01);
-      BOOST_TEST(distance(end.q, fine.q) < 0.01 * motion, form.name << " at " << frame);
-    }
-    const Run explicit_run = run(method_named("verlet"), system, start, t_end, {.step_size = h});
-    BOOST_TEST(name(explicit_run.summary.outcome) == "diverged");
-  }
 }
 
 BOOST_AUTO_TEST_CASE(compression_does_not_make_its_matrix_indefinite) {

@@ -126,23 +126,6 @@ BOOST_AUTO_TEST_CASE(a_step_in_n_x_n_form_is_the_one_of_the_first_order_form) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(one_step_errs_by_order_5_in_q_and_v) {
-  for (const KnownMotion& c : {linear(), nonlinear()}) {
-    std::vector<double> q, v;
-    for (double h = 0.016; h > 0.0019; h /= 2) {
-      const Run r = run(method_named("rodas4"), *c.system, c.start, h, {.rtol = 1e3});
-      const State exact = c.after(c.start, h);
-      BOOST_REQUIRE(r.summary.counts.steps == 1);
-      q.push_back(distance(r.state.q, exact.q));
-      v.push_back(distance(r.state.v, exact.v));
-    }
-    // Positions are nearly of one order more at these sizes.
-    BOOST_TEST(observed_order(q) > 4.7, observed_order(q));
-    BOOST_TEST(observed_order(q) < 6.1, observed_order(q));
-    BOOST_TEST(std::abs(observed_order(v) - 5) < 0.3, observed_order(v));
-  }
-}
-
 BOOST_AUTO_TEST_CASE(each_attempt_factorises_once_and_solves_six_times) {
   for (const KnownMotion& c : {linear(), nonlinear()}) {
     const Counts k =
