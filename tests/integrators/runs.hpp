@@ -1,10 +1,15 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include <boost/test/data/monomorphic.hpp>
+#include <boost/test/data/test_case.hpp>
 
 #include "qddot/integrators/registry.hpp"
 #include "tests/measure.hpp"
@@ -33,9 +38,19 @@ inline Run run(const Method& method, const System& system, State state, double t
   }
 }
 
-// Orders of convergence seen in positions and in velocities.
-struct Orders {
-  double q, v;
+inline Run run(const Method& method, const Problem& p, double t_end, const Options& options,
+               const Observer& observer = {}, std::stop_token stop = {}) {
+  const auto system = make_mass_spring(p.network);
+  return run(method, *system, p.initial, t_end, options, observer, std::move(stop));
+}
+
+// An observer's times, and the states that it saw at them.
+struct Film {
+  std::vector<double> times;
+  std::vector<State> seen{};
+  Observer observer() {
+    return {times, [this](const State& state) { seen.push_back(state); }};
+  }
 };
 
 // The one of the two that is the method's knob.
@@ -50,40 +65,45 @@ inline const Method& method_named(std::string_view name) {
   return *found;
 }
 
-// The state of the tests' networks after `until` seconds, exact to 1e-12 (see the suite `order`).
-inline State by_kahan_li(const System& system, const State& start, double until) {
-  return run(method_named("kahan_li8"), system, start, until, {.step_size = 1. / 512}).state;
-}
-
-// The methods that take any system; others have tests of their own.
-inline std::vector<Method> general_methods() {
-  std::vector<Method> list;
-  for (const Method& method : methods()) {
-    if (!method.asks(Need::constant_stiffness) && !method.asks(Need::split_forces))
-      list.push_back(method);
-  }
+// The registry's methods that fulfil a condition.
+template <class Condition>
+std::vector<Method> methods_where(const Condition& condition) {
+  std::vector<Method> list = methods();
+  std::erase_if(list, [&](const Method& method) { return !condition(method); });
   return list;
+}
+// Whether the method takes any system.
+inline bool is_general(const Method& method) {
+  return !method.asks(Need::constant_stiffness) && !method.asks(Need::split_forces);
+}
+inline std::vector<Method> general_methods() { return methods_where(is_general); }
+inline std::vector<Method> methods_of(Family family) {
+  return methods_where([&](const Method& m) { return is_general(m) && m.family == family; });
+}
+inline std::vector<Method> methods_of(Knob knob) {
+  return methods_where([&](const Method& m) { return is_general(m) && m.knob == knob; });
+}
+inline std::vector<Method> methods_of(Family family, Knob knob) {
+  return methods_where(
+      [&](const Method& m) { return is_general(m) && m.family == family && m.knob == knob; });
+}
+inline std::vector<Method> methods_with(Trait trait) {
+  return methods_where([&](const Method& m) { return m.is(trait); });
+}
+inline std::vector<Method> methods_with(Option option) {
+  return methods_where([&](const Method& m) { return m.listens_to(option); });
+}
+// The methods that repeat another by the stock way of SUNDIALS.
+inline std::vector<Method> stock_methods() {
+  return methods_where([](const Method& method) { return !method.stock_of.empty(); });
+}
+inline std::ostream& operator<<(std::ostream& out, const Method& method) {
+  return out << method.name;
 }
 
 // Whether the method evaluates K where there is one: because it needs it, or to bound its steps.
 inline bool evaluates_stiffness(const Method& method) {
   return method.asks(Need::stiffness) || method.is(Trait::bounds_steps);
-}
-inline std::vector<Method> methods_of(Family family) {
-  std::vector<Method> list = general_methods();
-  std::erase_if(list, [&](const Method& method) { return method.family != family; });
-  return list;
-}
-inline std::vector<Method> methods_of(Knob knob) {
-  std::vector<Method> list = general_methods();
-  std::erase_if(list, [&](const Method& method) { return method.knob != knob; });
-  return list;
-}
-
-inline std::vector<Method> methods_of(Family family, Knob knob) {
-  std::vector<Method> list = methods_of(family);
-  std::erase_if(list, [&](const Method& method) { return method.knob != knob; });
-  return list;
 }
 
 // Whether torques cancel in each of its steps, where every spring has a rest length.
@@ -94,22 +114,6 @@ inline bool keeps_angular_momentum(const Method& method) {
 // The larger of the errors in q and in v.
 inline double distance(const State& a, const State& b) {
   return std::max(distance(a.q, b.q), distance(a.v, b.v));
-}
-
-// The order p of a method that chooses its steps, from `start` to `exact`. If each step is as long
-// as its error allows, errors are proportional to steps^-p. p is the slope of the line through 13
-// runs, from the given tolerance to a thousandth of it, as errors of single runs cancel by chance.
-inline double order_by_tolerance(const Method& method, const System& system, const State& start,
-                                 const State& exact, double coarsest_rtol) {
-  constexpr int runs = 13;
-  Vec steps(runs), error(runs);
-  for (int i = 0; i < runs; ++i) {
-    const Run r =
-        run(method, system, start, exact.t, {.rtol = coarsest_rtol * std::pow(10, -i / 4.0)});
-    steps[i] = std::log(static_cast<double>(r.summary.counts.steps));
-    error[i] = std::log(distance(r.state, exact));
-  }
-  return -slope(steps, error);
 }
 
 inline bool is_finite(const State& state) {
@@ -128,13 +132,28 @@ inline std::ostream& operator<<(std::ostream& out, const Counts& c) {
 }
 
 // Passes calls on to another system, and lets a test see or change the results. It offers the
-// capabilities below.
+// capabilities below. The forces of a system that is split pass by relays of their own; calls of
+// the stiff block go by that of the stiff half.
 class Relay final : public System,
                     public SplitStiffness,
                     public DiscreteGradient,
-                    public Laplacian {
+                    public Laplacian,
+                    public SplitForces {
  public:
-  explicit Relay(const System& system) : System(system.mass()), system_(system) {}
+  explicit Relay(const System& system) : System(system.mass()), system_(system) {
+    const Split* parts = split_of(system);
+    if (!parts) return;
+    stiff = std::make_shared<Relay>(*parts->stiff);
+    soft = std::make_shared<Relay>(*parts->soft);
+    const auto block = std::make_shared<Relay>(*parts->stiff_block);
+    block->after_force = [this](const ConstVec& q, MutableVec f) {
+      if (stiff->after_force) stiff->after_force(q, f);
+    };
+    block->after_stiffness = [this](const Vec& q, SymmetricMatrix& k) {
+      if (stiff->after_stiffness) stiff->after_stiffness(q, k);
+    };
+    split_ = {stiff, soft, block, parts->stiff_unknowns};
+  }
 
   double potential(const ConstVec& q) const override { return system_.potential(q); }
   void force(const ConstVec& q, MutableVec f) const override {
@@ -148,6 +167,7 @@ class Relay final : public System,
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
   bool offers(const std::type_info& type) const override {
+    if (type == typeid(SplitForces)) return stiff != nullptr;
     if (type == typeid(SplitStiffness)) return capability<SplitStiffness>(system_);
     if (type == typeid(DiscreteGradient)) return capability<DiscreteGradient>(system_);
     return capability<Laplacian>(system_);
@@ -168,13 +188,40 @@ class Relay final : public System,
   }
   void laplacian(SymmetricMatrix& l) const override { offered<Laplacian>(system_).laplacian(l); }
   bool bounds_stiffness() const override { return offered<Laplacian>(system_).bounds_stiffness(); }
+  const Split& split() const override { return split_; }
+
+  // All relays that evaluations may pass by.
+  std::vector<Relay*> all() {
+    return stiff ? std::vector{this, stiff.get(), soft.get()} : std::vector{this};
+  }
 
   std::function<void(const ConstVec& q, MutableVec f)> after_force;
   std::function<void(const Vec& q, SymmetricMatrix& k)> after_stiffness;
+  std::shared_ptr<Relay> stiff, soft;  // of a system that is split
 
  private:
   const System& system_;
+  Split split_;
 };
+
+// The numbers of evaluations of forces and stiffnesses of one relay, from construction on.
+struct Asked {
+  explicit Asked(Relay& relay) {
+    relay.after_force = [this](const ConstVec&, MutableVec) { ++force; };
+    relay.after_stiffness = [this](const Vec&, SymmetricMatrix&) { ++stiffness; };
+  }
+  Asked(const Asked&) = delete;
+
+  std::int64_t force = 0, stiffness = 0;
+};
+
+// The network with every spring named stiff, or none.
+inline Network with_all_named(Network network, bool stiff) {
+  for (auto& link : network.links) link.stiff = stiff;
+  for (auto& anchor : network.anchors) anchor.stiff = stiff;
+  network.offers_split = true;
+  return network;
+}
 
 // The hammock with every spring of zero rest length: K is constant, no two nodes or directions
 // alike.
@@ -188,6 +235,14 @@ inline Problem linear_hammock(int dimension) {
   return p;
 }
 
+// A hammock that the method applies to.
+inline Problem problem_for(const Method& method, int dimension = 2) {
+  Problem p =
+      method.asks(Need::constant_stiffness) ? linear_hammock(dimension) : hammock(dimension);
+  if (method.asks(Need::split_forces)) p.network = with_split(p.network);
+  return p;
+}
+
 // n masses in 1D between two pins at 0 and n + 1, on n + 1 equal springs of zero rest length. Mode
 // j = 1 ... n has the frequency 2 sqrt(k/m) sin(j pi / (2 (n + 1))) and the shape sin(i j pi / (n +
 // 1)), i = 1 ... n.
@@ -196,6 +251,18 @@ inline Network linear_chain(int n, double mass, double stiffness) {
   for (int i = 0; i + 1 < n; ++i) network.links.push_back({i, i + 1, {stiffness}});
   network.anchors = {{0, {0, 0, 0}, {stiffness}}, {n - 1, {n + 1.0, 0, 0}, {stiffness}}};
   return network;
+}
+
+// n masses in 2D at rest along x between pins at 0 and n + 1, on springs of this law; each is
+// beside(i) m off the row.
+inline Problem row_between_pins(int n, double mass, const SpringLaw& law,
+                                const std::function<double(int)>& beside) {
+  Problem p{{.dimension = 2, .node_mass = Vec::Constant(n, mass)}, {}};
+  p.network.anchors = {{0, {0, 0, 0}, law}, {n - 1, {n + 1.0, 0, 0}, law}};
+  for (int i = 0; i + 1 < n; ++i) p.network.links.push_back({i, i + 1, law});
+  p.initial = {0, Vec(2 * n), Vec::Zero(2 * n)};
+  for (int i = 0; i < n; ++i) p.initial.q.segment<2>(2 * i) << i + 1, beside(i);
+  return p;
 }
 
 }  // namespace tests

@@ -18,15 +18,19 @@ inline ReducedScene framed_cloth(int nodes) {
       generate(*find_generator("framed_cloth"), {{"nodes", nodes}}, "framed_cloth"));
 }
 
-// The nodes of a scene at t_end; throws where that is not reached.
-inline std::vector<Node> nodes_after(const Scene& scene, const Reductions& reductions,
-                                     const Method& method, double h, double t_end) {
-  const ReducedScene reduced(scene, reductions);
+// The state of a scene at t_end; throws where that is not reached.
+inline State state_after(const ReducedScene& reduced, const Method& method, double h,
+                         double t_end) {
   // Solved to rounding where implicit, to compare ends.
   Run r = run(method, reduced.system(), reduced.initial(), t_end,
               {.step_size = h, .solve_tolerance = 1e-12});
   if (r.summary.outcome != Outcome::reached_end) throw std::runtime_error(r.summary.message);
-  return reduced.expand(r.state);
+  return r.state;
+}
+inline std::vector<Node> nodes_after(const Scene& scene, const Reductions& reductions,
+                                     const Method& method, double h, double t_end) {
+  const ReducedScene reduced(scene, reductions);
+  return reduced.expand(state_after(reduced, method, h, t_end));
 }
 
 // Adds a body of `count` free nodes, 1 m apart in a row from `corner` on, without symmetry. Springs

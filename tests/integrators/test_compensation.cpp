@@ -84,19 +84,16 @@ BOOST_AUTO_TEST_CASE(a_sum_keeps_what_rounding_takes_from_it) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(the_invariant_of_each_splitting_keeps_ten_times_better) {
+BOOST_DATA_TEST_CASE(the_invariant_of_each_splitting_keeps_ten_times_better, compensated_methods(),
+                     method) {
   BOOST_TEST(!compensated_methods().empty());
-  for (const Method& method : compensated_methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const int steps = method.order > 2 ? 200000 : 1000000;
-      const double plain = largest_change(method, 0.01, steps, false);
-      const double compensated = largest_change(method, 0.01, steps, true);
-      // sqrt(steps) roundings of 1e-16 and more, and a few hundredths of that.
-      BOOST_TEST(plain > 1e-14);
-      BOOST_TEST(plain < 1e-11);
-      BOOST_TEST(compensated < plain / 10);
-    }
-  }
+  const int steps = method.order > 2 ? 200000 : 1000000;
+  const double plain = largest_change(method, 0.01, steps, false);
+  const double compensated = largest_change(method, 0.01, steps, true);
+  // sqrt(steps) roundings of 1e-16 and more, and a few hundredths of that.
+  BOOST_TEST(plain > 1e-14);
+  BOOST_TEST(plain < 1e-11);
+  BOOST_TEST(compensated < plain / 10);
 }
 
 BOOST_AUTO_TEST_CASE(the_energy_of_an_orbit_keeps_ten_times_better) {
@@ -105,21 +102,20 @@ BOOST_AUTO_TEST_CASE(the_energy_of_an_orbit_keeps_ten_times_better) {
   BOOST_TEST(orbit_energy_error(true) < plain / 10);
 }
 
-BOOST_AUTO_TEST_CASE(a_run_begins_without_the_rest_of_the_one_before) {
+BOOST_DATA_TEST_CASE(a_run_begins_without_the_rest_of_the_one_before, compensated_methods(),
+                     method) {
   const auto system = make_mass_spring(unit_oscillator);
-  for (const Method& method : compensated_methods()) {
-    const Options options{.step_size = 0.1, .compensated = true};
-    const auto integrator = make_integrator(method, *system, options);
-    const State start{0, Vec::Ones(1), Vec::Constant(1, 0.3)};
-    State once = start, again = start;
-    integrator->advance(once, 10);
-    integrator->advance(again, 10);
-    BOOST_TEST(same(once, again), method.name);
-    // It is another motion than the plain one, by rounding.
-    const State plain = run(method, *system, start, 10, {.step_size = 0.1}).state;
-    BOOST_TEST(distance(once, plain) < 1e-13);
-    BOOST_TEST(distance(once, plain) > 0);
-  }
+  const Options options{.step_size = 0.1, .compensated = true};
+  const auto integrator = make_integrator(method, *system, options);
+  const State start{0, Vec::Ones(1), Vec::Constant(1, 0.3)};
+  State once = start, again = start;
+  integrator->advance(once, 10);
+  integrator->advance(again, 10);
+  BOOST_TEST(same(once, again), method.name);
+  // It is another motion than the plain one, by rounding.
+  const State plain = run(method, *system, start, 10, {.step_size = 0.1}).state;
+  BOOST_TEST(distance(once, plain) < 1e-13);
+  BOOST_TEST(distance(once, plain) > 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <limits>
 #include <random>
 
@@ -17,8 +16,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 const Method& method = method_named("exact");
 
 Run run_exact(const Problem& p, double t_end, double h) {
-  const auto system = make_mass_spring(p.network);
-  Run r = run(method, *system, p.initial, t_end, {.step_size = h});
+  Run r = run(method, p, t_end, {.step_size = h});
   BOOST_TEST(r.summary.message == "");
   BOOST_TEST(r.state.t == t_end);
   return r;
@@ -64,33 +62,6 @@ double rounding(double w, double t, double steps, Index n) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(the_registry_knows_it_as_a_method_without_error_for_constant_stiffness) {
-  BOOST_TEST(std::ranges::count(methods(), "exact", &Method::name) == 1);
-  BOOST_TEST(method.order == 0);
-  BOOST_TEST((method.knob == Knob::step_size));
-  BOOST_TEST(method.asks(Need::constant_stiffness));
-  BOOST_TEST(std::ranges::count_if(
-                 methods(), [](const Method& m) { return m.asks(Need::constant_stiffness); }) == 1);
-  BOOST_TEST(std::ranges::count(general_methods(), "exact", &Method::name) == 0);
-  BOOST_TEST(applies_to(method, *make_mass_spring(linear_hammock(2).network)));
-  BOOST_TEST(!applies_to(method, *make_mass_spring(hammock(2).network)));
-}
-
-BOOST_AUTO_TEST_CASE(oscillator_follows_its_closed_form_at_small_and_absurdly_large_steps) {
-  const Oscillator o;
-  const double amplitude = std::hypot(o.x0, o.v0 / o.omega());
-  for (const double periods : {0.25, 1.0, 300.7}) {
-    const double t = periods * o.period();
-    for (const double h : {0.01, 0.37, 2 / o.omega(), 17.0, 1e9}) {
-      const Run r = run_exact(o.problem(), t, h);
-      const double tolerance =
-          amplitude * rounding(o.omega(), t, static_cast<double>(r.summary.counts.steps), 1);
-      BOOST_TEST(std::abs(r.state.q[0] - o.position(t)) < tolerance);
-      BOOST_TEST(std::abs(r.state.v[0] - o.velocity(t)) < tolerance * o.omega());
-    }
-  }
-}
-
 BOOST_AUTO_TEST_CASE(chain_follows_its_closed_form_at_small_and_absurdly_large_steps) {
   const Chain chain;
   const double w = Chain::omega(Chain::n);
@@ -118,23 +89,8 @@ BOOST_AUTO_TEST_CASE(the_step_makes_no_difference) {
           100 * rounding(25, t, static_cast<double>(r.summary.counts.steps), 12);
       BOOST_TEST(distance(r.state, whole) < tolerance);
     }
-    const auto system = make_mass_spring(p.network);
-    const Run verlet = run(method_named("verlet"), *system, p.initial, t, {.step_size = 0.003});
+    const Run verlet = run(method_named("verlet"), p, t, {.step_size = 0.003});
     BOOST_TEST(distance(verlet.state, whole) > 1e-5);  // as any step error is
-  }
-}
-
-BOOST_AUTO_TEST_CASE(it_refuses_a_stiffness_that_varies_and_massless_nodes_at_once) {
-  Problem massless = linear_hammock(2);
-  massless.network.node_mass[1] = 0;
-  for (const auto& [p, outcome] : {std::pair(hammock(2), Outcome::stiffness_varies),
-                                   std::pair(massless, Outcome::singular_mass)}) {
-    const auto system = make_mass_spring(p.network);
-    const Run r = run(method, *system, p.initial, 1, {.step_size = 0.01});
-    BOOST_TEST(name(r.summary.outcome) == name(outcome));
-    BOOST_TEST(r.summary.message == advice(outcome));
-    BOOST_TEST(same(r.state, p.initial));
-    BOOST_TEST(r.summary.counts == (Counts{}));
   }
 }
 
@@ -227,25 +183,6 @@ BOOST_AUTO_TEST_CASE(it_counts_one_force_a_step_and_one_eigenproblem_a_run) {
     BOOST_TEST(state.t == 0.374);
     if (repeat > 0) BOOST_TEST(same(state, end));
     end = state;
-  }
-}
-
-BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_and_a_stop_end_the_run_at_the_last_step) {
-  const Problem p = linear_hammock(2);
-  const auto system = make_mass_spring(p.network);
-  std::stop_source budget;
-  for (const bool stops : {false, true}) {
-    Relay relay(*system);
-    relay.after_force = [&, calls = 0](const ConstVec&, MutableVec f) mutable {
-      if (++calls < 20) return;
-      if (stops) budget.request_stop();
-      if (!stops) f[3] = NAN;
-    };
-    const Run r = run(method, relay, p.initial, 1, {.step_size = 0.01}, {}, budget.get_token());
-    BOOST_TEST(name(r.summary.outcome) == (stops ? "over_budget" : "not_finite"));
-    BOOST_TEST(r.summary.counts.steps == (stops ? 20 : 19));
-    BOOST_TEST(r.state.t == (stops ? 0.2 : 0.19));
-    BOOST_TEST(is_finite(r.state));
   }
 }
 

@@ -1,6 +1,5 @@
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/base/fixed_step.hpp"
 #include "tests/integrators/scenes.hpp"
 
 BOOST_AUTO_TEST_SUITE(local_global)
@@ -9,11 +8,7 @@ using namespace qddot;
 
 namespace {
 
-std::vector<Method> all() {
-  std::vector<Method> list = methods_of(Knob::step_size);
-  std::erase_if(list, [](const Method& method) { return !method.listens_to(Option::iterations); });
-  return list;
-}
+std::vector<Method> all() { return methods_with(Option::iterations); }
 
 // A step of h with `iterations` iterations.
 State step(const Method& method, const System& system, const State& start, double h,
@@ -23,10 +18,16 @@ State step(const Method& method, const System& system, const State& start, doubl
   BOOST_REQUIRE(r.summary.counts.steps == 1);
   return r.state;
 }
+State step(const Method& method, const Problem& p, double h, int iterations) {
+  return step(method, *make_mass_spring(p.network), p.initial, h, iterations);
+}
 
 // The energy that the step minimises.
 double energy(const System& system, const State& start, const State& end) {
   return system.kinetic(end.v - start.v) + system.potential(end.q);
+}
+double energy(const Problem& p, const State& end) {
+  return energy(*make_mass_spring(p.network), p.initial, end);
 }
 
 Problem without_quartic(Problem p) {
@@ -68,34 +69,17 @@ struct Transverse {
   State start{0, Vec{{l, 1e-6}}, Vec::Zero(2)};
 };
 
-// Says nothing of a Laplacian, nor of anything else beside V, f and K.
-class Secretive final : public System {
- public:
-  explicit Secretive(const System& system) : System(system.mass()), system_(system) {}
-  double potential(const ConstVec& q) const override { return system_.potential(q); }
-  void force(const ConstVec& q, MutableVec f) const override { system_.force(q, f); }
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
-  const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
-
- private:
-  const System& system_;
-};
-
 }  // namespace
-
-BOOST_AUTO_TEST_CASE(there_are_some) { BOOST_TEST(!all().empty()); }
 
 BOOST_AUTO_TEST_CASE(the_energy_falls_with_every_iteration) {
   for (const Problem& p : networks()) {
-    const auto system = make_mass_spring(p.network);
     for (const Method& method : all()) {
       if (method.name == "local_global_chebyshev") continue;  // which may rise in between
       for (const double h : {0.01, 0.1, 1.0}) {
         BOOST_TEST_CONTEXT(method.name << ", h = " << h) {
-          double last = energy(*system, p.initial, {0, p.initial.q + h * p.initial.v, p.initial.v});
+          double last = energy(p, {0, p.initial.q + h * p.initial.v, p.initial.v});
           for (int iterations = 1; iterations <= 25; ++iterations) {
-            const double now =
-                energy(*system, p.initial, step(method, *system, p.initial, h, iterations));
+            const double now = energy(p, step(method, p, h, iterations));
             // Energies of 1e3 J are rounded, and speeds of 100 m/s in them.
             BOOST_TEST(now <= last + 1e-12 * std::max(1e3, std::abs(last)));
             if (iterations == 1) BOOST_TEST(now < last);
@@ -142,14 +126,12 @@ BOOST_AUTO_TEST_CASE(iterations_after_the_last_that_gains_anything_do_no_harm) {
 BOOST_AUTO_TEST_CASE(where_springs_have_no_rest_length_one_iteration_is_the_whole_step) {
   for (const int dimension : {1, 2, 3}) {
     const Problem p = linear_hammock(dimension);
-    const auto system = make_mass_spring(p.network);
-    const State exact =
-        run(method_named("implicit_euler"), *system, p.initial, 0.1, {.step_size = 0.1}).state;
+    const State exact = run(method_named("implicit_euler"), p, 0.1, {.step_size = 0.1}).state;
     for (const Method& method : all()) {
       for (const int iterations : {1, 2, 30}) {
         BOOST_TEST_CONTEXT(method.name << ", " << iterations) {
           // Two ways of one solve, of condition 100.
-          BOOST_TEST(distance(step(method, *system, p.initial, 0.1, iterations), exact) < 1e-12);
+          BOOST_TEST(distance(step(method, p, 0.1, iterations), exact) < 1e-12);
         }
       }
     }
@@ -197,18 +179,17 @@ BOOST_AUTO_TEST_CASE(accelerations_reach_the_same_minimum_in_fewer_iterations) {
 BOOST_AUTO_TEST_CASE(they_take_the_iterations_they_are_told_and_one_factorisation_a_step_size) {
   constexpr std::int64_t steps = 7;
   for (const Problem& p : {hammock(2), without_quartic(hammock(3)), linear_hammock(2)}) {
-    const auto system = make_mass_spring(p.network);
     for (const Method& method : all()) {
       for (const int iterations : {0, 1, 4, 10}) {
         BOOST_TEST_CONTEXT(method.name << ", " << iterations) {
           const std::int64_t each = iterations == 0 ? 10 : iterations;
           const Options options{.step_size = 0.01, .iterations = iterations};
-          const Run r = run(method, *system, p.initial, steps * 0.01, options);
+          const Run r = run(method, p, steps * 0.01, options);
           BOOST_TEST(r.summary.counts == (Counts{.steps = steps,
                                                  .force_evaluations = each * steps,
                                                  .factorizations = 1,
                                                  .solves = each * steps}));
-          const Run rest = run(method, *system, p.initial, (steps + 0.4) * 0.01, options);
+          const Run rest = run(method, p, (steps + 0.4) * 0.01, options);
           BOOST_TEST(rest.summary.counts.factorizations == 2);
           BOOST_TEST(rest.summary.counts.solves == each * (steps + 1));
         }
@@ -217,67 +198,27 @@ BOOST_AUTO_TEST_CASE(they_take_the_iterations_they_are_told_and_one_factorisatio
   }
 }
 
-BOOST_AUTO_TEST_CASE(on_quartic_springs_far_beyond_their_length_the_step_is_shortened) {
+BOOST_DATA_TEST_CASE(on_quartic_springs_far_beyond_their_length_the_step_is_shortened, all(),
+                     method) {
   Network network{.dimension = 1, .node_mass = Vec{{1}}};
   network.anchors = {{0, {0, 0, 0}, {.stiffness = 1, .rest_length = 1, .quartic = 1000}}};
   const auto system = make_mass_spring(network);
   const State start{0, Vec{{3}}, Vec{{0}}};
   constexpr double h = 1;
   // A whole step would go to 3 - h^2 c 8 / (m + h^2 k) = -4000.
-  for (const Method& method : all()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const State end = step(method, *system, start, h, 1);
-      BOOST_TEST(energy(*system, start, end) < energy(*system, start, start));
-      BOOST_TEST(std::abs(end.q[0]) < 3);
-    }
-  }
+  const State end = step(method, *system, start, h, 1);
+  BOOST_TEST(energy(*system, start, end) < energy(*system, start, start));
+  BOOST_TEST(std::abs(end.q[0]) < 3);
 }
 
-BOOST_AUTO_TEST_CASE(a_system_without_a_laplacian_is_refused_before_the_first_step) {
-  const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
-  const Secretive secretive(*system);
-  for (const Method& method : all()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      BOOST_TEST((misfit(method, secretive) == Outcome::no_laplacian));
-      BOOST_TEST(applies_to(method, *system));
-      const Run r = run(method, secretive, p.initial, 1, {.step_size = 0.01});
-      BOOST_TEST(name(r.summary.outcome) == "no_laplacian");
-      BOOST_TEST(r.summary.message == advice(Outcome::no_laplacian));
-      BOOST_TEST(same(r.state, p.initial));
-      BOOST_TEST(r.summary.counts == (Counts{}));
-    }
-  }
-  BOOST_TEST(applies_to(method_named("implicit_euler"), secretive));
-}
-
-BOOST_AUTO_TEST_CASE(a_force_that_is_no_number_ends_the_run_where_it_was) {
-  const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
-  for (const Method& method : all()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      Relay relay(*system);
-      relay.after_force = [calls = 0](const ConstVec&, MutableVec f) mutable {
-        if (++calls > 25) f[1] = NAN;
-      };
-      const Run r = run(method, relay, p.initial, 1, {.step_size = 0.01});
-      BOOST_TEST(name(r.summary.outcome) == "not_finite");
-      BOOST_TEST(r.summary.counts.steps == 2);
-      BOOST_TEST(is_finite(r.state));
-    }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(seconds_say_what_the_factorisation_and_the_solves_took) {
+BOOST_DATA_TEST_CASE(seconds_say_what_the_factorisation_and_the_solves_took, all(), method) {
   const Fallen cloth;
-  for (const Method& method : all()) {
-    const Options options{.step_size = 0.01, .timed = true};
-    const Summary summary =
-        run(method, cloth.scene.system(), cloth.state, cloth.state.t + 0.05, options).summary;
-    BOOST_TEST(summary.seconds.factorization > 0);
-    BOOST_TEST(summary.seconds.solve > 0);
-    BOOST_TEST(summary.seconds.force > 0);
-  }
+  const Options options{.step_size = 0.01, .timed = true};
+  const Summary summary =
+      run(method, cloth.scene.system(), cloth.state, cloth.state.t + 0.05, options).summary;
+  BOOST_TEST(summary.seconds.factorization > 0);
+  BOOST_TEST(summary.seconds.solve > 0);
+  BOOST_TEST(summary.seconds.force > 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

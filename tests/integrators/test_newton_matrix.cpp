@@ -120,69 +120,37 @@ BOOST_AUTO_TEST_CASE(both_solvers_solve_the_dense_system_in_both_forms) {
   std::int64_t definite = 0, indefinite = 0;
   for (const int dimension : {1, 2, 3}) {
     for (const double stretch : {0.5, 0.9, 1.2}) {
-      const Problem p = random_network(random, dimension, 6, stretch);
-      const auto system = make_mass_spring(p.network);
-      const SymmetricMatrix k = stiffness_at(*system, p.initial.q);
-      Solver structured(make_structured, *system), klu(make_klu, *system);
-      for (const Form form : both_forms) {
-        for (const double gamma : {1e-3, 0.02, 0.1, 0.5}) {
-          BOOST_TEST_CONTEXT(dimension << "D, stretch " << stretch << ", gamma " << gamma) {
-            const bool is_not_positive = is_indefinite(effective(*system, gamma, k));
-            ++(is_not_positive ? indefinite : definite);
-            const std::int64_t before = structured.indefinite();
-            BOOST_TEST_REQUIRE(structured.factorize(form, gamma, k) == 0);
-            BOOST_TEST(structured.indefinite() - before == is_not_positive);
-            BOOST_TEST_REQUIRE(klu.factorize(form, gamma, k) == 0);
-            for (int sample = 0; sample < 3; ++sample) {
-              const Vec b = random_vector(random, 2 * system->size());
-              BOOST_TEST(roundings(structured, form, *system, gamma, k, b) < most_roundings);
-              BOOST_TEST(roundings(klu, form, *system, gamma, k, b) < most_roundings);
+      for (const bool is_massless : {false, true}) {
+        Problem p = random_network(random, dimension, 6, stretch);
+        if (is_massless) p.network.node_mass[1] = p.network.node_mass[4] = 0;
+        const auto system = make_mass_spring(p.network);
+        const SymmetricMatrix k = stiffness_at(*system, p.initial.q);
+        Solver structured(make_structured, *system), klu(make_klu, *system);
+        for (const Form form : both_forms) {
+          if (is_massless && (form == Form::explicit_gamma || stretch < 1)) continue;
+          for (const double gamma : {1e-3, 0.02, 0.1, 0.5}) {
+            BOOST_TEST_CONTEXT(dimension << "D, stretch " << stretch << ", gamma " << gamma) {
+              const bool is_not_positive = is_indefinite(effective(*system, gamma, k));
+              ++(is_not_positive ? indefinite : definite);
+              const std::int64_t before = structured.indefinite();
+              BOOST_TEST_REQUIRE(structured.factorize(form, gamma, k) == 0);
+              BOOST_TEST(structured.indefinite() - before == is_not_positive);
+              BOOST_TEST_REQUIRE(klu.factorize(form, gamma, k) == 0);
+              for (int sample = 0; sample < 3; ++sample) {
+                const Vec b = random_vector(random, 2 * system->size());
+                BOOST_TEST(roundings(structured, form, *system, gamma, k, b) < most_roundings);
+                BOOST_TEST(roundings(klu, form, *system, gamma, k, b) < most_roundings);
+              }
             }
           }
         }
+        BOOST_TEST(klu.indefinite() == 0);  // which LU does not ask about
       }
-      BOOST_TEST(klu.indefinite() == 0);  // which LU does not ask about
     }
   }
   // Each kind is seen often.
   BOOST_TEST(definite > 20);
   BOOST_TEST(indefinite > 10);
-}
-
-BOOST_AUTO_TEST_CASE(factors_of_another_gamma_are_noticed) {
-  std::mt19937 random(2);
-  const Problem p = random_network(random, 2, 6, 1.2);
-  const auto system = make_mass_spring(p.network);
-  const SymmetricMatrix k = stiffness_at(*system, p.initial.q);
-  const Vec b = random_vector(random, 2 * system->size());
-  for (const Make make : {make_structured, make_klu}) {
-    for (const Form form : both_forms) {
-      Solver solver(make, *system);
-      solver.factorize(form, 0.1, k);
-      BOOST_TEST(roundings(solver, form, *system, 0.1, k, b) < most_roundings);
-      BOOST_TEST(roundings(solver, form, *system, 0.1001, k, b) > 1e6);
-    }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(massless_nodes_are_solved_for_in_the_implicit_form) {
-  std::mt19937 random(3);
-  for (const int dimension : {1, 2, 3}) {
-    Problem p = random_network(random, dimension, 6, 1.2);
-    p.network.node_mass[1] = p.network.node_mass[4] = 0;
-    const auto system = make_mass_spring(p.network);
-    const SymmetricMatrix k = stiffness_at(*system, p.initial.q);
-    Solver structured(make_structured, *system), klu(make_klu, *system);
-    for (const double gamma : {1e-3, 0.02, 0.5}) {
-      BOOST_TEST_CONTEXT(dimension << "D, gamma " << gamma) {
-        BOOST_TEST_REQUIRE(structured.factorize(Form::implicit_c, gamma, k) == 0);
-        BOOST_TEST_REQUIRE(klu.factorize(Form::implicit_c, gamma, k) == 0);
-        const Vec b = random_vector(random, 2 * system->size());
-        BOOST_TEST(roundings(structured, Form::implicit_c, *system, gamma, k, b) < most_roundings);
-        BOOST_TEST(roundings(klu, Form::implicit_c, *system, gamma, k, b) < most_roundings);
-      }
-    }
-  }
 }
 
 BOOST_AUTO_TEST_CASE(a_singular_matrix_is_refused_so_that_a_smaller_step_is_tried) {
@@ -236,40 +204,6 @@ BOOST_AUTO_TEST_CASE(pivots_near_zero_are_made_up_for_by_refinement_or_refused) 
     }
   }
   BOOST_TEST(solved >= 16);
-}
-
-BOOST_AUTO_TEST_CASE(with_older_factors_newton_takes_more_rounds_to_the_same_solution) {
-  std::mt19937 random(4);
-  for (const int dimension : {1, 2, 3}) {
-    for (const Form form : both_forms) {
-      const Problem p = random_network(random, dimension, 6, 1.2);
-      const auto system = make_mass_spring(p.network);
-      const double gamma = 0.05, later_gamma = 1.2 * gamma;
-      const Vec later_q = p.initial.q + 0.02 * random_vector(random, system->size());
-      const SymmetricMatrix k = stiffness_at(*system, p.initial.q);
-      const SymmetricMatrix later_k = stiffness_at(*system, later_q);
-      const MatrixXd a = dense_matrix(form, *system, later_gamma, later_k);
-      const Vec b = random_vector(random, a.rows());
-      const Vec solution = a.fullPivLu().solve(b);
-      for (const Make make : {make_structured, make_klu}) {
-        BOOST_TEST_CONTEXT(dimension << "D") {
-          Solver solver(make, *system);
-          BOOST_TEST_REQUIRE(solver.factorize(form, gamma, k) == 0);
-          Vec x = Vec::Zero(b.size());
-          double first = 0;
-          for (int round = 0; round < 60; ++round) {
-            x += solver.solve(b - a * x);
-            if (round == 0) first = distance(x, solution);
-          }
-          // The residual is far from rounding after one round and at rounding after 60. The ratio
-          // of both gammas is 1.2, so that a round leaves at most 1 - 1/1.44 = 0.31 and a little
-          // for K.
-          BOOST_TEST(first > 1e-3 * solution.norm());
-          BOOST_TEST(distance(x, solution) < 1e-11 * solution.norm());
-        }
-      }
-    }
-  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

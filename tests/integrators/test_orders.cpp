@@ -17,8 +17,7 @@ std::vector<Method> of_variable_order() {
 
 Counts counts_of(const Method& method, const Options& options) {
   const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
-  const Run r = run(method, *system, p.initial, 2, options);
+  const Run r = run(method, p, 2, options);
   BOOST_REQUIRE(r.summary.message == "");
   return r.summary.counts;
 }
@@ -51,40 +50,37 @@ BOOST_AUTO_TEST_CASE(exactly_the_methods_of_variable_order_tell_of_their_orders)
   BOOST_TEST(!of_variable_order().empty());
 }
 
-BOOST_AUTO_TEST_CASE(the_sum_of_the_orders_lies_between_those_of_all_low_and_all_high) {
-  for (const Method& method : of_variable_order()) {
-    for (const double rtol : {1e-3, 1e-6, 1e-9}) {
-      BOOST_TEST_CONTEXT(method.name << " at " << rtol) {
-        const Counts c = counts_of(method, {.rtol = rtol});
-        BOOST_TEST(are_sound(c, method.order), c);
-        BOOST_TEST(c.order_sum > c.steps);  // some steps are of higher order
-      }
+BOOST_DATA_TEST_CASE(the_sum_of_the_orders_lies_between_those_of_all_low_and_all_high,
+                     of_variable_order(), method) {
+  for (const double rtol : {1e-3, 1e-6, 1e-9}) {
+    BOOST_TEST_CONTEXT(method.name << " at " << rtol) {
+      const Counts c = counts_of(method, {.rtol = rtol});
+      BOOST_TEST(are_sound(c, method.order), c);
+      BOOST_TEST(c.order_sum > c.steps);  // some steps are of higher order
     }
   }
 }
 
-BOOST_AUTO_TEST_CASE(no_step_is_of_a_higher_order_than_allowed) {
-  for (const Method& method : of_variable_order()) {
-    std::int64_t last_steps = std::numeric_limits<std::int64_t>::max();
-    for (const int most : {1, 2, 3, 5}) {
-      BOOST_TEST_CONTEXT(method.name << " up to order " << most) {
-        const Counts c = counts_of(method, {.rtol = 1e-5, .max_order = most});
-        BOOST_TEST(are_sound(c, most), c);
-        if (most == 1) {
-          BOOST_TEST(c.order_sum == c.steps);
-        } else {
-          // All but the first few of a hundred steps and more are of higher order than 1.
-          BOOST_TEST(c.order_sum > 3 * c.steps / 2);
-        }
-        BOOST_TEST(c.steps < last_steps);  // the higher, the fewer
-        last_steps = c.steps;
+BOOST_DATA_TEST_CASE(no_step_is_of_a_higher_order_than_allowed, of_variable_order(), method) {
+  std::int64_t last_steps = std::numeric_limits<std::int64_t>::max();
+  for (const int most : {1, 2, 3, 5}) {
+    BOOST_TEST_CONTEXT(method.name << " up to order " << most) {
+      const Counts c = counts_of(method, {.rtol = 1e-5, .max_order = most});
+      BOOST_TEST(are_sound(c, most), c);
+      if (most == 1) {
+        BOOST_TEST(c.order_sum == c.steps);
+      } else {
+        // All but the first few of a hundred steps and more are of higher order than 1.
+        BOOST_TEST(c.order_sum > 3 * c.steps / 2);
       }
+      BOOST_TEST(c.steps < last_steps);  // the higher, the fewer
+      last_steps = c.steps;
     }
-    // More than there is means what there is, as does 0.
-    const Counts all = counts_of(method, {.rtol = 1e-5});
-    BOOST_TEST(counts_of(method, {.rtol = 1e-5, .max_order = 100}) == all);
-    BOOST_TEST(!are_sound(all, 1));
   }
+  // More than there is means what there is, as does 0.
+  const Counts all = counts_of(method, {.rtol = 1e-5});
+  BOOST_TEST(counts_of(method, {.rtol = 1e-5, .max_order = 100}) == all);
+  BOOST_TEST(!are_sound(all, 1));
 }
 
 BOOST_AUTO_TEST_CASE(bdf_lowers_its_order_where_its_stability_limit_is_detected) {

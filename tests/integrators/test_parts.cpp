@@ -29,174 +29,128 @@ std::vector<Run> runs_alone(const Method& method, const std::vector<Part>& parts
   return alone;
 }
 
-// Remembers what it is shown.
-struct Film {
-  explicit Film(std::vector<double> times)
-      : observer{std::move(times), [this](const State& s) { states.push_back(s); }} {}
-  std::vector<State> states;
-  Observer observer;
-};
-
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(every_method_takes_each_part_as_if_it_were_alone) {
-  for (const Method& method : methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const std::vector<Part> parts = parts_for(method);
-      const Together together(parts);
-      const Run whole = run(method, together, t_end, options_for(method));
-      const std::vector<Run> alone = runs_alone(method, parts);
-      BOOST_TEST(whole.summary.message == "");
-      BOOST_TEST(whole.state.t == t_end);
-      BOOST_TEST(whole.summary.t_reached == t_end);
-      BOOST_TEST(are_alone(whole, together, alone));
-      Counts sum;
-      for (const Run& one : alone) sum += one.summary.counts;
-      BOOST_TEST(whole.summary.counts == sum);
-      BOOST_TEST(sum.steps > 0);
-    }
-  }
+BOOST_DATA_TEST_CASE(every_method_takes_each_part_as_if_it_were_alone, methods(), method) {
+  const std::vector<Part> parts = parts_for(method);
+  const Together together(parts);
+  const Run whole = run(method, together, t_end, options_for(method));
+  const std::vector<Run> alone = runs_alone(method, parts);
+  BOOST_TEST(whole.summary.message == "");
+  BOOST_TEST(whole.state.t == t_end);
+  BOOST_TEST(whole.summary.t_reached == t_end);
+  BOOST_TEST(are_alone(whole, together, alone));
+  Counts sum;
+  for (const Run& one : alone) sum += one.summary.counts;
+  BOOST_TEST(whole.summary.counts == sum);
+  BOOST_TEST(sum.steps > 0);
 }
 
-BOOST_AUTO_TEST_CASE(adaptive_methods_take_for_each_part_the_steps_that_it_needs) {
+BOOST_DATA_TEST_CASE(adaptive_methods_take_for_each_part_the_steps_that_it_needs,
+                     methods_of(Knob::rtol), method) {
   const Oscillator slow{.stiffness = 2}, fast{.stiffness = 20000};  // 1 and 100 rad/s
-  for (const Method& method : methods_of(Knob::rtol)) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const std::vector<Part> parts = {part(slow.problem()), part(fast.problem())};
-      const std::vector<Run> alone = runs_alone(method, parts);
-      const Together together(parts);
-      const Run whole = run(method, together, t_end, options_for(method));
-      BOOST_TEST(are_alone(whole, together, alone));
-      BOOST_TEST(10 * alone[0].summary.counts.steps < alone[1].summary.counts.steps);
+  const std::vector<Part> parts = {part(slow.problem()), part(fast.problem())};
+  const std::vector<Run> alone = runs_alone(method, parts);
+  const Together together(parts);
+  const Run whole = run(method, together, t_end, options_for(method));
+  BOOST_TEST(are_alone(whole, together, alone));
+  BOOST_TEST(10 * alone[0].summary.counts.steps < alone[1].summary.counts.steps);
 
-      // Both take the steps of the fast one as one system, which the test above shows.
-      Problem joined = slow.problem();
-      joined.network.node_mass = Vec::Constant(2, slow.mass);
-      joined.network.anchors.push_back({1, {0, 0, 0}, {fast.stiffness}});
-      const auto system = make_mass_spring(joined.network);
-      const Run one = run(method, *system, together.start, t_end, options_for(method));
-      BOOST_TEST(one.summary.message == "");
-      BOOST_TEST(!are_alone(one, together, alone));
-    }
-  }
+  // Both take the steps of the fast one as one system, which the test above shows.
+  Problem joined = slow.problem();
+  joined.network.node_mass = Vec::Constant(2, slow.mass);
+  joined.network.anchors.push_back({1, {0, 0, 0}, {fast.stiffness}});
+  const auto system = make_mass_spring(joined.network);
+  const Run one = run(method, *system, together.start, t_end, options_for(method));
+  BOOST_TEST(one.summary.message == "");
+  BOOST_TEST(!are_alone(one, together, alone));
 }
 
-BOOST_AUTO_TEST_CASE(an_observer_sees_all_parts_at_the_same_time) {
+BOOST_DATA_TEST_CASE(an_observer_sees_all_parts_at_the_same_time, methods(), method) {
   const std::vector<double> times = {start_time + 0.013, start_time + 0.2, start_time + 1. / 3,
                                      t_end};
-  for (const Method& method : methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const std::vector<Part> parts = parts_for(method);
-      const Together together(parts);
-      Film film(times);
-      const Run whole = run(method, together, t_end, options_for(method), film.observer);
-      BOOST_TEST(whole.summary.message == "");
-      BOOST_TEST_REQUIRE(film.states.size() == times.size());
-      for (std::size_t i = 0; i < parts.size(); ++i) {
-        Film own(times);
-        run(method, parts[i], t_end, options_for(method), own.observer);
-        for (std::size_t k = 0; k < times.size(); ++k) {
-          BOOST_TEST(film.states[k].t == times[k]);
-          BOOST_TEST(same(together.part(film.states[k], i), own.states[k]));
-        }
-      }
+  const std::vector<Part> parts = parts_for(method);
+  const Together together(parts);
+  Film film{times};
+  const Run whole = run(method, together, t_end, options_for(method), film.observer());
+  BOOST_TEST(whole.summary.message == "");
+  BOOST_TEST_REQUIRE(film.seen.size() == times.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Film own{times};
+    run(method, parts[i], t_end, options_for(method), own.observer());
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      BOOST_TEST(film.seen[k].t == times[k]);
+      BOOST_TEST(same(together.part(film.seen[k], i), own.seen[k]));
     }
   }
 }
 
-BOOST_AUTO_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed) {
-  for (const Method& method : methods()) {
-    if (method.asks(Need::split_forces)) continue;  // which the part that gives up has not
-    BOOST_TEST_CONTEXT(method.name) {
-      std::vector<Part> parts = parts_for(method);
-      parts.insert(parts.begin(), giving_up(-0.2, "no more"));
-      const Together together(parts);
-      const auto integrator = make_integrator(method, *together.system, options_for(method));
-      const double early = start_time + 0.1;
-      State first = together.start, failed = together.start, second = together.start;
-      const Summary a = integrator->advance(first, early);
-      const auto is_no_more = [](const auto& error) {
-        return std::string(error.what()) == "no more";
-      };
-      BOOST_CHECK_EXCEPTION(integrator->advance(failed, t_end), std::runtime_error, is_no_more);
-      const Summary c = integrator->advance(second, early);
-      BOOST_TEST(a.message == "");
-      BOOST_TEST(c.message == "");
-      BOOST_TEST(same(first, second));
-      BOOST_TEST(a.counts == c.counts);
-      BOOST_TEST(c.t_reached == early);
+BOOST_DATA_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed, methods(), method) {
+  if (method.asks(Need::split_forces)) return;  // which the part that gives up has not
+  std::vector<Part> parts = parts_for(method);
+  parts.insert(parts.begin(), giving_up(-0.2, "no more"));
+  const Together together(parts);
+  const auto integrator = make_integrator(method, *together.system, options_for(method));
+  const double early = start_time + 0.1;
+  State first = together.start, failed = together.start, second = together.start;
+  const Summary a = integrator->advance(first, early);
+  const auto is_no_more = [](const auto& error) { return std::string(error.what()) == "no more"; };
+  BOOST_CHECK_EXCEPTION(integrator->advance(failed, t_end), std::runtime_error, is_no_more);
+  const Summary c = integrator->advance(second, early);
+  BOOST_TEST(a.message == "");
+  BOOST_TEST(c.message == "");
+  BOOST_TEST(same(first, second));
+  BOOST_TEST(a.counts == c.counts);
+  BOOST_TEST(c.t_reached == early);
 
-      std::stop_source budget;
-      budget.request_stop();
-      BOOST_CHECK_THROW(integrator->advance(failed, t_end), std::runtime_error);
-      State stopped = together.start;
-      const Summary d = integrator->advance(stopped, t_end, {}, budget.get_token());
-      BOOST_TEST(d.message == advice(Outcome::over_budget));
-      BOOST_TEST(same(stopped, together.start));
-    }
-  }
+  std::stop_source budget;
+  budget.request_stop();
+  BOOST_CHECK_THROW(integrator->advance(failed, t_end), std::runtime_error);
+  State stopped = together.start;
+  const Summary d = integrator->advance(stopped, t_end, {}, budget.get_token());
+  BOOST_TEST(d.message == advice(Outcome::over_budget));
+  BOOST_TEST(same(stopped, together.start));
 }
 
-BOOST_AUTO_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing) {
+BOOST_DATA_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing, methods(), method) {
   const Part nothing = {[] { return make_mass_spring({.dimension = 2}); }, {start_time, {}, {}}};
-  for (const Method& method : methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const std::vector<Part> parts = parts_for(method);
-      const auto group = [](std::vector<Part> few) {
-        const State start = Together(few).start;
-        return Part{[few] { return std::move(Together(few).system); }, start};
-      };
-      const Together flat(parts), nested({group({}), nothing, group({parts[0], nothing}),
-                                          group({group({parts[1]}), parts[2]})});
-      const Run a = run(method, flat, t_end, options_for(method));
-      const Run b = run(method, nested, t_end, options_for(method));
-      BOOST_TEST(b.summary.message == "");
-      BOOST_TEST(same(a.state, b.state));
-      BOOST_TEST(a.summary.counts == b.summary.counts);
+  const std::vector<Part> parts = parts_for(method);
+  const auto group = [](std::vector<Part> few) {
+    const State start = Together(few).start;
+    return Part{[few] { return std::move(Together(few).system); }, start};
+  };
+  const Together flat(parts), nested({group({}), nothing, group({parts[0], nothing}),
+                                      group({group({parts[1]}), parts[2]})});
+  const Run a = run(method, flat, t_end, options_for(method));
+  const Run b = run(method, nested, t_end, options_for(method));
+  BOOST_TEST(b.summary.message == "");
+  BOOST_TEST(same(a.state, b.state));
+  BOOST_TEST(a.summary.counts == b.summary.counts);
 
-      const Run empty = run(method, Together({group({}), nothing}), t_end, options_for(method));
-      BOOST_TEST(empty.summary.message == "");
-      BOOST_TEST(empty.state.t == t_end);
-    }
-  }
+  const Run empty = run(method, Together({group({}), nothing}), t_end, options_for(method));
+  BOOST_TEST(empty.summary.message == "");
+  BOOST_TEST(empty.state.t == t_end);
 }
 
-BOOST_AUTO_TEST_CASE(a_run_to_its_own_start_changes_nothing) {
-  for (const Method& method : methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const Together together(parts_for(method));
-      const Run r = run(method, together, start_time, options_for(method));
-      BOOST_TEST(r.summary.message == "");
+BOOST_DATA_TEST_CASE(what_one_part_is_refused_for_all_are, methods(), method) {
+  Problem massless = Oscillator().problem();
+  massless.network.node_mass.setZero();
+  std::vector<Part> parts = parts_for(method);
+  const auto outcome = [&] {
+    const Together together(parts);
+    const Run r = run(method, together, t_end, options_for(method));
+    if (r.summary.outcome != Outcome::reached_end) {
       BOOST_TEST(same(r.state, together.start));
       BOOST_TEST(r.summary.counts == (Counts{}));
     }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(what_one_part_is_refused_for_all_are) {
-  Problem massless = Oscillator().problem();
-  massless.network.node_mass.setZero();
-  for (const Method& method : methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      std::vector<Part> parts = parts_for(method);
-      const auto outcome = [&] {
-        const Together together(parts);
-        const Run r = run(method, together, t_end, options_for(method));
-        if (r.summary.outcome != Outcome::reached_end) {
-          BOOST_TEST(same(r.state, together.start));
-          BOOST_TEST(r.summary.counts == (Counts{}));
-        }
-        return name(r.summary.outcome);
-      };
-      parts.push_back(part(hammock(2)));
-      BOOST_TEST(outcome() == (method.asks(Need::constant_stiffness) ? "stiffness_varies"
-                               : method.asks(Need::split_forces)     ? "no_stiff_set"
-                                                                     : "reached_end"));
-      parts.back() = part(massless);
-      BOOST_TEST(outcome() ==
-                 (method.is(Trait::accepts_massless) ? "reached_end" : "singular_mass"));
-    }
-  }
+    return name(r.summary.outcome);
+  };
+  parts.push_back(part(hammock(2)));
+  BOOST_TEST(outcome() == (method.asks(Need::constant_stiffness) ? "stiffness_varies"
+                           : method.asks(Need::split_forces)     ? "no_stiff_set"
+                                                                 : "reached_end"));
+  parts.back() = part(massless);
+  BOOST_TEST(outcome() == (method.is(Trait::accepts_massless) ? "reached_end" : "singular_mass"));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -79,111 +79,90 @@ Part string(double quarter_period) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(a_part_that_diverges_ends_the_run_of_all_at_its_last_step) {
-  for (const Method& method : methods_of(Knob::step_size)) {
-    if (method.is(Trait::implicit)) continue;
-    // Steps are 1/100 s; explicit Euler has no limit and grows fourfold a step at h w = 4. The
-    // splitting of order 6 is stable in places far beyond its limit, but nowhere above h w = 9.4.
-    // Multistep methods compute their first steps together, which are not to diverge already.
-    const double beyond = method.name == "blanes_moan6" ? 3.2 : 2;
-    const double limit = method.recurrence_roots
-                             ? *method.stability_limit
-                             : std::max(2.0, method.stability_limit.value_or(2));
-    const double omega = 100 * beyond * limit;
-    check_failure(method, part(Oscillator{.mass = 1, .stiffness = omega * omega}.problem()),
-                  Outcome::diverged);
-  }
+BOOST_DATA_TEST_CASE(a_part_that_diverges_ends_the_run_of_all_at_its_last_step,
+                     methods_of(Knob::step_size), method) {
+  if (method.is(Trait::implicit)) return;
+  // Steps are 1/100 s; explicit Euler has no limit and grows fourfold a step at h w = 4. The
+  // splitting of order 6 is stable in places far beyond its limit, but nowhere above h w = 9.4.
+  // Multistep methods compute their first steps together, which are not to diverge already.
+  const double beyond = method.name == "blanes_moan6" ? 3.2 : 2;
+  const double limit = method.recurrence_roots ? *method.stability_limit
+                                               : std::max(2.0, method.stability_limit.value_or(2));
+  const double omega = 100 * beyond * limit;
+  check_failure(method, part(Oscillator{.mass = 1, .stiffness = omega * omega}.problem()),
+                Outcome::diverged);
 }
 
-BOOST_AUTO_TEST_CASE(a_part_that_throws_ends_the_run_of_all_at_its_last_step) {
-  for (const Method& method : methods()) {
-    if (method.asks(Need::split_forces)) continue;  // which the part that gives up has not
-    check_failure(method, giving_up(-0.2, "no more"), Outcome::solver_failed);
-  }
+BOOST_DATA_TEST_CASE(a_part_that_throws_ends_the_run_of_all_at_its_last_step, methods(), method) {
+  if (method.asks(Need::split_forces)) return;  // which the part that gives up has not
+  check_failure(method, giving_up(-0.2, "no more"), Outcome::solver_failed);
 }
 
-BOOST_AUTO_TEST_CASE(a_part_that_goes_slack_ends_the_run_of_all_at_its_last_step) {
-  for (const Method& method : general_methods()) {
-    check_failure(method, string(0.3), Outcome::went_slack);
-  }
+BOOST_DATA_TEST_CASE(a_part_that_goes_slack_ends_the_run_of_all_at_its_last_step, general_methods(),
+                     method) {
+  check_failure(method, string(0.3), Outcome::went_slack);
 }
 
-BOOST_AUTO_TEST_CASE(of_several_parts_that_fail_the_earliest_decides_in_any_order) {
-  for (const Method& method : general_methods()) {
-    if (method.name == "dprkn12") continue;  // whose steps are longer than failures are apart
-    // They evaluate forces where they end, for the velocity there, or beside it.
-    if (method.recurrence_roots) continue;
-    const std::vector<Part> bad = {string(0.4), giving_up(-0.5, "late"), giving_up(0.2, "early"),
-                                   part(hammock(2))};
-    const Run first = run(method, bad[2], t_end, options_for(method));
-    BOOST_TEST(first.thrown == "early");
-    std::vector<std::size_t> order = {0, 1, 2, 3};
-    do {
-      BOOST_TEST_CONTEXT(method.name << " " << order[0] << order[1] << order[2] << order[3]) {
-        std::vector<Part> parts;
-        for (const std::size_t i : order) parts.push_back(bad[i]);
-        const Together together(parts);
-        const Run r = run(method, together, t_end, options_for(method));
-        BOOST_TEST(r.thrown == "early");
-        // The last step of an adaptive method depends on the requested end.
-        if (method.knob == Knob::step_size) BOOST_TEST(r.state.t == first.state.t);
-        BOOST_TEST(std::abs(r.state.t - first.state.t) < 0.05);
-        BOOST_TEST(r.summary.t_reached == r.state.t);
-        for (std::size_t i = 0; i < order.size(); ++i) {
-          const Run own = run(method, parts[i], r.state.t, options_for(method));
-          BOOST_TEST(own.summary.message == "");
-          check_same(method, together.part(r.state, i), own.state, false);
-        }
-      }
-    } while (std::ranges::next_permutation(order).found);
-  }
-}
-
-BOOST_AUTO_TEST_CASE(a_run_out_of_time_ends_where_all_parts_last_were_together) {
-  for (const Method& method : methods()) {
-    if (method.asks(Need::split_forces)) continue;  // which the relay of the last straw has not
-    for (std::size_t place = 0; place < 4; ++place) {
-      BOOST_TEST_CONTEXT(method.name << ", place " << place) {
-        std::stop_source budget;
-        const std::shared_ptr<System> oscillator = make_mass_spring(Oscillator().problem().network);
-        // Asks to stop at a force well after the observer's time, whatever the steps.
-        double seen = 0;
-        const Part last_straw = {[&] {
-                                   auto relay = std::make_unique<Relay>(*oscillator);
-                                   relay->after_force = [&](const ConstVec& q, MutableVec) {
-                                     if (q[0] <= -0.2) budget.request_stop();
-                                   };
-                                   return relay;
-                                 },
-                                 part(Oscillator().problem()).start};
-        std::vector<Part> parts = parts_for(method);
-        parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(place), last_straw);
-        const Together together(parts);
-        State shown;
-        const Observer observer{{start_time + 0.05}, [&](const State& s) {
-                                  shown = s;
-                                  seen = s.t;
-                                }};
-        const Run r =
-            run(method, together, t_end, options_for(method), observer, budget.get_token());
-        BOOST_TEST(name(r.summary.outcome) == "over_budget");
-        BOOST_TEST(r.summary.message == advice(Outcome::over_budget));
-        BOOST_TEST(seen == start_time + 0.05);
-        BOOST_TEST(r.summary.t_reached == seen);
-        BOOST_TEST(same(r.state, shown));
+BOOST_DATA_TEST_CASE(of_several_parts_that_fail_the_earliest_decides_in_any_order,
+                     general_methods(), method) {
+  if (method.name == "dprkn12") return;  // whose steps are longer than failures are apart
+  // They evaluate forces where they end, for the velocity there, or beside it.
+  if (method.recurrence_roots) return;
+  const std::vector<Part> bad = {string(0.4), giving_up(-0.5, "late"), giving_up(0.2, "early"),
+                                 part(hammock(2))};
+  const Run first = run(method, bad[2], t_end, options_for(method));
+  BOOST_TEST(first.thrown == "early");
+  std::vector<std::size_t> order = {0, 1, 2, 3};
+  do {
+    BOOST_TEST_CONTEXT(method.name << " " << order[0] << order[1] << order[2] << order[3]) {
+      std::vector<Part> parts;
+      for (const std::size_t i : order) parts.push_back(bad[i]);
+      const Together together(parts);
+      const Run r = run(method, together, t_end, options_for(method));
+      BOOST_TEST(r.thrown == "early");
+      // The last step of an adaptive method depends on the requested end.
+      if (method.knob == Knob::step_size) BOOST_TEST(r.state.t == first.state.t);
+      BOOST_TEST(std::abs(r.state.t - first.state.t) < 0.05);
+      BOOST_TEST(r.summary.t_reached == r.state.t);
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        const Run own = run(method, parts[i], r.state.t, options_for(method));
+        BOOST_TEST(own.summary.message == "");
+        check_same(method, together.part(r.state, i), own.state, false);
       }
     }
-  }
+  } while (std::ranges::next_permutation(order).found);
 }
 
-BOOST_AUTO_TEST_CASE(a_step_that_no_part_can_take_is_refused_for_all) {
-  for (const Method& method : methods_of(Knob::step_size)) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const Together together(parts_for(method));
-      const Run r = run(method, together, t_end, {.step_size = 1e-20});
-      BOOST_TEST(name(r.summary.outcome) == "step_too_small");
-      BOOST_TEST(r.summary.message == advice(Outcome::step_too_small));
-      BOOST_TEST(same(r.state, together.start));
+BOOST_DATA_TEST_CASE(a_run_out_of_time_ends_where_all_parts_last_were_together, methods(), method) {
+  if (method.asks(Need::split_forces)) return;  // which the relay of the last straw has not
+  for (std::size_t place = 0; place < 4; ++place) {
+    BOOST_TEST_CONTEXT(method.name << ", place " << place) {
+      std::stop_source budget;
+      const std::shared_ptr<System> oscillator = make_mass_spring(Oscillator().problem().network);
+      // Asks to stop at a force well after the observer's time, whatever the steps.
+      double seen = 0;
+      const Part last_straw = {[&] {
+                                 auto relay = std::make_unique<Relay>(*oscillator);
+                                 relay->after_force = [&](const ConstVec& q, MutableVec) {
+                                   if (q[0] <= -0.2) budget.request_stop();
+                                 };
+                                 return relay;
+                               },
+                               part(Oscillator().problem()).start};
+      std::vector<Part> parts = parts_for(method);
+      parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(place), last_straw);
+      const Together together(parts);
+      State shown;
+      const Observer observer{{start_time + 0.05}, [&](const State& s) {
+                                shown = s;
+                                seen = s.t;
+                              }};
+      const Run r = run(method, together, t_end, options_for(method), observer, budget.get_token());
+      BOOST_TEST(name(r.summary.outcome) == "over_budget");
+      BOOST_TEST(r.summary.message == advice(Outcome::over_budget));
+      BOOST_TEST(seen == start_time + 0.05);
+      BOOST_TEST(r.summary.t_reached == seen);
+      BOOST_TEST(same(r.state, shown));
     }
   }
 }

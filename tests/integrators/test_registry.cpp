@@ -11,12 +11,6 @@ using namespace qddot;
 
 namespace {
 
-bool names_are_unique(const std::vector<Method>& list) {
-  std::set<std::string> names;
-  for (const Method& method : list) names.insert(method.name);
-  return names.size() == list.size();
-}
-
 // The derivative of one step, (q, v) -> (q, v), by central differences.
 Eigen::MatrixXd step_derivative(const Method& method, const System& system, const State& at,
                                 double h) {
@@ -49,31 +43,19 @@ double symplectic_defect(const Method& method) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(names_are_unique_and_lower_case) {
-  BOOST_TEST(names_are_unique(methods()));
-  for (const Method& method : methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      BOOST_TEST(!method.name.empty());
-      BOOST_TEST(method.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
-                 std::string::npos);
-    }
-  }
+BOOST_DATA_TEST_CASE(names_are_unique_and_lower_case, methods(), method) {
+  std::set<std::string> names;
+  BOOST_TEST(!method.name.empty());
+  BOOST_TEST(names.insert(method.name).second);
+  BOOST_TEST(method.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+             std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(a_name_twice_is_noticed) {
-  std::vector<Method> list = methods();
-  list.push_back(list.front());
-  BOOST_TEST(!names_are_unique(list));
-}
-
-BOOST_AUTO_TEST_CASE(every_method_says_what_it_is_in_one_line_and_where_it_is_from) {
-  for (const Method& method : methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      for (const std::string& text : {method.summary, method.source}) {
-        BOOST_TEST(!text.empty());
-        BOOST_TEST(text.find('\n') == std::string::npos);
-      }
-    }
+BOOST_DATA_TEST_CASE(every_method_says_what_it_is_in_one_line_and_where_it_is_from, methods(),
+                     method) {
+  for (const std::string& text : {method.summary, method.source}) {
+    BOOST_TEST(!text.empty());
+    BOOST_TEST(text.find('\n') == std::string::npos);
   }
 }
 
@@ -109,46 +91,33 @@ BOOST_AUTO_TEST_CASE(facts_about_a_method_fit_together) {
   BOOST_TEST(knob_name(Knob::rtol) == "rtol");
 }
 
-BOOST_AUTO_TEST_CASE(every_method_can_be_made_and_has_not_run_by_then) {
-  const auto system = make_mass_spring(hammock(3).network);
-  for (const Method& method : methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      BOOST_TEST(make_integrator(method, *system, options_of(method, 1e-3, 1e-3)) != nullptr);
-    }
-  }
+BOOST_AUTO_TEST_CASE(a_summary_before_a_run_says_so) {
   const Summary summary;
   BOOST_TEST(name(summary.outcome) == "solver_failed");
   BOOST_TEST(summary.message == "advance was not called");
 }
 
-BOOST_AUTO_TEST_CASE(exactly_the_implicit_methods_factorise_and_those_that_need_it_ask_for_k) {
+BOOST_DATA_TEST_CASE(exactly_the_implicit_methods_factorise_and_those_that_need_it_ask_for_k,
+                     general_methods(), method) {
   const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
-  for (const Method& method : general_methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const Run r = run(method, *system, p.initial, 0.1, options_of(method, 0.01, 1e-4));
-      BOOST_TEST(r.summary.message == "");
-      BOOST_TEST((r.summary.counts.stiffness_evaluations > 0) == evaluates_stiffness(method));
-      BOOST_TEST((r.summary.counts.factorizations > 0) == method.is(Trait::implicit));
-    }
-  }
+  const Run r = run(method, p, 0.1, options_of(method, 0.01, 1e-4));
+  BOOST_TEST(r.summary.message == "");
+  BOOST_TEST((r.summary.counts.stiffness_evaluations > 0) == evaluates_stiffness(method));
+  BOOST_TEST((r.summary.counts.factorizations > 0) == method.is(Trait::implicit));
 }
 
-BOOST_AUTO_TEST_CASE(one_step_keeps_the_symplectic_form_exactly_where_the_registry_says_so) {
-  for (const Method& method : methods_of(Knob::step_size)) {
-    // The first steps of a multistep method are of another kind.
-    if (method.recurrence_roots) continue;
-    BOOST_TEST_CONTEXT(method.name) {
-      const double defect = symplectic_defect(method);
-      // Differences with steps s = 1e-4 have errors of s^2 |third derivative|, about 1e-8. The
-      // defect of a method that is not symplectic is some (h w)^(order + 1), with h w = 1 here, or
-      // a thousandth of that at higher orders.
-      if (method.is(Trait::symplectic)) {
-        BOOST_TEST(defect < 1e-6);
-      } else {
-        BOOST_TEST(defect > (method.order == 1 ? 1e-2 : method.order == 2 ? 1e-3 : 1e-5));
-      }
-    }
+BOOST_DATA_TEST_CASE(one_step_keeps_the_symplectic_form_exactly_where_the_registry_says_so,
+                     methods_of(Knob::step_size), method) {
+  // The first steps of a multistep method are of another kind.
+  if (method.recurrence_roots) return;
+  const double defect = symplectic_defect(method);
+  // Differences with steps s = 1e-4 have errors of s^2 |third derivative|, about 1e-8. The
+  // defect of a method that is not symplectic is some (h w)^(order + 1), with h w = 1 here, or
+  // a thousandth of that at higher orders.
+  if (method.is(Trait::symplectic)) {
+    BOOST_TEST(defect < 1e-6);
+  } else {
+    BOOST_TEST(defect > (method.order == 1 ? 1e-2 : method.order == 2 ? 1e-3 : 1e-5));
   }
 }
 

@@ -1,12 +1,9 @@
-#include <complex>
-
 #include <boost/test/unit_test.hpp>
 
 #include "integrators/sundials/additive_tables.hpp"
 #include "integrators/sundials/arkode.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "tests/integrators/scenes.hpp"
-#include "tests/integrators/split_relay.hpp"
 
 BOOST_AUTO_TEST_SUITE(split_stability)
 
@@ -73,46 +70,7 @@ struct Pair {
   ButcherTable explicit_table, implicit_table;
 };
 
-// |R(iy)| of a diagonally implicit table, R(z) = 1 + z b'(I - z A)^-1 1 by a dense solve.
-double implicit_amplification(const ARKodeButcherTableMem& table, double y) {
-  const std::complex<double> z(0, y);
-  const int s = table.stages;
-  Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Identity(s, s);
-  Eigen::VectorXcd b(s);
-  for (int i = 0; i < s; ++i) {
-    b[i] = table.b[i];
-    for (int j = 0; j < s; ++j) matrix(i, j) -= z * table.A[i][j];
-  }
-  const Eigen::VectorXcd ones = Eigen::VectorXcd::Ones(s);
-  return std::abs(1.0 + z * (b.transpose() * matrix.partialPivLu().solve(ones))(0));
-}
-
 }  // namespace
-
-BOOST_AUTO_TEST_CASE(without_an_explicit_part_it_is_the_amplification_of_the_implicit_table) {
-  for (const AdditiveTable& table : additive_tables) {
-    const Pair pair(table);
-    for (const double y : {0.0, 0.1, 1.0, 3.0, 30.0, 1000.0}) {
-      // Rounding of some sixty terms of up to 1e3.
-      BOOST_TEST(std::abs(pair.amplification(0, y) -
-                          implicit_amplification(*pair.implicit_table, y)) < 1e-11,
-                 table.name << " at " << y);
-    }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(small_steps_keep_the_amplitude_to_the_order_whatever_part_is_explicit) {
-  for (const AdditiveTable& table : additive_tables) {
-    const Pair pair(table);
-    for (const double share : {0.0, 0.3, 0.7, 1.0}) {
-      const auto defect = [&](double y) {
-        return std::abs(pair.amplification(y * std::sqrt(share), y * std::sqrt(1 - share)) - 1);
-      };
-      const double observed = std::log2(defect(0.2) / defect(0.1));
-      BOOST_TEST(observed > table.order + 0.5, table.name << ", " << share << ": " << observed);
-    }
-  }
-}
 
 BOOST_AUTO_TEST_CASE(up_to_its_limit_no_vibration_grows_and_beyond_it_one_does) {
   for (const AdditiveTable& table : additive_tables) {

@@ -172,37 +172,15 @@ BOOST_AUTO_TEST_CASE(roots_are_those_of_the_recurrence_of_a_run) {
 
 BOOST_AUTO_TEST_CASE(a_step_costs_one_force_after_those_of_the_start) {
   const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
   for (const auto& [name, formula, cosines] : symmetric_formulas()) {
     const auto forces = [&, method = method_named(name)](int steps) {
-      return run(method, *system, p.initial, steps / 64., {.step_size = 1. / 64})
-          .summary.counts.force_evaluations;
+      return run(method, p, steps / 64., {.step_size = 1. / 64}).summary.counts.force_evaluations;
     };
     const int k = formula.steps;
     BOOST_TEST(forces(2 * k) - forces(k) == k);
     // Forces: one at the start, k - 1 in each sweep, one for each of its steps. The step after them
     // begins with the last force; its own force is for the velocity at its end.
     BOOST_TEST(forces(k) == 1 + k / 2 * (k - 1) + 1);
-  }
-}
-
-// The errors that the first steps leave in the spurious roots stay of their size.
-BOOST_AUTO_TEST_CASE(no_vibration_grows_in_a_hundred_thousand_steps) {
-  const auto system = make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);
-  const State start{0, Vec::Constant(1, 1), Vec::Constant(1, 0)};
-  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
-    const double h = 0.9 * *method_named(name).stability_limit;
-    double first = 0, second = 0;  // the largest of each half
-    Observer observer;
-    for (int n = 1; n <= 10'000; ++n) observer.times.push_back(10 * n * h);
-    observer.see = [&](const State& s) {
-      double& most = s.t < 50'000 * h ? first : second;
-      most = std::max(most, std::abs(s.q[0]));
-    };
-    run(method_named(name), *system, start, 100'000 * h, {.step_size = h}, observer);
-    // Vibrations of up to five frequencies come as near to their sum in either half.
-    BOOST_TEST(std::abs(second / first - 1) < 0.01, name << " " << first << " " << second);
-    BOOST_TEST(first < 2);
   }
 }
 

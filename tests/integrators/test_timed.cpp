@@ -2,8 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/block_diagonal_system.hpp"
-#include "tests/integrators/runs.hpp"
+#include "tests/integrators/parts.hpp"
 
 BOOST_AUTO_TEST_SUITE(timed)
 
@@ -19,70 +18,39 @@ Options options_for(const Method& method, bool is_timed) {
   return options;
 }
 
-std::unique_ptr<System> two_parts() {
-  std::vector<std::unique_ptr<System>> parts;
-  for (int i = 0; i < 2; ++i) parts.push_back(make_mass_spring(hammock(2).network));
-  return std::make_unique<BlockDiagonalSystem>(std::move(parts));
-}
-State twice(const State& s) {
-  State both{s.t, Vec(2 * s.q.size()), Vec(2 * s.q.size())};
-  both.q << s.q, s.q;
-  both.v << s.v, s.v;
-  return both;
-}
-
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(no_time_is_taken_unless_it_is_asked_for) {
-  const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
-  for (const Method& method : general_methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const Seconds s =
-          run(method, *system, p.initial, 0.5, options_for(method, false)).summary.seconds;
-      for (const double time : {s.force, s.stiffness, s.factorization, s.solve}) {
-        BOOST_TEST(time == 0);
-      }
-    }
-  }
+BOOST_DATA_TEST_CASE(times_are_taken_if_asked_for_and_change_nothing_else, general_methods(),
+                     method) {
+  const Run a = run(method, hammock(2), 0.5, options_for(method, false));
+  const Run b = run(method, hammock(2), 0.5, options_for(method, true));
+  BOOST_TEST(sum(a.summary.seconds) == 0);
+  BOOST_TEST(sum(b.summary.seconds) > 0);
+  BOOST_TEST(same(a.state, b.state));
+  BOOST_TEST(a.summary.counts == b.summary.counts);
 }
 
-BOOST_AUTO_TEST_CASE(times_are_those_of_what_is_counted_and_add_up_to_less_than_the_run) {
-  const Problem p = hammock(2);
-  const auto whole = make_mass_spring(p.network), divided = two_parts();
-  for (const Method& method : general_methods()) {
-    for (const bool is_divided : {false, true}) {
-      BOOST_TEST_CONTEXT(method.name << (is_divided ? " on two parts" : "")) {
-        const System& system = is_divided ? *divided : *whole;
-        const auto integrator = make_integrator(method, system, options_for(method, true));
-        for (int repeat = 0; repeat < 2; ++repeat) {  // of the second, too, only its own
-          State state = is_divided ? twice(p.initial) : p.initial;
-          const auto start = std::chrono::steady_clock::now();
-          const Summary summary = integrator->advance(state, 0.5);
-          const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-          const Seconds& s = summary.seconds;
-          BOOST_TEST(summary.message == "");
-          BOOST_TEST(sum(s) <= time.count());
-          BOOST_TEST(s.force > 0);
-          BOOST_TEST((s.stiffness > 0) == (summary.counts.stiffness_evaluations > 0));
-          if (method.family != Family::sundials) continue;  // their solves are their own
-          BOOST_TEST((s.factorization > 0) == (summary.counts.factorizations > 0));
-          BOOST_TEST((s.solve > 0) == (summary.counts.solves > 0));
-        }
+BOOST_DATA_TEST_CASE(times_are_those_of_what_is_counted_and_add_up_to_less_than_the_run,
+                     general_methods(), method) {
+  const Part one = part(hammock(2));
+  for (const int count : {1, 2}) {
+    const Together parts(std::vector(static_cast<std::size_t>(count), one));
+    BOOST_TEST_CONTEXT(count << " parts") {
+      const auto integrator = make_integrator(method, *parts.system, options_for(method, true));
+      for (int repeat = 0; repeat < 2; ++repeat) {  // of the second, too, only its own
+        State state = parts.start;
+        const auto start = std::chrono::steady_clock::now();
+        const Summary summary = integrator->advance(state, start_time + 0.5);
+        const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+        const Seconds& s = summary.seconds;
+        BOOST_TEST(summary.message == "");
+        BOOST_TEST(sum(s) <= time.count());
+        BOOST_TEST(s.force > 0);
+        BOOST_TEST((s.stiffness > 0) == (summary.counts.stiffness_evaluations > 0));
+        if (method.family != Family::sundials) continue;  // their solves are their own
+        BOOST_TEST((s.factorization > 0) == (summary.counts.factorizations > 0));
+        BOOST_TEST((s.solve > 0) == (summary.counts.solves > 0));
       }
-    }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(timing_changes_nothing_else) {
-  const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
-  for (const Method& method : general_methods()) {
-    BOOST_TEST_CONTEXT(method.name) {
-      const Run a = run(method, *system, p.initial, 0.5, options_for(method, false));
-      const Run b = run(method, *system, p.initial, 0.5, options_for(method, true));
-      BOOST_TEST(same(a.state, b.state));
-      BOOST_TEST(a.summary.counts == b.summary.counts);
     }
   }
 }

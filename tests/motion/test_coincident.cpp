@@ -1,13 +1,11 @@
 // Mirrors of scenes in which nodes coincide: every node moves, and as it does in the scene as
 // drawn.
-#include <numeric>
-#include <set>
-
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/registry.hpp"
 #include "qddot/scene/reduce/part.hpp"
-#include "tests/measure.hpp"
+#include "tests/independent/comparison.hpp"
+#include "tests/independent/random_scene.hpp"
+#include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(coincident)
@@ -57,150 +55,6 @@ Scene two_layers(int n, bool numbers_alternate) {
   return scene;
 }
 
-// Nodes and springs with all their images in `mirrors` planes of the coordinates. Nodes on a plane
-// are drawn once, or twice where they move across it; others may be drawn twice as they are.
-class RandomSymmetry {
- public:
-  RandomSymmetry(unsigned seed, int dimension, int mirrors)
-      : random_(seed), mirrors_(mirrors), scene_{.dimension = dimension} {
-    for (int d = mirrors; d < dimension; ++d) scene_.gravity[d] = number(-5, 5);
-    for (int bases = 0; bases < 4; ++bases) {
-      const Node node = random_node();
-      add_orbit(node);
-      if (chance(0.4)) add_orbit(node);
-    }
-    for (int e = 0; e < 14; ++e) add_springs();
-  }
-
-  // Moves every node by what rounding may, so that nodes in one place are so only nearly.
-  void jitter() {
-    for (Node& node : scene_.nodes) {
-      for (int d = 0; d < scene_.dimension; ++d) node.position[d] += number(-4, 4) * eps;
-    }
-  }
-
-  Scene shuffled() {
-    std::vector<std::size_t> order(scene_.nodes.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::shuffle(order, random_);
-    std::ranges::shuffle(scene_.springs, random_);
-    return renumbered(scene_, order);
-  }
-
- private:
-  double number(double low, double high) {
-    return std::uniform_real_distribution(low, high)(random_);
-  }
-  bool chance(double share) { return number(0, 1) < share; }
-
-  Node random_node() {
-    Node node{.mass = number(0.5, 2), .pinned = chance(0.15)};
-    for (int d = 0; d < scene_.dimension; ++d) {
-      node.position[d] = d < mirrors_ && chance(0.4) ? 0 : number(0.2, 1);
-      const bool is_across = d < mirrors_ && node.position[d] == 0;
-      node.velocity[d] = is_across && chance(0.5) ? 0 : number(-1, 1);
-    }
-    if (node.pinned) node.velocity.setZero();
-    return node;
-  }
-
-  Eigen::Vector3d image(unsigned element, Eigen::Vector3d x) const {
-    for (int d = 0; d < mirrors_; ++d) {
-      if (element >> d & 1) x[d] = -x[d];
-    }
-    return x;
-  }
-
-  void add_orbit(const Node& node) {
-    auto& orbit = orbits_.emplace_back();
-    for (unsigned g = 0; g < 1u << mirrors_; ++g) {
-      Node other = node;
-      other.position = image(g, node.position);
-      other.velocity = image(g, node.velocity);
-      const auto same = std::ranges::find_if(orbit, [&](std::size_t i) {
-        return scene_.nodes[i].position == other.position &&
-               scene_.nodes[i].velocity == other.velocity;
-      });
-      const bool is_new = same == orbit.end();
-      orbit.push_back(is_new ? scene_.nodes.size() : *same);
-      if (is_new) scene_.nodes.push_back(other);
-    }
-  }
-
-  void add_springs() {
-    const auto& a = orbits_[random_() % orbits_.size()];
-    const auto& b = orbits_[random_() % orbits_.size()];
-    const std::size_t shift = random_() % a.size();
-    SpringLaw law{.stiffness = number(5, 50), .rest_length = number(0.1, 1), .quartic = 0};
-    const auto ends = [&](std::size_t g) { return std::minmax(a[g], b[g ^ shift]); };
-    const double length = (scene_.nodes[a[0]].position - scene_.nodes[b[shift]].position).norm();
-    if (length == 0) law.rest_length = 0;
-    std::set<std::pair<std::size_t, std::size_t>> drawn;
-    for (std::size_t g = 0; g < a.size(); ++g) {
-      const auto [low, high] = ends(g);
-      if (low == high || !drawn.emplace(low, high).second) continue;
-      scene_.springs.push_back({{low, high}, law});
-    }
-  }
-
-  std::mt19937 random_;
-  int mirrors_;
-  Scene scene_;
-  std::vector<std::vector<std::size_t>> orbits_;  // the node that each element makes of the first
-};
-
-std::vector<Eigen::Vector3d> forces_by_hand(const Scene& scene, const std::vector<Node>& nodes) {
-  std::vector<Eigen::Vector3d> f;
-  for (const Node& node : nodes) f.push_back(node.mass * scene.gravity);
-  for (const Spring& spring : scene.springs) {
-    const auto [a, b] = spring.nodes;
-    const Eigen::Vector3d force =
-        spring_force<double, 3>(spring.law, nodes[b].position - nodes[a].position);
-    f[a] += force;
-    f[b] -= force;
-  }
-  return f;
-}
-
-// Checks that all nodes have the accelerations of the drawn scene in this state, and the energies
-// too.
-void check(const Scene& scene, const ReducedScene& reduced, const State& state) {
-  const std::vector<Node> nodes = reduced.expand(state);
-  const auto f = forces_by_hand(scene, nodes);
-  const Vec a = force_at(reduced.system(), state.q).cwiseQuotient(reduced.system().mass());
-  const std::vector<Node> accelerated = reduced.expand_beside_falls({state.t, state.q, a});
-  std::vector<bool> falls(nodes.size(), false);
-  for (const qddot::reduce::Part& part : reduced.parts()) {
-    for (const std::size_t node : part.nodes()) falls[node] = part.fall().moves();
-  }
-  // Tens of springs of up to 50 N/m and a few metres on nodes above 0.02 kg, rounded a few times.
-  const double round_off = 1e3 * eps * 50 / 0.02;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (nodes[i].pinned) continue;
-    const bool flies = reduced.system().size() == 0 ||
-                       std::ranges::none_of(scene.springs, [&](const Spring& spring) {
-                         return spring.nodes[0] == i || spring.nodes[1] == i;
-                       });
-    if (!flies) {
-      Eigen::Vector3d own = f[i] / nodes[i].mass;
-      if (falls[i]) own -= scene.gravity;  // as seen from the frame that falls with it
-      BOOST_TEST((accelerated[i].velocity - own).norm() < round_off);
-    }
-  }
-  const double t = kinetic_by_hand(nodes), v = potential_by_hand(scene, nodes);
-  BOOST_TEST(std::abs(reduced.kinetic(state) - t) <= 100 * eps * t);
-  BOOST_TEST(std::abs(reduced.potential(state) - v) <= 1e3 * eps * (std::abs(v) + 50));
-}
-
-State moved(const ReducedScene& reduced, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> part(-0.1, 0.1);
-  State state = reduced.initial();
-  for (double& x : state.q) x += part(random);
-  for (double& v : state.v) v += part(random);
-  return state;
-}
-
 // As drawn, but that pinned nodes rest.
 std::vector<Node> at_start(const Scene& scene) {
   std::vector<Node> nodes = scene.nodes;
@@ -210,12 +64,13 @@ std::vector<Node> at_start(const Scene& scene) {
   return nodes;
 }
 
+// Checks that all nodes are where they are drawn, and that energies and forces are those of the
+// drawn nodes, at the start and near it.
 void check_all(const Scene& scene) {
   const ReducedScene reduced(scene);
   // Tolerances of mirrors, 64 eps, and turning there and back.
   BOOST_TEST(farthest(reduced.expand(reduced.initial()), at_start(scene)) < 1e3 * eps);
-  check(scene, reduced, reduced.initial());
-  check(scene, reduced, moved(reduced, 1));
+  for (const std::string& sentence : compare_states(scene, 1).disagreements) BOOST_ERROR(sentence);
   for (const Finding& finding : reduced.findings()) {
     BOOST_TEST(finding.what.find("defect") == std::string::npos, finding.what);
   }
@@ -231,11 +86,7 @@ BOOST_AUTO_TEST_CASE(pairs_that_part_are_four_images_of_one_node) {
   check_all(scene);
   // Each moves away from the mirror at its own side with 1 m/s, held back by 4 x 100 N/m.
   const auto nodes_at = [&](const Reductions& reductions) {
-    const ReducedScene some(scene, reductions);
-    State state = some.initial();
-    make_integrator(*find_method("kahan_li8"), some.system(), {.step_size = 1e-3})
-        ->advance(state, 0.1);
-    return some.expand(state);
+    return nodes_after(scene, reductions, method_named("kahan_li8"), 1e-3, 0.1);
   };
   const auto all = nodes_at(Reductions()), drawn = nodes_at(Reductions::only({Reduction::pins}));
   // A hundred steps of numbers around one.
@@ -260,21 +111,16 @@ BOOST_AUTO_TEST_CASE(layers_of_a_grid_keep_all_of_their_mass) {
 
 BOOST_AUTO_TEST_CASE(whatever_coincides_moves_as_drawn) {
   int found = 0;
-  for (unsigned seed = 0; seed < 300; ++seed) {
-    const int dimension = 1 + static_cast<int>(seed % 3);
-    const int mirrors = 1 + static_cast<int>(seed / 3) % dimension;
-    RandomSymmetry symmetry(seed, dimension, mirrors);
-    if (seed % 4 == 0) symmetry.jitter();
-    Scene scene = symmetry.shuffled();
-    if (seed % 2 == 1 && dimension == 3) scene = turned(scene, some_rotation(), {0.3, -0.2, 0.4});
-    BOOST_TEST_CONTEXT("seed " << seed) {
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    const auto [scene, kind] = random_scene(seed);
+    if (kind != "mirrored" && kind != "coincident") continue;
+    BOOST_TEST_CONTEXT(kind << ", seed " << seed) {
       check_all(scene);
       const ReducedScene reduced(scene);
       for (const qddot::reduce::Part& part : reduced.parts()) found += part.mirrors().count;
     }
   }
-  // A hundred scenes for each number of mirrors; some fall into parts that are not their own image.
-  BOOST_TEST(found > 200);
+  BOOST_TEST(found > 300, found);
 }
 
 BOOST_AUTO_TEST_CASE(twins_that_nothing_tells_apart_are_swapped_by_mirrors_that_commute) {

@@ -1,8 +1,8 @@
 // A part without pins falls as a whole, and is integrated about its centre of mass.
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/error.hpp"
+#include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(falling)
@@ -46,12 +46,8 @@ std::vector<Node> moved(const std::vector<Node>& nodes, const Eigen::Vector3d& g
   return later;
 }
 
-State run(const ReducedScene& scene, double until, double h = 1e-3) {
-  State state = scene.initial();
-  const auto summary = make_integrator(*find_method("kahan_li8"), scene.system(), {.step_size = h})
-                           ->advance(state, until);
-  BOOST_TEST(summary.message == "");
-  return state;
+State run(const ReducedScene& scene, double until) {
+  return state_after(scene, method_named("kahan_li8"), 1e-3, until);
 }
 
 std::string sentence(const ReducedScene& scene, Reduction reduction) {

@@ -2,8 +2,8 @@
 // size and not with its distance from the origin.
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/registry.hpp"
 #include "qddot/scene/reduce/part.hpp"
+#include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(far_away)
@@ -40,13 +40,7 @@ Scene strut(double off) {
 }
 
 std::vector<Node> end_of(const Scene& scene, const Reductions& reductions, double until) {
-  const ReducedScene reduced(scene, reductions);
-  State state = reduced.initial();
-  const auto summary =
-      make_integrator(*find_method("kahan_li8"), reduced.system(), {.step_size = 1e-3})
-          ->advance(state, until);
-  BOOST_TEST_REQUIRE(summary.message == "");
-  return reduced.expand(state);
+  return nodes_after(scene, reductions, method_named("kahan_li8"), 1e-3, until);
 }
 
 const Eigen::Vector3d shift(1048576, -524288, 2097152);  // 2^20 and neighbours [m]
@@ -143,12 +137,8 @@ BOOST_AUTO_TEST_CASE(small_motions_far_away_are_as_exact_as_at_home) {
   scene.springs = {{{0, 1}, {100, 1}}};
   for (const Reductions& reductions :
        {Reductions(), Reductions::only({}), Reductions::only({Reduction::pins})}) {
-    const ReducedScene reduced(scene, reductions);
-    State state = reduced.initial();
-    make_integrator(*find_method("kahan_li8"), reduced.system(), {.step_size = 1e-3})
-        ->advance(state, 0.2);
     // v cos(w t), to what the rounding of 1e-12 m beside one metre leaves, 2e-4 of it.
-    const double v = reduced.expand(state)[1].velocity.x();
+    const double v = end_of(scene, reductions, 0.2)[1].velocity.x();
     BOOST_TEST(std::abs(v - 1e-11 * std::cos(2.)) < 1e-3 * 1e-11);
   }
 }

@@ -2,7 +2,7 @@
 // of their places of rest they go to, and that the reduced scene has the same.
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/registry.hpp"
+#include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(folded_joints)
@@ -22,14 +22,9 @@ Scene folded(double joint, double k, double l0, int dimension = 1) {
 bool is_kept(const Scene& scene) { return !ReducedScene(scene).massless_nodes().empty(); }
 
 // The place of the mass at 0.1 s by steps of implicit Euler, which puts joints where f = 0.
-double end_of(const Scene& scene, const Reductions& reductions) {
-  const ReducedScene reduced(scene, reductions);
-  State state = reduced.initial();
-  const auto summary = make_integrator(*find_method("implicit_euler"), reduced.system(),
-                                       {.step_size = 1e-4, .solve_tolerance = 1e-12})
-                           ->advance(state, 0.1);
-  BOOST_TEST_REQUIRE(summary.message == "");
-  return reduced.expand(state).back().position.x();
+double end_of(const Scene& scene) {
+  const auto nodes = nodes_after(scene, {}, method_named("implicit_euler"), 1e-4, 0.1);
+  return nodes.back().position.x();
 }
 
 // The place at which the joint rests if it follows its force from its drawn place, with resting
@@ -58,11 +53,11 @@ BOOST_AUTO_TEST_CASE(a_joint_behind_the_pin_stays_there) {
   const double exact = -0.5 + 2.5 * std::cos(w * 0.1);
   BOOST_TEST(std::abs(exact - 1.877) < 1e-3);
   // Implicit Euler is of first order: h w^2 t / 2 of the amplitude.
-  BOOST_TEST(std::abs(end_of(scene, Reductions()) - exact) < 1e-4 * k * 0.1 * 2.5);
+  BOOST_TEST(std::abs(end_of(scene) - exact) < 1e-4 * k * 0.1 * 2.5);
   // The straight one pulls towards 0.5 m.
   BOOST_TEST(!is_kept(folded(0.4, 1000, 0.5)));
-  BOOST_TEST(std::abs(end_of(folded(0.4, 1000, 0.5), Reductions()) - 0.5 -
-                      1.5 * std::cos(w * 0.1)) < 1e-4 * k * 0.1 * 2.5);
+  BOOST_TEST(std::abs(end_of(folded(0.4, 1000, 0.5)) - 0.5 - 1.5 * std::cos(w * 0.1)) <
+             1e-4 * k * 0.1 * 2.5);
 }
 
 BOOST_AUTO_TEST_CASE(a_joint_is_kept_if_it_comes_down_to_rest_beyond_an_end) {
@@ -78,7 +73,7 @@ BOOST_AUTO_TEST_CASE(a_joint_is_kept_if_it_comes_down_to_rest_beyond_an_end) {
         const double series = k * 10 / (k + 10), l0 = is_turned ? 0.8 : 0.5;
         const double exact = l0 + (2 - l0) * std::cos(std::sqrt(series) * 0.1);
         // h w^2 t / 2 of the amplitude.
-        BOOST_TEST(std::abs(end_of(scene, Reductions()) - exact) < 1e-4 * series * 0.1 * 2);
+        BOOST_TEST(std::abs(end_of(scene) - exact) < 1e-4 * series * 0.1 * 2);
       }
     }
   }

@@ -1,8 +1,8 @@
 // The motion of a reduced scene is that of the scene: all nodes, with each reduction and without.
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/registry.hpp"
 #include "qddot/scene/reduce/part.hpp"
+#include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(reduced_motion)
@@ -14,14 +14,7 @@ namespace {
 // All nodes at time `until`, by a method of fixed step.
 std::vector<Node> end_of(const Scene& scene, const Reductions& reductions, double until, double h,
                          const char* method = "kahan_li8") {
-  const ReducedScene reduced(scene, reductions);
-  State state = reduced.initial();
-  // Implicit methods are solved to rounding, so that ends can be compared.
-  const auto integrator = make_integrator(*find_method(method), reduced.system(),
-                                          {.step_size = h, .solve_tolerance = 1e-12});
-  const Summary summary = integrator->advance(state, until);
-  BOOST_TEST_REQUIRE(summary.message == "");
-  return reduced.expand(state);
+  return nodes_after(scene, reductions, method_named(method), h, until);
 }
 
 // The difference of the ends, relative to the largest displacement of a node.
@@ -128,14 +121,6 @@ BOOST_AUTO_TEST_CASE(a_line_that_cannot_turn_moves_linearly) {
   const auto exact = end_of(scene, all, 1, 1, "exact");
   const auto composed = end_of(scene, without(Reduction::constant_stiffness), 1, 1e-4);
   BOOST_TEST(farthest(exact, composed) / farthest(exact, scene.nodes) < 1e-9);
-}
-
-BOOST_AUTO_TEST_CASE(negative_control_another_stiffness_is_another_motion) {
-  Scene cloth = draw("cloth", {{"nodes", 7}});
-  const auto end = end_of(cloth, all, 0.3, 1e-3);
-  for (Spring& spring : cloth.springs) spring.law.stiffness *= 1 + 1e-6;
-  BOOST_TEST(farthest(end, end_of(cloth, all, 0.3, 1e-3)) / farthest(end, cloth.nodes) >
-             10 * round_off);
 }
 
 BOOST_AUTO_TEST_CASE(a_growing_run_of_a_row_turns_springs_over_as_the_drawn_one_does) {

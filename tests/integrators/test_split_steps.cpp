@@ -1,0 +1,171 @@
+// Methods that take the forces of stiff springs apart.
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/analysis/largest_frequency.hpp"
+#include "tests/integrators/motions.hpp"
+#include "tests/integrators/scenes.hpp"
+
+BOOST_AUTO_TEST_SUITE(split_steps)
+
+using namespace qddot;
+
+namespace {
+
+std::vector<Method> split_methods(Knob knob) {
+  return methods_where(
+      [&](const Method& m) { return m.asks(Need::split_forces) && m.knob == knob; });
+}
+std::vector<Method> pairs() { return split_methods(Knob::rtol); }
+std::vector<Method> mri_methods() {
+  std::vector<Method> list = split_methods(Knob::step_size);
+  std::erase_if(list, [](const Method& method) { return method.family != Family::sundials; });
+  return list;
+}
+std::vector<Method> multirate_methods() {
+  std::vector<Method> list = split_methods(Knob::step_size);
+  std::erase_if(list, [](const Method& method) { return method.family == Family::sundials; });
+  return list;
+}
+
+}  // namespace
+
+BOOST_DATA_TEST_CASE(newtons_matrix_is_that_of_the_stiff_springs_alone, pairs(), method) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(with_split(p.network));
+  Relay relay(*system);
+  const Asked whole(relay), stiff(*relay.stiff), soft(*relay.soft);
+  const Run r = run(method, relay, p.initial, 1, {.rtol = 1e-5});
+  const Counts& c = r.summary.counts;
+  BOOST_TEST(r.summary.message == "");
+  BOOST_TEST(stiff.stiffness > 0);
+  BOOST_TEST(stiff.stiffness + soft.stiffness == c.stiffness_evaluations);
+  // K of the soft springs is only for the stability limit, once in fifty steps.
+  BOOST_TEST(soft.stiffness == (c.steps + c.rejected + 49) / 50);
+  BOOST_TEST(whole.stiffness == 0);
+  // Each force is that of one half, the soft one once a stage and none for Newton's iterations.
+  BOOST_TEST(stiff.force + soft.force == c.force_evaluations);
+  BOOST_TEST(whole.force == 0);
+  BOOST_TEST(soft.force < stiff.force);
+}
+
+BOOST_DATA_TEST_CASE(a_frame_ten_thousand_times_stiffer_does_not_bound_adaptive_steps, pairs(),
+                     method) {
+  const ReducedScene scene = framed_cloth(6);
+  const double until = 0.1;
+  // Verlet's h < 2/w_max: no explicit method goes further with a force.
+  const double explicit_steps = until * frequency_bound(scene.system(), scene.initial().q) / 2;
+  const Run r = run(method, scene.system(), scene.initial(), until, {.rtol = 1e-3});
+  BOOST_TEST(r.summary.message == "");
+  BOOST_TEST(10 * r.summary.counts.steps < explicit_steps,
+             method.name << ": " << r.summary.counts << " against " << explicit_steps);
+}
+
+BOOST_DATA_TEST_CASE(a_stiff_frame_leaves_steps_as_long_as_the_cloths_own,
+                     split_methods(Knob::step_size), method) {
+  const ReducedScene scene = framed_cloth(8);
+  const auto end = [&](const Method& by, double h) {
+    return run(by, scene.system(), scene.initial(), 0.05, {.step_size = h});
+  };
+  // Verlet is stable up to about 3e-5 s. The frame swings by some 1e-2 m.
+  constexpr double h = 5e-4;
+  const Run coarse = end(method, h), fine = end(method, h / 4);
+  BOOST_TEST(coarse.summary.message == "");
+  BOOST_TEST(distance(coarse.state.q, fine.state.q) < 1e-5);
+  BOOST_TEST(name(end(method_named("verlet"), h).summary.outcome) == "diverged");
+}
+
+BOOST_AUTO_TEST_CASE(soft_forces_are_evaluated_a_few_times_a_step_and_stiff_ones_m_times_more) {
+  for (const double ratio : {1.0, 100.0, 1e4}) {
+    const Problem p = railed_hammock(ratio);
+    const auto system = make_mass_spring(p.network);
+    const Split& split = *split_of(*system);
+    const double m = std::ceil(frequency_bound(*split.stiff, p.initial.q) /
+                               frequency_bound(*split.soft, p.initial.q));
+    // Stages of the slow and of the fast table.
+    for (const auto& [name, slow, fast] :
+         {std::tuple("arkode_mri3", 3, 4), {"arkode_mri4", 5, 5}}) {
+      Relay relay(*system);
+      const Asked whole(relay), stiff(*relay.stiff), soft(*relay.soft);
+      const Run r = run(method_named(name), relay, p.initial, 0.2, {.step_size = 0.01});
+      BOOST_TEST_CONTEXT(name << " with m = " << m << ": " << soft.force << " soft, " << stiff.force
+                              << " stiff") {
+        BOOST_TEST(r.summary.message == "");
+        const double steps = 20;
+        BOOST_TEST(r.summary.counts.steps == steps);
+        BOOST_TEST(r.summary.counts.force_evaluations == soft.force + stiff.force);
+        BOOST_TEST(whole.force == 0);
+        // One evaluation at the start, beside those of the stages.
+        BOOST_TEST(soft.force == slow * steps + 1);
+        // Inner steps of h/m go from each stage to the next. ARKODE evaluates one more force at the
+        // end of some of them, once a step, and at the start.
+        const double small_steps = steps * slow * std::ceil(m / slow);
+        BOOST_TEST(stiff.force >= small_steps * fast);
+        BOOST_TEST(stiff.force <= small_steps * (fast + 1) + steps + 2);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(small_steps_below_rounding_are_refused) {
+  for (const double t : {1e9, -1e9}) {
+    Problem p = railed_hammock(1e4);  // m = 156
+    p.initial.t = t;
+    for (const Method& method : mri_methods()) {
+      // Times here are 1.2e-7 s apart: h advances them, h/m does not.
+      const Run r = run(method, p, t + 1e-3, {.step_size = 1e-5});
+      BOOST_TEST(name(r.summary.outcome) == "step_too_small");
+      BOOST_TEST(r.summary.message.starts_with(
+                     "the small steps of the stiff springs are below rounding at t = "),
+                 r.summary.message);
+      BOOST_TEST(r.summary.message.find("raise --step-size") != std::string::npos);
+      BOOST_TEST(same(r.state, p.initial));
+      BOOST_TEST(r.summary.counts.force_evaluations == 0);
+      // Larger ones do.
+      BOOST_TEST(run(method, p, t + 1e-2, {.step_size = 1e-3}).summary.message == "");
+    }
+  }
+}
+
+BOOST_DATA_TEST_CASE(without_soft_springs_only_the_short_steps_err, multirate_methods(), method) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(with_all_named(p.network, true));
+  const State end = KnownMotion("hammock", p).end;
+  const auto error = [&](double h) {
+    return distance(run(method, *system, p.initial, 1, {.step_size = h}).state.q, end.q);
+  };
+  // Two halvings. Short steps become more in a step by whole numbers, at order 5 by none here.
+  const double order = std::log2(error(1. / 40) / error(1. / 160)) / 2;
+  BOOST_TEST(order > std::min(method.order, 4) - 0.5, method.name << ": " << order);
+}
+
+BOOST_AUTO_TEST_CASE(without_stiff_springs_order_2_is_velocity_verlet) {
+  const Problem p = hammock(3);
+  const auto soft = make_mass_spring(with_all_named(p.network, false));
+  const Options options{.step_size = 0.01};
+  const Run own = run(method_named("multirate_adams2"), *soft, p.initial, 1, options);
+  const Run verlet = run(method_named("verlet"), p, 1, options);
+  // 100 steps of positions and velocities of some metres, each rounded.
+  BOOST_TEST(distance(own.state, verlet.state) < 100 * 10 * 2.2e-16 * 10);
+}
+
+BOOST_AUTO_TEST_CASE(a_step_takes_one_soft_force_and_stiff_ones_of_short_steps) {
+  const Problem p = hammock(2);
+  const auto system = make_mass_spring(with_split(p.network));
+  // Forces besides one a step: one of the start, and those of the first step. It has k - 1 parts,
+  // done twice at k = 3 and three times at k = 4; one of these forces is the step's own.
+  for (const auto& [name, at_start] :
+       {std::pair("multirate_adams2", 1), {"multirate_adams4", 4}, {"multirate_adams5", 9}}) {
+    Relay relay(*system);
+    const Asked whole(relay), stiff(*relay.stiff), soft(*relay.soft);
+    const Run r = run(method_named(name), relay, p.initial, 0.2, {.step_size = 0.01});
+    BOOST_TEST_CONTEXT(name) {
+      BOOST_TEST(r.summary.message == "");
+      BOOST_TEST(soft.force == 20 + at_start);
+      BOOST_TEST(whole.force == 0);
+      BOOST_TEST(stiff.force >= 20);
+      BOOST_TEST(r.summary.counts.force_evaluations == soft.force + stiff.force);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
