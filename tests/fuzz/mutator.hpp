@@ -28,11 +28,10 @@ class Mutator {
           change_bytes(text, other);
           break;
         case 1:
-          change_parts(text, below(2) ? number_words(text) : parts(text, " \n\t,[]{}="),
-                       one_of(numbers));
+          change_words(text);
           break;
         case 2:
-          change_parts(text, parts(text, "\n"), "\n");
+          change_lines(text);
           break;
         default:
           text.insert(below(text.size() + 1), insertion());
@@ -111,33 +110,46 @@ class Mutator {
     }
   }
 
-  // Swaps two of the words or lines, leaves one out, repeats it elsewhere or many times, or puts
-  // `another` in its place.
-  void change_parts(std::string& text, const std::vector<Range>& all, std::string_view another) {
+  static void swap_parts(std::string& text, Range a, Range b) {
+    if (a.start > b.start) std::swap(a, b);
+    if (a.start + a.size > b.start) return;
+    const std::string first = text.substr(a.start, a.size), second = text.substr(b.start, b.size);
+    text.replace(b.start, b.size, first);
+    text.replace(a.start, a.size, second);
+  }
+
+  void change_words(std::string& text) {
+    const auto all = below(2) ? number_words(text) : parts(text, " \n\t,[]{}=");
     if (all.empty()) return;
-    Range one = all[below(all.size())], second = all[below(all.size())];
-    const std::string copy = text.substr(one.start, one.size);
-    const std::string line = copy + "\n";
-    switch (below(6)) {
+    const Range word = all[below(all.size())], second = all[below(all.size())];
+    switch (below(4)) {
       case 0:
-        if (one.start > second.start) std::swap(one, second);
-        if (one.start + one.size > second.start) return;
-        text = text.substr(0, one.start) + text.substr(second.start, second.size) +
-               text.substr(one.start + one.size, second.start - one.start - one.size) +
-               text.substr(one.start, one.size) + text.substr(second.start + second.size);
-        return;
+        return swap_parts(text, word, second);
       case 1:
-        text.erase(one.start, one.size + 1);
-        return;
-      case 2:
-        text.insert(second.start, line);
-        return;
-      case 3:
-        for (std::size_t times = below(below(8) ? 6 : 200); times > 0; --times)
-          text.insert(one.start, line);
+        text.replace(word.start, word.size, text.substr(second.start, second.size));
         return;
       default:
-        text.replace(one.start, one.size, another);
+        text.replace(word.start, word.size, one_of(numbers));
+    }
+  }
+
+  void change_lines(std::string& text) {
+    const auto all = parts(text, "\n");
+    if (all.empty()) return;
+    const Range line = all[below(all.size())], second = all[below(all.size())];
+    const std::string copy = text.substr(line.start, line.size) + "\n";
+    switch (below(4)) {
+      case 0:
+        return swap_parts(text, line, second);
+      case 1:
+        text.erase(line.start, line.size + 1);
+        return;
+      case 2:
+        text.insert(second.start, copy);
+        return;
+      default:
+        for (std::size_t times = below(below(8) ? 6 : 200); times > 0; --times)
+          text.insert(line.start, copy);
     }
   }
 
