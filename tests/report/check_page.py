@@ -8,8 +8,8 @@ from selenium.webdriver.common.keys import Keys
 
 from browser import Page
 from check_page_motion import Moving  # They run with the tests of this file.
-from made_sweeps import judge, read_table
 from packed_folder import edit_json, rewrite
+from study_tables import judge, read_table
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'&lt;"
 CHART = "document.getElementById('chart-drawing')"

@@ -189,3 +189,4 @@ class Moving(Page):
             page = self.packed(f"flat{dimension}", dimension=dimension, side=9)
             self.assertEqual("drawn upwards" in self.show(page=page), is_upwards)
             self.browser.wait(f"{DRAWS} > 0")
+            self.doCleanups()  # which look at this page

@@ -20,10 +20,10 @@ import motion_files
 import page
 import report
 from commands import RunCommands
-from made_sweeps import PROGRAMS
 from packed_folder import Folder, Page, elements
 from record import read_record
 from study_folder import read_study
+from study_tables import PROGRAMS
 
 SLOW = (
     "symplectic_euler semi_implicit_euler position_verlet blanes_moan4 blanes_moan6 symmetric6"

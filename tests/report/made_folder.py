@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 import made_sweeps
+from study_tables import write_table
 
 MOTION_COLUMNS = "file,role,method,knob,value,outcome,t_reached,frames,largest_distance,why".split(
     ","
@@ -128,8 +129,8 @@ def write_motions(folder, sheet, rows, frames, runs, noise):
             | {"largest_distance": largest, "why": why(row, number)}
         )
         energy += energies(name, times, 0.3 * noise * number)
-    made_sweeps.write_table(folder / "motions.csv", MOTION_COLUMNS, table)
-    made_sweeps.write_table(folder / "motions_energy.csv", ENERGY_COLUMNS, energy)
+    write_table(folder / "motions.csv", MOTION_COLUMNS, table)
+    write_table(folder / "motions_energy.csv", ENERGY_COLUMNS, energy)
     origin = {"interrupted": None, "exit_status": 0, "version": "0.1.0"}
     origin |= {"until": made_sweeps.UNTIL, "displacement": displacement, "runs_left_out": 0}
     text = json.dumps(origin)

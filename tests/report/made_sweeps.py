@@ -1,13 +1,9 @@
 """Points of a work-precision chart made up by formula: errors c h^p and times that go with 1/h."""
 
-import csv
 import json
-import os
-import subprocess
 from dataclasses import dataclass
-from pathlib import Path
 
-PROGRAMS = Path(os.environ.get("QDDOT_BIN", "build/bin")).resolve()
+from study_tables import judge, write_table
 
 CERTIFIED = 4e-13
 UNTIL = 0.5
@@ -83,26 +79,6 @@ def front(scene):
     rows = [{"scene": scene, "accuracy": 10.0**-digit} for digit in range(1, 10)]
     rows[0] |= {"method": "verlet", "value": STEP_SIZES[1], "stability_margin": 0.04}
     return rows
-
-
-def judge(folder):
-    """Makes the record of the tables in a folder."""
-    words = [PROGRAMS / "work_precision", "--judge", folder, "--force"]
-    subprocess.run(words, capture_output=True, check=True)
-
-
-def write_table(path, columns, rows):
-    """Writes dicts as a CSV file; numbers to their last bit."""
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, columns, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-
-
-def read_table(path):
-    """The rows of a CSV file."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def sidecar(scene, dimension, nodes, springs):

@@ -17,7 +17,7 @@ import numpy as np
 import made_folder
 import page
 import report
-from made_sweeps import judge, read_table, write_table
+from study_tables import judge, read_table, write_table
 
 TEMPLATE = (
     "<!DOCTYPE html><html><head><title>{{title}}</title><!-- qddot:style --></head><body>"
