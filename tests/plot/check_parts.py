@@ -52,9 +52,7 @@ class Records(unittest.TestCase):
     """Reading of points.csv and chart.json."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
+        self.folder = self.enterContext(tempfile.TemporaryDirectory())
         self.position = {"name": "position", "column": "error_position", "floor": 1e-9}
         self.position |= {"floor_words": "certified", "rounding_decides_below": None}
         self.position |= {"errors": [2e-3], "at_least": [1e-3], "at_most": [3e-3], "counts": [True]}
@@ -88,41 +86,22 @@ class Records(unittest.TestCase):
         self.assertEqual((view.ranked, view.staircase), ({1e-2: [run], 1e-3: []}, [run]))
         self.assertTrue(view.subtitle.endswith(" in the node's own part, 0.5 to 2 m"))
 
-    def test_an_error_that_is_not_known_is_no_number(self):
-        self.position["errors"] = [None]
-        self.assertTrue(math.isnan(self.read().judged.runs[0].error))
-
-    def test_a_table_need_not_say_the_families_or_solves_of_methods(self):
-        (run,) = self.read(
-            "scene,method,knob,value,outcome,time_s\ns,verlet,step_size,1e-4,reached_end,0.5\n"
-        ).judged.runs
-        self.assertEqual((run.family, run.stock_of, run.solves), ("", "", 0))
-
     def test_a_refusal_names_file_line_and_cell(self):
         row = "s,verlet,hand-written,,step_size,{},reached_end,1\n"
-        self.assertEqual(
-            self.refusal(HEADER + row.format("1e-3") + row.format("tiny")),
-            "DIR/points.csv, line 3: value is 'tiny', not a number.",
-        )
-        self.assertEqual(
-            self.refusal(HEADER + row.format("-1")),
-            "DIR/points.csv, line 2: value must be a positive number.",
-        )
-        self.assertEqual(
-            self.refusal(HEADER.replace(",time_s", "")), "DIR/points.csv has no column time_s."
-        )
-        self.assertEqual(
-            self.refusal(HEADER + "s,,hand-written,,step_size,1,reached_end,1\n"),
-            "DIR/points.csv, line 2: method, knob and outcome must not be empty.",
-        )
-
-    def test_a_record_of_another_table_is_refused(self):
+        for table, words in (
+            (HEADER + row.format("1e-3") + row.format("tiny"), ", line 3: value is 'tiny', not a number"),
+            (HEADER + row.format("-1"), ", line 2: value must be a positive number"),
+            (HEADER.replace(",time_s", ""), " has no column time_s"),
+            (
+                HEADER + "s,,hand-written,,step_size,1,reached_end,1\n",
+                ", line 2: method, knob and outcome must not be empty",
+            ),
+        ):
+            self.assertEqual(self.refusal(table), f"DIR/points.csv{words}.")
         self.assertRegex(self.refusal(HEADER + A_ROW + A_ROW), "^DIR/chart.json cannot be read: ")
         del self.chart["knobs"]
         self.assertEqual(self.refusal(), "DIR/chart.json cannot be read: 'knobs'.")
-
-    def test_without_a_record_it_is_said_what_makes_one(self):
-        Path(self.folder, "points.csv").write_text(HEADER + A_ROW, encoding="utf-8")
+        Path(self.folder, "chart.json").unlink()
         with self.assertRaisesRegex(BadInput, "missing: work_precision --judge .* makes it"):
             record.read_record(self.folder)
 
@@ -208,14 +187,6 @@ class Causes(unittest.TestCase):
         ]
         self.assertEqual(found, expected)
 
-    def test_methods_without_a_point_are_named(self):
-        found = self.lines(self.sweep("a", ["diverged"] * 2), self.sweep("b", ["diverged"] * 2))
-        expected = [("no point at all", 2, "a, b"), ("diverged", 2, "a, b")]
-        self.assertEqual(found, expected)
-        self.assertEqual(
-            causes.shortening(["a", "b", "c"])[1:], ["a, b and 1 more", "a and 2 more"]
-        )
-
     def test_the_strip_is_low_whatever_failed(self):
         sweeps = [self.sweep(f"m{i}", [f"cause_{i % 9}", None, f"end_{i}"]) for i in range(60)]
         sweeps += [self.sweep(f"none{i}", ["lost", "lost"]) for i in range(60)]
@@ -279,12 +250,6 @@ class Words(unittest.TestCase):
             ["3 s", "5 ms", "20 µs", "4 ns", "0.001 ns", "1 s"],
         )
 
-    def test_a_narrow_range_is_widened_about_its_middle(self):
-        low, high = style.widened(1.0, 2.0, 1)
-        self.assertAlmostEqual(high / low, 10)
-        self.assertAlmostEqual(low * high, 2.0)
-        self.assertEqual(style.widened(1.0, 100.0, 1), (1.0, 100.0))
-
     def test_long_and_odd_names_fit_one_line(self):
         self.assertEqual(names.shown("a\nb"), "a b")
         self.assertEqual(names.shown("$x$"), r"\$x\$")
@@ -295,16 +260,18 @@ class Words(unittest.TestCase):
         )
 
     def test_where_in_a_sweep_runs_failed(self):
-        span, sweep = failures.span_in_words, [1e-3, 1e-2, 1e-1, 1]
-        self.assertEqual(span(sweep, sweep, "h"), "every h")
-        self.assertEqual(span([1e-1, 1], sweep, "h"), "h ≥ 0.1")
-        self.assertEqual(span([1e-3, 1e-2], sweep, "h"), "h ≤ 1e-2")
-        self.assertEqual(span([1e-2], sweep, "h"), "h = 1e-2")
-        self.assertEqual(span([1e-2, 1e-1], sweep, "h"), "1e-2 ≤ h ≤ 0.1")
-        self.assertEqual(span([1e-3, 1e-1], sweep, "h"), "h = 1e-3, 0.1")
-        self.assertEqual(span([1e-3], [1e-3], "h"), "h = 1e-3")
+        sweep = [1e-3, 1e-2, 1e-1, 1]
+        for failed, words in (
+            (sweep, "every h"),
+            ([1e-1, 1], "h ≥ 0.1"),
+            ([1e-3, 1e-2], "h ≤ 1e-2"),
+            ([1e-2], "h = 1e-2"),
+            ([1e-2, 1e-1], "1e-2 ≤ h ≤ 0.1"),
+            ([1e-3, 1e-1], "h = 1e-3, 0.1"),
+        ):
+            self.assertEqual(failures.span_in_words(failed, sweep, "h"), words)
         near_limit = [1e-3, 1.61e-3, 1.62e-3, 1e-2]
-        self.assertEqual(span(near_limit[1:3], near_limit, "h"), "h = 1.6e-3")
+        self.assertEqual(failures.span_in_words(near_limit[1:3], near_limit, "h"), "h = 1.6e-3")
 
 
 class Labels(unittest.TestCase):
