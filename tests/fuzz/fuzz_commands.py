@@ -30,28 +30,17 @@ from random_scenes import random_scene
 from sandbox import Sandbox
 
 # How often each is drawn: what takes longer is drawn less.
-PROGRAMS = {
-    "simulate": 30,
-    "equilibrium": 8,
-    "modes": 8,
-    "work_precision": 8,
-    "convergence": 8,
-    "reversal": 4,
-    "stability_map": 8,
-    "energy_drift": 8,
-    "exchange": 6,
-    "stock_sundials": 5,
-    "crossover": 4,
-    "local_global": 5,
-    "solvers": 2,
-    "scaling": 0.5,
-    "verdicts": 0.5,
-    "symmetric_roots": 2,
-    "bench": 0.5,
-    "advise": 3,
-    "advice": 0.5,
-    "sweep": 2,
+DRAWN = {
+    30: "simulate",
+    8: "equilibrium modes work_precision convergence stability_map energy_drift",
+    6: "exchange",
+    5: "stock_sundials local_global",
+    4: "reversal crossover",
+    3: "advise",
+    2: "solvers symmetric_roots sweep",
+    0.5: "scaling verdicts bench advice",
 }
+PROGRAMS = {name: often for often, names in DRAWN.items() for name in names.split()}
 
 
 def arguments_of(caller):
@@ -104,7 +93,7 @@ class Campaign:
     def do(self, number):
         """The run of that number: program, arguments, how it ended and what is wrong with it."""
         dice = random.Random(f"{self.a.seed}/{number}")
-        name = dice.choices(self.names, [PROGRAMS.get(n, 1) for n in self.names])[0]
+        name = dice.choices(self.names, [PROGRAMS[n] for n in self.names])[0]
         arguments, files = self.commands[name].draw(dice), random_scene(dice)
         known = self.earlier.get(name)
         sandbox = Sandbox(os.path.join(self.place, f"run{number}"), files, known)

@@ -18,9 +18,8 @@ import emphasis
 import made_folder
 import motion_files
 import page
-import report
 from commands import RunCommands
-from packed_folder import Folder, Page, elements
+from packed_folder import Folder, elements
 from record import read_record
 from study_folder import read_study
 from study_tables import PROGRAMS
@@ -35,7 +34,7 @@ class Contents(Folder):
     """What is in the page of a whole folder."""
 
     def test_the_points_and_methods_come_through(self):
-        result = self.make(side=3, frames=4, runs=2)
+        result = self.make(side=3, frames=4, runs=2, scene="a </title> b")
         data, rows = result.data, self.rows()
         points = data["points"]
         for column in ("value", "t_reached", "error_position", "time_s", "energy_growth", "steps"):
@@ -61,9 +60,13 @@ class Contents(Folder):
         self.assertEqual(methods["symmetric8"]["line"], "eight, <b>bold</b>")
         # It is one file with all its parts, and the same folder gives the same bytes.
         found = elements(result.text)
-        self.assertIn(["script", {}, page.packed_script("page/a.js")], found)
-        self.assertIn(["style", {}, "p { color: red; }"], found)
-        self.assertNotRegex(result.text, r"<!-- qddot:(style|scripts|static) -->|\{\{")
+        texts = [text for _, _, text in found]
+        for text in [*page.scripts(), *map(page.read_source, page.STYLES)]:
+            self.assertIn(text, texts)
+        self.assertNotRegex(result.text, r"<!-- qddot:|\{\{title\}\}")
+        self.assertEqual([text for tag, _, text in found if tag == "title"], ["a </title> b"])
+        sources = [attributes["src"] for _, attributes, _ in found if "src" in attributes]
+        self.assertEqual([source for source in sources if not source.startswith("data:")], [])
         self.assertEqual(result.text, self.page().text)
         # A study without sentences has the outcomes' own words.
         self.edit("points.json", lambda content: content.pop("outcomes"))
@@ -287,22 +290,8 @@ class WithoutScripts(Folder):
         self.assertNotIn("limit of stability", result.text)
 
 
-class RealPage(unittest.TestCase):
-    """The page that is shipped, with its own template, styles and scripts."""
-
-    def test_it_holds_its_styles_and_scripts(self):
-        with tempfile.TemporaryDirectory() as folder:
-            made_folder.make_folder(folder, side=3, frames=3, runs=1, scene="a </title> b")
-            self.assertEqual(report.main([folder]), 0)
-            result = Page(Path(folder) / "report.html")
-        found = elements(result.text)
-        texts = [text for _, _, text in found]
-        for text in [*page.scripts(), *map(page.read_source, page.STYLES)]:
-            self.assertIn(text, texts)
-        self.assertNotRegex(result.text, r"<!-- qddot:|\{\{title\}\}")
-        self.assertEqual([text for tag, _, text in found if tag == "title"], ["a </title> b"])
-        sources = [attributes["src"] for _, attributes, _ in found if "src" in attributes]
-        self.assertEqual([source for source in sources if not source.startswith("data:")], [])
+class Modules(unittest.TestCase):
+    """The scripts and styles of the page."""
 
     def test_every_file_is_packed_and_every_import_is_exported_once(self):
         known = set()

@@ -1,4 +1,4 @@
-"""A test's folder of results, whose page is made with a trivial template and read as a browser does."""
+"""A test's folder of results, whose page is read as a browser does."""
 
 import base64
 import contextlib
@@ -10,20 +10,12 @@ import unittest
 import zlib
 from html.parser import HTMLParser
 from pathlib import Path
-from unittest import mock
 
 import numpy as np
 
 import made_folder
-import page
 import report
 from study_tables import judge, read_table, write_table
-
-TEMPLATE = (
-    "<!DOCTYPE html><html><head><title>{{title}}</title><!-- qddot:style --></head><body>"
-    "<h1>{{title}}</h1><noscript><!-- qddot:static --></noscript>"
-    "<!-- qddot:data --><!-- qddot:scripts --></body></html>\n"
-)
 
 
 class Elements(HTMLParser):
@@ -103,17 +95,10 @@ def rewrite(path, rows):
 
 
 class Folder(unittest.TestCase):
-    """A folder of results, and a trivial page in the place of the real one."""
+    """A folder of results and its page."""
 
     def setUp(self):
-        temporary = self.enterContext(tempfile.TemporaryDirectory())
-        self.home, self.folder = Path(temporary) / "home", Path(temporary) / "results"
-        (self.home / "page").mkdir(parents=True)
-        (self.home / "page/page.html").write_text(TEMPLATE)
-        (self.home / "page/a.js").write_text("start('<!' + '-- qddot:data -->');")
-        (self.home / "page/a.css").write_text("p { color: red; }")
-        own = {"HOME": self.home, "STYLES": ["page/a.css"], "SCRIPTS": ["page/a.js"]}
-        self.enterContext(mock.patch.multiple(page, **own))
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory())) / "results"
 
     def make(self, **options):
         """Makes the folder and its page."""
