@@ -48,7 +48,8 @@ def arguments_of(caller):
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--bin", required=True, help="the folder of the programs")
-    parser.add_argument("--count", type=int, default=150, help="how many runs")
+    parser.add_argument("--count", type=int, default=10**9, help="how many runs")
+    parser.add_argument("--seconds", type=float, default=10**9, help="for how long")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="the number of the first run")
     parser.add_argument("--only", type=int, help="the number of the only run")
@@ -149,6 +150,8 @@ def main(caller=None):
         with multiprocessing.get_context("fork").Pool(a.jobs, campaign.begin) as pool:
             for result in pool.imap_unordered(campaign.do, range(a.first, a.first + a.count)):
                 report.add(*result)
+                if time.monotonic() > started + a.seconds:
+                    break
     except KeyboardInterrupt:
         print("interrupted")
     finally:

@@ -2,7 +2,7 @@
 """Kills every study at random moments, resumes it, and compares with a run that was never
 disturbed.
 
-  tests/fuzz/fuzz_kills.py --bin build/bin --kills 200
+  tests/fuzz/fuzz_kills.py --bin build/bin --kills 200 --jobs 2
   tests/fuzz/fuzz_kills.py --bin build/bin --kills 3 --study convergence,sweep
 
 A trial sends SIGKILL, SIGINT or SIGTERM one to three times, at moments that are uniform in the
@@ -15,6 +15,7 @@ found.
 """
 
 import argparse
+import concurrent.futures
 import glob
 import os
 import random
@@ -41,6 +42,7 @@ def arguments_of(caller):
     parser.add_argument("--study", help="a,b,... (default: all)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="the number of the first trial")
+    parser.add_argument("--jobs", type=int, default=1, help="trials at a time")
     a = parser.parse_args(caller)
     a.bin = os.path.abspath(a.bin)
     return a
@@ -147,8 +149,10 @@ def main(caller=None):
                 print(f"{name:<16} cannot be tried: status {study.first.status}: {said}")
                 bad += 1
                 continue
-            for number in range(a.first, a.first + a.kills):
-                found = study.trial(f"{a.seed}-{number}")
+            numbers = range(a.first, a.first + a.kills)
+            with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
+                trials = list(pool.map(study.trial, [f"{a.seed}-{number}" for number in numbers]))
+            for number, found in zip(numbers, trials):
                 bad += bool(found)
                 again = f"{sys.argv[0]} --bin {a.bin} --seed {a.seed} --study {name}"
                 for fault in found:
