@@ -7,6 +7,7 @@ import unittest
 from unittest import mock
 
 import numpy as np
+import scipy.sparse
 
 import problems
 import qddot
@@ -94,6 +95,8 @@ OF_RUNS = {
     "accuracy_of: all; allowed are positions": ANSWER | dict(accuracy_of="all"),
     "names no stiff springs": dict(method="arkode_mri3"),
     "exact: .*K changes": dict(method="exact"),
+    "q0 is for a System.*positions": dict(q0=[0]),
+    "v0 is for a System.*velocities": dict(v0=[0]),
 }
 OF_SYSTEMS = {
     "force: it is neither a callable nor a C": dict(force=5),
@@ -106,7 +109,13 @@ OF_SYSTEMS = {
     "pattern 'sparse'": dict(pattern="sparse"),
     r"pattern: it is no matrix .* \(0,\)": dict(pattern=[]),
     "pattern: it has entries that are no whole": dict(pattern=[[0.5, 0], [1, 1], [0, 1]]),
+    r"force\(q, f\).*velocity": dict(force=lambda q, v, f: None),
+    r"potential\(q\)": dict(potential=lambda q, v: 0.0),
+    r"stiffness\(q\)": dict(stiffness=lambda t, q: 0.0),
 }
+BROKEN = scipy.sparse.csr_matrix(np.array([[-1.0, 0.5], [0.5, -1.0]]))
+BROKEN.indptr[1] = -5
+BROKEN.has_sorted_indices = BROKEN.has_canonical_format = True
 OF_OWN_RUNS = {
     "q0 is missing": dict(q0=None),
     r"q0: its shape is \(3,\)": dict(q0=[1, 2, 3]),
@@ -116,6 +125,27 @@ OF_OWN_RUNS = {
     r"pattern: entry \(9, 0\)": dict(changes=dict(pattern=[[9, 0]])),
     "implicit_euler needs K: .*pattern": dict(method="implicit_euler"),
     "discrete_gradient needs the discrete gradient": dict(method="discrete_gradient"),
+    # What callables return.
+    "force: it returned something": dict(changes=dict(force=lambda q, f: -q)),
+    "is it written": dict(changes=dict(force=lambda q, f: f.fill(np.nan))),
+    "f is -dV/dq": dict(changes=dict(potential=lambda q: -problems.duffing_potential(q))),
+    "stiffness.*the other sign": dict(
+        changes=dict(stiffness=lambda q: -problems.duffing_stiffness(q))
+    ),
+    "stiffness: beside the start it is not df/dq": dict(
+        changes=dict(stiffness=lambda q: 2 * problems.duffing_stiffness(q))
+    ),
+    "stiffness: .*allowed is 2 x 2": dict(changes=dict(stiffness=lambda q: np.eye(3))),
+    "indptr": dict(
+        changes=dict(stiffness=lambda q: BROKEN, pattern="dense"), method="implicit_euler"
+    ),
+    # Entries beyond the pattern of the first K.
+    r"entry \(1, 0\).*pattern=": dict(
+        changes=dict(
+            stiffness=lambda q: np.array([[-1, q[0]], [q[0], -1]]), check=False, pattern=np.eye(2)
+        ),
+        method="implicit_euler",
+    ),
 }
 MASSLESS = dict(positions=[[0.0, 0.0], [1.0, 0.0], [2.0, 0.1]], springs=[[0, 1], [1, 2]])
 MASSLESS |= dict(stiffness=10.0, mass=[1.0, 0.0, 1.0], pinned=[0])
@@ -200,6 +230,11 @@ class Refusals(unittest.TestCase):
             qddot.solve("cloth", "verlet", step_size=1e-3, until=1)
         with self.assertRaises(TypeError):
             qddot.energy_trend(system(), "verlet", step_size=1e-3, until=1)
+        with self.assertRaises(TypeError):
+            solve_own(dict(potential=lambda q: "much"))
+        for ignores in (qddot.equilibrium, qddot.modes):
+            with self.assertRaises(TypeError):
+                ignores(system(), q0=[1.0, 1.0], v0=[1.0, 1.0])
         with self.assertRaises(AttributeError):
             qddot.scenes.carpet
 

@@ -178,44 +178,6 @@ class OwnForces(unittest.TestCase):
         seen = qddot.solve(system, "verlet", step_size=0.1, q0=[1.0], until=0.3, save_at=times)
         self.assertEqual(seen.t[-1], 0.3)
 
-    def test_broken_matrices_are_refused(self):
-        k = scipy.sparse.csr_matrix(np.array([[-1.0, 0.5], [0.5, -1.0]]))
-        k.indptr[1] = -5
-        k.has_sorted_indices = k.has_canonical_format = True
-        system = qddot.System(np.ones(2), lambda q, f: np.copyto(f, -q), None, lambda q: k, "dense")
-        with self.assertRaisesRegex(ValueError, "indptr"):
-            qddot.solve(system, "implicit_euler", step_size=0.1, q0=[1.0, 2.0], until=1.0)
-
-    def test_wrong_callables_are_refused(self):
-        def of(force, potential=None, stiffness=None, **more):
-            system = qddot.System(np.ones(2), force, potential, stiffness, **more)
-            return lambda: qddot.solve(system, "verlet", step_size=0.1, until=1, q0=[1.0, 0.5])
-
-        good = problems.duffing_force
-        cases = {
-            "f is -dV/dq": of(good, lambda q: -problems.duffing_potential(q)),
-            "stiffness.*the other sign": of(good, None, lambda q: -problems.duffing_stiffness(q)),
-            "stiffness: beside the start it is not df/dq": of(
-                good, None, lambda q: 2 * problems.duffing_stiffness(q)
-            ),
-            "stiffness: .*allowed is 2 x 2": of(good, None, lambda q: np.eye(3)),
-            "force: it returned something": of(lambda q, f: -q),
-            "is it written": of(lambda q, f: f.fill(np.nan)),
-        }
-        for sentence, call in cases.items():
-            with self.subTest(sentence):
-                with self.assertRaisesRegex(ValueError, sentence):
-                    call()
-        with self.assertRaises(TypeError):
-            of(good, lambda q: "much")()
-        # Entries beyond the pattern of the first K.
-        grows = qddot.System(
-            np.ones(2), good, None, lambda q: np.array([[-1, q[0]], [q[0], -1]]), check=False,
-            pattern=np.eye(2),
-        )  # fmt: skip
-        with self.assertRaisesRegex(ValueError, r"entry \(1, 0\).*pattern="):
-            qddot.solve(grows, "implicit_euler", step_size=0.1, until=1, q0=[1.0, 0.5])
-
     def test_small_things_are_looked_at_by_their_own_size(self):
         # Atoms, 1e-10 m apart, in SI units: V = e ((s/r)^12 - 2 (s/r)^6).
         e, s = 1e-21, 3e-10
@@ -236,22 +198,6 @@ class OwnForces(unittest.TestCase):
         b = qddot.solve(atoms, "implicit_midpoint", step_size=2e-15, until=2e-12, q0=q0).or_raise()
         self.assertLess(abs(a.energy.total[0] / potential(q0) - 1), 1e-6)
         self.assertLess(np.max(np.abs(a.end.q - b.end.q)), 1e-3 * s)
-
-    def test_velocities_are_refused_by_what_would_ignore_them(self):
-        force, scene = problems.duffing_force, qddot.scenes.cloth(nodes=4)
-        x = dict(step_size=1e-3, until=0.1)
-        for sentence, call in {
-            r"force\(q, f\).*velocity": lambda: qddot.System([1.0], lambda q, v, f: None),
-            r"potential\(q\)": lambda: qddot.System([1.0], force, lambda q, v: 0.0),
-            r"stiffness\(q\)": lambda: qddot.System([1.0], force, None, lambda t, q: 0.0),
-            "q0 is for a System.*positions": lambda: qddot.solve(scene, "verlet", q0=[0], **x),
-            "v0 is for a System.*velocities": lambda: qddot.solve(scene, "verlet", v0=[0], **x),
-        }.items():
-            with self.assertRaisesRegex(ValueError, sentence):
-                call()
-        for ignores in (qddot.equilibrium, qddot.modes):
-            with self.assertRaises(TypeError):
-                ignores(qddot.System([1.0], force), q0=[1.0], v0=[1.0])
 
     def test_own_systems_are_measured(self):
         chain = problems.Chain(4)
