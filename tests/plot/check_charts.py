@@ -64,17 +64,18 @@ class HandMade(unittest.TestCase):
 class Charts(HandMade):
     """What is to be read on a chart."""
 
-    def chart(self, *options, name="chart"):
-        """The texts of a chart, in the order of drawing, and its height in inches."""
+    def chart(self, *options):
+        """The texts of the chart, in the order of drawing, and its height in inches."""
         self.assertEqual(draw(CHART, *options, self.folder), (0, ""))
-        picture = self.folder / f"{name}.svg"
+        picture = self.folder / "chart.svg"
         height = ElementTree.parse(picture).getroot().get("height").removesuffix("pt")
         return texts_of(picture), float(height) / 72
 
     def test_only_what_stands_out_has_its_name_unless_all_are_wanted(self):
         write_study(self.folder, crowd(21), interrupted="a signal")
+        _, low = self.chart()
         for name in ("chart", "chart_energy"):
-            texts, low = self.chart(name=name)
+            texts = texts_of(self.folder / f"{name}.svg")
             self.assertLessEqual(set(PROMINENT), set(texts))
             self.assertFalse(set(texts).intersection(SLOWER))
             self.assertIn("pale: 21 other methods (--all names them)", texts)
