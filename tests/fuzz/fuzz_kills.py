@@ -118,8 +118,8 @@ class Study:
         if status != 130:
             yield f"interrupted: status {status}, 130 is documented"
         names = os.listdir(results) if os.path.isdir(results) else []
-        # A run removes the leftovers of an earlier kill when it first writes there, which this one may
-        # not have come to.
+        # A run removes the leftovers of an earlier kill when it first writes there, which this one
+        # may not have come to.
         names = {n for n in names if not n.endswith(".part") or f"{results}/{n}" not in before}
         for fault in faults(results, names):
             yield f"interrupted: {fault}"

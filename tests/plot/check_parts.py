@@ -3,7 +3,6 @@
 and word numbers as they say."""
 
 import json
-import math
 import tempfile
 import unittest
 from pathlib import Path
@@ -89,7 +88,7 @@ class Records(unittest.TestCase):
     def test_a_refusal_names_file_line_and_cell(self):
         row = "s,verlet,hand-written,,step_size,{},reached_end,1\n"
         for table, words in (
-            (HEADER + row.format("1e-3") + row.format("tiny"), ", line 3: value is 'tiny', not a number"),
+            (HEADER + A_ROW + row.format("tiny"), ", line 3: value is 'tiny', not a number"),
             (HEADER + row.format("-1"), ", line 2: value must be a positive number"),
             (HEADER.replace(",time_s", ""), " has no column time_s"),
             (
