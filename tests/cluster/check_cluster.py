@@ -14,6 +14,7 @@ import argparse
 import concurrent.futures
 import csv
 import glob
+import json
 import os
 import re
 import subprocess
@@ -23,14 +24,13 @@ import time
 
 # No run of these methods comes near the limit of time, so that no point depends on the machine's
 # speed. All of them are of order 2 or more: others need billions of steps for the last digits.
-METHODS = (
-    "implicit_midpoint,trapezoidal,generalized_alpha,hht,bdf2,trbdf2,discrete_gradient,rodas4,"
-    "verlet,position_verlet,rk4,blanes_moan4,blanes_moan6,kahan_li8,takahashi_imada4,symmetric4,"
-    "symmetric6,symmetric8,symmetric10,dprkn6,dprkn8,dprkn12,linear_midpoint,linear_midpoint4,"
-    "arkode_dirk3,arkode_dirk4,arkode_dirk5,arkode_dirk3_klu,arkode_dirk4_klu,arkode_dirk5_klu,"
-    "arkode_erk3,arkode_erk4,arkode_erk5,arkode_erk6,arkode_erk8,ida,ida_klu,cvode_bdf,"
-    "cvode_bdf_klu,cvode_adams"
-)
+METHODS = """
+implicit_midpoint trapezoidal generalized_alpha hht bdf2 trbdf2 discrete_gradient rodas4 verlet
+position_verlet rk4 blanes_moan4 blanes_moan6 kahan_li8 takahashi_imada4 symmetric4 symmetric6
+symmetric8 symmetric10 dprkn6 dprkn8 dprkn12 linear_midpoint linear_midpoint4 arkode_dirk3
+arkode_dirk4 arkode_dirk5 arkode_dirk3_klu arkode_dirk4_klu arkode_dirk5_klu arkode_erk3 arkode_erk4
+arkode_erk5 arkode_erk6 arkode_erk8 ida ida_klu cvode_bdf cvode_bdf_klu cvode_adams
+""".split()
 UNTIL = "0.02"
 SCENES = {
     "pendulum": None,
@@ -38,12 +38,12 @@ SCENES = {
 }
 STUDY = f"""scenes = ["pendulum", {{ generator = "chain", nodes = 8 }}]
 until = {UNTIL}
-methods = ["{METHODS.replace(",", '", "')}"]
+methods = {json.dumps(METHODS)}
 [options]
 point-limit = 60
 repeats = 1
 """
-OPTIONS = ["--methods", METHODS, "--point-limit", "60", "--repeats", "1"]
+OPTIONS = f"--methods {','.join(METHODS)} --point-limit 60 --repeats 1 --progress none".split()
 SHARDS = 4
 NODE = "node2"
 MEASURED = {"time_s", "time_min_s", "setup_s", "timed_runs"}
@@ -84,8 +84,9 @@ def queue():
 
 
 def fields_of(job):
-    """What Slurm knows of a job or a task of an array, by name."""
-    return dict(re.findall(r"(\w+)=(\S*)", said_by(["scontrol", "show", "job", job])))
+    """What Slurm knows of a job or of each task of its array, by name."""
+    said = said_by(["scontrol", "--oneliner", "show", "job", job])
+    return [dict(re.findall(r"(\w+)=(\S*)", line)) for line in said.splitlines()]
 
 
 def task_on(node):
@@ -119,7 +120,7 @@ def kill_a_node(script):
         job = wait_for(120, f"a job of points on {NODE}", lambda: task_on(NODE))
         # A moment, so that some of the job's points are measured and others are not.
         time.sleep(1)
-        fields = fields_of(job)
+        fields = fields_of(job)[-1]
         killed = processes_on(NODE)
         if fields["JobState"] == "RUNNING" and fields["NodeList"] == NODE and killed:
             break  # else it was a short one, and the next may be longer
@@ -130,38 +131,36 @@ def kill_a_node(script):
 
 def requeued(job, restarts):
     """What Slurm knows of the job where it has been requeued, else None."""
-    fields = fields_of(job)
+    fields = fields_of(job)[-1]
     return fields if int(fields["Restarts"]) > restarts else None
 
 
-def node_state(node):
-    """The state of a node, as idle, allocated or down*."""
-    return said_by(["sinfo", "--noheader", "--nodes", node, "--format=%T"]).strip()
+def is_usable(node):
+    """Whether a node takes jobs."""
+    state = said_by(["sinfo", "--noheader", "--nodes", node, "--format=%T"]).strip()
+    return state in ("idle", "allocated", "mixed", "completing")
 
 
 def revive(script):
     """Starts the node again and waits until it takes jobs; says whether an administrator had to."""
     said_by([script, "--start-node", NODE])
-    usable = ("idle", "allocated", "mixed", "completing")
     try:
-        wait_for(20, f"the return of {NODE}", lambda: node_state(NODE) in usable)
+        wait_for(20, f"the return of {NODE}", lambda: is_usable(NODE))
         return "by itself"
     except Fault:
         said_by(["scontrol", "update", f"nodename={NODE}", "state=resume"])
-        wait_for(20, f"the return of {NODE}", lambda: node_state(NODE) in usable)
+        wait_for(20, f"the return of {NODE}", lambda: is_usable(NODE))
         return "when it was told to resume"
 
 
 def jobs_that_failed(ids):
     """A line for each job and task of these ids that did not complete."""
-    failed = []
-    for job in ids:
-        for part in said_by(["scontrol", "--oneliner", "show", "job", job]).splitlines():
-            fields = dict(re.findall(r"(\w+)=(\S*)", part))
-            if fields["JobState"] != "COMPLETED":
-                task = fields.get("ArrayTaskId", "")
-                failed.append(f"job {job} {task} ({fields['JobName']}): {fields['JobState']}")
-    return failed
+    return [
+        f"job {job} {fields.get('ArrayTaskId', '')} ({fields['JobName']}): {fields['JobState']}"
+        for job in ids
+        for fields in fields_of(job)
+        if fields["JobState"] != "COMPLETED"
+    ]
 
 
 def points_in(path):
@@ -178,8 +177,7 @@ def points_in(path):
 
 
 def in_one_process(programs, place):
-    """Runs the study's scenes without a cluster; the points, the columns and the seconds taken."""
-    start = time.monotonic()
+    """Runs the study's scenes without a cluster; the points and the columns."""
     points, columns = {}, None
     for name, text in SCENES.items():
         scene, out = name, os.path.join(place, "one", name)
@@ -187,28 +185,18 @@ def in_one_process(programs, place):
             scene = os.path.join(place, f"{name}.toml")
             with open(scene, "w", encoding="utf-8") as file:
                 file.write(text)
-        said_by(
-            [os.path.join(programs, "work_precision"), "--scene", scene, "--until", UNTIL]
-            + OPTIONS
-            + ["--progress", "none", "--out", out]
-        )
+        program = os.path.join(programs, "work_precision")
+        said_by([program, "--scene", scene, "--until", UNTIL, *OPTIONS, "--out", out])
         more, columns = points_in(os.path.join(out, "points.csv"))
         points.update(more)
-    return points, columns, seconds_since(start)
+    return points, columns
 
 
 def differences(one, many):
     """A line for each difference between two sets of points."""
-    found = [f"{' '.join(key)}: only in one process" for key in one if key not in many]
-    found += [f"{' '.join(key)}: only in the cluster" for key in many if key not in one]
-    for key in one.keys() & many.keys():
-        for name, value in one[key].items():
-            other = many[key].get(name)
-            if other != value:
-                found.append(
-                    f"{' '.join(key)}: {name} is {other} in the cluster, {value} in one process"
-                )
-    return sorted(found)
+    for key in sorted({*one, *many}):
+        if one.get(key) != many.get(key):
+            yield f"{' '.join(key)}: {one.get(key)} in one process, {many.get(key)} in the cluster"
 
 
 def check(programs, script, place):
@@ -243,14 +231,10 @@ def check(programs, script, place):
             f"{fields['Restarts']})",
             flush=True,
         )
-        start = time.monotonic()
-        how = revive(script)
-        print(f"{NODE} came back {how}: {seconds_since(start)}", flush=True)
-        start = time.monotonic()
+        print(f"{NODE} came back {revive(script)}", flush=True)
         wait_for(300, "the end of all jobs", lambda: not queue())
         print(f"until all jobs had ended: {seconds_since(start)}", flush=True)
-        one, columns, seconds = alone.result()
-    print(f"the same study in one process: {seconds}", flush=True)
+        one, columns = alone.result()
 
     found = jobs_that_failed(ids)
     merged = os.path.join(folder, "points.csv")
@@ -272,20 +256,16 @@ def check(programs, script, place):
 def tell_more(programs, place):
     """Prints what Slurm and the study say of themselves."""
     folder = os.path.join(place, "S")
-    paths = sorted(glob.glob(os.path.join(os.path.dirname(os.environ["SLURM_CONF"]), "*.log")))
-    for path in paths + sorted(glob.glob(os.path.join(folder, "log", "*"))):
-        with open(path, encoding="utf-8", errors="replace") as file:
-            print(f"--- {os.path.basename(path)}\n{''.join(file.readlines()[-30:])}")
+    logs = glob.glob(os.path.join(os.path.dirname(os.environ["SLURM_CONF"]), "*.log"))
+    for path in sorted(logs + glob.glob(os.path.join(folder, "log", "*"))):
+        subprocess.run(["tail", "-v", "-n", "30", path], check=False)
     for argv in (
         ["squeue", "--array"],
         ["sinfo", "--Node", "--long"],
         [os.path.join(programs, "sweep"), "status", folder],
     ):
-        try:
-            done = subprocess.run(argv, capture_output=True, text=True, timeout=30)
-            print(f"--- {' '.join(argv)}\n{done.stdout}{done.stderr}")
-        except (OSError, subprocess.TimeoutExpired) as error:
-            print(f"--- {' '.join(argv)}\n{error}")
+        print(f"--- {' '.join(argv)}", flush=True)
+        subprocess.run(["timeout", "30", *argv], check=False)
 
 
 def main():

@@ -40,19 +40,16 @@ class New(unittest.TestCase):
         self.assertIn("It is not measured yet.", page)
         self.assertIn("../../integrators/methods/newest.cpp", page)
 
-    def test_without_a_file_it_is_refused(self):
-        with self.with_source(""), self.assertRaisesRegex(page_data.BadPage, "no file defines it"):
-            page_of(self.entry)
-
-    def test_without_a_formula_it_is_refused(self):
+    def test_one_that_says_too_little_is_refused(self):
         without = FORMULA.replace("//   q'", "// q'")
-        with self.with_source(without), self.assertRaisesRegex(page_data.BadPage, "no formula"):
-            page_of(self.entry)
-
-    def test_without_a_source_it_is_refused(self):
-        self.entry["source"] = ""
-        with self.with_source(FORMULA), self.assertRaises(page_data.BadPage):
-            page_of(self.entry)
+        for text, source, words in (
+            ("", "a book", "no file defines it"),
+            (without, "a book", "no formula"),
+            (FORMULA, "", ""),
+        ):
+            self.entry["source"] = source
+            with self.with_source(text), self.assertRaisesRegex(page_data.BadPage, words):
+                page_of(self.entry)
 
 
 class Formula(unittest.TestCase):

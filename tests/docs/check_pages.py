@@ -68,15 +68,12 @@ class Links(unittest.TestCase):
 
 class Numbers(unittest.TestCase):
     def test_none_that_was_measured_is_typed(self):
+        found = page_text.typed_numbers("It takes 3.4 ms.\nh = 2 ms is a choice.{# chosen #}\n")
+        self.assertEqual([(1, "3.4 ms")], found)
         for template in TEMPLATES:
             for line, number in page_text.typed_numbers(template.read_text(encoding="utf-8")):
                 with self.subTest(template=named(template), line=line):
                     self.fail(f"'{number}' is typed; it has to come from docs/data")
-
-    def test_a_typed_one_is_found(self):
-        found = page_text.typed_numbers("It takes 3.4 ms.\nh = 2 ms is a choice.{# chosen #}\n")
-        self.assertEqual([(1, "3.4 ms")], found)
-        self.assertEqual([], page_text.typed_numbers("It takes {{ seconds(x) }} of `5 ms`.\n"))
 
     def test_pages_are_what_their_templates_and_data_say(self):
         done = subprocess.run(
@@ -85,16 +82,12 @@ class Numbers(unittest.TestCase):
         )  # fmt: skip
         self.assertEqual(0, done.returncode, done.stdout + done.stderr)
 
-    def test_what_programs_print_is_what_pages_show(self):
-        for study in entries.read_studies().values():
-            if study.quick:
-                with self.subTest(study=study.name):
-                    self.assertEqual("", study.due())
-
-    def test_each_table_of_a_study_is_there(self):
+    def test_each_study_is_there_and_prints_what_pages_show(self):
         for study in entries.read_studies().values():
             with self.subTest(study=study.name):
                 self.assertIsNotNone(study.record)
+                if study.quick:
+                    self.assertEqual("", study.due())
                 for name in study.pictures.values():
                     self.assertTrue((entries.PICTURES / f"{name}.png").exists())
 

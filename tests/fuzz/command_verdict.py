@@ -40,16 +40,12 @@ def _of_status(program, run, err):
     elif run.status == 130:
         yield "status 130 without a signal", err[-200:]
     elif run.status in (2, 3):
-        said = [
-            line for line in err.split("\n")[:-1] if not line.startswith(f"{program}: warning: ")
-        ]
-        if not err.endswith("\n") or run.status == 2 and len(said) != 1:
-            yield f"status {run.status}: {len(said)} lines where one sentence is documented", err[
-                -300:
-            ]
-        elif (
-            not said or not said[-1].startswith(f"{program}: ") or len(said[-1]) < len(program) + 12
-        ):
+        lines, warning = err.split("\n"), f"{program}: warning: "
+        said = [line for line in lines[:-1] if not line.startswith(warning)]
+        if lines[-1] or run.status == 2 and len(said) != 1:
+            kind = f"status {run.status}: {len(said)} lines where one sentence is documented"
+            yield kind, err[-300:]
+        elif not said or not re.match(rf"{program}: .{{10}}", said[-1]):
             yield f"status {run.status} without a sentence of the program's", err[-300:]
 
 
@@ -100,12 +96,8 @@ def verdict(program, argv, run, sandbox, scarce=""):
     """Pairs of a fault's kind and its detail; none if the run was as documented. `scarce`: "disk" or
     "memory" for a run with little of it."""
     err, out = (text.decode(errors="backslashreplace") for text in (run.err, run.out))
-    found = (
-        list(_of_time(argv, run))
-        + list(_of_status(program, run, err))
-        + list(_of_files(argv, run, sandbox, scarce))
-        + list(_of_scarcity(run, err, scarce))
-    )
+    found = [*_of_time(argv, run), *_of_status(program, run, err)]
+    found += [*_of_files(argv, run, sandbox, scarce), *_of_scarcity(run, err, scarce)]
     for name, text in [("stdout", out), ("stderr", err)]:
         control = _CONTROL.search(text)
         if control:

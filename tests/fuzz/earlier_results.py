@@ -5,68 +5,53 @@ import functools
 import os
 import resource
 import subprocess
-from dataclasses import dataclass
 
 from random_scenes import spoiled
 from studies import COMMANDS, SCENES, write_scenes
 
 
-@dataclass
-class Earlier:
-    """A program's arguments, the folder of results that it wrote, and its options' names."""
-
-    arguments: list
-    folder: str
-    options: set
-
-
-def earlier_results(programs, options, place):
-    """Earlier results by program, as folders of `place`; `options`: those of each program."""
-    results = {}
+def earlier_results(programs, names, place):
+    """The folders of `place` with what these programs wrote before, by program."""
     os.makedirs(place)
     write_scenes(place)
-    for name in sorted(set(options) & set(COMMANDS)):
+    for name in sorted(set(names) & set(COMMANDS)):
         # The folder is called as the sandbox's, as command lines are part of what is written.
         os.makedirs(os.path.join(place, "results"))
-        arguments, folder = COMMANDS[name].split(), os.path.join(place, name)
-        argv = [os.path.join(programs, name), *arguments]
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        subprocess.run(argv, cwd=place, timeout=60, check=False, **quiet)
-        os.rename(os.path.join(place, "results"), folder)
-        results[name] = Earlier(arguments, folder, {option.name for option in options[name]})
-    return results
-
-
-def most_memory():
-    """Bytes of address space that a process started by this one may take."""
-    limit = resource.getrlimit(resource.RLIMIT_AS)[1]
-    return 4 << 30 if limit == resource.RLIM_INFINITY else limit
+        argv = [os.path.join(programs, name), *COMMANDS[name].split()]
+        subprocess.run(argv, cwd=place, timeout=60, check=False, capture_output=True)
+        os.rename(os.path.join(place, "results"), os.path.join(place, name))
+    return {name: os.path.join(place, name) for name in set(names) & set(COMMANDS)}
 
 
 @functools.cache
 def least_memory(program):
-    """Bytes of address space, within 2 %, with which the program can at least print its help."""
-    low, high = 1 << 20, most_memory()
+    """Bytes of address space, within 2 %, with which the program can at least print its help, and the
+    most that it may take."""
+    limit = resource.getrlimit(resource.RLIMIT_AS)[1]
+    most = 4 << 30 if limit == resource.RLIM_INFINITY else limit
+    low, high = 1 << 20, most
     while high > 1.02 * low:
         middle = int((low * high) ** 0.5)
         argv = ["prlimit", f"--as={middle}", "--", program, "--help"]
         done = subprocess.run(argv, capture_output=True, check=False)
         low, high = (low, middle) if done.returncode == 0 else (middle, high)
-    return high
+    return high, most
 
 
-def again(dice, program, earlier, sandbox):
+def again(dice, program, options, sandbox):
     """What the program is to be called with where its earlier results lie: arguments, what goes before
     the program, and what is scarce ("disk", "memory" or ""). One of the files may be spoiled."""
     write_scenes(sandbox.here)
     sandbox.inputs.update(SCENES)
-    more = [n for n in ("--resume", "--force") if n in earlier.options and dice.random() < 0.4]
+    there = {option.name for option in options}
+    more = [n for n in ("--resume", "--force") if n in there and dice.random() < 0.4]
     scarce = dice.choice(["", "disk", "memory"])
     before = []
     if scarce == "disk":  # writes beyond so many bytes of a file fail, as they do on a full disk
         before = ["prlimit", f"--fsize={round(2e4 * dice.random() ** 3)}", "--"]
     elif scarce == "memory":
-        size = min(round(least_memory(program) * dice.uniform(1.02, 3)), most_memory())
+        least, most = least_memory(program)
+        size = min(round(least * dice.uniform(1.02, 3)), most)
         before = ["prlimit", f"--as={size}", "--"]
     elif dice.random() < 0.8:
         folder = os.path.join(sandbox.here, "results")
@@ -78,4 +63,4 @@ def again(dice, program, earlier, sandbox):
                 file.truncate()
                 file.write(data)
     sandbox.notice()
-    return earlier.arguments + more, before, scarce
+    return COMMANDS[os.path.basename(program)].split() + more, before, scarce

@@ -3,7 +3,7 @@
 lose.
 
   tests/fuzz/fuzz_commands.py --bin build/bin --count 100000 --jobs 2
-  tests/fuzz/fuzz_commands.py --bin build/bin --seed 1 --only 4711 --keep /tmp/kept   (one of them again)
+  tests/fuzz/fuzz_commands.py --bin build/bin --seed 1 --only 4711   (one of them; its sandbox is kept)
 
 Documented are the statuses 0, 2 (one sentence, no file written), 3 and, after a signal, 130.
 Inputs and files of the user's stay as they are, tables are whole, no control character is printed.
@@ -22,37 +22,25 @@ import sys
 import tempfile
 import time
 
-from command_options import methods_of, options_of
 from command_verdict import signature, verdict
 from earlier_results import again, earlier_results
-from limited_run import become_nobody, limit_this_process, run, spelled
-from random_commands import Commands
+from limited_run import become_nobody, environment_of, limit_this_process, run, spelled
+from random_commands import Commands, methods_of, options_of
 from random_scenes import random_scene
 from sandbox import Sandbox
 
 # How often each is drawn: what takes longer is drawn less.
-PROGRAMS = {
-    "simulate": 30,
-    "equilibrium": 8,
-    "modes": 8,
-    "work_precision": 8,
-    "convergence": 8,
-    "reversal": 4,
-    "stability_map": 8,
-    "energy_drift": 8,
-    "exchange": 6,
-    "stock_sundials": 5,
-    "crossover": 4,
-    "local_global": 5,
-    "solvers": 2,
-    "scaling": 0.5,
-    "verdicts": 0.5,
-    "symmetric_roots": 2,
-    "bench": 0.5,
-    "advise": 3,
-    "advice": 0.5,
-    "sweep": 2,
+DRAWN = {
+    30: "simulate",
+    8: "equilibrium modes work_precision convergence stability_map energy_drift",
+    6: "exchange",
+    5: "stock_sundials local_global",
+    4: "reversal crossover",
+    3: "advise",
+    2: "solvers symmetric_roots sweep",
+    0.5: "scaling verdicts bench advice",
 }
+PROGRAMS = {name: often for often, names in DRAWN.items() for name in names.split()}
 
 
 def arguments_of(caller):
@@ -68,9 +56,6 @@ def arguments_of(caller):
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time")
     parser.add_argument("--programs", help="a,b,... (default: all)")
     parser.add_argument(
-        "--keep", help="a folder for the sandboxes of what is found, as they were before"
-    )
-    parser.add_argument(
         "--memory", type=float, default=2, help="GB of address space that a run may take"
     )
     parser.add_argument(
@@ -79,8 +64,6 @@ def arguments_of(caller):
     a = parser.parse_args(caller)
     if a.only is not None:
         a.first, a.count, a.jobs = a.only, 1, 1
-    if a.count == a.seconds == 10**9:
-        parser.error("--count or --seconds is missing")
     return a
 
 
@@ -94,60 +77,38 @@ class Campaign:
         if not self.names:
             sys.exit(f"fuzz_commands: {a.bin}: none of {', '.join(chosen)} is there")
         methods = methods_of(os.path.join(self.bin, "simulate"))
-        options = {n: options_of(os.path.join(self.bin, n)) for n in self.names}
-        self.commands = {n: Commands(n, options[n], methods) for n in self.names}
+        self.commands = {
+            name: Commands(name, options_of(os.path.join(self.bin, name)), methods)
+            for name in self.names
+        }
         place = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
         self.place = tempfile.mkdtemp(prefix="fuzz_commands.", dir=place)
         os.chmod(self.place, 0o777)
-        self.earlier = earlier_results(self.bin, options, os.path.join(self.place, "earlier"))
+        self.earlier = earlier_results(self.bin, self.names, os.path.join(self.place, "earlier"))
+
+    def begin(self):
+        """Takes rights and room from the process that does runs."""
+        become_nobody(self.bin)
+        limit_this_process(int(self.a.memory * 2**30), 64 * 2**20)
 
     def do(self, number):
         """The run of that number: program, arguments, how it ended and what is wrong with it."""
         dice = random.Random(f"{self.a.seed}/{number}")
-        name = dice.choices(self.names, [PROGRAMS.get(n, 1) for n in self.names])[0]
+        name = dice.choices(self.names, [PROGRAMS[n] for n in self.names])[0]
         arguments, files = self.commands[name].draw(dice), random_scene(dice)
-        root = os.path.join(self.place, f"run{number}")
         known = self.earlier.get(name)
-        sandbox = Sandbox(root, files, known and known.folder)
+        sandbox = Sandbox(os.path.join(self.place, f"run{number}"), files, known)
         program, before, scarce = os.path.join(self.bin, name), [], ""
         if known and dice.random() < 0.15:
-            arguments, before, scarce = again(dice, program, known, sandbox)
-        if self.a.keep:
-            kept = os.path.join(self.place, f"kept{number}")
-            shutil.copytree(
-                sandbox.here,
-                kept,
-                symlinks=True,
-                ignore=lambda _, names: {"fifo", "locked.toml"} & set(names),
-            )
-        found = [("the fuzzer could not run it", "")]
+            arguments, before, scarce = again(dice, program, self.commands[name].options, sandbox)
         try:
-            argv = [*before, program, *arguments]
-            ended = run(argv, sandbox.here, sandbox.environment, self.a.limit, 3 * self.a.limit)
+            argv, environment = [*before, program, *arguments], environment_of(sandbox.home)
+            ended = run(argv, sandbox.here, environment, self.a.limit, 3 * self.a.limit)
             found = verdict(name, arguments, ended, sandbox, scarce)
         finally:
-            sandbox.remove()
-            if self.a.keep and not found:
-                shutil.rmtree(kept)
+            if self.a.only is None:
+                sandbox.remove()
         return number, name, arguments, ended, found
-
-
-def work(campaign, next_number, until, results):
-    """Does runs until there are none left; sends each result."""
-    become_nobody(campaign.bin)
-    limit_this_process(int(campaign.a.memory * 2**30), 64 * 2**20)
-    try:
-        while time.monotonic() < until:
-            with next_number.get_lock():
-                number = next_number.value
-                next_number.value += 1
-            if number >= campaign.a.first + campaign.a.count:
-                break
-            results.put(campaign.do(number))
-    except KeyboardInterrupt:
-        pass  # the table is printed by the parent
-    finally:
-        results.put(None)
 
 
 class Report:
@@ -158,9 +119,8 @@ class Report:
         self.counts, self.seconds = collections.Counter(), collections.Counter()
 
     def add(self, number, name, arguments, ended, found):
-        if ended:
-            self.statuses[name]["long" if ended.asked_to_end else ended.status] += 1
-            self.seconds[name] += ended.wall
+        self.statuses[name]["long" if ended.asked_to_end else ended.status] += 1
+        self.seconds[name] += ended.wall
         for kind, detail in found:
             key = signature(name, kind, detail)
             self.counts[key] += 1
@@ -168,58 +128,37 @@ class Report:
                 self.found[key] = (number, arguments, detail)
 
     def print(self, seconds):
-        runs = sum(sum(c.values()) for c in self.statuses.values())
         columns = sorted({s for c in self.statuses.values() for s in c}, key=str)
-        print(f"{runs} runs in {seconds:.0f} s, seed {self.a.seed}")
         print(f"{'program':<16}{'runs':>8}" + "".join(f"{s:>8}" for s in columns) + "   ms a run")
         for name, counts in sorted(self.statuses.items()):
+            cells = "".join(f"{counts[s]:>8}" for s in columns)
             total = sum(counts.values())
-            print(
-                f"{name:<16}{total:>8}"
-                + "".join(f"{counts[s]:>8}" for s in columns)
-                + f"{1e3 * self.seconds[name] / total:>11.0f}"
-            )
+            print(f"{name:<16}{total:>8}{cells}{1e3 * self.seconds[name] / total:>11.0f}")
+        programs = f" --programs {self.a.programs}" if self.a.programs else ""
+        again = f"{sys.argv[0]} --bin {self.a.bin} --seed {self.a.seed}{programs} --only"
         for key, count in self.counts.most_common():
             number, arguments, detail = self.found[key]
-            print(
-                f"\n{count} x {key[0]}: {key[1]}\n    {detail.strip()[:300]!r}\n    {spelled([key[0]] + arguments)[:1500]}"
-                f"\n    again: {sys.argv[0]} --bin {self.a.bin} --seed {self.a.seed} --only {number}"
-                + (f" --programs {self.a.programs}" if self.a.programs else "")
-            )
-        print(f"\n{sum(self.counts.values())} findings of {len(self.counts)} kinds")
+            print(f"\n{count} x {key[0]}: {key[1]}\n    {detail.strip()[:300]!r}")
+            print(f"    {spelled([key[0]] + arguments)[:1500]}\n    again: {again} {number}")
+        print(f"\n{sum(self.counts.values())} findings of {len(self.counts)} kinds, {seconds:.0f} s")
 
 
 def main(caller=None):
     a = arguments_of(caller)
     campaign, report, started = Campaign(a), Report(a), time.monotonic()
-    if a.keep:
-        os.makedirs(a.keep, exist_ok=True)
     try:
-        next_number, results = multiprocessing.Value("q", a.first), multiprocessing.Queue()
-        workers = [
-            multiprocessing.Process(
-                daemon=True, target=work, args=(campaign, next_number, started + a.seconds, results)
-            )
-            for _ in range(a.jobs)
-        ]
-        for worker in workers:
-            worker.start()
-        running = len(workers)
-        while running:
-            result = results.get()
-            running -= result is None
-            if result:
+        with multiprocessing.get_context("fork").Pool(a.jobs, campaign.begin) as pool:
+            for result in pool.imap_unordered(campaign.do, range(a.first, a.first + a.count)):
                 report.add(*result)
-                if a.keep and result[4]:
-                    to = os.path.join(a.keep, f"kept{result[0]}")
-                    shutil.rmtree(to, ignore_errors=True)
-                    shutil.move(os.path.join(campaign.place, f"kept{result[0]}"), to)
+                if time.monotonic() > started + a.seconds:
+                    break
     except KeyboardInterrupt:
         print("interrupted")
     finally:
-        for worker in workers:
-            worker.join(10)
-        shutil.rmtree(campaign.place, ignore_errors=True)
+        if a.only is None:
+            shutil.rmtree(campaign.place, ignore_errors=True)
+        else:
+            print(f"Its folder: {campaign.place}/run{a.only}")
     report.print(time.monotonic() - started)
     return 1 if report.counts else 0
 

@@ -37,3 +37,12 @@ EXTREMES = [
     0.0, -0.0, -1.0, 1e+300, -1e+300, 1e-300, 5e-324, 1.7976931348623157e+308, 1e+200, 1e-200,
     1e+16, math.nan, math.inf, -math.inf,
 ]
+# Meshes of scene files.
+PATHS_OF_NO_MESH = [
+    "fifo.obj", "folder.mesh", "none.obj", "locked.obj", "zero.obj", "zero.msh", "scene.toml", "loop.mesh",
+]
+# Bytes and words that are put into files.
+JUNK = [
+    b"\0", b"\r", b"\x1b[2J", b"\xff", b"\xc3", b"\xef\xbb\xbf", b'"', b"[", b"=", b"-", b"e", b"9" * 400,
+]
+WORDS = b"0 -1 1e300 1e400 nan inf 99999999999 1e-320 x true {}".split()

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import time
 
+from limited_run import run
 from written_tables import is_time, rows_of
 
 STUDY = """scenes = ["pendulum", { generator = "chain", nodes = [4, 8] }]
@@ -20,6 +21,7 @@ repeats = 1
 SHARDS = ("1/3", "2/3", "3/3", "1/1")
 QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 LONGEST = 120.0  # seconds of a stage
+STAGES = ("references", "points")
 
 
 class Sweep:
@@ -40,11 +42,13 @@ class Sweep:
     def shard(self, stage, shard):
         return self.start("run", self.folder, "--stage", stage, "--shard", shard)
 
+    def merge(self):
+        """The end of the program that puts the points together."""
+        words = ["merge", self.folder, "--no-pictures"]
+        return run([self.program, *words], self.folder, os.environ, 600, 600)
+
     def points(self):
         """The rows of the whole sweep's points, measured times left out."""
-        status = self.start("merge", self.folder, "--no-pictures").wait()
-        if status != 0:
-            return f"merge: status {status}"
         names, *rows = rows_of(os.path.join(self.folder, "points.csv"))
         return sorted([[x for n, x in zip(names, row) if not is_time(n)] for row in rows])
 
@@ -55,14 +59,6 @@ class Sweep:
             with open(path, "rb") as file:
                 found[path] = file.read()
         return found
-
-
-def undisturbed(programs, place):
-    """The points of a sweep that nobody disturbs."""
-    sweep = Sweep(programs, place)
-    for stage in ("references", "points"):
-        sweep.shard(stage, "1/1").wait()
-    return sweep.points()
 
 
 def disturb(dice, processes, folder):
@@ -111,13 +107,25 @@ def stage_faults(dice, sweep, stage):
             return
 
 
-def trial(programs, place, seed, expected):
-    """What is wrong with one disturbed sweep."""
-    dice, sweep = random.Random(seed), Sweep(programs, place)
-    found = {fault for s in ("references", "points") for fault in stage_faults(dice, sweep, s)}
-    points = sweep.points()
-    if points != expected:
-        found.add(points if isinstance(points, str) else "points differ")
-    if left := os.listdir(os.path.join(sweep.folder, "tasks", "begun")):
-        found.add(f"begun tasks are left: {left}")
-    return sorted(found)
+class Sweeps:
+    """Trials of a sweep, after one that nobody disturbs."""
+
+    def __init__(self, programs, name, place):
+        self.programs, self.place, self.argv = programs, os.path.join(place, name), [name]
+        sweep = Sweep(programs, os.path.join(self.place, "undisturbed"))
+        for stage in STAGES:
+            sweep.shard(stage, "1/1").wait()
+        self.first = sweep.merge()
+        self.expected = self.first.status == 0 and sweep.points()
+
+    def trial(self, seed):
+        """The faults of one disturbed sweep."""
+        dice, sweep = random.Random(seed), Sweep(self.programs, os.path.join(self.place, seed))
+        found = {fault for stage in STAGES for fault in stage_faults(dice, sweep, stage)}
+        if (status := sweep.merge().status) != 0:
+            found.add(f"merge: status {status}")
+        elif sweep.points() != self.expected:
+            found.add("points differ")
+        if left := os.listdir(os.path.join(sweep.folder, "tasks", "begun")):
+            found.add(f"begun tasks are left: {left}")
+        return sorted(found)

@@ -1,16 +1,12 @@
 """Runs of programs under limits of memory, file size and time, with what they cost."""
 
-import fcntl
 import os
 import resource
-import select
 import shlex
 import signal
 import subprocess
 import time
 from dataclasses import dataclass
-
-_TICKS = os.sysconf("SC_CLK_TCK")
 
 
 @dataclass
@@ -24,7 +20,7 @@ class Run:
     err: bytes
     wall: float  # s
     cpu: float  # s
-    asked_to_end: bool  # whether SIGINT was sent since the time was over
+    asked_to_end: bool  # whether a signal was sent since the time was over
     seconds_to_end: float = 0  # from then on
 
 
@@ -63,133 +59,75 @@ def environment_of(home):
 
 def spelled(argv):
     """The command line for a shell, bytes that are no text escaped."""
-    return " ".join(
-        (
-            shlex.quote(a)
-            if a.isprintable()
-            else "$'"
-            + "".join(
-                (
-                    c
-                    if c.isprintable() and c not in "'\\"
-                    else "".join(f"\\x{b:02x}" for b in c.encode(errors="surrogateescape"))
-                )
-                for c in a
-            )
-            + "'"
-        )
-        for a in argv
-    )
+    return ascii(shlex.join(argv))[1:-1]
 
 
-def _cpu_of(pid):
+def cpu_of(pid):
+    """Seconds of the processor that a process had so far."""
     try:
         with open(f"/proc/{pid}/stat", "rb") as file:
             fields = file.read().rsplit(b")", 1)[1].split()
-        return (int(fields[11]) + int(fields[12])) / _TICKS
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
     except (OSError, IndexError):
         return 0
 
 
-def _ended(poll, pid, cpu, wall):
+def _ended(process, cpu, wall):
     """Waits until the process ends, or has had `cpu` s of the processor from now on or `wall` s
     passed.
     """
-    start, until = _cpu_of(pid), time.monotonic() + wall
-    slice_ = cpu
-    while True:
-        left = until - time.monotonic()
-        if left <= 0:
-            return False
-        if poll.poll(1000 * min(slice_, left)):
-            return True
-        spent = _cpu_of(pid) - start
-        if spent >= cpu:
-            return False
-        slice_ = max(0.05, cpu - spent)
-
-
-def _pipe():
-    """Ends of a pipe that takes 1 MB before anyone reads: no limit of file sizes is one of what is
-    said.
-    """
-    ends = os.pipe()
-    fcntl.fcntl(ends[0], fcntl.F_SETPIPE_SZ, 1 << 20)
-    os.set_blocking(ends[1], False)
-    return ends
-
-
-def _all_of(descriptor):
-    with open(descriptor, "rb") as file:
-        return file.read()
-
-
-def _started(argv, folder, environment, out, err):
-    """The process; waits up to a minute for a program that is being built anew."""
-    for seconds_left in range(60, -1, -1):
+    until, most = time.monotonic() + wall, cpu_of(process.pid) + cpu
+    while (left := until - time.monotonic()) > 0 and cpu_of(process.pid) < most:
         try:
-            # SIGXFSZ stays ignored as it is in Python: to write too much is an error, no signal.
-            return subprocess.Popen(
-                argv,
-                cwd=folder,
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=out,
-                stderr=err,
-                restore_signals=False,
-                start_new_session=True,
-            )
-        except (PermissionError, FileNotFoundError):
-            if seconds_left == 0:
-                raise
-            time.sleep(1)
+            process.communicate(timeout=min(left, 0.05))
+            return True
+        except subprocess.TimeoutExpired:
+            pass
+    return False
 
 
 def run(
     argv, folder, environment, cpu, wall, patience=5, stop_after=None, stop_signal=signal.SIGINT
 ):
-    """Runs `argv` in `folder` for at most `cpu` s of processor time or `wall` s.
+    """Runs `argv` in `folder` for at most `cpu` s of processor time or `wall` s, or `stop_after` s.
 
-    After that, or after `stop_after` s, sends `stop_signal` and waits for the end as long as
-    `patience` (processor time) or four times that, before the process is killed and the status is
-    None.
+    After that sends `stop_signal` and waits for the end as long as `patience` (processor time) or
+    four times that, before the process is killed and the status is None.
     """
-    started = time.monotonic()
-    out, err = _pipe(), _pipe()
-    try:
-        process = _started(argv, folder, environment, out[1], err[1])
-    finally:
-        os.close(out[1]), os.close(err[1])
+    started, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
+    # SIGXFSZ stays ignored as it is in Python: to write too much is an error, no signal.
+    process = subprocess.Popen(
+        argv,
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        restore_signals=False,
+        start_new_session=True,
+    )
     # So that it ends even if nobody is left to end it.
     last = int(cpu + patience) + 2
     resource.prlimit(process.pid, resource.RLIMIT_CPU, (last, last))
-    poll, descriptor = select.poll(), os.pidfd_open(process.pid)
-    poll.register(descriptor, select.POLLIN)
-    asked, to_end, ended = False, 0.0, False
+    asked, to_end = False, 0.0
+    ended = _ended(process, cpu, wall if stop_after is None else stop_after)
+    if not ended:
+        asked, sent = True, time.monotonic()
+        os.killpg(process.pid, stop_signal)
+        ended = _ended(process, patience, 4 * patience)
+        to_end = time.monotonic() - sent
     try:
-        if stop_after is not None:
-            ended = bool(poll.poll(1000 * stop_after))
-        else:
-            ended = _ended(poll, process.pid, cpu, wall)
-        if not ended:
-            asked, sent = True, time.monotonic()
-            os.killpg(process.pid, stop_signal)
-            ended = _ended(poll, process.pid, patience, 4 * patience)
-            to_end = time.monotonic() - sent
-    finally:
-        os.close(descriptor)
-        try:
-            os.killpg(process.pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
-    _, raw, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(raw)
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    out, err = process.communicate()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return Run(
         process.returncode if ended else None,
-        _all_of(out[0]),
-        _all_of(err[0]),
+        out,
+        err,
         time.monotonic() - started,
-        usage.ru_utime + usage.ru_stime,
+        after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
         asked,
         to_end,
     )

@@ -1,9 +1,64 @@
-"""Random command lines of a program: sensible, at the edge of what is allowed, and spoiled."""
+"""Random command lines of a program: sensible, at the edge of what is allowed, and spoiled.
+
+The options are those that the program's --help lists, so that a new one is tried without being told.
+"""
 
 import math
+import re
+import subprocess
+from dataclasses import dataclass
 
 from hostile_values import EDGE_NUMBERS, EDGE_TEXTS, PATHS
 from sensible_values import GENERATORS, NEEDED, OF_A_PROGRAM, SENSIBLE
+
+# "  -h,--help   words", "  --until FLOAT=2 ...   words", and the words alone on the next line.
+_LINE = re.compile(
+    r"^  (?:-\w,)?(?P<name>--[\w-]+|[a-z]\w*)"
+    r"(?: (?P<kind>[A-Z]{2,}))?(?:=(?P<default>\[[^\]]*\]|\S+))?(?: \.\.\.)?(?:\s+(?P<words>.*))?$"
+)
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option: `kind` is INT, FLOAT, TEXT or FLAG."""
+
+    name: str
+    kind: str
+    default: str | None
+    words: str
+
+    @property
+    def choices(self):
+        """The words of a list "... of a, b, c" in the option's description."""
+        found = re.search(r"\bof ((?:[a-z]\w+, )+[a-z]\w+)", self.words)
+        return found.group(1).split(", ") if found else []
+
+
+def options_of(program):
+    """The options of the executable `program`; raises RuntimeError if its help cannot be read."""
+    done = subprocess.run(
+        [program, "--help"], capture_output=True, text=True, timeout=60, check=True
+    )
+    found = filter(None, map(_LINE.match, done.stdout.split("\n")))
+    options = [
+        Option(m["name"], m["kind"] or "FLAG", m["default"], m["words"] or "")
+        for m in found
+        if m["name"] not in ("--help", "--version") and (m["name"].startswith("-") or m["kind"])
+    ]
+    if not options:
+        raise RuntimeError(f"{program} --help lists no options")
+    return options
+
+
+def methods_of(simulate):
+    """Names of methods by what they take: {"step_size": [...], "rtol": [...]}."""
+    words = [simulate, "--list-methods", "--csv"]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=True)
+    methods = {"step_size": [], "rtol": []}
+    for line in done.stdout.splitlines()[1:]:
+        name, _, _, knob = line.split(",")[:4]
+        methods[knob].append(name)
+    return methods
 
 
 class Commands:
@@ -20,29 +75,26 @@ class Commands:
             names = self.methods["step_size"]
         return ",".join(random.choice(names) for _ in range(random.randint(1, 2)))
 
-    def _scene(self, random):
-        return random.choice(GENERATORS) if random.random() < 0.1 else "scene.toml"
-
     def sensible(self, random, option):
         """A value that should be fine, as text."""
         rule = OF_A_PROGRAM.get((self.program, option.name)) or SENSIBLE.get(option.name)
-        if isinstance(rule, list):
-            return random.choice(rule)
-        if isinstance(rule, tuple):
-            return f"{math.exp(random.uniform(math.log(rule[0]), math.log(rule[1]))):.3g}"
+        scene = random.choice(GENERATORS) if random.random() < 0.1 else "scene.toml"
+        own = option.name.removeprefix("--")
         match rule:
+            case list():
+                return random.choice(rule)
+            case (low, high):
+                return f"{math.exp(random.uniform(math.log(low), math.log(high))):.3g}"
             case "scene":
-                return self._scene(random)
+                return scene
             case "scenes":
-                return self._scene(random) + "@0.005"
+                return scene + "@0.005"
             case "methods":
                 return self._method_list(random)
             case "folder":
                 return random.choice(["new"] * 4 + ["folder", "results", "mine", "."])
             case "file":
-                return random.choice(
-                    ["new.csv", "folder/new.csv"] + [option.name[2:] + ".csv"] * 5 + ["end.csv"]
-                )
+                return random.choice(["new.csv", "folder/new.csv", "end.csv"] + [own + ".csv"] * 5)
         if option.choices:
             return random.choice(option.choices)
         if option.default and random.random() < 0.5:
@@ -54,49 +106,37 @@ class Commands:
         spoiled.
         """
         kind = random.random()
-        if option.kind != "TEXT":
-            pool = EDGE_NUMBERS if kind < 0.85 else EDGE_TEXTS
-        else:
-            pool = PATHS if kind < 0.6 else EDGE_TEXTS if kind < 0.9 else EDGE_NUMBERS
         if kind > 0.97:
             text = self.sensible(random, option)
             at = random.randrange(len(text) + 1)
-            return (
-                text[:at]
-                + random.choice(["\x1b", "é", "0", "-", ",", " ", "$", "\udc80", "e9"])
-                + text[at:]
-            )
-        return random.choice(pool)
+            junk = random.choice(["\x1b", "é", "0", "-", ",", " ", "$", "\udc80", "e9"])
+            return text[:at] + junk + text[at:]
+        if option.kind != "TEXT":
+            return random.choice(EDGE_NUMBERS if kind < 0.85 else EDGE_TEXTS)
+        return random.choice(PATHS if kind < 0.6 else EDGE_TEXTS if kind < 0.9 else EDGE_NUMBERS)
 
-    def _simulate(self, random):
+    def _forced(self, random):
+        """The options without which simulate only refuses."""
+        if self.program != "simulate":
+            return {}
         knob = random.choice(["step_size", "rtol"])
-        names = {
-            "--method": random.choice(self.methods[knob]),
-            "--step-size" if knob == "step_size" else "--rtol": None,
-        }
-        chosen = random.sample(
-            ["--final", "--trajectory", "--energy", "--motion", "--write-scene"],
-            random.choice([0, 1, 1, 2]),
-        )
+        outputs = ["--final", "--trajectory", "--energy", "--motion", "--write-scene"]
+        chosen = random.sample(outputs, random.choice([0, 1, 1, 2]))
         if {"--trajectory", "--energy", "--motion"} & set(chosen):
             chosen.append("--every")
-        return names | {name: None for name in chosen}
+        chosen.append("--" + knob.replace("_", "-"))
+        return dict.fromkeys(chosen) | {"--method": random.choice(self.methods[knob])}
 
     def draw(self, random):
-        """The arguments behind the program's name, and the names of the options among them."""
-        forced = self._simulate(random) if self.program == "simulate" else {}
+        """The arguments behind the program's name."""
+        forced, rare = self._forced(random), {"--explain", "--list-methods", "--list-scenes"}
+        if forced:
+            rare |= {"--step-size", "--rtol", "--every", "--method"}
         given = []
         for option in self.options:
             is_needed = option.name in NEEDED or (self.program, option.name) in NEEDED
             chance = 0.99 if is_needed else 0.3 / len(self.options)
-            if option.name in ("--explain", "--list-methods", "--list-scenes"):
-                chance = 0.01
-            if self.program == "simulate" and option.name in (
-                "--step-size",
-                "--rtol",
-                "--every",
-                "--method",
-            ):
+            if option.name in rare:
                 chance = 0.01
             if option.name in forced or random.random() < chance:
                 given.append((option, forced.get(option.name) or self.sensible(random, option)))
@@ -107,29 +147,22 @@ class Commands:
         return self._spelled(random, given)
 
     def _altered(self, random, given):
-        at = random.randrange(len(given)) if given else 0
-        what = random.random()
+        """The options with one hostile, added, left out or repeated."""
+        at, what = random.randrange(max(1, len(given))), random.random()
+        if what >= 0.88 and given:
+            return given[:at] + given[at + 1 :] if what < 0.95 else given + [given[at]]
         if what < 0.65 and given:
-            return (
-                given[:at] + [(given[at][0], self.hostile(random, given[at][0]))] + given[at + 1 :]
-            )
-        if what < 0.88 or not given:
-            there = {option.name for option, _ in given}
-            option = random.choice([o for o in self.options if o.name not in there] or self.options)
-            value = (
-                self.hostile(random, option)
-                if random.random() < 0.6
-                else self.sensible(random, option)
-            )
-            return given + [(option, value)]
-        if what < 0.95:
-            return given[:at] + given[at + 1 :]
-        return given + [given[at]]
+            option = given[at][0]
+            return given[:at] + [(option, self.hostile(random, option))] + given[at + 1 :]
+        there = {option.name for option, _ in given}
+        option = random.choice([o for o in self.options if o.name not in there] or self.options)
+        value = self.hostile if random.random() < 0.6 else self.sensible
+        return given + [(option, value(random, option))]
 
     def _spelled(self, random, given):
         arguments = []
         for option, value in given:
-            if option.positional:
+            if not option.name.startswith("--"):
                 arguments.append(value)
             elif option.kind == "FLAG":
                 arguments.append(option.name)
@@ -139,7 +172,6 @@ class Commands:
                 arguments += [option.name, value]
         if random.random() < 0.03 and arguments:
             at = random.randrange(len(arguments))
-            arguments[at] = random.choice(
-                [arguments[at][:-1], arguments[at] + "x", random.choice(EDGE_TEXTS)]
-            )
+            word = arguments[at]
+            arguments[at] = random.choice([word[:-1], word + "x", random.choice(EDGE_TEXTS)])
         return arguments

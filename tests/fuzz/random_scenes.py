@@ -1,57 +1,16 @@
-"""Random small scenes as files: samples whose numbers and names are changed; whole or spoiled.
+"""Random small scenes as files: those of the corpus with other numbers and names; whole or spoiled.
 
 Which scene files are refused, and how, is tried by fuzz_scenes; here programs get them.
 """
 
 import math
 import re
+from pathlib import Path
 
-from hostile_values import EXTREMES, HOSTILE_NAMES
+from hostile_values import EXTREMES, HOSTILE_NAMES, JUNK, PATHS_OF_NO_MESH, WORDS
 
-GENERATED = [
-    'kind = "oscillator"',
-    'kind = "orbit"\nrest_length = 0.5\nspeed = 2.5',
-    'kind = "pair"\nmass_1 = 2.5\nspin = 1.5',
-    'kind = "pendulum"\nstiffness = 40.5\nangle = 1.5\ngravity = 9.5',
-    'kind = "chain"\nnodes = 5\nlength = 1.5\nstiffness = 30.5',
-    'kind = "cloth"\nnodes = 4\nside = 1.5\nbending_stiffness = 3.5',
-    'kind = "framed_cloth"\nnodes = 3\nframe_stiffness = 3000.5',
-    'kind = "lattice"\nnodes_x = 3\nnodes_y = 2\nnodes_z = 2\nmass = 2.5',
-    'kind = "fpu"\nstiff_springs = 2\nfrequency = 20.5',
-    'kind = "strut"\nnodes = 5\ncompression = 0.9\nbend = 0.01',
-]
-NETWORKS = [
-    """dimension = 1
-nodes = [{position = [0.0], pinned = true}, {position = [1.5], mass = 0.5, velocity = [0.1]}]
-springs = [{nodes = [0, 1], stiffness = 100.5, rest_length = 1.2, quartic = 50.5}]
-""",
-    """dimension = 2
-gravity = [0.1, -9.5]
-nodes = [{position = [0.0, 0.0], pinned = true}, {position = [0.5, 0.1], mass = 0.1},
-         {position = [1.1, 0.0], mass = 0.3}, {position = [1.1, 0.0], mass = 0}, {position = [2.5, 1.5]}]
-springs = [{nodes = [0, 1], stiffness = 1000.5}, {nodes = [1, 2], stiffness = 90.5},
-           {nodes = [1, 2], stiffness = 10.5}, {nodes = [2, 3], stiffness = 40.5}]
-""",
-    """dimension = 3
-nodes = [{position = [0.1, 0.2, 0.3], velocity = [0.5, -0.1, 0.2], mass = 1.5},
-         {position = [1.1, 0.2, 0.1], mass = 0.5}, {position = [0.3, 1.2, 0.5], mass = 2.5}]
-springs = [{nodes = [0, 1], stiffness = 500.5}, {nodes = [1, 2], stiffness = 50.5, rest_length = 0.7}]
-""",
-]
-MESHES = {
-    "body.obj": b"v 0 0 0\nv 1 0 0.1\nv 0 1 0\nv 1 1 0.2\nv 9 9 9\nf 1 2 3\nf 2 4 3\n",
-    "body.mesh": b"MeshVersionFormatted 1\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0.1 0\n0 1 0 0\n"
-    b"1 1 0.2 0\nTriangles\n2\n1 2 3 1\n2 4 3 1\nEnd\n",
-    "body.msh": b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0.1\n3 0 1 0\n"
-    b"4 1 1 0.2\n$EndNodes\n$Elements\n2\n1 2 2 0 1 1 2 3\n2 2 2 0 1 2 4 3\n$EndElements\n",
-}
-PATHS_OF_NO_MESH = [
-    "fifo.obj", "folder.mesh", "none.obj", "locked.obj", "zero.obj", "zero.msh", "scene.toml", "loop.mesh",
-]  # fmt: skip
-JUNK = [
-    b"\0", b"\r", b"\x1b[2J", b"\xff", b"\xc3", b"\xef\xbb\xbf", b'"', b"[", b"=", b"-", b"e", b"9" * 400,
-]  # fmt: skip
-WORDS = b"0 -1 1e300 1e400 nan inf 99999999999 1e-320 x true {}".split()
+CORPUS = {file.name: file.read_bytes() for file in Path(__file__).with_name("corpus").iterdir()}
+SCENES = sorted(name for name in CORPUS if name.endswith(".toml"))
 
 
 def quoted(text):
@@ -99,29 +58,23 @@ def spoiled(random, data):
 
 def random_scene(random):
     """Files of one scene, name to bytes; "scene.toml" is the one to give to --scene."""
-    extremes = random.choice([0, 0, 0, 0.01, 0.1])
-    until, kind, files = f"until = {random.uniform(1e-3, 2e-2):.5f}\n", random.random(), {}
-    if kind < 0.4:
-        text = f"[generator]\n{random.choice(GENERATED)}\n{until}"
-    elif kind < 0.7:
-        text = until + random.choice(NETWORKS)
-    else:
-        name = random.choice(sorted(MESHES))
+    text, files = CORPUS[random.choice(SCENES)].decode(), {}
+    text = re.sub(r"(?m)^until = .*\n", "", text)
+    if mesh := re.search(r'file = "(.*)"', text):
+        name = mesh[1]
+        files[name] = CORPUS[name]
         paths = [name] * 12 + [f"./{name}", f"sub/../{name}"] * 3 + PATHS_OF_NO_MESH
-        files[name] = MESHES[name]
-        text = (
-            f"gravity = [0.0, 0.0, -9.81]\n{until}[mesh]\nfile = {quoted(random.choice(paths))}\n"
-            f"stiffness = 1000.5\n{random.choice(['node_mass', 'total_mass'])} = 0.5\n"
-            "[[mesh.pin]]\nmin = [-0.1, -0.1, -9.0]\nmax = [0.5, 0.5, 9.0]\n"
-        )
-    text = varied(random, text, extremes)
+        text = text.replace(mesh[0], f"file = {quoted(random.choice(paths))}")
+    text = varied(random, text, random.choice([0, 0, 0, 0.01, 0.1]))
     for line, chance in [
+        (f"until = {random.uniform(1e-3, 2e-2):.5f}\n", 1),
         ("stiff_above = 300\n", 0.2),
         ('start = "equilibrium"\n', 0.1),
         (f"name = {quoted(random.choice(HOSTILE_NAMES))}\n", 0.25),
     ]:
         if random.random() < chance:
-            text = line + text
+            key = line.split("=")[0]
+            text = line + re.sub(rf"(?m)^{key}=.*\n", "", text)
     files["scene.toml"] = text.encode()
     if random.random() < 0.25:
         for _ in range(random.choice([1, 1, 1, 2, 5])):

@@ -5,8 +5,6 @@ import os
 import shutil
 import stat
 
-from limited_run import environment_of
-
 OWN = {
     "end.json": b'{"mine": true}\n',
     "end.csv": b"my,own\n1,2\n",
@@ -21,6 +19,19 @@ OWN = {
     "locked.toml": b"dimension = 1\n",
     "body.obj": b"v 0 0 0\n",
 }
+LINKS = {
+    "link.toml": "scene.toml",
+    "loop": "loop",
+    "dangling": "nowhere/file",
+    "zero": "/dev/zero",
+    "full": "/dev/full",
+    "fifo.obj": "fifo",
+    "folder.mesh": "folder",
+    "locked.obj": "locked.toml",
+    "zero.obj": "/dev/zero",
+    "zero.msh": "/dev/zero",
+    "loop.mesh": "loop",
+}
 
 
 class Sandbox:
@@ -29,25 +40,13 @@ class Sandbox:
     """
 
     def __init__(self, root, files, earlier=None):
-        self.root, self.here = root, os.path.join(root, "here")
+        self.root, self.here, self.home = root, os.path.join(root, "here"), f"{root}/home"
         for folder in ("home", "here/mine", "here/folder", "here/sub", "here/locked"):
             os.makedirs(os.path.join(root, folder))
         for name, data in (OWN | files | {"$x.toml": files.get("scene.toml", b"")}).items():
             with open(os.path.join(self.here, name), "wb") as file:
                 file.write(data)
-        for name, target in [
-            ("link.toml", "scene.toml"),
-            ("loop", "loop"),
-            ("dangling", "nowhere/file"),
-            ("zero", "/dev/zero"),
-            ("full", "/dev/full"),
-            ("fifo.obj", "fifo"),
-            ("folder.mesh", "folder"),
-            ("locked.obj", "locked.toml"),
-            ("zero.obj", "/dev/zero"),
-            ("zero.msh", "/dev/zero"),
-            ("loop.mesh", "loop"),
-        ]:
+        for name, target in LINKS.items():
             os.symlink(target, os.path.join(self.here, name))
         os.mkfifo(os.path.join(self.here, "fifo"))
         os.chmod(os.path.join(self.here, "locked.toml"), 0)
@@ -60,10 +59,6 @@ class Sandbox:
     def notice(self):
         """Takes what is there now as what was there before the run."""
         self.before = self._state()
-
-    @property
-    def environment(self):
-        return environment_of(os.path.join(self.root, "home"))
 
     def _state(self):
         state = {}
@@ -85,11 +80,8 @@ class Sandbox:
         after = self._state()
         new = [name for name in after if name not in self.before]
         files = [name for name in new if after[name] != "folder"]
-        return (
-            files,
-            [n for n in new if after[n] == "folder"],
-            [n for n, was in self.before.items() if after.get(n) != was],
-        )
+        changed = [name for name, was in self.before.items() if after.get(name) != was]
+        return files, [name for name in new if after[name] == "folder"], changed
 
     def remove(self):
         os.chmod(os.path.join(self.here, "locked"), 0o700)

@@ -7,7 +7,6 @@ Call: check_replacing.py --bin FOLDER.
 import os
 import resource
 import signal
-import subprocess
 
 from motion_case import run_words, tried_place
 
@@ -48,14 +47,8 @@ def check_replacing(place):
 def check_full_disk(place):
     """Files that may not grow as far as they need: status 3, one sentence, no file."""
     for path, most in (("full.vtkhdf", 9000), ("full.vtkhdf", 300), ("full.pc2", 1000)):
-        ended = subprocess.run(
-            [place.simulate] + run_words("cloth", f"--motion {path}").split(),
-            cwd=place.folder,
-            capture_output=True,
-            text=True,
-            check=False,
-            preexec_fn=lambda most=most: limit(most),
-        )
+        words = run_words("cloth", f"--motion {path}")
+        ended = place.run(words, preexec_fn=lambda most=most: limit(most))
         said = ended.stderr.strip()
         assert ended.returncode == 3, (path, most, ended.returncode, said)
         assert said.startswith(f"simulate: {path.split('.')[0]}") and "\n" not in said, said

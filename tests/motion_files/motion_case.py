@@ -1,13 +1,16 @@
-"""Runs simulate for a motion and its table, and reads both back."""
+"""Runs simulate on the scenes of the folder beside this, for a motion and its table, and reads both
+back."""
 
 import argparse
 import contextlib
 import csv
 import os
+import shutil
 import subprocess
 import tempfile
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -18,80 +21,16 @@ FLOAT = 2.0**-24
 SHORT = 2.0**-8 + FLOAT
 SMALLEST = 2.0**-126  # below it 32-bit floats are spaced evenly
 
-CLOTH = """
-[generator]
-kind = "cloth"
-nodes = 5
-"""
-# Two dimensions; a spring of rest length zero, another whose ends coincide; a node on no spring.
-PLANE = """
-dimension = 2
-gravity = [0.0, -9.81]
-nodes = [
-  {position = [0.0, 0.0], pinned = true},
-  {position = [0.5, 0.0], mass = 0.1},
-  {position = [0.5, 0.0], mass = 0.2, velocity = [1.0, 0.5]},
-  {position = [2.0, 1.0], mass = 0.3, velocity = [0.0, 1.0]},
-]
-springs = [
-  {nodes = [0, 1], stiffness = 100.0, rest_length = 0.4},
-  {nodes = [0, 2], stiffness = 50.0, rest_length = 0.0},
-  {nodes = [1, 2], stiffness = 20.0, rest_length = 0.0},
-]
-"""
-LINE = """
-dimension = 1
-nodes = [{position = [0.0], pinned = true}, {position = [1.0], mass = 1.0, velocity = [0.5]}]
-springs = [{nodes = [0, 1], stiffness = 100.0, rest_length = 0.5}]
-"""
-# Vertex 2 is on no edge, so that nodes behind it have other numbers than vertices.
-MESH = "v 0 0 0\nv 9 9 9\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 3 4 5\n"
-MESHED = """
-gravity = [0.0, -9.81, 0.0]
-[mesh]
-file = "left_out.obj"
-stiffness = 1e3
-node_mass = 0.1
-[[mesh.pin]]
-min = [-0.1, -0.1, -0.1]
-max = [0.1, 0.1, 0.1]
-"""
-# A node without mass starts between the others, not where it is drawn.
-MASSLESS = """
-dimension = 1
-until = 0.1
-[[nodes]]
-position = [0.0]
-pinned = true
-[[nodes]]
-position = [0.9]
-mass = 0.0
-[[nodes]]
-position = [1.0]
-mass = 1.0
-[[springs]]
-nodes = [0, 1]
-stiffness = 100.0
-rest_length = 0.0
-[[springs]]
-nodes = [1, 2]
-stiffness = 100.0
-rest_length = 0.0
-"""
-SCENES = {"massless": MASSLESS, "cloth": CLOTH, "plane": PLANE, "line": LINE, "meshed": MESHED}
+# A run that grows without bound.
+DIVERGING = "--scene cloth.toml --method explicit_euler --step-size 1e-2 --until 50 --every 1e-2"
 
 
 @dataclass(frozen=True)
 class Place:
-    """A folder to work in, and the program."""
+    """A folder to work in, with the scenes, and the program."""
 
     simulate: str
     folder: str
-
-    def __post_init__(self):
-        for name, text in SCENES.items():
-            self.write(name + ".toml", text)
-        self.write("left_out.obj", MESH)
 
     def write(self, name, text):
         with open(self.path(name), "w", encoding="utf-8") as file:
@@ -100,18 +39,21 @@ class Place:
     def path(self, name):
         return os.path.join(self.folder, name)
 
-    def run(self, words):
+    def run(self, words, **options):
         """Runs simulate with these words in the folder; its exit."""
+        command = [self.simulate, *words.split()]
         return subprocess.run(
-            [self.simulate] + words.split(),
-            cwd=self.folder,
-            capture_output=True,
-            text=True,
-            check=False,
+            command, cwd=self.folder, capture_output=True, text=True, check=False, **options
         )
 
-    def files(self, *beginnings):
-        return sorted(name for name in os.listdir(self.folder) if name.startswith(beginnings))
+    def table_of(self, words, status=0):
+        """Runs simulate for a motion and its table, which it reads."""
+        ended = self.run(f"{words} --trajectory t.csv")
+        assert ended.returncode == status, (words, ended.returncode, ended.stderr)
+        return table(self.path("t.csv"))
+
+    def files(self, beginning):
+        return sorted(name for name in os.listdir(self.folder) if name.startswith(beginning))
 
 
 def run_words(scene, more):
@@ -129,8 +71,7 @@ def table(path):
     nodes = int(values[:, 1].max()) + 1
     dimension = (len(header) - 2) // 2
     frames = values.reshape(-1, nodes, len(header))
-    positions = np.zeros((len(frames), nodes, 3))
-    velocities = np.zeros((len(frames), nodes, 3))
+    positions, velocities = np.zeros((2, len(frames), nodes, 3))
     positions[:, :, :dimension] = frames[:, :, 2 : 2 + dimension]
     velocities[:, :, :dimension] = frames[:, :, 2 + dimension :]
     return frames[:, 0, 0], positions, velocities
@@ -165,12 +106,9 @@ def xdmf_frames(path):
     collection = root.find("Domain/Grid")
     assert collection.get("CollectionType") == "Temporal"
     for grid in collection.findall("Grid"):
-        items = {
-            "Topology": grid.find("Topology/DataItem"),
-            "Points": grid.find("Geometry/DataItem"),
-        }
-        for attribute in grid.findall("Attribute"):
-            items[attribute.get("Name")] = attribute.find("DataItem")
+        items = {one.get("Name"): one.find("DataItem") for one in grid.findall("Attribute")}
+        items["Topology"] = grid.find("Topology/DataItem")
+        items["Points"] = grid.find("Geometry/DataItem")
         found = {}
         for name, item in items.items():
             file, place = item.text.split(":")
@@ -190,4 +128,5 @@ def tried_place(description):
     parser.add_argument("--bin", required=True, help="the folder of the programs")
     simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
     with tempfile.TemporaryDirectory(prefix="motion.") as folder:
+        shutil.copytree(Path(__file__).with_name("scenes"), folder, dirs_exist_ok=True)
         yield Place(simulate, folder)

@@ -2,19 +2,17 @@
 """Checks that the picture of a sweep agrees with its hand-made tables: the fastest methods with
 their times and margins, where they change, and what is left out. Nothing may overlap."""
 
-import csv
 import json
 import shutil
-import sys
 import unittest
 from itertools import combinations
-from xml.etree import ElementTree
 
-from check_charts import COLUMNS, EXPLICIT, SOLVING, HandMade, a_sweep, crowd, draw, judge
+from check_charts import ABOUT, COLUMNS, EXPLICIT, SOLVING, HandMade, a_sweep, crowd, write_study
 from crossover_sentences import sentences
 from names import one_line
 from scene_title import cut, draw_title, in_two
 from sheet import Sheet
+from study_tables import draw, judge, read_table, texts_of, write_table
 from style import use_style
 from sweep import read
 from sweep_picture import draw as drawn
@@ -27,11 +25,13 @@ ACCURACIES = ("1e-2", "1e-4", "1e-6")
 LONG = "framed_cloth_nodes_1000_frame_stiffness_1e9_damping_0.01_xyz"
 
 
-def a_cell(scene, accuracy, method=EXPLICIT, time="1e-3", margin="1.34", judge="position"):
+def a_cell(scene, accuracy, method=EXPLICIT, time_s="1e-3", margin="1.34", judge="position"):
     """A row of fastest.csv."""
+    row = {"scene": scene, "until": 2, "accuracy": accuracy, "judged_by": judge}
     if not method:
-        return [scene, 2, accuracy, *[""] * 7, judge]
-    return [scene, 2, accuracy, method, "step_size", 1e-3, accuracy, time, "next", margin, judge]
+        return row
+    row |= {"method": method, "knob": "step_size", "value": 1e-3, "error": accuracy}
+    return row | {"time_s": time_s, "runner_up": "next", "margin": margin}
 
 
 def a_crossover(accuracy=1e-4, low=100.0, high=1000.0, crossing=312.4, along="nodes", **others):
@@ -40,41 +40,23 @@ def a_crossover(accuracy=1e-4, low=100.0, high=1000.0, crossing=312.4, along="no
     return Crossover(along, accuracy, low, high, crossing, **(facts | others))
 
 
-def write_table(path, columns, rows):
-    """A CSV file."""
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        csv.writer(file, lineterminator="\n").writerows([columns, *rows])
-
-
 class Sweep(HandMade):
     """Tests on a sweep in a folder of its own."""
 
-    def setUp(self):
-        super().setUp()
-        self.scenes = []
-
-    def write_scene(self, name):
-        """The folder of a scene with the runs of a crowd of methods."""
-        folder = self.folder / name
-        if self.scenes:  # all have the same runs
-            shutil.copytree(self.folder / self.scenes[0], folder)
-            return
-        self.scenes.append(name)
-        folder.mkdir()
-        columns = COLUMNS.split()
-        runs = crowd(2) + [run for method in LONG_METHODS for run in a_sweep(method, 1e-3)]
-        cells = [[run[column] for column in columns] for run in runs]
-        write_table(folder / "points.csv", columns, cells)
-        about = {"scene": {"name": "made", "nodes": 2, "springs": 1}, "until": 2}
-        about |= {"cpu": "a processor", "reduced": {"largest_stable_step": 0.01}}
-        (folder / "points.json").write_text(json.dumps(about))
-        (folder / "reference.json").write_text(json.dumps({"until": 2}))
-        judge(folder)
+    def write_scenes(self, scenes):
+        """The folders of scenes, each with the runs of a crowd of methods."""
+        for name in scenes:
+            folder = self.folder / name
+            if name != scenes[0]:  # all have the same runs
+                shutil.copytree(self.folder / scenes[0], folder)
+                continue
+            folder.mkdir()
+            rows = crowd(2) + [row for method in LONG_METHODS for row in a_sweep(method, 1e-3)]
+            write_study(folder, rows, COLUMNS, {"until": 2}, **ABOUT)
 
     def write_sweep(self, scenes, rows=None, crossovers=(), about=None):
         """A sweep over these scenes; without rows each has one method at all accuracies."""
-        for name in scenes:
-            self.write_scene(name)
+        self.write_scenes(scenes)
         rows = rows or [a_cell(name, accuracy) for name in scenes for accuracy in ACCURACIES]
         write_table(self.folder / "fastest.csv", FASTEST, rows)
         write_table(self.folder / "crossovers.csv", CROSSOVERS, crossovers)
@@ -83,26 +65,23 @@ class Sweep(HandMade):
 
     def texts(self):
         """The texts of the picture, in the order of drawing."""
-        done = draw("sweep/sweep.py", self.folder)
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(draw("sweep/sweep.py", self.folder), (0, ""))
         self.assertTrue((self.folder / "fastest.png").exists())
-        root = ElementTree.parse(self.folder / "fastest.svg").getroot()
-        return [text.strip() for text in root.itertext() if text.strip()]
+        return texts_of(self.folder / "fastest.svg")
 
     def refusal(self):
         """Why the sweep is not drawn."""
-        done = draw("sweep/sweep.py", self.folder)
-        self.assertEqual(done.returncode, 2)
+        status, said = draw("sweep/sweep.py", self.folder)
+        self.assertEqual((status, said.count("\n")), (2, 1))
         self.assertEqual([*self.folder.glob("fastest.png"), *self.folder.glob("fastest.svg")], [])
-        self.assertEqual(done.stderr.count("\n"), 1)
-        return done.stderr.strip().replace(f"{self.folder}/", "")
+        return said.strip().replace(f"{self.folder}/", "")
 
 
 class WhatIsSaid(Sweep):
     """What is to be read in a picture."""
 
     def test_the_fastest_method_its_time_and_its_margin(self):
-        rows = [a_cell("chain_3", "1e-2", time="2.13e-3"), a_cell("chain_3", "1e-4", margin="")]
+        rows = [a_cell("chain_3", "1e-2", time_s="2.13e-3"), a_cell("chain_3", "1e-4", margin="")]
         rows += [a_cell("chain_3", "1.0000000000000001e-06", SOLVING, margin="31.4")]
         self.write_sweep(["chain_3"], rows)
         texts = self.texts()
@@ -118,23 +97,19 @@ class WhatIsSaid(Sweep):
         self.assertTrue([text for text in texts if "one core of a processor" in text])
         self.assertNotIn("Where the fastest method changes", texts)
 
-    def test_any_accuracies_are_columns_from_coarse_to_fine(self):
-        rows = [a_cell("a", "1e-6"), a_cell("a", "3e-4"), a_cell("b", "0.1"), a_cell("b", "1e-6")]
-        self.write_sweep(["a", "b"], rows)
+    def test_rows_and_columns_stand_in_their_order(self):
+        cells = [("b", "1e-6"), ("b", "3e-4"), ("a", "0.1"), ("a", "1e-6"), ("c", "0.1")]
+        self.write_sweep(["b", "a", "c"], [a_cell(*cell) for cell in cells])
         texts = self.texts()
-        heads = [text for text in texts if text in ("1e-1", "3e-4", "1e-6")]
-        self.assertEqual(heads, ["1e-1", "3e-4", "1e-6"])
-        # A cell that nobody asked for is no failure.
-        self.assertNotIn("–", texts)
-
-    def test_a_scene_without_an_answer_shows_dashes(self):
-        self.write_sweep(["a"], [a_cell("a", accuracy, "") for accuracy in ACCURACIES])
-        self.assertEqual(self.texts().count("–"), 4)
-
-    def test_scenes_stand_in_the_order_of_the_file(self):
-        self.write_sweep(["b", "a", "c"])
-        texts = self.texts()
+        # Accuracies go from coarse to fine, scenes as in the file.
+        heads = ("1e-1", "3e-4", "1e-6")
+        self.assertEqual([text for text in texts if text in heads], list(heads))
         self.assertEqual([text for text in texts if text in "abc"], ["b", "a", "c"])
+        # A cell that nobody asked for is no failure, unlike one without a method.
+        self.assertNotIn("–", texts)
+        nobody = [a_cell("a", accuracy, "") for accuracy in ACCURACIES]
+        write_table(self.folder / "fastest.csv", FASTEST, nobody)
+        self.assertEqual(self.texts().count("–"), 4)
 
     def test_a_folder_that_cannot_be_read_is_left_out_and_counted(self):
         rows = [a_cell(name, "1e-2") for name in ("a", "gone", "broken")]
@@ -159,17 +134,25 @@ class WhatIsSaid(Sweep):
         # The accuracies are said below so many rows again.
         self.assertEqual(texts.count("1e-4"), 2)
 
-    def test_computed_times_are_said_to_be(self):
+    def test_what_a_reader_must_know_is_said(self):
         self.write_sweep(["a"], about={"times": "work", "processor": "Xeon"})
+        (self.folder / "fastest.json").write_text(json.dumps({"interrupted": "a signal"}))
         words = " ".join(self.texts())
         self.assertIn("its time as computed from its work", words)
         self.assertIn("Times are computed, not measured", words)
         self.assertIn("on one core of Xeon", words)
-
-    def test_an_interrupted_sweep_says_so(self):
-        self.write_sweep(["a"])
-        (self.folder / "fastest.json").write_text(json.dumps({"interrupted": "a signal"}))
-        self.assertIn("The sweep was interrupted by a signal", " ".join(self.texts()))
+        self.assertIn("The sweep was interrupted by a signal", words)
+        files = [self.folder / f"fastest.{end}" for end in ("png", "svg")]
+        first = [file.read_bytes() for file in files]
+        self.texts()
+        # The same numbers give the same picture.
+        self.assertEqual(first, [file.read_bytes() for file in files])
+        for file in files:
+            file.unlink()
+        self.write_sweep([], [a_cell("a", "1e-2")], about={"times": "guessed"})
+        self.assertEqual(
+            self.refusal(), "sweep.json: times is 'guessed', not measured or work."
+        )
 
     def test_chaotic_scenes_are_judged_by_their_energy(self):
         self.write_sweep(["a"], [a_cell("a", "1e-2", judge="energy")])
@@ -177,33 +160,20 @@ class WhatIsSaid(Sweep):
         known = {"until": 2, "beyond_horizon": True, "horizon": 1, "lyapunov": 20}
         (self.folder / "a" / "reference.json").write_text(json.dumps(known))
         path = self.folder / "a" / "points.csv"
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        for row in rows:
-            row["error_position"] = "1"
-        write_table(path, rows[0].keys(), [row.values() for row in rows])
+        rows = [row | {"error_position": "1"} for row in read_table(path)]
+        write_table(path, list(rows[0]), rows)
         judge(self.folder / "a")
         texts = self.texts()
         for words in ("2 nodes, 2 s, 200 steps, by energy", "error at most", "0.3 ×"):
             self.assertIn(words, texts)
         self.assertIn("By energy: the motion is chaotic", " ".join(texts))
 
-    def test_the_same_numbers_give_the_same_picture(self):
-        self.write_sweep(["a", LONG])
-        self.texts()
-        files = [self.folder / f"fastest.{end}" for end in ("png", "svg")]
-        first = [file.read_bytes() for file in files]
-        self.texts()
-        self.assertEqual(first, [file.read_bytes() for file in files])
-
 
 class Refusals(Sweep):
     """Tables that are broken: one sentence, and no picture."""
 
-    def test_a_word_too_many(self):
-        self.assertEqual(draw("sweep/sweep.py").stderr, "Usage: sweep.py DIR\n")
-
     def test_no_table(self):
+        self.assertEqual(draw("sweep/sweep.py"), (2, "Usage: sweep.py DIR\n"))
         self.assertEqual(self.refusal(), "fastest.csv cannot be read: No such file or directory.")
         write_table(self.folder / "fastest.csv", FASTEST, [])
         self.assertEqual(self.refusal(), "fastest.csv has no rows.")
@@ -211,48 +181,34 @@ class Refusals(Sweep):
         self.assertEqual(self.refusal(), "fastest.csv has no column judged_by.")
 
     def test_broken_rows(self):
-        self.write_scene("a")
+        self.write_scenes(["a"])
+        good = [a_cell("a", "1e-2")]
         broken = {
-            "accuracy must be a positive number": [a_cell("a", "")],
-            "time_s is 'soon', not a number": [a_cell("a", "1e-2", time="soon")],
-            "time_s must be a positive number": [a_cell("a", "1e-2", time="")],
-            "margin must be a positive number": [a_cell("a", "1e-2", margin="-1")],
-            "scene is '', not a folder's name": [a_cell("", "1e-2")],
-            "scene is '../a', not a folder's name": [a_cell("../a", "1e-2")],
-            "judged_by is 'eye', not position or energy": [a_cell("a", "1e-2", judge="eye")],
-            "a has no good run of rk4": [a_cell("a", "1e-2", "rk4")],
+            "2: accuracy must be a positive number": [a_cell("a", "")],
+            "2: time_s is 'soon', not a number": [a_cell("a", "1e-2", time_s="soon")],
+            "2: time_s must be a positive number": [a_cell("a", "1e-2", time_s="")],
+            "2: margin must be a positive number": [a_cell("a", "1e-2", margin="-1")],
+            "2: scene is '', not a folder's name": [a_cell("", "1e-2")],
+            "2: scene is '../a', not a folder's name": [a_cell("../a", "1e-2")],
+            "2: judged_by is 'eye', not position or energy": [a_cell("a", "1e-2", judge="eye")],
+            "2: a has no good run of rk4": [a_cell("a", "1e-2", "rk4")],
+            "3: a has its row at 0.01 already": [*good, a_cell("a", "0.01")],
+            "3: a is judged by position and by energy": [*good, a_cell("a", "1", judge="energy")],
         }
         for words, rows in broken.items():
             write_table(self.folder / "fastest.csv", FASTEST, rows)
-            self.assertEqual(self.refusal(), f"fastest.csv, line 2: {words}.")
+            self.assertEqual(self.refusal(), f"fastest.csv, line {words}.")
+        cells = ("nodes", "1e-4", 100, 1000, "", "a", "b", "verlet", "rk4")
+        change = dict(zip(CROSSOVERS, cells))
         broken = {
-            "a has its row at 0.01 already": a_cell("a", "0.01"),
-            "a is judged by position and by energy": a_cell("a", "1e-4", judge="energy"),
+            "along must not be empty": {"along": ""},
+            "method_high must not be empty": {"method_high": ""},
+            "low and high must be numbers, the first less": {"high": 100},
+            "crossing is not between low and high": {"crossing": 1001},
         }
-        for words, row in broken.items():
-            write_table(self.folder / "fastest.csv", FASTEST, [a_cell("a", "1e-2"), row])
-            self.assertEqual(self.refusal(), f"fastest.csv, line 3: {words}.")
-
-    def test_broken_crossovers(self):
-        good = ["nodes", "1e-4", 100, 1000, "", "a", "b", "verlet", "rk4"]
-        broken = {
-            "along must not be empty": (0, ""),
-            "method_high must not be empty": (8, ""),
-            "low and high must be numbers, the first less": (3, 100),
-            "crossing is not between low and high": (4, 1001),
-        }
-        for words, (column, cell) in broken.items():
-            folder = self.folder / "a"
-            self.write_sweep(
-                [] if folder.exists() else ["a"],
-                [a_cell("a", "1e-2")],
-                [[*good[:column], cell, *good[column + 1 :]]],
-            )
+        for words, other in broken.items():
+            self.write_sweep([], good, [change | other])
             self.assertEqual(self.refusal(), f"crossovers.csv, line 2: {words}.")
-
-    def test_unknown_times(self):
-        self.write_sweep(["a"], about={"times": "guessed"})
-        self.assertEqual(self.refusal(), "sweep.json: times is 'guessed', not measured or work.")
 
 
 class Changes(unittest.TestCase):
@@ -328,8 +284,9 @@ class Places(Sweep):
             for name in names
             for n in digits
         ]
-        change = ["nodes", "1e-4", 100, 1e7, "", LONG, LONG]
-        changes = [[*change, f"local_global_chebyshev{i}", "symmetric4"] for i in range(10)]
+        cells = ("nodes", "1e-4", 100, 1e7, "", LONG, LONG, "local_global_chebyshev", "symmetric4")
+        change = dict(zip(CROSSOVERS, cells))
+        changes = [change | {"method_low": f"local_global_chebyshev{i}"} for i in range(10)]
         self.write_sweep(names[:-1], rows, changes, {"times": "work", "processor": "Xeon"})
         figure = drawn(read(str(self.folder))).figure
         boxes = [

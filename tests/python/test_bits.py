@@ -1,9 +1,9 @@
 """Results are the programs', to the last bit."""
 
 import json
-import os
 import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 
@@ -30,160 +30,120 @@ class Bits(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        self.folder = folder.name
+        self.folder = Path(folder.name)
 
-    def path(self, name):
-        return os.path.join(self.folder, name)
+    def run_on(self, scene, program, words, status=0):
+        """Runs a program on a scene, or on one of this name, in the folder of the test; options to
+        files stand for themselves, as --final."""
+        if not isinstance(scene, str):
+            scene.save(str(self.folder / "scene.toml"))
+            scene = self.folder / "scene.toml"
+        outputs = {"--final", "--trajectory", "--energy"}
+        given = ["--scene", scene]
+        for word in words.split():
+            given += [word, self.folder / f"{word[2:]}.csv"] if word in outputs else [word]
+        given += [] if outputs & set(words.split()) else ["--out", self.folder]
+        _, err, found = problems.run_program(program, *given)
+        self.assertEqual(found, status, err)
 
-    def check_nodes(self, table, q, v):
-        axes = "xyz"[: q.shape[-1]]
-        for d, axis in enumerate(axes):
-            self.assertTrue(np.array_equal(table[axis], q[..., d].reshape(-1)), axis)
-            self.assertTrue(np.array_equal(table["v" + axis], v[..., d].reshape(-1)), "v" + axis)
+    def table(self, name):
+        return problems.read_table(self.folder / f"{name}.csv")
+
+    def check_nodes(self, table, q, v, prefixes=("", "v")):
+        for d, axis in enumerate("xyz"[: q.shape[-1]]):
+            for prefix, values in zip(prefixes, (q, v)):
+                same = np.array_equal(table[prefix + axis], values[..., d].reshape(-1))
+                self.assertTrue(same, prefix + axis)
 
     def test_runs(self):
-        until, every = 0.1, 0.02
-        drawn = [problems.random_scene(1), problems.random_scene(2, dimension=2)]
         for scene in (
-            *drawn,
-            qddot.scenes.cloth(nodes=6),
+            problems.random_scene(1),
+            problems.random_scene(2, dimension=2),
             qddot.scenes.lattice(nodes_x=3, nodes_y=3, nodes_z=4, stiffness=100.0),
         ):
-            scene.save(self.path("scene.toml"))
             for method, options in METHODS.items():
                 with self.subTest(scene=scene.name, method=method):
-                    words = [
-                        word
-                        for name, value in options.items()
-                        for word in ("--" + name.replace("_", "-"), value)
-                    ]
-                    _, err, status = problems.run_program(
-                        "simulate", "--scene", self.path("scene.toml"), "--method", method, *words,
-                        "--until", until, "--final", self.path("f.csv"), "--trajectory",
-                        self.path("t.csv"), "--every", every, "--energy", self.path("e.csv"),
-                        "--every", every,
-                    )  # fmt: skip
-                    self.assertEqual(status, 0, err)
-                    energy = problems.read_table(self.path("e.csv"))
-                    times = energy["t"]
+                    knobs = [f"--{name.replace('_', '-')} {x}" for name, x in options.items()]
+                    every = "--final --trajectory --every 0.02 --energy --every 0.02"
+                    words = f"--method {method} {' '.join(knobs)} --until 0.1 {every}"
+                    self.run_on(scene, "simulate", words)
+                    energy = self.table("energy")
                     # The program looks at the start before its run.
-                    solution = qddot.solve(
-                        scene, method, until=until, save_at=times[1:], **options
-                    ).or_raise()
-                    self.assertEqual(solution.t[-1], until)
-                    path = problems.read_table(self.path("t.csv"))
-                    nodes = len(scene.mass)
+                    times = energy["t"][1:]
+                    run = dict(until=0.1, save_at=times, **options)
+                    solution = qddot.solve(scene, method, **run).or_raise()
+                    self.assertEqual(solution.t[-1], 0.1)
+                    path, nodes = self.table("trajectory"), len(scene.mass)
                     later = {name: column[nodes:] for name, column in path.items()}
                     self.check_nodes(later, solution.q, solution.v)
-                    final = problems.read_table(self.path("f.csv"))
-                    self.check_nodes(final, solution.end.q, solution.end.v)
+                    self.check_nodes(self.table("final"), solution.end.q, solution.end.v)
                     for name in ("kinetic", "potential", "total"):
                         same = np.array_equal(energy[name][1:], getattr(solution.energy, name))
                         self.assertTrue(same, name)
 
     def test_failures_are_the_programs(self):
         scene = qddot.scenes.cloth(nodes=8)
-        scene.save(self.path("scene.toml"))
-        _, _, status = problems.run_program(
-            "simulate", "--scene", self.path("scene.toml"), "--method", "verlet", "--step-size", 0.02,
-            "--until", 20, "--final", self.path("f.csv"),
-        )  # fmt: skip
-        self.assertEqual(status, 3)
-        with open(self.path("f.json"), encoding="utf-8") as file:
-            sidecar = json.load(file)
+        words = "--method verlet --step-size 0.02 --until 20 --final"
+        self.run_on(scene, "simulate", words, status=3)
+        sidecar = json.loads((self.folder / "final.json").read_text())
         solution = qddot.solve(scene, "verlet", step_size=0.02, until=20)
         self.assertEqual(solution.outcome, sidecar["outcome"])
         self.assertEqual(solution.t_reached, sidecar["t_reached"])
-        final = problems.read_table(self.path("f.csv"))
-        self.check_nodes(final, solution.end.q, solution.end.v)
+        self.check_nodes(self.table("final"), solution.end.q, solution.end.v)
         self.assertIn("above verlet's limit", solution.diagnosis())
 
     def test_statics_and_modes(self):
         scene = qddot.scenes.cloth(nodes=6)
-        scene.save(self.path("scene.toml"))
-        rest = ("--scene", self.path("scene.toml"))
-        self.assertEqual(
-            problems.run_program("equilibrium", *rest, "--final", self.path("e.csv"))[2], 0
-        )
+        self.run_on(scene, "equilibrium", "--final")
         found = qddot.equilibrium(scene)
-        self.check_nodes(
-            problems.read_table(self.path("e.csv")), found.positions, 0 * found.positions
-        )
+        self.check_nodes(self.table("final"), found.positions, 0 * found.positions)
         self.assertTrue(found.isolated)
-        words = ("--count", 4, "--at", "equilibrium", "--out", self.folder)
-        self.assertEqual(problems.run_program("modes", *rest, *words)[2], 0)
-        table = problems.read_table(self.path("modes.csv"))
+        self.run_on(scene, "modes", "--count 4 --at equilibrium")
         modes = qddot.modes(scene, 4, at_equilibrium=True)
-        self.assertTrue(np.array_equal(table["omega"][:4], modes.omega))
-        shapes = problems.read_table(self.path("shapes.csv"))
-        for d, axis in enumerate("xyz"):
-            same = np.array_equal(shapes["d" + axis], modes.shapes[..., d].reshape(-1))
-            self.assertTrue(same, axis)
+        self.assertTrue(np.array_equal(self.table("modes")["omega"][:4], modes.omega))
+        self.check_nodes(self.table("shapes"), modes.shapes, None, ("d",))
         # M-orthonormal, whoever computes it.
-        x = modes.shapes.reshape(4, -1)
-        m = np.repeat(scene.mass, 3)
+        x, m = modes.shapes.reshape(4, -1), np.repeat(scene.mass, 3)
         self.assertLess(np.max(np.abs(x * m @ x.T - np.eye(4))), 1e-10)
 
     def test_charts(self):
-        scene = qddot.scenes.cloth(nodes=6)
-        scene.save(self.path("scene.toml"))
-        methods = ["verlet", "implicit_midpoint", "arkode_erk4"]
-        _, err, status = problems.run_program(
-            "work_precision", "--scene", self.path("scene.toml"), "--methods", ",".join(methods),
-            "--until", 0.1, "--point-limit", 0.1, "--out", self.folder,
-        )  # fmt: skip
-        self.assertEqual(status, 0, err)
-        table = problems.read_table(self.path("points.csv"))
+        scene, methods = qddot.scenes.cloth(nodes=6), ["verlet", "implicit_midpoint", "arkode_erk4"]
+        words = f"--methods {','.join(methods)} --until 0.1 --point-limit 0.1 --repeats 1"
+        self.run_on(scene, "work_precision", words)
+        table = self.table("points")
         chart = qddot.work_precision(scene, until=0.1, methods=methods, point_limit=0.1, repeats=1)
         self.assertEqual(list(table), list(chart.points.dtype.names))
-        mine = {(row["method"], row["value"]): row for row in chart.points}
-        compared = 0
-        for i, method in enumerate(table["method"]):
-            row = mine.get((method, table["value"][i]))
-            if (
-                row is None
-                or row["outcome"] != "reached_end"
-                or table["outcome"][i] != "reached_end"
-            ):
-                continue  # which rungs are taken near a limit, and how far down, depends on time
+        mine, compared = {(row["method"], row["value"]): row for row in chart.points}, 0
+        names = "error_position error_velocity error_energy error_momentum_max steps"
+        names += " force_evaluations factorizations solves"
+        for i, key in enumerate(zip(table["method"], table["value"])):
+            # Which rungs are taken near a limit, and how far down, depends on time.
+            row = mine.get(key)
+            if row is None or {row["outcome"], table["outcome"][i]} != {"reached_end"}:
+                continue
             compared += 1
-            for name in ("error_position", "error_velocity", "error_energy", "error_momentum_max"):
+            for name in names.split():
                 same = np.array_equal(table[name][i], row[name], equal_nan=True)
-                self.assertTrue(same, (method, row["value"], name))
-            for name in ("steps", "force_evaluations", "factorizations", "solves"):
-                self.assertEqual(table[name][i], row[name], (method, row["value"], name))
+                self.assertTrue(same, (key, name))
         self.assertGreater(compared, 20)
 
-    def test_exchange(self):
-        words = (
-            "--methods",
-            "verlet,trbdf2",
-            "--h-omega",
-            "0.5",
-            "--until",
-            20,
-            "--out",
-            self.folder,
-        )
-        self.assertEqual(problems.run_program("exchange", "--scene", "fpu", *words)[2], 0)
-        table = problems.read_table(self.path("exchange.csv"))
-        made = qddot.exchange(qddot.scenes.fpu(), ["verlet", "trbdf2"], [0.5], until=20)
+    def test_exchange_and_energy_trends(self):
+        self.run_on("fpu", "exchange", "--methods verlet,trbdf2 --h-omega 0.5 --until 20")
+        table, fpu = self.table("exchange"), qddot.scenes.fpu()
+        made = qddot.exchange(fpu, ["verlet", "trbdf2"], [0.5], until=20)
         for run in (made.reference, *made.runs):
             of_run = (table["method"] == run.method) & (table["spring"] != "sum")
             energies = table["energy"][of_run].reshape(run.energies.shape)
             self.assertTrue(np.array_equal(energies, run.energies), run.method)
-        summary = problems.read_table(self.path("summary.csv"))
-        self.assertEqual(list(summary["verdict"][1:]), [run.verdict for run in made.runs])
-
-    def test_energy_trends(self):
-        words = ("--methods", "verlet", "--step-size", 0.01, "--until", 200, "--out", self.folder)
-        self.assertEqual(problems.run_program("energy_drift", "--scene", "orbit", *words)[2], 0)
-        table = problems.read_table(self.path("drift.csv"))
+        verdicts = list(self.table("summary")["verdict"][1:])
+        self.assertEqual(verdicts, [run.verdict for run in made.runs])
+        words = "--methods verlet --step-size 0.01 --until 200 --force"
+        self.run_on("orbit", "energy_drift", words)
+        table = self.table("drift")
         trend = qddot.energy_trend(qddot.scenes.orbit(), "verlet", step_size=0.01, until=200)
         self.assertTrue(np.array_equal(table["t"], trend.t))
         self.assertTrue(np.array_equal(table["relative_error"], trend.error))
-        summary = problems.read_table(self.path("summary.csv"))
-        self.assertEqual(summary["verdict"][0], trend.words)
+        self.assertEqual(self.table("summary")["verdict"][0], trend.words)
 
     def test_answers(self):
         # Which method is chosen depends on time; what it then gives does not.

@@ -21,7 +21,7 @@ class Callables(unittest.TestCase):
                 write=(q.flags.writeable, f.flags.writeable), own=(q.flags.owndata, f.flags.owndata),
                 kind=(q.dtype, f.dtype),
             )  # fmt: skip
-            f[:] = -q
+            return np.negative(q, out=f)  # as functions of NumPy do
 
         system = qddot.System(np.ones(4), force, dimension=3)
         solution = qddot.solve(system, "verlet", step_size=0.1, until=1, q0=np.ones((4, 3)))
@@ -31,10 +31,6 @@ class Callables(unittest.TestCase):
         self.assertEqual(seen["own"], (False, False))
         self.assertEqual(seen["kind"], (np.float64, np.float64))
         self.assertEqual(solution.q.shape, (1, 4, 3))
-
-    def test_functions_of_numpy_return_what_they_wrote(self):
-        system = qddot.System(np.ones(2), lambda q, f: np.negative(q, out=f))
-        qddot.solve(system, "verlet", step_size=0.1, until=1, q0=np.ones(2)).or_raise()
 
     def test_results_are_views_into_one_buffer(self):
         scene = qddot.scenes.cloth(nodes=4)
@@ -81,9 +77,8 @@ class Callables(unittest.TestCase):
         class Owner:
             def __init__(self):
                 self.system = qddot.System(np.ones(3), self.force)
-                self.solution = qddot.solve(
-                    self.system, "verlet", step_size=0.1, until=1, q0=np.ones(3)
-                )
+                run = dict(step_size=0.1, until=1, q0=np.ones(3))
+                self.solution = qddot.solve(self.system, "verlet", **run)
 
             def force(self, q, f):
                 f[:] = -q
@@ -106,9 +101,8 @@ class Callables(unittest.TestCase):
         self.assertEqual(failed.outcome, "diverged")
         self.assertIn("verlet", failed.diagnosis())
         plain = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
-        self.assertEqual(
-            qddot.solve(plain, "verlet", step_size=10.0, q0=[1.0], until=1e4).diagnosis(), ""
-        )
+        failed = qddot.solve(plain, "verlet", step_size=10.0, q0=[1.0], until=1e4)
+        self.assertEqual(failed.diagnosis(), "")
 
     def test_what_is_kept_is_refused(self):
         kept = []
@@ -124,9 +118,8 @@ class Callables(unittest.TestCase):
         for force, name in ((keeps_q, "q"), (keeps_part, "f")):
             with self.subTest(name):
                 system = qddot.System(np.ones(2), force, check=False)
-                with self.assertRaisesRegex(
-                    RuntimeError, rf"force: it kept {name} .*{name}\.copy\(\)"
-                ):
+                sentence = rf"force: it kept {name} .*{name}\.copy\(\)"
+                with self.assertRaisesRegex(RuntimeError, sentence):
                     qddot.solve(system, "verlet", step_size=0.1, until=1, q0=[1.0, 2.0])
         # An array that was kept whole has become a copy, which nobody else writes to.
         self.assertTrue(np.array_equal(kept[0], [1.0, 2.0]) and kept[0].base is not None)
@@ -149,15 +142,8 @@ class Callables(unittest.TestCase):
             raise Mine("in K")
 
         system = qddot.System(np.ones(2), force, problems.duffing_potential, pattern="dense")
-        for method in (
-            "verlet",
-            "rk4",
-            "implicit_midpoint",
-            "arkode_erk4",
-            "arkode_dirk4",
-            "cvode_bdf",
-            "ida",
-        ):
+        methods = "verlet rk4 implicit_midpoint arkode_erk4 arkode_dirk4 cvode_bdf ida"
+        for method in methods.split():
             with self.subTest(method):
                 calls = 0
                 knob = "step_size" if qddot.method(method).knob == "step_size" else "rtol"
@@ -226,18 +212,6 @@ class Callables(unittest.TestCase):
         others = [np.full(n, 7.0) for _ in range(50)]
         qddot.solve(system, "verlet", step_size=0.01, until=0.1, q0=others[0])
         self.assertTrue(0.4 < q.min() == q.max() < 0.5)
-
-    def test_a_run_within_a_run(self):
-        inner = qddot.System([1.0], problems.duffing_force)
-
-        def force(q, f):
-            end = qddot.solve(inner, "verlet", step_size=0.1, until=1, q0=q).end.q
-            f[:] = -end
-
-        outer = qddot.System([1.0], force)
-        self.assertEqual(
-            qddot.solve(outer, "verlet", step_size=0.1, until=1, q0=[1.0]).outcome, "reached_end"
-        )
 
 
 if __name__ == "__main__":

@@ -84,75 +84,63 @@ class Interrupts(unittest.TestCase):
                 out, status = interrupted(script(endless))
                 self.assertEqual((out, status), ("interrupted\n", 0))
 
-    def test_a_handler_that_raises_something_else(self):
-        before = """
+    def test_own_handlers_and_runs_within_runs(self):
+        ours = "signal.signal(signal.SIGINT, handler_before)"
+        raising = f"""
 def handler_before(*_):
-    raise LookupError("mine")
-signal.signal(signal.SIGINT, handler_before)
+    raise KeyError("mine")
+{ours}
 """
-        text = script(ENDLESS["run"], before).replace(
-            "except KeyboardInterrupt", "except LookupError"
-        )
-        self.assertEqual(interrupted(text), ("interrupted\n", 0))
-
-    def test_a_handler_that_raises_nothing_has_a_stopped_run(self):
-        before = """
-handler_before = lambda *_: None
-signal.signal(signal.SIGINT, handler_before)
-"""
-        out, status = interrupted(script(ENDLESS["run"], before))
-        self.assertEqual((out, status), ("ended over_budget\n", 0))
-
-    def test_two_interrupts_within_a_run_within_a_run(self):
-        before = """
+        within = """
 handler_before = signal.getsignal(signal.SIGINT)
 def force(q, f):
     qddot.solve(cloth, "verlet", step_size=1e-7, until=1e3)
 system = qddot.System([1.0], force, check=False)
 """
-        self.assertEqual(interrupted(script(ENDLESS["callable"], before)), ("interrupted\n", 0))
+        silent = f"handler_before = lambda *_: None\n{ours}"
+        for text, said in (
+            (script(ENDLESS["run"], raising).replace("KeyboardInterrupt", "KeyError"), "interrupted"),
+            # One that raises nothing has a stopped run.
+            (script(ENDLESS["run"], silent), "ended over_budget"),
+            (script(ENDLESS["callable"], within), "interrupted"),
+        ):
+            self.assertEqual(interrupted(text), (f"{said}\n", 0))
+
+
+def in_threads(work, names):
+    """Works in threads of these names at once, until all are done."""
+    threads = [threading.Thread(target=work, name=name) for name in names]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
 
 
 class Threads(unittest.TestCase):
     def test_two_solves_run_in_two_threads(self):
         # Each waits in its first force for the other's; one after the other they would never meet.
-        meeting = threading.Barrier(2, timeout=60)
+        meeting, met, ends = threading.Barrier(2, timeout=60), set(), []
 
-        def force_of():
-            met = False
+        def force(q, f):
+            if threading.get_ident() not in met:
+                meeting.wait()
+            met.add(threading.get_ident())
+            f[:] = -q
 
-            def force(q, f):
-                nonlocal met
-                if not met:
-                    meeting.wait()
-                met = True
-                f[:] = -q
+        def work():
+            system = qddot.System(np.ones(3), force, check=False)
+            run = dict(step_size=0.01, until=10, q0=np.ones(3))
+            ends.append(qddot.solve(system, "verlet", **run).end.q)
 
-            return force
-
-        ends = {}
-
-        def work(name):
-            system = qddot.System(np.ones(3), force_of(), check=False)
-            ends[name] = qddot.solve(
-                system, "verlet", step_size=0.01, until=10, q0=np.ones(3)
-            ).end.q
-
-        threads = [threading.Thread(target=work, args=(name,)) for name in "ab"]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        self.assertTrue(np.array_equal(ends["a"], ends["b"]))
+        in_threads(work, "ab")
+        self.assertTrue(np.array_equal(*ends))
 
     def test_python_goes_on_beside_a_solve(self):
         solution = []
         cloth = qddot.scenes.cloth(nodes=10)
-        thread = threading.Thread(
-            target=lambda: solution.append(
-                qddot.solve(cloth, "verlet", step_size=1e-8, until=1e3, seconds=3)
-            )
-        )
+        run = dict(step_size=1e-8, until=1e3, seconds=3)
+        work = lambda: solution.append(qddot.solve(cloth, "verlet", **run))
+        thread = threading.Thread(target=work)
         thread.start()
         count = 0
         while thread.is_alive():
@@ -172,11 +160,7 @@ class Threads(unittest.TestCase):
                 run = dict(step_size=2e-3, until=0.2, q0=q0, v0=v0)
                 ends.append(qddot.solve(system, "implicit_midpoint", **run).end.q)
 
-        threads = [threading.Thread(target=work) for _ in range(4)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
+        in_threads(work, "abcd")
         self.assertEqual(len(ends), 20)
         for end in ends:
             self.assertTrue(np.array_equal(end, ends[0]))
@@ -196,12 +180,16 @@ class Threads(unittest.TestCase):
             except ZeroDivisionError:
                 seen["bad"] = "raised"
 
-        threads = [threading.Thread(target=work, name=name) for name in ("good", "bad", "fine")]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
+        in_threads(work, ("good", "bad", "fine"))
         self.assertEqual(seen, {"good": "reached_end", "bad": "raised", "fine": "reached_end"})
+
+
+def said_by(code):
+    """What a process prints that runs the code and ends well."""
+    words = [sys.executable, "-c", code]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    return done.stdout
 
 
 def end_of(scene):
@@ -237,11 +225,7 @@ def force(q, f):
     print(os.waitstatus_to_exitcode(status), flush=True)
 qddot.solve(qddot.System([1.0], force, check=False), "verlet", step_size=1.0, until=1, q0=[1.0])
 """
-        done = subprocess.run(
-            [sys.executable, "-c", code], capture_output=True, text=True, timeout=60
-        )
-        self.assertEqual(set(done.stdout.split()), {"7"}, done.stderr)
-        self.assertEqual(done.returncode, 0)
+        self.assertEqual(set(said_by(code).split()), {"7"})
 
     def test_the_interpreter_exits_while_threads_solve(self):
         for run in (
@@ -261,11 +245,7 @@ print("exits")
 """
             with self.subTest(run):
                 for _ in range(3):
-                    done = subprocess.run(
-                        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60
-                    )
-                    self.assertEqual((done.stdout, done.stderr), ("exits\n", ""))
-                    self.assertEqual(done.returncode, 0)
+                    self.assertEqual(said_by(code), "exits\n")
 
     def test_scenes_and_solutions_go_to_other_processes(self):
         scene = problems.random_scene(5)

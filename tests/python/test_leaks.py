@@ -38,29 +38,7 @@ class Leaks(unittest.TestCase):
         self.assertLess(growth, MOST_BYTES_A_SOLVE * COUNT + 300_000, name)
         self.assertLess(len(gc.get_objects()) - objects, 50, name)
 
-    def test_scenes(self):
-        scene = qddot.scenes.pair()
-        times = np.linspace(0, 0.01, 5)
-        run = dict(step_size=1e-3, until=0.01, save_at=times)
-        self.hold("a scene", lambda: qddot.solve(scene, "verlet", **run))
-        self.hold("scenes", lambda: qddot.solve(qddot.scenes.pair(), "implicit_euler", **run))
-
-    def test_systems(self):
-        q0 = np.ones(3)
-        forces = problems.duffing_force, problems.duffing_potential, problems.duffing_stiffness
-        system = qddot.System(np.ones(3), *forces)
-        run = dict(until=0.02, q0=q0)
-        self.hold("a system", lambda: qddot.solve(system, "dprkn8", rtol=1e-6, **run))
-        self.hold("K", lambda: qddot.solve(system, "semi_implicit_euler", step_size=5e-3, **run))
-        self.hold("SUNDIALS", lambda: qddot.solve(system, "cvode_bdf", rtol=1e-4, **run))
-        self.hold(
-            "systems",
-            lambda: qddot.solve(qddot.System(np.ones(3), *forces), "verlet", step_size=1e-2, **run),
-        )
-
-    def test_failures(self):
-        bad = qddot.System(np.ones(3), failing, check=False)
-
+    def test_none_leaks(self):
         def raises():
             try:
                 qddot.solve(bad, "verlet", step_size=0.1, until=1, q0=np.ones(3))
@@ -68,10 +46,26 @@ class Leaks(unittest.TestCase):
                 return
             raise AssertionError("nothing was raised")
 
-        self.hold("what callables raise", raises)
-        stiff = qddot.scenes.oscillator()
-        self.hold("runs that fail", lambda: qddot.solve(stiff, "verlet", step_size=1, until=1e3))
-        self.hold("refusals", lambda: self.assertRaises(ValueError, qddot.solve, stiff, "none"))
+        pair, stiff = qddot.scenes.pair(), qddot.scenes.oscillator()
+        bad = qddot.System(np.ones(3), failing, check=False)
+        forces = problems.duffing_force, problems.duffing_potential, problems.duffing_stiffness
+        made = lambda: qddot.System(np.ones(3), *forces)
+        system = made()
+        short = dict(step_size=1e-3, until=0.01, save_at=np.linspace(0, 0.01, 5))
+        own = dict(until=0.02, q0=np.ones(3))
+        for name, solve in {
+            "a scene": lambda: qddot.solve(pair, "verlet", **short),
+            "scenes": lambda: qddot.solve(qddot.scenes.pair(), "implicit_euler", **short),
+            "a system": lambda: qddot.solve(system, "dprkn8", rtol=1e-6, **own),
+            "K": lambda: qddot.solve(system, "semi_implicit_euler", step_size=5e-3, **own),
+            "SUNDIALS": lambda: qddot.solve(system, "cvode_bdf", rtol=1e-4, **own),
+            "systems": lambda: qddot.solve(made(), "verlet", step_size=1e-2, **own),
+            "what callables raise": raises,
+            "runs that fail": lambda: qddot.solve(stiff, "verlet", step_size=1, until=1e3),
+            "refusals": lambda: self.assertRaises(ValueError, qddot.solve, stiff, "none"),
+        }.items():
+            with self.subTest(name):
+                self.hold(name, solve)
 
 
 if __name__ == "__main__":

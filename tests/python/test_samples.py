@@ -69,19 +69,9 @@ class BesideSciPy(unittest.TestCase):
     def test_a_small_study_is_measured_and_drawn(self):
         study = ROOT / "experiments/beside_scipy"
         with tempfile.TemporaryDirectory() as folder:
-            words = [
-                "--problems",
-                "planet",
-                "--point-limit",
-                "0.01",
-                "--repeats",
-                "1",
-                "--out",
-                folder,
-            ]
-            done = subprocess.run(
-                [sys.executable, "-B", study / "measure.py", *words], capture_output=True, text=True
-            )
+            words = f"--problems planet --point-limit 0.01 --repeats 1 --out {folder}".split()
+            command = [sys.executable, "-B", study / "measure.py", *words]
+            done = subprocess.run(command, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
             with open(os.path.join(folder, "runs.csv"), encoding="utf-8", newline="") as file:
                 runs = list(csv.DictReader(file))

@@ -35,25 +35,18 @@ MISUSE = USER + "solution.energie\n"
 class Types(unittest.TestCase):
     def run_in_package(self, *words):
         with tempfile.TemporaryDirectory() as cache:
+            command, place = [sys.executable, "-m", *words], os.path.dirname(PACKAGE)
+            environment = {**os.environ, "MYPY_CACHE_DIR": cache}
             return subprocess.run(
-                [sys.executable, "-m", *words],
-                cwd=os.path.dirname(PACKAGE),
-                env={**os.environ, "MYPY_CACHE_DIR": cache},
-                capture_output=True,
-                text=True,
+                command, cwd=place, env=environment, capture_output=True, text=True
             )
 
     def test_the_stub_is_the_extensions(self):
         with tempfile.NamedTemporaryFile("w", suffix=".txt") as allowed:
             allowed.write(ALLOWED)
             allowed.flush()
-            done = self.run_in_package(
-                "mypy.stubtest",
-                "qddot._qddot",
-                "--allowlist",
-                allowed.name,
-                "--ignore-unused-allowlist",
-            )
+            words = f"mypy.stubtest qddot._qddot --ignore-unused-allowlist --allowlist {allowed.name}"
+            done = self.run_in_package(*words.split())
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_the_layer_holds_its_types(self):

@@ -5,7 +5,7 @@ kept where room is scarce."""
 import base64
 import unittest
 import zlib
-from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -18,90 +18,33 @@ def inflated(text):
     return zlib.decompress(base64.b64decode(text), -15)
 
 
-class Positions(unittest.TestCase):
-    """Positions in 16 bits."""
-
-    def test_an_error_is_at_most_half_a_step(self):
-        generator = np.random.default_rng(1)
-        low, size = np.array([-3.0, 10.0, 0.5]), 7.0
-        positions = low + size * generator.random((20, 50, 3))
-        steps, left_box = encoding.quantised(positions, low, size)
-        self.assertFalse(left_box)
-        error = np.abs(low + size * steps / 65535 - positions).max()
-        # The positions themselves are rounded: a few units of the largest, 17 m.
-        self.assertLessEqual(error, size / 65535 / 2 + 1e-14)
-        # The bound is no larger than it has to be.
-        self.assertGreater(error, 0.9 * size / 65535 / 2)
-
-    def test_the_corners_are_told(self):
-        steps, left_box = encoding.quantised([[[0, 0, 0], [2, 2, 2]]], np.zeros(3), 2.0)
-        self.assertFalse(left_box)
-        self.assertEqual(steps.tolist(), [[[0, 0, 0], [65535, 65535, 65535]]])
+class Encoding(unittest.TestCase):
+    """What the pages of whole folders do not show: the format's ends."""
 
     def test_what_is_outside_is_moved_into_the_box_and_said(self):
+        steps, left_box = encoding.quantised([[[0, 0, 0], [2, 2, 2]]], np.zeros(3), 2.0)
+        self.assertEqual((steps.tolist(), left_box), ([[[0] * 3, [65535] * 3]], False))
         for outside in (2.1, -0.1, np.inf, -np.inf, np.nan, 1e300):
             steps, left_box = encoding.quantised([[[1, 1, outside]]], np.zeros(3), 2.0)
             self.assertTrue(left_box)
             self.assertIn(steps[0, 0, 2], (0, 65535))
 
-    def test_changes_are_told_in_planes_of_low_and_high_bytes(self):
-        # 65535 to 0 is a change by one, modulo 65536.
+    def test_changes_and_distances_are_bytes(self):
+        # 65535 to 0 is a change by one, modulo 65536; all low bytes come before the high ones.
         steps = np.array([[[0, 258, 65535]], [[1, 257, 0]]], "<u2")
         data = inflated(encoding.positions_blob(steps))
-        self.assertEqual(data, bytes([0, 2, 255, 1, 255, 1]) + bytes([0, 1, 255, 0, 255, 0]))
-
-    def test_the_steps_stay_as_they_were(self):
-        steps = np.array([[[5, 6, 7]], [[8, 9, 10]]], "<u2")
-        before = steps.copy()
-        encoding.positions_blob(steps)
-        self.assertTrue((steps == before).all())
-
-
-class Distances(unittest.TestCase):
-    """Distances in one byte."""
-
-    def codes(self, *distances):
-        """The codes of relative distances."""
-        return list(inflated(encoding.distances_blob(np.array([distances]))))
-
-    def test_codes_go_with_the_logarithm(self):
-        self.assertEqual(self.codes(0.0, 1e-14, 1.0), [0, 0, 255])
-        # 1 + 254 * 7 / 14 at the middle.
-        self.assertEqual(self.codes(1e-7), [128])
-        self.assertEqual(self.codes(1.1e-14), [2])
-
-    def test_what_is_far_off_or_no_number_is_the_largest(self):
-        self.assertEqual(self.codes(7.0, np.inf, np.nan, 1e30), [255] * 4)
-
-    def test_a_code_is_off_by_at_most_half_a_step(self):
-        distances = 10 ** np.random.default_rng(2).uniform(-13.9, 0, 1000)
-        codes = np.array(self.codes(*distances), float)
-        decades = np.abs((codes - 1) * 14 / 254 - 14 - np.log10(distances))
-        # Logarithms are rounded, of numbers up to 14.
-        self.assertLessEqual(decades.max(), 14 / 254 / 2 + 1e-13)
-
-
-class Indices(unittest.TestCase):
-    """Node numbers."""
-
-    def test_they_are_little_endian_words(self):
-        self.assertEqual(
-            inflated(encoding.index_blob(np.array([[1, 258]]))), bytes([1, 0, 0, 0, 2, 1, 0, 0])
-        )
-
-
-@dataclass(frozen=True)
-class Made:
-    """What stands for an encoded run."""
-
-    run: int
-    frames: tuple
-    size: int
+        self.assertEqual(list(data), [0, 2, 255, 1, 255, 1, 0, 1, 255, 0, 255, 0])
+        # 1 + 254 * 7 / 14 at the middle of the logarithms.
+        distances = [0.0, 1e-14, 1.1e-14, 1e-7, 1.0, 7.0, np.inf, np.nan, 1e30]
+        codes = inflated(encoding.distances_blob(np.array([distances])))
+        self.assertEqual(list(codes), [0, 0, 2, 128, 255, 255, 255, 255, 255])
 
 
 def of_size(bytes_a_frame, bytes_a_run=0):
     """An encode function whose runs take so many bytes a frame, and so many beside."""
-    return lambda run, frames: Made(run, frames, bytes_a_run + bytes_a_frame * len(frames))
+    return lambda run, frames: SimpleNamespace(
+        run=run, frames=frames, size=bytes_a_run + bytes_a_frame * len(frames)
+    )
 
 
 class Budget(unittest.TestCase):
@@ -113,10 +56,8 @@ class Budget(unittest.TestCase):
             self.assertEqual((frames[0], frames[-1]), (0, count - 1))
             self.assertEqual(frames, sorted(set(frames)))
         self.assertEqual(budget.kept_frames(5, 5, 9), [0, 1, 2, 3, 4])
-
-    def test_runs_keep_frames_at_the_same_places(self):
-        whole = budget.kept_frames(60, 60, 11)
-        short = budget.kept_frames(31, 60, 11)
+        # Runs keep frames at the same places.
+        whole, short = budget.kept_frames(60, 60, 11), budget.kept_frames(31, 60, 11)
         self.assertEqual(short[:-1], [place for place in whole if place < 30])
 
     def test_each_choice_has_less_than_the_one_before(self):
@@ -125,18 +66,22 @@ class Budget(unittest.TestCase):
         for (runs, frames), (fewer, less) in zip(choices, choices[1:]):
             self.assertTrue(fewer <= runs and less <= frames and (fewer, less) != (runs, frames))
         self.assertEqual(budget.ladder(1, 1), [(1, 1)])
-
-    def test_all_is_kept_where_there_is_room(self):
-        runs = budget.fit([60] * 5, 5 * 60 * 100, of_size(100))
-        self.assertEqual([run.frames for run in runs], [tuple(range(60))] * 5)
+        choices = budget.ladder(60, 101)
+        self.assertIn((20, 60), choices)
+        self.assertTrue(all(frames >= 60 for runs, frames in choices if runs > 20))
 
     def test_frames_go_first_then_the_least_telling_runs(self):
-        frames_only = budget.fit([60] * 9, 9 * 40 * 100, of_size(100))
-        self.assertEqual(len(frames_only), 9)
+        runs = budget.fit([60] * 5, 5 * 60 * 100, of_size(100))
+        self.assertEqual([run.frames for run in runs], [tuple(range(60))] * 5)
+        self.assertEqual(len(budget.fit([60] * 9, 9 * 40 * 100, of_size(100))), 9)
         both = budget.fit([60] * 20, 150 * 100, of_size(100))
         self.assertEqual([run.run for run in both], list(range(len(both))))
         self.assertTrue(1 < len(both) < 20)
         self.assertEqual(both[0].frames[-1], 59)
+        # What runs take beside their frames costs no frames, as energies, which a run has at all.
+        runs = budget.fit([101] * 30, 30 * (20_000 + 101 * 100), of_size(100, 20_000))
+        self.assertEqual([len(run.frames) for run in runs], [101] * 30)
+        self.assertIsNone(budget.fit([60] * 20, 199, of_size(100)))
 
     def test_what_is_chosen_fits_and_is_not_far_below(self):
         for room in (300, 1000, 5000, 20000, 100000):
@@ -144,23 +89,6 @@ class Budget(unittest.TestCase):
             size = sum(run.size for run in runs)
             # Choices differ by a fifth, or by one run of at least two.
             self.assertTrue(0.5 * room <= size <= room, f"{size} of {room}")
-
-    def test_what_runs_take_beside_their_frames_costs_no_frames(self):
-        # As of energies over time, which a run has at all of its frames. There is room for all.
-        runs = budget.fit([101] * 30, 30 * (20_000 + 101 * 100), of_size(100, 20_000))
-        self.assertEqual([len(run.frames) for run in runs], [101] * 30)
-
-    def test_sixty_frames_stay_while_there_are_more_than_twenty_runs(self):
-        for room in np.linspace(100_000, 1_200_000, 23):
-            runs = budget.fit([101] * 60, room, of_size(100, 10_000))
-            if len(runs) > 20:
-                self.assertGreaterEqual(len(runs[0].frames), 60)
-        choices = budget.ladder(60, 101)
-        self.assertIn((20, 60), choices)
-        self.assertTrue(all(frames >= 60 for runs, frames in choices if runs > 20))
-
-    def test_nothing_is_chosen_where_not_even_two_frames_fit(self):
-        self.assertIsNone(budget.fit([60] * 20, 199, of_size(100)))
 
 
 if __name__ == "__main__":

@@ -9,12 +9,11 @@ import h5py
 import numpy as np
 
 import made_sweeps
+from study_tables import write_table
 
-MOTION_COLUMNS = "file,role,method,knob,value,outcome,t_reached,frames,largest_distance,why".split(
-    ","
-)
-ENERGY_COLUMNS = "file,t,kinetic,potential,total".split(",")
-WHYS = ("fastest at 1e-2", "fastest at 1e-4", "best of SUNDIALS at 1e-2")
+OF_THE_POINT = "method knob value outcome t_reached".split()
+MOTION_COLUMNS = [*"file role frames largest_distance why".split(), *OF_THE_POINT]
+ENERGY_COLUMNS = "file t kinetic potential total".split()
 
 
 class Sheet:
@@ -33,10 +32,8 @@ class Sheet:
         corners = [grid[:-1, :-1], grid[:-1, 1:], grid[1:, :-1], grid[1:, 1:]]
         halves = [np.stack([corners[k] for k in half], -1) for half in ((0, 1, 2), (2, 1, 3))]
         self.faces = np.concatenate([half.reshape(-1, 3) for half in halves])
-        if not has_springs:
-            self.springs = self.springs[:0]
-        if not has_faces or dimension < 3:
-            self.faces = self.faces[:0]
+        self.springs = self.springs[: None if has_springs else 0]
+        self.faces = self.faces[: None if has_faces and dimension == 3 else 0]
 
     def motion(self, times):
         """Positions (frames, nodes, 3) [m] at the times: it swings, the first node stays."""
@@ -80,9 +77,8 @@ def write_vtkhdf(path, sheet, times, positions, distance):
         velocity = np.gradient(positions, times, axis=0) if frames > 1 else 0 * positions
         data.create_dataset("velocity", data=velocity.reshape(-1, 3).astype("f4"), **options)
         if distance is not None:
-            data.create_dataset(
-                "distance_to_reference", data=distance.reshape(-1).astype("f4"), **options
-            )
+            values = distance.reshape(-1).astype("f4")
+            data.create_dataset("distance_to_reference", data=values, **options)
 
 
 def energies(name, times, error):
@@ -102,9 +98,8 @@ def write_motions(folder, sheet, rows, frames, runs, noise):
     exact = made_sweeps.UNTIL * np.linspace(0, 1, frames)
     size = float(np.ptp(sheet.motion(exact).reshape(-1, 3), axis=0).max())
     displacement = displacement_of(sheet)
-    best = min(
-        (row for row in rows if row["error_position"] != ""), key=lambda row: row["error_position"]
-    )
+    good = (row for row in rows if row["outcome"] == "reached_end")
+    best = min(good, key=lambda row: row["error_position"])
     chosen = [best, *kept(rows, best, runs)]
     table, energy = [], []
     for number, row in enumerate(chosen):
@@ -123,24 +118,16 @@ def write_motions(folder, sheet, rows, frames, runs, noise):
             largest = float(distance.max() / displacement) if displacement else ""
         write_vtkhdf(folder / name, sheet, times, positions, distance)
         table.append(
-            {key: row[key] for key in ("method", "knob", "value", "outcome", "t_reached")}
+            {key: row[key] for key in OF_THE_POINT}
             | {"file": name, "role": "run" if number else "reference", "frames": len(times)}
-            | {"largest_distance": largest, "why": why(row, number)}
+            | {"largest_distance": largest, "why": "fastest at 1e-2" if number else ""}
         )
         energy += energies(name, times, 0.3 * noise * number)
-    made_sweeps.write_table(folder / "motions.csv", MOTION_COLUMNS, table)
-    made_sweeps.write_table(folder / "motions_energy.csv", ENERGY_COLUMNS, energy)
+    write_table(folder / "motions.csv", MOTION_COLUMNS, table)
+    write_table(folder / "motions_energy.csv", ENERGY_COLUMNS, energy)
     origin = {"interrupted": None, "exit_status": 0, "version": "0.1.0"}
     origin |= {"until": made_sweeps.UNTIL, "displacement": displacement, "runs_left_out": 0}
-    text = json.dumps(origin)
-    (folder / "motions.json").write_text(text + "\n", encoding="utf-8")
-
-
-def why(row, number):
-    """Why a motion is kept, in words; the reference has none."""
-    if not number:
-        return ""
-    return "diverges" if row["outcome"] == "diverged" else WHYS[number % len(WHYS)]
+    (folder / "motions.json").write_text(json.dumps(origin))
 
 
 def kept(rows, best, runs):
@@ -158,17 +145,9 @@ def displacement_of(sheet):
 
 
 def make_folder(
-    folder,
-    scene="made",
-    side=12,
-    frames=40,
-    runs=6,
-    noise=1e-3,
-    dimension=3,
-    has_faces=True,
-    has_springs=True,
-    has_motions=True,
-):
+    folder, scene="made", side=12, frames=40, runs=6, noise=1e-3, dimension=3, has_faces=True,
+    has_springs=True, has_motions=True,
+):  # fmt: skip
     """Writes all files into the folder, which may be new; `noise`: the least error of a run's
     nodes at its end, as a part of the scene's size."""
     folder = Path(folder)

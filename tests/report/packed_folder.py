@@ -1,43 +1,104 @@
-"""A test's folder of results, whose page is made with a trivial template."""
+"""A test's folder of results, whose page is read as a browser does."""
 
+import base64
 import contextlib
-import csv
 import io
 import json
+import re
 import tempfile
 import unittest
+import zlib
+from html.parser import HTMLParser
 from pathlib import Path
-from unittest import mock
+
+import numpy as np
 
 import made_folder
-import page
 import report
-from decoding import Page
-from made_sweeps import judge
+from study_tables import judge, read_table, write_table
 
-TEMPLATE = (
-    "<!DOCTYPE html><html><head><title>{{title}}</title><!-- qddot:style --></head><body>"
-    "<h1>{{title}}</h1><noscript><!-- qddot:static --></noscript>"
-    "<!-- qddot:data --><!-- qddot:scripts --></body></html>\n"
-)
+
+class Elements(HTMLParser):
+    """All elements of a page with their attributes and texts."""
+
+    def __init__(self):
+        super().__init__(convert_charrefs=True)
+        self.found, self.open = [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.found.append([tag, dict(attrs), ""])
+        self.open.append(self.found[-1])
+
+    def handle_endtag(self, tag):
+        while self.open and self.open.pop()[0] != tag:
+            pass
+
+    def handle_data(self, data):
+        if self.open:
+            self.open[-1][2] += data
+
+
+def elements(text):
+    """The elements of a page as lists of tag, attributes and text."""
+    parser = Elements()
+    parser.feed(text)
+    parser.close()
+    return parser.found
+
+
+def refuse(word):
+    """JSON in a page has no such number."""
+    raise ValueError(f"the JSON has the number {word}")
+
+
+class Page:
+    """A page's JSON as `data` and its blobs, inflated."""
+
+    def __init__(self, path):
+        self.text = path.read_text(encoding="utf-8")
+        scripts = re.findall(r'<script type="([^"]*)" id="([^"]*)">(.*?)</script>', self.text, re.S)
+        texts = {name: (kind, text) for kind, name, text in scripts}
+        kind, self.json = texts.pop("report")
+        assert kind == "application/json"
+        self.data = json.loads(self.json, parse_constant=refuse)
+        self.blobs = {
+            name: zlib.decompress(base64.b64decode(text, validate=True), -15)
+            for name, (kind, text) in texts.items()
+            if kind == "text/plain"
+        }
+
+    def positions(self, run):
+        """The positions (frames, nodes, 3) of a run in m, by changes of 16-bit steps."""
+        data = np.frombuffer(self.blobs[run["positions"]], np.uint8).astype(np.uint32)
+        half = len(data) // 2
+        changes = (data[:half] + 256 * data[half:]).reshape(len(run["times"]), -1, 3)
+        motion, steps = self.data["motion"], np.cumsum(changes, axis=0) % 65536
+        return np.array(motion["low"]) + motion["size"] * steps / 65535
+
+    def distances(self, run):
+        """The relative distances (frames, nodes) of a run that its codes stand for."""
+        codes = np.frombuffer(self.blobs[run["distances"]], np.uint8).astype(float)
+        values = np.where(codes == 0, 0, 10 ** ((codes - 1) * 14 / 254 - 14))
+        return values.reshape(len(run["times"]), -1)
+
+
+def edit_json(path, change):
+    """Changes a JSON file's content."""
+    content = json.loads(path.read_text())
+    change(content)
+    path.write_text(json.dumps(content))
+
+
+def rewrite(path, rows):
+    """Writes a table anew."""
+    write_table(path, list(rows[0]), rows)
 
 
 class Folder(unittest.TestCase):
-    """A folder of results, and a trivial page in the place of the real one."""
+    """A folder of results and its page."""
 
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.home = Path(temporary.name) / "home"
-        (self.home / "page").mkdir(parents=True)
-        (self.home / "page/page.html").write_text(TEMPLATE)
-        (self.home / "page/a.js").write_text("start('<!' + '-- qddot:data -->');")
-        (self.home / "page/a.css").write_text("p { color: red; }")
-        own = {"HOME": self.home, "STYLES": ["page/a.css"], "SCRIPTS": ["page/a.js"]}
-        patch = mock.patch.multiple(page, **own)
-        patch.start()
-        self.addCleanup(patch.stop)
-        self.folder = Path(temporary.name) / "results"
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory())) / "results"
 
     def make(self, **options):
         """Makes the folder and its page."""
@@ -46,8 +107,7 @@ class Folder(unittest.TestCase):
 
     def call(self):
         """The packer's exit status and what it says on stderr."""
-        said = io.StringIO()
-        with contextlib.redirect_stderr(said):
+        with contextlib.redirect_stderr(io.StringIO()) as said:
             status = report.main([str(self.folder)])
         return status, said.getvalue()
 
@@ -63,19 +123,12 @@ class Folder(unittest.TestCase):
 
     def edit(self, name, change):
         """Changes a JSON file's content."""
-        path = self.folder / name
-        content = json.loads(path.read_text())
-        change(content)
-        path.write_text(json.dumps(content))
+        edit_json(self.folder / name, change)
 
     def rows(self, name="points.csv"):
         """The rows of a table."""
-        with open(self.folder / name, newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+        return read_table(self.folder / name)
 
     def rewrite(self, name, rows):
         """Writes a table anew."""
-        with open(self.folder / name, "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, list(rows[0]))
-            writer.writeheader()
-            writer.writerows(rows)
+        rewrite(self.folder / name, rows)

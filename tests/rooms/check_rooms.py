@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""Checks from every #include that folders (rooms) include only the rooms that the plan allows.
+"""Checks from every #include that folders (rooms) include only the rooms that the plan allows, and
+finds types and inline functions that are defined twice under one name, which no compiler sees.
 
 The table below is the plan: each room with the rooms that it may include, beside itself and all
-that those may include. Call: check_rooms.py ROOT [--arrows]; --arrows prints the includes.
+that those may include. Of two definitions the linker keeps one copy of each function that both have,
+and unoptimised code then calls it for the other, too. Reads formatted code: what is of a namespace
+starts its line. Call: check_rooms.py ROOT [--arrows]; --arrows prints the includes.
 """
 
 import re
@@ -61,6 +64,15 @@ NOT_IN_A_LIBRARY = re.compile(r"#include <(CLI/|nlohmann/)|fmt::print|std::c(out
 
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 
+OPENS = re.compile(r"^(?:inline )?namespace(?: (\w[\w: ]*))? \{$")
+CLOSES = re.compile(r"^\}  // namespace")
+SUITE = re.compile(r"^BOOST_(?:AUTO|FIXTURE)_TEST_SUITE\((\w+)")
+SUITE_ENDS = re.compile(r"^BOOST_AUTO_TEST_SUITE_END")
+TYPE = re.compile(
+    r"^(?:template <.*> )?(?:struct|class|enum class|union) (?:\[\[\w+\]\] )?([\w:]+)\b(?!.*;$)(?!<)"
+)
+INLINE = re.compile(r"^(?:constexpr|inline) .*\)(?: const)?(?= \{)")
+
 
 def path_of(name):
     """The file that an include names, from the root."""
@@ -96,9 +108,40 @@ def check(root):
     return arrows, wrong
 
 
+def definitions(text):
+    """The qualified names of the types that a file defines for others to see, and the signatures of
+    its inline functions."""
+    spaces = []
+    for line in text.splitlines():
+        if opened := OPENS.match(line):
+            spaces.append(opened[1] and opened[1].replace("inline ", ""))  # None: nobody sees it
+        elif suite := SUITE.match(line):
+            spaces.append(suite[1])
+        elif CLOSES.match(line) or SUITE_ENDS.match(line):
+            spaces.pop()
+        elif None not in spaces:
+            if found := TYPE.match(line):
+                yield "::".join([*spaces, found[1]])
+            elif found := INLINE.match(line):
+                yield "::".join([*spaces, found[0]])
+
+
+def defined_twice(root):
+    """A sentence for each name that has two definitions."""
+    places = {}
+    for top in ("src", "integrators", "experiments", "tests"):
+        for file in sorted((root / top).rglob("*.[ch]pp")):
+            for name in definitions(file.read_text()):
+                places.setdefault(name, []).append(str(file.relative_to(root)))
+    for name, files in places.items():
+        if len(files) > 1:
+            yield f"{name} is defined in {' and in '.join(files)}"
+
+
 def main(arguments):
     root = Path(arguments[0])
     arrows, wrong = check(root)
+    wrong += defined_twice(root)
     if not arrows:
         wrong.append(f"{root} has no includes: is it the root of the tree?")
     if "--arrows" in arguments:

@@ -3,7 +3,6 @@
 and word numbers as they say."""
 
 import json
-import math
 import tempfile
 import unittest
 from pathlib import Path
@@ -52,9 +51,7 @@ class Records(unittest.TestCase):
     """Reading of points.csv and chart.json."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
+        self.folder = self.enterContext(tempfile.TemporaryDirectory())
         self.position = {"name": "position", "column": "error_position", "floor": 1e-9}
         self.position |= {"floor_words": "certified", "rounding_decides_below": None}
         self.position |= {"errors": [2e-3], "at_least": [1e-3], "at_most": [3e-3], "counts": [True]}
@@ -88,76 +85,36 @@ class Records(unittest.TestCase):
         self.assertEqual((view.ranked, view.staircase), ({1e-2: [run], 1e-3: []}, [run]))
         self.assertTrue(view.subtitle.endswith(" in the node's own part, 0.5 to 2 m"))
 
-    def test_an_error_that_is_not_known_is_no_number(self):
-        self.position["errors"] = [None]
-        self.assertTrue(math.isnan(self.read().judged.runs[0].error))
-
-    def test_a_table_need_not_say_the_families_or_solves_of_methods(self):
-        (run,) = self.read(
-            "scene,method,knob,value,outcome,time_s\ns,verlet,step_size,1e-4,reached_end,0.5\n"
-        ).judged.runs
-        self.assertEqual((run.family, run.stock_of, run.solves), ("", "", 0))
-
     def test_a_refusal_names_file_line_and_cell(self):
         row = "s,verlet,hand-written,,step_size,{},reached_end,1\n"
-        self.assertEqual(
-            self.refusal(HEADER + row.format("1e-3") + row.format("tiny")),
-            "DIR/points.csv, line 3: value is 'tiny', not a number.",
-        )
-        self.assertEqual(
-            self.refusal(HEADER + row.format("-1")),
-            "DIR/points.csv, line 2: value must be a positive number.",
-        )
-        self.assertEqual(
-            self.refusal(HEADER.replace(",time_s", "")), "DIR/points.csv has no column time_s."
-        )
-        self.assertEqual(
-            self.refusal(HEADER + "s,,hand-written,,step_size,1,reached_end,1\n"),
-            "DIR/points.csv, line 2: method, knob and outcome must not be empty.",
-        )
-
-    def test_a_record_of_another_table_is_refused(self):
+        for table, words in (
+            (HEADER + A_ROW + row.format("tiny"), ", line 3: value is 'tiny', not a number"),
+            (HEADER + row.format("-1"), ", line 2: value must be a positive number"),
+            (HEADER.replace(",time_s", ""), " has no column time_s"),
+            (
+                HEADER + "s,,hand-written,,step_size,1,reached_end,1\n",
+                ", line 2: method, knob and outcome must not be empty",
+            ),
+        ):
+            self.assertEqual(self.refusal(table), f"DIR/points.csv{words}.")
         self.assertRegex(self.refusal(HEADER + A_ROW + A_ROW), "^DIR/chart.json cannot be read: ")
         del self.chart["knobs"]
         self.assertEqual(self.refusal(), "DIR/chart.json cannot be read: 'knobs'.")
-
-    def test_without_a_record_it_is_said_what_makes_one(self):
-        Path(self.folder, "points.csv").write_text(HEADER + A_ROW, encoding="utf-8")
+        Path(self.folder, "chart.json").unlink()
         with self.assertRaisesRegex(BadInput, "missing: work_precision --judge .* makes it"):
             record.read_record(self.folder)
 
 
-class Front(unittest.TestCase):
-    """The band of the fastest methods."""
-
-    def test_neighbouring_accuracies_of_one_method_are_one_stretch(self):
-        points = a_view([a_run("a", error=5e-4), a_run("b", error=5e-6, time=2)]).front
-        half = math.sqrt(10)
-        (first, high, top), (second, bottom, low) = (
-            (method, low, high) for method, low, high in band.stretches(points)
-        )
-        self.assertEqual((first, second), ("a", "b"))
-        # a from 1e-1 to 1e-3 and half a decade beyond, b from there on.
-        self.assertAlmostEqual(top, 0.1 * half)
-        self.assertAlmostEqual(high, 1e-3 / half)
-        self.assertAlmostEqual(low, high)
-        self.assertAlmostEqual(bottom, 1e-5 / half)
-
-
 class Prominent(unittest.TestCase):
-    """The methods that stand out."""
+    """The methods that stand out, and how strongly lines are drawn."""
 
     def strong(self, runs):
         """Their names, with the front that these runs make."""
         return prominent.strong_methods(a_view(runs))
 
-    def crowd(self, count=20):
-        """Methods that are slower than all others, with a point each."""
-        return [a_run(f"slow{i}", error=5e-2, time=100 + i) for i in range(count)]
-
     def test_the_front_and_then_the_best_of_each_kind(self):
         runs = [
-            *self.crowd(),
+            *(a_run(f"slow{i}", error=5e-2, time=100 + i) for i in range(20)),
             a_run("fine", error=1e-8, time=2),
             a_run("coarse", error=1e-3, time=1),
             a_run("solving", error=1e-3, time=40, solves=10),
@@ -169,6 +126,19 @@ class Prominent(unittest.TestCase):
         # The best of SUNDIALS comes before what solves linear systems in either family.
         expected = ["coarse", "fine", "erk", "bdf_klu", "solving", "bdf"]
         self.assertEqual(self.strong(runs), expected)
+        # What stands out has full colour and a name, and the rest is pale.
+        view = a_view(runs)
+        chosen = emphasis.Prominent([view])
+        strokes = {s[0].method: chosen.stroke(view, s) for s in record.sweeps(runs)}
+        named = {method for method, stroke in strokes.items() if stroke.label_size}
+        self.assertEqual(named, set(expected))
+        self.assertEqual(strokes["fine"].alpha, 1)
+        self.assertGreater(min(style.to_rgb(strokes["slow3"].color)), 0.7)
+        self.assertEqual(chosen.looks["bdf_klu"].family, style.STOCK)
+        # Among few lines, far ones are not faint.
+        everything = emphasis.Everything([view])
+        alphas = {everything.stroke(view, sweep).alpha for sweep in record.sweeps(runs)}
+        self.assertEqual(alphas, {emphasis.BACKGROUND, 1.0})
 
     def test_at_most_a_dozen(self):
         # Nine methods on the front and a best of each of six families more.
@@ -177,67 +147,14 @@ class Prominent(unittest.TestCase):
         strong = self.strong(runs)
         self.assertEqual(len(strong), prominent.MOST)
         self.assertEqual(strong[:10], [f"front{i}" for i in range(2, 11)] + ["f0"])
-
-    def test_of_few_methods_all(self):
-        runs = [a_run(f"m{i}", error=0.5, time=1 + i) for i in range(prominent.MOST)]
-        runs.append(a_run("failed", outcome="diverged"))
-        self.assertEqual(set(self.strong(runs)), {f"m{i}" for i in range(prominent.MOST)})
+        stretches = list(band.stretches(a_view(runs[:2]).front))
+        self.assertEqual([method for method, _, _ in stretches], ["front2", "front3"])
+        self.assertAlmostEqual(stretches[0][1], stretches[1][2])
 
     def test_where_none_is_accurate_the_smallest_error(self):
         runs = [a_run(f"m{i}", error=2 - 0.05 * i, time=1 + i) for i in range(20)]
         self.assertEqual(self.strong(runs), ["m19"])
         self.assertEqual(self.strong([a_run(outcome="diverged")]), [])
-
-
-class Emphasis(unittest.TestCase):
-    """How strongly lines are drawn."""
-
-    def view(self, count):
-        """A view of one fast method and many slow ones."""
-        runs = [
-            a_run("fast", error=1e-6),
-            *(a_run(f"m{i}", 1e-3, 1e-2, 9 + i) for i in range(count)),
-        ]
-        return a_view(runs)
-
-    def strokes(self, kind, count):
-        """The strokes of its lines by method."""
-        view = self.view(count)
-        chosen = kind([view])
-        return {s[0].method: chosen.stroke(view, s) for s in record.sweeps(view.runs)}
-
-    def test_what_stands_out_has_full_colour_and_a_name_and_the_rest_is_pale(self):
-        strokes = self.strokes(emphasis.Prominent, 40)
-        named = {method for method, stroke in strokes.items() if stroke.label_size}
-        self.assertEqual(named, {"fast"})
-        fast = strokes["fast"]
-        self.assertEqual((fast.color, fast.alpha, fast.label_alpha), (style.WARM[0], 1, 1))
-        # The contrast of pale lines on white is small.
-        self.assertGreater(min(style.to_rgb(strokes["m3"].color)), 0.7)
-        self.assertLess(strokes["m3"].line["linewidth"], fast.line["linewidth"])
-
-    def test_of_all_methods_each_has_a_name_and_far_ones_are_faint_in_a_crowd(self):
-        for count, far in ((40, emphasis.BACKGROUND), (emphasis.CROWD - 1, 1.0)):
-            strokes = self.strokes(emphasis.Everything, count)
-            self.assertTrue(all(stroke.label_size for stroke in strokes.values()))
-            self.assertEqual((strokes["fast"].alpha, strokes["m3"].alpha), (1.0, far))
-
-    def test_the_key_counts_pale_lines_of_all_panels(self):
-        view, more = self.view(15), self.view(20)
-        words, _ = emphasis.Prominent([view, more]).rest()
-        self.assertEqual(words, "pale: 20 other methods (--all names them)")
-        self.assertIsNone(emphasis.Prominent([self.view(3)]).rest())
-
-    def test_a_stock_way_that_stands_out_is_dotted_without_its_method(self):
-        own = a_run("bdf", 1e-3, 0.5, 30, family="sundials")
-        stock = a_run("bdf_klu", 1e-3, 1e-2, 30, family="sundials", stock_of="bdf")
-        erk = a_run("erk", 1e-3, 1e-2, 20, family="sundials")
-        runs = [*self.view(20).runs, own, stock, erk]
-        view = a_view(runs)
-        chosen = emphasis.Prominent([view])
-        self.assertIn("bdf_klu", chosen.shown)
-        self.assertNotIn("bdf", chosen.shown)
-        self.assertEqual(chosen.looks["bdf_klu"].family, style.STOCK)
 
 
 class Causes(unittest.TestCase):
@@ -268,14 +185,6 @@ class Causes(unittest.TestCase):
             ("Newton failed", 1, "some rtol between"),
         ]
         self.assertEqual(found, expected)
-
-    def test_methods_without_a_point_are_named(self):
-        found = self.lines(self.sweep("a", ["diverged"] * 2), self.sweep("b", ["diverged"] * 2))
-        expected = [("no point at all", 2, "a, b"), ("diverged", 2, "a, b")]
-        self.assertEqual(found, expected)
-        self.assertEqual(
-            causes.shortening(["a", "b", "c"])[1:], ["a, b and 1 more", "a and 2 more"]
-        )
 
     def test_the_strip_is_low_whatever_failed(self):
         sweeps = [self.sweep(f"m{i}", [f"cause_{i % 9}", None, f"end_{i}"]) for i in range(60)]
@@ -340,12 +249,6 @@ class Words(unittest.TestCase):
             ["3 s", "5 ms", "20 µs", "4 ns", "0.001 ns", "1 s"],
         )
 
-    def test_a_narrow_range_is_widened_about_its_middle(self):
-        low, high = style.widened(1.0, 2.0, 1)
-        self.assertAlmostEqual(high / low, 10)
-        self.assertAlmostEqual(low * high, 2.0)
-        self.assertEqual(style.widened(1.0, 100.0, 1), (1.0, 100.0))
-
     def test_long_and_odd_names_fit_one_line(self):
         self.assertEqual(names.shown("a\nb"), "a b")
         self.assertEqual(names.shown("$x$"), r"\$x\$")
@@ -356,16 +259,18 @@ class Words(unittest.TestCase):
         )
 
     def test_where_in_a_sweep_runs_failed(self):
-        span, sweep = failures.span_in_words, [1e-3, 1e-2, 1e-1, 1]
-        self.assertEqual(span(sweep, sweep, "h"), "every h")
-        self.assertEqual(span([1e-1, 1], sweep, "h"), "h ≥ 0.1")
-        self.assertEqual(span([1e-3, 1e-2], sweep, "h"), "h ≤ 1e-2")
-        self.assertEqual(span([1e-2], sweep, "h"), "h = 1e-2")
-        self.assertEqual(span([1e-2, 1e-1], sweep, "h"), "1e-2 ≤ h ≤ 0.1")
-        self.assertEqual(span([1e-3, 1e-1], sweep, "h"), "h = 1e-3, 0.1")
-        self.assertEqual(span([1e-3], [1e-3], "h"), "h = 1e-3")
+        sweep = [1e-3, 1e-2, 1e-1, 1]
+        for failed, words in (
+            (sweep, "every h"),
+            ([1e-1, 1], "h ≥ 0.1"),
+            ([1e-3, 1e-2], "h ≤ 1e-2"),
+            ([1e-2], "h = 1e-2"),
+            ([1e-2, 1e-1], "1e-2 ≤ h ≤ 0.1"),
+            ([1e-3, 1e-1], "h = 1e-3, 0.1"),
+        ):
+            self.assertEqual(failures.span_in_words(failed, sweep, "h"), words)
         near_limit = [1e-3, 1.61e-3, 1.62e-3, 1e-2]
-        self.assertEqual(span(near_limit[1:3], near_limit, "h"), "h = 1.6e-3")
+        self.assertEqual(failures.span_in_words(near_limit[1:3], near_limit, "h"), "h = 1.6e-3")
 
 
 class Labels(unittest.TestCase):

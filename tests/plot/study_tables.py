@@ -1,0 +1,45 @@
+"""Tables that tests write as a study's, the record that its program makes of them, and pictures."""
+
+import csv
+import os
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+EXPERIMENTS = Path(__file__).resolve().parents[2] / "experiments"
+PROGRAMS = Path(os.environ.get("QDDOT_BIN", "build/bin")).resolve()
+
+
+def write_table(path, columns, rows):
+    """Writes dicts as a CSV file; numbers to their last bit, without columns that are not named."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def read_table(path):
+    """The rows of a CSV file."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def judge(folder):
+    """Makes the record of the tables in a folder."""
+    words = [PROGRAMS / "work_precision", "--judge", folder, "--force"]
+    subprocess.run(words, capture_output=True, check=True)
+
+
+def draw(script, *words):
+    """Runs a script that draws, as ./run does; its exit status and what it says on stderr."""
+    environment = {**os.environ, "PYTHONPATH": str(EXPERIMENTS / "plot")}
+    command = [sys.executable, "-B", EXPERIMENTS / script, *words]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    return done.returncode, done.stderr
+
+
+def texts_of(picture):
+    """All texts of an SVG picture, in the order of drawing."""
+    texts = (text.strip() for text in ElementTree.parse(picture).getroot().itertext())
+    return [text for text in texts if text]
