@@ -1,6 +1,3 @@
-#include <limits>
-
-#include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
 #include "tests/measure.hpp"
@@ -11,8 +8,6 @@ BOOST_AUTO_TEST_SUITE(all_images)
 using namespace qddot;
 
 namespace {
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // All images of the nodes as nodes of their own, with x_full = P q. Image s of node i has the
 // number 2^D i + s; bit d of s says that coordinate d is reversed. Mass, load and each spring are
@@ -75,52 +70,28 @@ struct Whole {
 // Each node's sums have some 60 springs of up to 1e4 N and 1e4 N/m, each term rounded a few times.
 constexpr double round_off = 500 * eps;
 
-struct Difference {
-  double v, mass, f, k, acceleration;  // relative to the largest entry
-};
-
-// Differences of the network with image links to `whole`, which has all images.
-Difference difference(const ImageSample& s, const Whole& whole) {
-  const auto system = make_mass_spring(s.network), full = make_mass_spring(whole.network);
-  const Eigen::MatrixXd& p = whole.p;
-  const Vec x = p * s.q, f = force_at(*system, s.q), f_full = force_at(*full, x);
-  const Eigen::MatrixXd k = dense(stiffness_at(*system, s.q));
-  const Eigen::MatrixXd mass = p.transpose() * full->mass().asDiagonal() * p;
-  const double v = system->potential(s.q);
-  const Vec pushed = p * f.cwiseQuotient(system->mass());
-  return {std::abs(full->potential(x) - v) / (std::abs(v) + f.cwiseAbs().maxCoeff()),
-          distance(mass, Eigen::MatrixXd(system->mass().asDiagonal())),
-          distance(p.transpose() * f_full, f) / f.cwiseAbs().maxCoeff(),
-          distance(p.transpose() * dense(stiffness_at(*full, x)) * p, k) / k.cwiseAbs().maxCoeff(),
-          distance(f_full.cwiseQuotient(full->mass()), pushed) / pushed.cwiseAbs().maxCoeff()};
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(the_network_is_the_one_of_all_images_seen_from_one_side) {
   for_random_images([](const ImageSample& s) {
-    const Difference d = difference(s, Whole(s.network));
-    BOOST_TEST(d.v < round_off);
-    BOOST_TEST(d.mass < 8 * 2 * eps);  // eight shares of at most 2 kg
-    BOOST_TEST(d.f < round_off);
-    BOOST_TEST(d.k < round_off);
+    const Whole whole(s.network);
+    const auto system = make_mass_spring(s.network), full = make_mass_spring(whole.network);
+    const Eigen::MatrixXd& p = whole.p;
+    const Vec x = p * s.q, f = force_at(*system, s.q), f_full = force_at(*full, x);
+    const Eigen::MatrixXd k = dense(stiffness_at(*system, s.q));
+    const Eigen::MatrixXd mass = p.transpose() * full->mass().asDiagonal() * p;
+    const double v = system->potential(s.q), largest = f.cwiseAbs().maxCoeff();
+    BOOST_TEST(std::abs(full->potential(x) - v) < round_off * (std::abs(v) + largest));
+    // Eight shares of at most 2 kg.
+    BOOST_TEST(distance(mass, Eigen::MatrixXd(system->mass().asDiagonal())) < 8 * 2 * eps);
+    BOOST_TEST(distance(p.transpose() * f_full, f) < round_off * largest);
+    BOOST_TEST(distance(p.transpose() * dense(stiffness_at(*full, x)) * p, k) <
+               round_off * k.cwiseAbs().maxCoeff());
     // The images move as images do, unless a node on a plane has images that leave it.
-    if (s.network.zero_coordinates.empty()) BOOST_TEST(d.acceleration < round_off);
-  });
-}
-
-BOOST_AUTO_TEST_CASE(a_mirror_or_a_load_of_all_images_that_is_off_is_noticed) {
-  for_random_images([](const ImageSample& s) {
-    ImageSample turned = s, loaded = s;
-    // Node 5 lies on no plane; its image and it differ in every coordinate.
-    for (auto& image : turned.network.image_links) {
-      if (image.i == 5 && image.j == 0) image.mirror = -image.mirror;
-    }
-    loaded.network.load.tail(1)[0] += 1e-3;
-    const Difference wrong = difference(s, Whole(turned.network));
-    BOOST_TEST(wrong.f > 1e9 * round_off);
-    BOOST_TEST(wrong.k > 1e9 * round_off);
-    BOOST_TEST(difference(s, Whole(loaded.network)).f > round_off);
+    if (!s.network.zero_coordinates.empty()) return;
+    const Vec pushed = p * f.cwiseQuotient(system->mass());
+    BOOST_TEST(distance(f_full.cwiseQuotient(full->mass()), pushed) <
+               round_off * pushed.cwiseAbs().maxCoeff());
   });
 }
 

@@ -1,12 +1,7 @@
-#include <limits>
-
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/block_diagonal_system.hpp"
-#include "qddot/model/constrained_system.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
-#include "tests/problems.hpp"
 
 BOOST_AUTO_TEST_SUITE(weighted_stiffness)
 
@@ -14,29 +9,16 @@ using namespace qddot;
 
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-
 Eigen::MatrixXd weighted_at(const System& system, const Vec& q, double compression) {
   SymmetricMatrix k = system.stiffness_pattern();
   offered<SplitStiffness>(system).weighted_stiffness(q, compression, k);
   return dense(k);
 }
 
-double largest_eigenvalue(const Eigen::MatrixXd& k) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k).eigenvalues().maxCoeff();
-}
-
 template <class Check>
 void for_systems(double stretch, const Check& check) {
-  std::mt19937 random(34);
-  for (const int dimension : {1, 2, 3}) {
-    for (int sample = 0; sample < 3; ++sample) {
-      const Problem p = random_network(random, dimension, 6, stretch);
-      check(*make_mass_spring(p.network), p.initial.q);
-      const ImageSample s = random_images(random, dimension, stretch, sample == 1);
-      check(*make_mass_spring(s.network), s.q);
-    }
-  }
+  for_networks({stretch},
+               [&](const Network& network, const Vec& q) { check(*make_mass_spring(network), q); });
 }
 
 }  // namespace
@@ -76,30 +58,6 @@ BOOST_AUTO_TEST_CASE(springs_in_tension_and_springs_on_a_line_keep_all_of_theirs
   const auto system = make_mass_spring(p.network);
   BOOST_TEST(distance(weighted_at(*system, p.initial.q, 0),
                       dense(stiffness_at(*system, p.initial.q))) == 0);
-}
-
-BOOST_AUTO_TEST_CASE(held_unknowns_and_parts_follow) {
-  std::mt19937 random(36);
-  const Problem p = random_network(random, 2, 4, 0.6);
-  const auto system = make_mass_spring(p.network);
-  const Vec& q = p.initial.q;
-  std::vector<bool> is_held(static_cast<std::size_t>(q.size()));
-  is_held[3] = true;
-  const ConstrainedSystem held(make_mass_spring(p.network), is_held);
-  Eigen::MatrixXd expected = weighted_at(*system, q, 0.5);
-  expected.row(3).setZero();
-  expected.col(3).setZero();
-  BOOST_TEST(distance(weighted_at(held, q, 0.5), expected) == 0);
-
-  std::vector<std::unique_ptr<System>> parts;
-  for (int i = 0; i < 2; ++i) parts.push_back(make_mass_spring(p.network));
-  const BlockDiagonalSystem divided(std::move(parts));
-  Vec both(2 * q.size());
-  both << q, 1.1 * q;
-  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(both.size(), both.size());
-  blocks.topLeftCorner(q.size(), q.size()) = weighted_at(*system, q, 0.5);
-  blocks.bottomRightCorner(q.size(), q.size()) = weighted_at(*system, 1.1 * q, 0.5);
-  BOOST_TEST(distance(weighted_at(divided, both, 0.5), blocks) == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
