@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <stdexcept>
@@ -51,6 +52,13 @@ Eigen::MatrixXd finite_difference_jacobian(const Function& g, const Vec& q, doub
 // The symmetric matrix whose lower triangle is `lower`.
 inline Eigen::MatrixXd dense(const SymmetricMatrix& lower) {
   return Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
+}
+
+// Whether two matrices have entries at the same places, stored alike.
+inline bool same_pattern(const SymmetricMatrix& a, const SymmetricMatrix& b) {
+  return a.nonZeros() == b.nonZeros() && a.isCompressed() && b.isCompressed() &&
+         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.cols() + 1, b.outerIndexPtr()) &&
+         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr());
 }
 
 // A capability that a test needs; throws where the system does not offer it.

@@ -160,17 +160,6 @@ BOOST_AUTO_TEST_CASE(
   BOOST_TEST(std::isinf(linear_limit(Method{})));  // nobody is told that a step is above it
 }
 
-BOOST_AUTO_TEST_CASE(a_wrong_or_missing_limit_is_found) {
-  Method method = method_named("rk4");
-  for (const std::optional<double> wrong :
-       {std::optional<double>(2), std::optional<double>(0), std::optional<double>(2.8284),
-        std::optional<double>(), std::optional<double>(INFINITY)}) {
-    method.stability_limit = wrong;
-    BOOST_TEST(!declares_its_limit(method));
-  }
-  BOOST_TEST(!declares_its_limit(heun()));  // which says that it is Verlet's
-}
-
 BOOST_AUTO_TEST_CASE(a_diagnosis_finds_the_limit_that_an_explicit_method_does_not_declare) {
   Method method = method_named("verlet");
   method.stability_limit.reset();

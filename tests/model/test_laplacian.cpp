@@ -16,12 +16,6 @@ SymmetricMatrix laplacian_of(const System& system) {
   return l;
 }
 
-SymmetricMatrix clamped_at(const System& system, const Vec& q) {
-  SymmetricMatrix k = system.stiffness_pattern();
-  offered<SplitStiffness>(system).weighted_stiffness(q, 0, k);
-  return k;
-}
-
 // Each entry is a sum of a dozen stiffnesses of up to 200 N/m, or 800 across a mirror. Eigenvalues
 // of up to 5000 N/m have errors of the same size.
 constexpr double rounding = 100 * eps * 5000;
@@ -81,28 +75,6 @@ BOOST_AUTO_TEST_CASE(nothing_in_it_couples_different_axes) {
     }
   }
   BOOST_TEST(l(0, 3) == -60);
-}
-
-BOOST_AUTO_TEST_CASE(clamped_stiffness_is_that_of_stretched_springs_and_never_grows_anything) {
-  std::mt19937 random(9);
-  double worst = 0;
-  for_random_images([&](const ImageSample& s) {
-    const auto system = make_mass_spring(s.network);
-    const Eigen::MatrixXd k = dense(stiffness_at(*system, s.q)),
-                          clamped = dense(clamped_at(*system, s.q));
-    BOOST_TEST(largest_eigenvalue(clamped) < rounding);
-    // The part removed from compressed springs was positive.
-    BOOST_TEST(smallest_eigenvalue(k - clamped) > -rounding);
-    worst = std::max(worst, largest_eigenvalue(k));
-    const Vec q = beside(s.q, random);
-    BOOST_TEST(largest_eigenvalue(dense(clamped_at(*system, q))) < rounding);
-  });
-  BOOST_TEST(worst > 10);  // K itself does grow something
-  // Stretched springs keep all of it.
-  const Problem p = random_network(random, 3, 6, 1.3);
-  const auto system = make_mass_spring(p.network);
-  BOOST_TEST(
-      (dense(clamped_at(*system, p.initial.q)) == dense(stiffness_at(*system, p.initial.q))));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -44,6 +44,29 @@ Vec translation(const Problem& p, int d) {
 
 }  // namespace
 
+BOOST_AUTO_TEST_CASE(the_potential_is_the_sum_over_springs_weights_and_loads) {
+  for_networks(stretches, [](const Network& network, const Vec& q) {
+    std::vector<Eigen::Vector3d> x;
+    double v = network.constant_energy;
+    Index unknown = 0;
+    for (int i = 0; i < network.node_mass.size(); ++i) {
+      x.push_back(Eigen::Vector3d::Zero());
+      for (int d = 0; d < network.dimension; ++d) {
+        if (is_unknown(network, i, d)) x[i][d] = q[unknown++];
+        if (network.load.size() > 0) v -= network.load[network.dimension * i + d] * x[i][d];
+      }
+      v -= network.node_mass[i] * network.gravity.dot(x[i]);
+    }
+    for (const auto& link : network.links) v += link.law.energy((x[link.j] - x[link.i]).norm());
+    for (const auto& image : network.image_links)
+      v += image.law.energy((image.mirror.cwiseProduct(x[image.j]) - x[image.i]).norm());
+    for (const auto& anchor : network.anchors)
+      v += anchor.law.energy((anchor.point - x[anchor.i]).norm());
+    // Some 60 terms of up to 1e3 J, each rounded a few times.
+    BOOST_TEST(std::abs(make_mass_spring(network)->potential(q) - v) < 60 * 4 * eps * 1e3);
+  });
+}
+
 BOOST_AUTO_TEST_CASE(force_is_minus_the_gradient_of_the_potential) {
   for_networks(stretches, [](const Network& network, const Vec& at) {
     const auto system = make_mass_spring(network);

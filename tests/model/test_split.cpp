@@ -44,10 +44,7 @@ std::unique_ptr<System> alone(Network network, bool stiff) {
 }
 
 bool same_pattern(const System& a, const System& b) {
-  const SymmetricMatrix &p = a.stiffness_pattern(), &r = b.stiffness_pattern();
-  return p.nonZeros() == r.nonZeros() &&
-         std::equal(p.outerIndexPtr(), p.outerIndexPtr() + p.cols() + 1, r.outerIndexPtr()) &&
-         std::equal(p.innerIndexPtr(), p.innerIndexPtr() + p.nonZeros(), r.innerIndexPtr());
+  return tests::same_pattern(a.stiffness_pattern(), b.stiffness_pattern());
 }
 
 // Whether f, K and V of the two add up to those of the whole. The tolerance is the rounding of some

@@ -215,43 +215,6 @@ BOOST_AUTO_TEST_CASE(they_are_the_same_to_the_bit_with_any_number_of_threads) {
   omp_set_num_threads(before);
 }
 
-// Slices, read back row by row, have the neighbours that they were made of.
-BOOST_AUTO_TEST_CASE(slices_hold_every_neighbour_once) {
-  const Network network = grid(2, 13, shuffled(13 * 13)).network;
-  auto neighbours = neighbours_in(network);
-  constexpr int lanes = slice_rows;
-  const NeighbourSlices slices = slice_neighbours(neighbours, 0);
-  BOOST_TEST(slices.law_vectors == 2);
-  std::vector<std::vector<std::pair<int, double>>> found(neighbours.size());
-  for (int s = 0; s < slices.count(); ++s) {
-    const auto &begin = slices.slices[s], &end = slices.slices[s + 1];
-    const double* law = slices.laws.data() + begin.law;
-    const auto take = [&](const auto& place_of) {
-      for (int t = 0; t < lanes; ++t) {
-        if (law[t] == 0) continue;
-        const int node = slices.node[s * lanes + t];
-        BOOST_REQUIRE(node >= 0);
-        found[node].emplace_back(slices.node[place_of(t)], law[lanes + t]);
-      }
-      law += slices.law_vectors * lanes;
-    };
-    for (int i = begin.shift; i < end.shift; ++i) {
-      take([&](int t) { return s * lanes + t + slices.shifts[i]; });
-    }
-    for (int i = begin.gather; i < end.gather; i += lanes) {
-      take([&](int t) { return slices.gathers[i + t]; });
-    }
-    BOOST_TEST(law == slices.laws.data() + end.law);
-  }
-  for (std::size_t i = 0; i < neighbours.size(); ++i) {
-    std::vector<std::pair<int, double>> expected;
-    for (const auto& [point, law] : neighbours[i]) expected.emplace_back(point, law.rest_length);
-    std::ranges::sort(expected);
-    std::ranges::sort(found[i]);
-    BOOST_TEST((expected == found[i]));
-  }
-}
-
 // A grid's slots have one shift, except at the ends of its lines. If its nodes have no order, slots
 // gather; rows sorted by their number of springs leave hardly any slot half empty.
 BOOST_AUTO_TEST_CASE(slots_of_a_grid_are_of_one_shift_and_no_slot_is_wasted) {

@@ -37,12 +37,6 @@ struct Said {
   }
 };
 
-bool same_pattern(const SymmetricMatrix& a, const SymmetricMatrix& b) {
-  return a.nonZeros() == b.nonZeros() && a.isCompressed() && b.isCompressed() &&
-         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.cols() + 1, b.outerIndexPtr()) &&
-         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr());
-}
-
 // A mass on one spring to the origin, on a line.
 Network tied(const SpringLaw& law, Holds holds = Holds::always) {
   Network network{.dimension = 1, .node_mass = Vec::Ones(1)};

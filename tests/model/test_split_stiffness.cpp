@@ -1,9 +1,10 @@
+// The material part of K, and K with a part of the compression.
 #include <boost/test/unit_test.hpp>
 
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
 
-BOOST_AUTO_TEST_SUITE(material_stiffness)
+BOOST_AUTO_TEST_SUITE(split_stiffness)
 
 using namespace qddot;
 
@@ -13,6 +14,12 @@ using Eigen::MatrixXd;
 
 // K sums some 60 springs of up to 1e4 N/m at a node.
 constexpr double rounding = 60 * eps * 1e4;
+
+MatrixXd weighted_at(const System& system, const Vec& q, double compression) {
+  SymmetricMatrix k = system.stiffness_pattern();
+  offered<SplitStiffness>(system).weighted_stiffness(q, compression, k);
+  return dense(k);
+}
 
 }  // namespace
 
@@ -85,6 +92,47 @@ BOOST_AUTO_TEST_CASE(where_k_is_constant_it_is_k) {
   BOOST_TEST_REQUIRE(system->stiffness_is_constant());
   BOOST_TEST((dense(material_stiffness_at(*system, p.initial.q)) ==
               dense(stiffness_at(*system, p.initial.q))));
+}
+
+BOOST_AUTO_TEST_CASE(with_all_of_the_compression_it_is_k_itself) {
+  for_networks({0.7}, [](const Network& network, const Vec& q) {
+    const auto system = make_mass_spring(network);
+    BOOST_TEST(distance(weighted_at(*system, q, 1), dense(stiffness_at(*system, q))) == 0);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(without_it_k_is_negative_semidefinite_with_it_it_need_not_be) {
+  double largest = 0;
+  for_networks({0.5}, [&](const Network& network, const Vec& q) {
+    const auto system = make_mass_spring(network);
+    const MatrixXd k = weighted_at(*system, q, 0);
+    // Rounding of a dense eigenproblem of up to 18 unknowns.
+    BOOST_TEST(largest_eigenvalue(k) < 100 * eps * k.cwiseAbs().maxCoeff());
+    largest = std::max(largest, largest_eigenvalue(weighted_at(*system, q, 1)));
+  });
+  BOOST_TEST(largest > 10);
+}
+
+BOOST_AUTO_TEST_CASE(it_is_linear_in_the_part_of_the_compression_that_is_kept) {
+  for_networks({0.7}, [](const Network& network, const Vec& q) {
+    const auto system = make_mass_spring(network);
+    const MatrixXd none = weighted_at(*system, q, 0), all = weighted_at(*system, q, 1);
+    const MatrixXd expected = none + 0.25 * (all - none);
+    BOOST_TEST(distance(weighted_at(*system, q, 0.25), expected) <
+               50 * eps * all.cwiseAbs().maxCoeff());
+  });
+}
+
+BOOST_AUTO_TEST_CASE(springs_in_tension_and_springs_on_a_line_keep_all_of_theirs) {
+  for_networks({1.3}, [](const Network& network, const Vec& q) {
+    const auto system = make_mass_spring(network);
+    BOOST_TEST(distance(weighted_at(*system, q, 0), dense(stiffness_at(*system, q))) == 0);
+  });
+  std::mt19937 random(35);
+  const Problem p = random_network(random, 1, 6, 0.5);
+  const auto system = make_mass_spring(p.network);
+  BOOST_TEST(distance(weighted_at(*system, p.initial.q, 0),
+                      dense(stiffness_at(*system, p.initial.q))) == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
