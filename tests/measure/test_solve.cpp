@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <string>
 
 #include <boost/test/unit_test.hpp>
 

@@ -183,16 +183,6 @@ BOOST_AUTO_TEST_CASE(energies_of_the_oscillator_are_those_of_the_closed_form) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(anchor_acts_as_a_link_to_a_node_that_stands_there) {
-  const SpringLaw law = {.stiffness = 30, .rest_length = 0.8, .quartic = 4};
-  const auto two = make_mass_spring({.node_mass = Vec::Ones(2), .links = {{0, 1, law}}});
-  const auto one = make_mass_spring({.node_mass = Vec::Ones(1), .anchors = {{0, {1, 2, 3}, law}}});
-  const Vec x{{0.4, 1.1, 2.5}}, q{{0.4, 1.1, 2.5, 1, 2, 3}};
-  BOOST_TEST(one->potential(x) == two->potential(q));
-  BOOST_TEST((force_at(*one, x) == force_at(*two, q).head(3)));
-  BOOST_TEST((dense(stiffness_at(*one, x)) == dense(stiffness_at(*two, q)).topLeftCorner(3, 3)));
-}
-
 BOOST_AUTO_TEST_CASE(a_spring_to_the_own_image_is_twice_as_long_as_the_way_to_the_plane) {
   const double k = 30, l0 = 1.5, x = 0.9;
   for (const int dimension : {1, 2, 3}) {
@@ -236,16 +226,6 @@ BOOST_AUTO_TEST_CASE(stiffness_is_constant_exactly_where_every_law_is_linear) {
     BOOST_TEST(!is_constant(linear, law, linear));
     BOOST_TEST(!is_constant(linear, linear, law));
   }
-}
-
-BOOST_AUTO_TEST_CASE(constant_energy_adds_to_the_potential_alone) {
-  Problem p = hammock(2);
-  const auto before = make_mass_spring(p.network);
-  p.network.constant_energy = 64;
-  const auto after = make_mass_spring(p.network);
-  const double v = before->potential(p.initial.q);
-  BOOST_TEST(std::abs(after->potential(p.initial.q) - v - 64) < 64 * 10 * eps);
-  BOOST_TEST((force_at(*after, p.initial.q) == force_at(*before, p.initial.q)));
 }
 
 BOOST_AUTO_TEST_CASE(network_without_nodes_has_only_its_constant_energy) {

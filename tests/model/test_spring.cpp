@@ -187,11 +187,4 @@ BOOST_AUTO_TEST_CASE(lectures_energy_is_hookes_with_twice_kappa_over_rest_length
   }
 }
 
-BOOST_AUTO_TEST_CASE(law_is_linear_only_without_rest_length_and_quartic) {
-  BOOST_TEST((SpringLaw{.stiffness = 3}.is_linear()));
-  BOOST_TEST((SpringLaw{}.is_linear()));
-  BOOST_TEST((!SpringLaw{.stiffness = 3, .rest_length = 1e-9}.is_linear()));
-  BOOST_TEST((!SpringLaw{.stiffness = 3, .quartic = 1e-9}.is_linear()));
-}
-
 BOOST_AUTO_TEST_SUITE_END()

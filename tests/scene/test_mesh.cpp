@@ -1,5 +1,4 @@
 #include <array>
-#include <filesystem>
 #include <string>
 #include <vector>
 
