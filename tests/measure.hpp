@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <stdexcept>
@@ -7,9 +8,12 @@
 #include <Eigen/Dense>
 
 #include "qddot/model/capabilities.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
 inline namespace tests {
+
+inline constexpr double eps = machine_epsilon;
 
 // The slope of the line through the points (x_i, y_i) by least squares.
 inline double slope(const Vec& x, const Vec& y) {
@@ -50,6 +54,13 @@ inline Eigen::MatrixXd dense(const SymmetricMatrix& lower) {
   return Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
 }
 
+// Whether two matrices have entries at the same places, stored alike.
+inline bool same_pattern(const SymmetricMatrix& a, const SymmetricMatrix& b) {
+  return a.nonZeros() == b.nonZeros() && a.isCompressed() && b.isCompressed() &&
+         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.cols() + 1, b.outerIndexPtr()) &&
+         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr());
+}
+
 // A capability that a test needs; throws where the system does not offer it.
 template <class C>
 const C& offered(const System& system) {
@@ -83,6 +94,19 @@ inline SymmetricMatrix material_stiffness_at(const System& system, const Vec& q)
   SymmetricMatrix k = system.stiffness_pattern();
   offered<SplitStiffness>(system).material_stiffness(q, k);
   return k;
+}
+
+// The least and the largest eigenvalue of a symmetric matrix; 0 if it is empty.
+inline double smallest_eigenvalue(const Eigen::MatrixXd& a) {
+  return a.rows() == 0 ? 0 : a.selfadjointView<Eigen::Lower>().eigenvalues()[0];
+}
+inline double largest_eigenvalue(const Eigen::MatrixXd& a) { return -smallest_eigenvalue(-a); }
+
+// All w^2 of -K x = w^2 M x, ascending, by a dense decomposition; masses must be positive.
+inline Vec squared_frequencies(const System& system, const Vec& q) {
+  const Vec root = system.mass().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd k = root.asDiagonal() * dense(stiffness_at(system, q)) * root.asDiagonal();
+  return (-k).selfadjointView<Eigen::Lower>().eigenvalues();
 }
 
 // The largest absolute difference of two vectors or matrices of the same size; 0 if they are empty.

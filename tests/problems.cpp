@@ -67,6 +67,16 @@ Network with_split(Network network) {
   return network;
 }
 
+Network without_quartic(Network network) {
+  for_springs(network, [](auto& spring) { spring.law.quartic = 0; });
+  return network;
+}
+
+Network without_rest_lengths(Network network) {
+  for_springs(network, [](auto& spring) { spring.law.rest_length = spring.law.quartic = 0; });
+  return network;
+}
+
 Problem hammock(int dimension) {
   Problem p;
   p.network.dimension = dimension;

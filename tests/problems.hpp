@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "qddot/model/block_diagonal_system.hpp"
 #include "qddot/model/mass_spring.hpp"
 
 namespace qddot {
@@ -13,6 +14,34 @@ struct Problem {
   Network network;
   State initial;
 };
+
+// Calls change(spring) for every spring of the network.
+template <class Change>
+void for_springs(Network& network, const Change& change) {
+  for (auto& link : network.links) change(link);
+  for (auto& image : network.image_links) change(image);
+  for (auto& anchor : network.anchors) change(anchor);
+}
+
+// The sum of size(law) over the springs of the network.
+template <class Size>
+double sum_of_springs(Network network, const Size& size) {
+  double sum = 0;
+  for_springs(network, [&](const auto& spring) { sum += size(spring.law); });
+  return sum;
+}
+
+// The networks as systems, and as the blocks of one system.
+template <class... Networks>
+std::vector<std::unique_ptr<System>> parts_of(const Networks&... networks) {
+  std::vector<std::unique_ptr<System>> parts;
+  (parts.push_back(make_mass_spring(networks)), ...);
+  return parts;
+}
+template <class... Networks>
+BlockDiagonalSystem in_parts(const Networks&... networks) {
+  return BlockDiagonalSystem(parts_of(networks...));
+}
 
 // A mass on a spring of zero rest length, tied to the origin: m x'' = -k x in 1D, with the motion
 // x(t) = x0 cos(w t) + v0/w sin(w t), w = sqrt(k/m).
@@ -46,6 +75,10 @@ Problem random_network(std::mt19937& random, int dimension, int nodes, double st
 
 // The network with a split in which every other spring of each kind is stiff, the first one too.
 Network with_split(Network network);
+
+// The network with springs as they would be without quartic parts, or without rest lengths too.
+Network without_quartic(Network network);
+Network without_rest_lengths(Network network);
 
 // A smooth nonlinear motion: four masses in a row between two pins, braced across, sagging and
 // swinging under gravity. Springs are stretched and compressed in turn; one is quartic. Its

@@ -2,10 +2,7 @@
 
 #include "qddot/algebra/automatic_factors.hpp"
 #include "qddot/algebra/factors.hpp"
-#include "qddot/scene/generators.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
-#include "tests/algebra/unprinted.hpp"
-#include "tests/measure.hpp"
+#include "tests/algebra/matrices.hpp"
 
 BOOST_AUTO_TEST_SUITE(automatic_factors)
 
@@ -15,20 +12,14 @@ namespace {
 
 constexpr double tolerance = 1e-6;
 
-Scene drawn(const std::string& name, const GeneratorValues& values, double stretch) {
-  Scene scene = generate(*find_generator(name), values, "test");
-  for (Spring& spring : scene.springs) spring.law.rest_length /= stretch;
-  return scene;
-}
-
 // A scene with all springs at so many times their rest lengths, solved with by both.
 struct Both {
   Both(const std::string& name, const GeneratorValues& values, double stretch)
-      : scene(drawn(name, values, stretch), Reductions::only({Reduction::pins})),
-        k(stiffness_at(scene.system(), scene.initial().q)),
+      : matrix(displaced(stretched(draw(name, values), stretch), only_pins, 0)),
+        k(matrix.k),
         b(Vec::LinSpaced(k.rows(), -1, 2)),
-        automatic(make_automatic_factors(k, scene.system().mass())),
-        direct(make_multifrontal(k, scene.system().mass())) {
+        automatic(make_automatic_factors(k, matrix.diagonal)),
+        direct(make_multifrontal(k, matrix.diagonal)) {
     automatic->set_tolerance(tolerance);
   }
   // Whether the automatic factors gave the last bits of the direct ones: then they are the same.
@@ -39,8 +30,8 @@ struct Both {
     return x == y;
   }
 
-  ReducedScene scene;
-  SymmetricMatrix k;
+  Matrix matrix;
+  const SymmetricMatrix& k;
   Vec b, x, y;
   std::unique_ptr<Factors> automatic, direct;
 };

@@ -1,37 +1,14 @@
-#include <cmath>
-#include <limits>
-#include <random>
-
-#include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/algebra/conjugate_gradients.hpp"
 #include "qddot/algebra/factors.hpp"
-#include "qddot/scene/generators.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
-#include "tests/algebra/unprinted.hpp"
-#include "tests/measure.hpp"
-#include "tests/problems.hpp"
+#include "tests/algebra/matrices.hpp"
 
 BOOST_AUTO_TEST_SUITE(conjugate_gradients)
 
 using namespace qddot;
 
 namespace {
-
-// D - s K, both triangles.
-SymmetricMatrix whole(const Vec& diagonal, double s, const SymmetricMatrix& k) {
-  SymmetricMatrix sum = -s * k;
-  for (Index i = 0; i < diagonal.size(); ++i) sum.coeffRef(i, i) += diagonal[i];
-  return sum.selfadjointView<Eigen::Lower>();
-}
-
-// |A x - b| over |A| |x| + |b|, in the largest norm.
-double backward_error(const SymmetricMatrix& a, const Vec& x, const Vec& b) {
-  if (b.size() == 0) return 0;
-  const double norm = (a.cwiseAbs() * Vec::Ones(a.rows())).maxCoeff();
-  return distance(a * x, b) / (norm * x.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
-}
 
 // P, the d x d blocks on the diagonal of A.
 Eigen::MatrixXd blocks_of(const SymmetricMatrix& a, int d) {
@@ -41,30 +18,12 @@ Eigen::MatrixXd blocks_of(const SymmetricMatrix& a, int d) {
   return p;
 }
 
-Scene drawn(const std::string& name, const GeneratorValues& values, double stretch) {
-  Scene scene = generate(*find_generator(name), values, "test");
-  for (Spring& spring : scene.springs) spring.law.rest_length /= stretch;
-  return scene;
+// A scene's masses and K a little away from its start, with every spring at about `stretch` times
+// its rest length.
+Matrix displaced(const std::string& name, const GeneratorValues& values, double stretch,
+                 const Reductions& reductions = only_pins) {
+  return displaced(stretched(draw(name, values), stretch), reductions, 1e-3);
 }
-
-// A scene's system and its K a little away from its start, with every spring at about `stretch`
-// times its rest length.
-struct Displaced {
-  Displaced(const std::string& name, const GeneratorValues& values, double stretch,
-            const Reductions& reductions = Reductions::only({Reduction::pins}))
-      : scene(drawn(name, values, stretch), reductions) {
-    std::mt19937 random(13);
-    Vec q = scene.initial().q;
-    const double size = q.size() > 0 ? std::max(q.cwiseAbs().maxCoeff(), 1e-3) : 0;
-    std::uniform_real_distribution<double> uniform(-1e-3 * size, 1e-3 * size);
-    for (double& x : q) x += uniform(random);
-    k = stiffness_at(scene.system(), q);
-  }
-  const Vec& mass() const { return scene.system().mass(); }
-
-  ReducedScene scene;
-  SymmetricMatrix k;
-};
 
 // n masses of 1 kg on springs of stiffness `stiffness` between two pins. The eigenvalues of M - K
 // are 1 + 4 stiffness sin^2(j pi / (2 (n + 1))), those of K negative for a positive stiffness.
@@ -86,25 +45,25 @@ SymmetricMatrix chain(int n, double stiffness) {
 BOOST_AUTO_TEST_CASE(every_scene_is_solved_or_known_to_be_indefinite) {
   int found = 0, indefinite = 0;
   for (const Generator& generator : generators()) {
-    for (const auto& reductions : {Reductions{}, Reductions::only({Reduction::pins})}) {
+    for (const auto& reductions : {Reductions{}, only_pins}) {
       for (const double stretch : {0.9, 1.1}) {
-        const Displaced at(generator.name, {}, stretch, reductions);
-        const auto factors = make_conjugate_gradients(at.k, at.mass());
-        const auto reference = make_multifrontal(at.k, at.mass());
+        const Matrix at = displaced(generator.name, {}, stretch, reductions);
+        const auto factors = make_conjugate_gradients(at.k, at.diagonal);
+        const auto reference = make_multifrontal(at.k, at.diagonal);
         factors->set_tolerance(1e-13);
         for (const double s : {0.0, 1e-8, 1e-6, 1e-4, 1e-2}) {
-          BOOST_TEST_CONTEXT(generator.name << " of " << at.mass().size() << ", s = " << s) {
+          BOOST_TEST_CONTEXT(generator.name << " of " << at.diagonal.size() << ", s = " << s) {
             const bool positive = reference->factorize_positive(1, s, at.k);
             const bool passes = factors->factorize_positive(1, s, at.k);
             BOOST_TEST((passes || !positive));
-            const Vec b = Vec::LinSpaced(at.mass().size(), -1, 2);
+            const Vec b = Vec::LinSpaced(at.diagonal.size(), -1, 2);
             Vec x;
             const SolveOutcome outcome = factors->solve(b, x);
             BOOST_TEST((outcome == SolveOutcome::found) == positive);
             BOOST_TEST((outcome == SolveOutcome::indefinite) == !positive);
             if (!positive) BOOST_TEST(factors->negative_pivots() == 1);
             if (outcome == SolveOutcome::found) {
-              BOOST_TEST(backward_error(whole(at.mass(), s, at.k), x, b) < 1e-10);
+              BOOST_TEST(backward_error(at.whole(1, s), x, b) < 1e-10);
             }
             (positive ? found : indefinite) += 1;
           }
@@ -119,18 +78,15 @@ BOOST_AUTO_TEST_CASE(every_scene_is_solved_or_known_to_be_indefinite) {
 // Rounding of the updated residual, far below the tolerances here, is the 1 %; an iteration never
 // shrinks it a thousandfold.
 BOOST_AUTO_TEST_CASE(the_tolerance_is_what_is_left) {
-  const struct {
-    Displaced at;
-    int dimension;
-  } cases[] = {{{"lattice", {{"nodes_x", 8}, {"nodes_y", 5}, {"nodes_z", 5}}, 1.2}, 3},
-               {{"cloth", {{"nodes", 12}}, 1.2}, 3}};
-  for (const auto& [at, dimension] : cases) {
+  for (const Matrix& at :
+       {displaced("lattice", {{"nodes_x", 8}, {"nodes_y", 5}, {"nodes_z", 5}}, 1.2),
+        displaced("cloth", {{"nodes", 12}}, 1.2)}) {
     const double s = 1e-5;
-    const SymmetricMatrix a = whole(at.mass(), s, at.k);
-    const auto factors = make_conjugate_gradients(at.k, at.mass());
+    const SymmetricMatrix a = at.whole(1, s);
+    const auto factors = make_conjugate_gradients(at.k, at.diagonal);
     BOOST_TEST(factors->factorize_positive(1, s, at.k));
-    const Eigen::LLT<Eigen::MatrixXd> p(blocks_of(a, dimension));
-    const Vec b = Vec::LinSpaced(at.mass().size(), -1, 2);
+    const Eigen::LLT<Eigen::MatrixXd> p(blocks_of(a, 3));
+    const Vec b = Vec::LinSpaced(at.diagonal.size(), -1, 2);
     Vec x;
     for (const double tolerance : {1e-1, 1e-4, 1e-8}) {
       factors->set_tolerance(tolerance);
@@ -176,17 +132,15 @@ BOOST_AUTO_TEST_CASE(too_many_iterations_are_given_up) {
 // s lies on both sides of the value at which the largest eigenvalue lambda of M^-1 K makes M - s K
 // indefinite.
 BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_found_out_by_a_right_hand_side_that_sees_it) {
-  for (const auto& at :
-       {Displaced("lattice", {{"nodes_x", 6}, {"nodes_y", 4}, {"nodes_z", 4}}, 0.9),
-        Displaced("cloth", {{"nodes", 8}}, 0.9)}) {
-    const Vec root = at.mass().cwiseSqrt();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        root.cwiseInverse().asDiagonal() * dense(at.k) * root.cwiseInverse().asDiagonal());
-    const double lambda = eigen.eigenvalues().maxCoeff();
+  for (const Matrix& at :
+       {displaced("lattice", {{"nodes_x", 6}, {"nodes_y", 4}, {"nodes_z", 4}}, 0.9),
+        displaced("cloth", {{"nodes", 8}}, 0.9)}) {
+    const Vec root = at.diagonal.cwiseSqrt().cwiseInverse();
+    const double lambda = largest_eigenvalue(root.asDiagonal() * dense(at.k) * root.asDiagonal());
     BOOST_TEST_REQUIRE(lambda > 0);
-    const auto factors = make_conjugate_gradients(at.k, at.mass());
+    const auto factors = make_conjugate_gradients(at.k, at.diagonal);
     Vec x;
-    const Vec b = Vec::LinSpaced(at.mass().size(), -1, 2);
+    const Vec b = Vec::LinSpaced(at.diagonal.size(), -1, 2);
     BOOST_TEST(factors->factorize_positive(1, 0.99 / lambda, at.k));
     BOOST_TEST((factors->solve(b, x) == SolveOutcome::found));
     const bool passes = factors->factorize_positive(1, 1.01 / lambda, at.k);
@@ -196,7 +150,7 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_found_out_by_a_right_hand_side_that
     // out; it is solved.
     if (!passes) continue;
     BOOST_TEST(factors->factorize_positive(1, 1.01 / lambda, at.k));
-    const SymmetricMatrix a = whole(at.mass(), 1.01 / lambda, at.k);
+    const SymmetricMatrix a = at.whole(1, 1.01 / lambda);
     const Eigen::MatrixXd p = blocks_of(a, 3);
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> parts{Eigen::MatrixXd(a), p};
     Vec among = b;
@@ -233,7 +187,7 @@ BOOST_AUTO_TEST_CASE(zero_is_solved_by_zero_and_no_number_by_none) {
   Vec x;
   BOOST_TEST((factors->solve(Vec::Zero(9), x) == SolveOutcome::found));
   BOOST_TEST(x == Vec::Zero(9));
-  factors->solve(Vec::Constant(9, std::numeric_limits<double>::quiet_NaN()), x);
+  factors->solve(Vec::Constant(9, NAN), x);
   BOOST_TEST(!x.allFinite());
   const SymmetricMatrix none(0, 0);
   const auto empty = make_conjugate_gradients(none, Vec());

@@ -1,7 +1,3 @@
-#include <limits>
-#include <random>
-
-#include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/analysis/curvature_signs.hpp"
@@ -121,8 +117,7 @@ BOOST_AUTO_TEST_CASE(signs_of_random_networks_are_those_of_more_digits_at_all_ra
             law.stiffness *= factor;
             law.quartic *= factor;
           };
-          for (auto& link : p.network.links) spread(link.law);
-          for (auto& anchor : p.network.anchors) spread(anchor.law);
+          for_springs(p.network, [&](auto& spring) { spread(spring.law); });
           const auto system = make_mass_spring(p.network);
           const CurvatureSigns signs = qddot::curvature_signs(*system, p.initial.q);
           const Reference reference(p);

@@ -1,8 +1,3 @@
-#include <limits>
-#include <random>
-#include <stdexcept>
-
-#include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/analysis/linear_motion.hpp"
@@ -14,8 +9,6 @@ BOOST_AUTO_TEST_SUITE(linear_motion)
 using namespace qddot;
 
 namespace {
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // The motion from one start.
 struct MotionFrom {
@@ -29,13 +22,8 @@ struct MotionFrom {
 // A random network whose springs have all lost rest length and quartic term.
 Problem linear_network(int dimension, int nodes) {
   std::mt19937 random(6);
-  Problem p = random_network(random, dimension, nodes, 1);
-  const auto straighten = [](auto& springs) {
-    for (auto& spring : springs) spring.law = {.stiffness = spring.law.stiffness};
-  };
-  straighten(p.network.links);
-  straighten(p.network.anchors);
-  return p;
+  const Problem p = random_network(random, dimension, nodes, 1);
+  return {without_rest_lengths(p.network), p.initial};
 }
 
 // n unit masses in a row between two walls on springs without rest length, at unit distances.
@@ -82,17 +70,6 @@ BOOST_AUTO_TEST_CASE(oscillator_follows_its_closed_form_for_a_thousand_periods) 
   }
 }
 
-BOOST_AUTO_TEST_CASE(closed_form_is_not_met_by_a_stiffness_off_by_1e_12) {
-  const Oscillator o;
-  Oscillator other;
-  other.stiffness *= 1 + 1e-12;
-  const auto [network, initial] = other.problem();
-  const auto system = make_mass_spring(network);
-  const double t = 100.3 * o.period();
-  const double error = std::abs(MotionFrom(*system, initial).at(t).q[0] - o.position(t));
-  BOOST_TEST(error > 8 * eps * (1 + o.omega() * t));
-}
-
 BOOST_AUTO_TEST_CASE(motion_starts_where_and_when_the_state_says) {
   for (const int dimension : {1, 2, 3}) {
     Problem p = linear_network(dimension, 6);
@@ -117,14 +94,6 @@ BOOST_AUTO_TEST_CASE(motion_satisfies_the_equation_of_motion) {
       BOOST_TEST(equation_error(motion, *system, t) < difference_error);
     }
   }
-}
-
-BOOST_AUTO_TEST_CASE(differences_see_the_motion_of_another_gravity) {
-  Problem p = linear_network(3, 6);
-  const auto system = make_mass_spring(p.network);
-  p.network.gravity[1] += 1e-3;
-  const auto other = make_mass_spring(p.network);
-  BOOST_TEST(equation_error(MotionFrom(*other, p.initial), *system, 0.7) > difference_error);
 }
 
 BOOST_AUTO_TEST_CASE(energy_is_conserved) {

@@ -1,16 +1,10 @@
-#include <limits>
-#include <random>
-#include <stdexcept>
-
-#include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/stability.hpp"
-#include "qddot/scene/generators.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
+#include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(stability)
 
@@ -70,9 +64,8 @@ BOOST_AUTO_TEST_CASE(unstable_directions_are_the_negative_eigenvalues_with_and_w
 
 BOOST_AUTO_TEST_CASE(large_cloth_is_counted_as_a_small_one_is) {
   for (const double stretch : {1.1, 1.0, 0.9}) {
-    Scene scene = generate(*find_generator("cloth"), {{"nodes", 13}}, "test");
-    for (Spring& spring : scene.springs) spring.law.rest_length /= stretch;
-    const ReducedScene reduced(scene, Reductions::all_directions());
+    const ReducedScene reduced(stretched(draw("cloth", {{"nodes", 13}}), stretch),
+                               Reductions::all_directions());
     check(reduced.system(), reduced.initial().q);
   }
 }
@@ -80,9 +73,8 @@ BOOST_AUTO_TEST_CASE(large_cloth_is_counted_as_a_small_one_is) {
 BOOST_AUTO_TEST_CASE(free_and_slack_bodies_are_not_unstable) {
   // Nothing holds a chain at rest lengths across, and nothing pushes it there.
   for (const double pins : {0.0, 1.0, 2.0}) {
-    const ReducedScene chain(
-        generate(*find_generator("chain"), {{"nodes", 40}, {"pinned_ends", pins}}, "test"),
-        Reductions::all_directions());
+    const ReducedScene chain(draw("chain", {{"nodes", 40}, {"pinned_ends", pins}}),
+                             Reductions::all_directions());
     BOOST_TEST(qddot::curvature_signs(chain.system(), chain.initial().q).negative == 0);
   }
 }

@@ -9,7 +9,7 @@
 namespace qddot {
 inline namespace tests {
 
-inline Scene drawn(const char* generator, const GeneratorValues& values) {
+inline Scene drawn(const char* generator, const GeneratorValues& values = {}) {
   return generate(*find_generator(generator), values, generator);
 }
 

@@ -27,23 +27,6 @@ double by_quadrature(const std::function<double(double, double)>& covariance, In
   return sum / (points * points);
 }
 
-// Means over blocks of a walk that gains 1 in each, with noise of each mean.
-Vec walk_means(Index blocks, double noise, unsigned seed) {
-  constexpr int steps = 100;
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  Vec means = Vec::Zero(blocks);
-  double sum = 0;
-  for (double& mean : means) {
-    for (int k = 0; k < steps; ++k) {
-      sum += normal(random) / std::sqrt(steps);
-      mean += sum / steps;
-    }
-    mean += noise * normal(random);
-  }
-  return means;
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(covariances_are_the_double_integrals_over_blocks) {
@@ -68,24 +51,6 @@ BOOST_AUTO_TEST_CASE(covariances_are_the_double_integrals_over_blocks) {
   // Either side of where the closed form is left for its series.
   BOOST_TEST(oscillation_covariance(4, 0.999e-3)(0, 0) == oscillation_covariance(4, 1.001e-3)(0, 0),
              boost::test_tools::tolerance(1e-6));
-}
-
-BOOST_AUTO_TEST_CASE(a_walk_has_its_size_and_no_slope) {
-  constexpr int seeds = 60;
-  int holds = 0, told = 0;
-  double size = 0;
-  for (unsigned seed = 0; seed < seeds; ++seed) {
-    const BlockFit fit = fit_blocks(walk_means(64, 0.3, seed));
-    holds += fit.slope.holds(0);
-    size += fit.walk / seeds;
-    told += fit.colour == Colour::oscillates || fit.colour == Colour::turns;
-  }
-  // More than 9 of 60 intervals of 95 % miss once in 500 times. One size has an error of 9 %, their
-  // mean an eighth of that.
-  BOOST_TEST(holds >= seeds - 9);
-  BOOST_TEST(size == 1, boost::test_tools::tolerance(0.05));
-  // Once in a hundred times; more than 4 of 60 once in 2000 times.
-  BOOST_TEST(told <= 4);
 }
 
 BOOST_AUTO_TEST_CASE(coloured_noise_is_told_from_a_walk_if_it_forgets_soon) {
@@ -116,23 +81,6 @@ BOOST_AUTO_TEST_CASE(coloured_noise_is_told_from_a_walk_if_it_forgets_soon) {
   // Up to 5 % of them look like a wave or return often by chance.
   BOOST_TEST(late >= 0.8 * seeds);
   BOOST_TEST(excluded >= 0.8 * seeds);
-}
-
-BOOST_AUTO_TEST_CASE(a_line_excludes_short_sines_and_a_short_sine_no_line) {
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  Vec line(64), half(64);
-  for (Index i = 0; i < 64; ++i) {
-    const double noise = normal(random);
-    line[i] = static_cast<double>(i) + noise;
-    half[i] = -64 * std::cos(M_PI * static_cast<double>(i) / 64) + noise;
-  }
-  const BlockFit straight = fit_blocks(line), bent = fit_blocks(half);
-  BOOST_TEST(straight.slope.holds(1));
-  BOOST_TEST(straight.slow_period > 2 * 64);
-  BOOST_TEST(bent.slope.excludes_zero());
-  BOOST_TEST(bent.slow_period <= 2 * 64);
-  BOOST_TEST(bent.slow_period > 64);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

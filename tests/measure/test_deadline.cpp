@@ -59,11 +59,4 @@ BOOST_AUTO_TEST_CASE(destroyed_early_it_neither_waits_nor_asks) {
   BOOST_TEST(!token.stop_requested());
 }
 
-BOOST_AUTO_TEST_CASE(negative_control_a_far_deadline_has_not_passed) {
-  const Deadline near(0.01), far(never);
-  wait_for(near);
-  BOOST_TEST(near.passed());
-  BOOST_TEST(!far.passed());
-}
-
 BOOST_AUTO_TEST_SUITE_END()

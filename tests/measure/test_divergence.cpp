@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/measure/reference/divergence.hpp"

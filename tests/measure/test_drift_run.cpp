@@ -1,8 +1,5 @@
-#include <cmath>
-
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/measure/trend/drift_run.hpp"
@@ -13,37 +10,6 @@ BOOST_AUTO_TEST_SUITE(drift_run)
 using namespace qddot;
 
 namespace {
-
-// Verlet's method for positions, with h^2 larger by d = `thousandths`/1000 in the positions:
-//   q_{n+1} = q_n + h v_n + (1 + d) h^2/2 a_n,   v_{n+1} = v_n + h/2 (a_n + a_{n+1}).
-// The matrix of a step on q'' = -w^2 q has the determinant 1 - d h^2 w^2/2, so that energy falls by
-// that factor. d = 0 is the method itself.
-template <int thousandths>
-class LeaningVerlet final : public FixedStep {
- public:
-  using FixedStep::FixedStep;
-
- private:
-  void start(const State& state) override { force(state.q, f_); }
-
-  Outcome step(const State& now, double h, State& next) override {
-    const Vec& mass = system().mass();
-    next.q = now.q + h * now.v + (1 + thousandths * 1e-3) * h * h / 2 * f_.cwiseQuotient(mass);
-    next.v = now.v + h / 2 * f_.cwiseQuotient(mass);
-    force(next.q, f_);
-    next.v += h / 2 * f_.cwiseQuotient(mass);
-    return Outcome::reached_end;
-  }
-
-  Vec f_{system().size()};
-};
-
-template <int thousandths>
-Method leaning_verlet() {
-  Method method = *find_method("verlet");
-  method.make = create<LeaningVerlet<thousandths>>;
-  return method;
-}
 
 struct Study {
   explicit Study(const std::string& name) : drawn(load_scene(name)) {}
@@ -81,23 +47,6 @@ BOOST_AUTO_TEST_CASE(over_a_million_steps_verlet_does_not_drift_and_rk4_does) {
 
   const DriftRun rk4 = orbit.of("rk4", 0.02, 1e6);
   BOOST_TEST(rk4.energy.drift.high < 0);
-}
-
-BOOST_AUTO_TEST_CASE(one_coefficient_off_by_a_thousandth_is_caught) {
-  const Study orbit("orbit");
-  const double h = 0.02, until = 1e5 * h;
-  const DriftRun right = orbit.of(leaning_verlet<0>(), h, h, until);
-  BOOST_TEST(holds_zero(right.energy.drift));
-  BOOST_TEST(verdict_name(right.energy.verdict) == "bounded");
-  const DriftRun wrong = orbit.of(leaning_verlet<1>(), h, h, until);
-  BOOST_TEST(wrong.energy.drift.high < 0);
-  BOOST_TEST(verdict_name(wrong.energy.verdict) != "bounded");
-  // The damping on the oscillator follows from the determinant.
-  const Study oscillator("oscillator");
-  const double z = 100 * h * h;
-  const DriftRun damped = oscillator.of(leaning_verlet<1>(), h, h, 2000);
-  BOOST_TEST(damped.energy.drift.value == std::log1p(-1e-3 * z / 2) / h * damped.scales.excess,
-             boost::test_tools::tolerance(0.02));
 }
 
 BOOST_AUTO_TEST_CASE(implicit_euler_dissipates_and_explicit_euler_grows_as_predicted) {

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/measure/motion/error.hpp"
@@ -17,6 +15,19 @@ Scene three_nodes() {
   scene.nodes = {{.position = {1, 2, 3}, .mass = 2},
                  {.position = {9, 9, 9}, .pinned = true},
                  {.position = {-1, 0, 0}, .velocity = {0, 1, 0}, .mass = 3}};
+  return scene;
+}
+
+// Two oscillators of 1 kg on 1 N/m and 1 m that no spring joins, drawn at 2 m and at `second`, with
+// pins at 0 and 5 m.
+Scene two_oscillators(double second) {
+  Scene scene{.name = "two", .dimension = 1};
+  scene.nodes = {{.pinned = true},
+                 {.position = {2, 0, 0}, .mass = 1},
+                 {.position = {5, 0, 0}, .pinned = true},
+                 {.position = {second, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 1, .rest_length = 1}},
+                   {{2, 3}, {.stiffness = 1, .rest_length = 1}}};
   return scene;
 }
 
@@ -56,9 +67,7 @@ BOOST_AUTO_TEST_CASE(a_state_has_no_error_against_itself) {
   const State& state = scene.initial();
   for (const Scales& scales : {Scales{}, Scales{1e-300, 1e-300, 1e-300}}) {
     const Errors errors = errors_between(scene, state, state, scene.energy(state), scales);
-    BOOST_TEST(errors.position == 0);
-    BOOST_TEST(errors.velocity == 0);
-    BOOST_TEST(errors.energy == 0);
+    BOOST_TEST((errors.position == 0 && errors.velocity == 0 && errors.energy == 0));
   }
 }
 
@@ -80,15 +89,8 @@ BOOST_AUTO_TEST_CASE(scales_keep_the_largest_of_all_states) {
 }
 
 BOOST_AUTO_TEST_CASE(each_part_is_measured_by_its_own_motion) {
-  // Two oscillators that no spring joins, one of amplitude 1 m and one of 1e-10 m.
-  Scene scene{.name = "two", .dimension = 1};
-  scene.nodes = {{.pinned = true},
-                 {.position = {2, 0, 0}, .mass = 1},
-                 {.position = {5, 0, 0}, .pinned = true},
-                 {.position = {6 + 1e-10, 0, 0}, .mass = 1}};
-  scene.springs = {{{0, 1}, {.stiffness = 1, .rest_length = 1}},
-                   {{2, 3}, {.stiffness = 1, .rest_length = 1}}};
-  const ReducedScene two(scene);
+  // One of amplitude 1 m and one of 1e-10 m.
+  const ReducedScene two(two_oscillators(6 + 1e-10));
   BOOST_TEST_REQUIRE(two.parts().size() == 2u);
   const State start = two.initial();
   State swung = start;
@@ -115,14 +117,7 @@ BOOST_AUTO_TEST_CASE(each_part_is_measured_by_its_own_motion) {
 }
 
 BOOST_AUTO_TEST_CASE(a_part_that_only_rounds_is_measured_by_the_others) {
-  Scene scene{.name = "two", .dimension = 1};
-  scene.nodes = {{.pinned = true},
-                 {.position = {2, 0, 0}, .mass = 1},
-                 {.position = {5, 0, 0}, .pinned = true},
-                 {.position = {6, 0, 0}, .mass = 1}};
-  scene.springs = {{{0, 1}, {.stiffness = 1, .rest_length = 1}},
-                   {{2, 3}, {.stiffness = 1, .rest_length = 1}}};
-  const ReducedScene two(scene);
+  const ReducedScene two(two_oscillators(6));
   State state = two.initial();
   state.q += Vec{{1, 1e-15}};
   Scales scales;
@@ -166,15 +161,6 @@ BOOST_AUTO_TEST_CASE(where_all_is_pinned_there_is_no_error) {
   BOOST_TEST(scales.displacement == 0);
   const Errors errors = errors_between(scene, scene.initial(), scene.initial(), 0, scales);
   BOOST_TEST(errors.position == 0);
-  BOOST_TEST(errors.velocity == 0);
-}
-
-BOOST_AUTO_TEST_CASE(negative_control_one_rounding_shows) {
-  const ReducedScene scene(three_nodes(), plain);
-  State state = scene.initial();
-  state.q[0] = std::nextafter(state.q[0], 2);
-  const Errors errors = errors_between(scene, state, scene.initial(), 0, {});
-  BOOST_TEST(errors.position > 0);
   BOOST_TEST(errors.velocity == 0);
 }
 

@@ -120,12 +120,4 @@ BOOST_AUTO_TEST_CASE(without_an_equilibrium_there_are_none) {
   BOOST_TEST(ModalShares::at_equilibrium(ReducedScene(load_scene("pendulum"))).has_value());
 }
 
-BOOST_AUTO_TEST_CASE(negative_control_another_mode_is_all_the_way_off) {
-  const ReducedScene low = Row{12, {{2, 0.2}}}.scene(), high = Row{12, {{5, 0.2}}}.scene();
-  const ModalShares shares = shares_of(low);
-  const double distance =
-      total_variation(shares.mean(exact_path(low, 3, 50)), shares.mean(exact_path(high, 3, 50)));
-  BOOST_TEST(distance == 1, boost::test_tools::tolerance(1e-10));
-}
-
 BOOST_AUTO_TEST_SUITE_END()

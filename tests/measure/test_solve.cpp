@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <string>
 
 #include <boost/test/unit_test.hpp>
 
@@ -134,7 +133,7 @@ BOOST_AUTO_TEST_CASE(its_run_is_the_run_of_that_method_and_knob) {
 }
 
 BOOST_AUTO_TEST_CASE(linear_motion_is_exact_at_once) {
-  const Answer answer = measure::solve(drawn("oscillator", {}), 10, 1e-10);
+  const Answer answer = measure::solve(drawn("oscillator"), 10, 1e-10);
   BOOST_TEST_REQUIRE(answer.is_reached);
   BOOST_TEST(answer.method->name == "exact");
   BOOST_TEST(answer.runs == 1);
@@ -160,7 +159,7 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_nothing_is_claimed) {
 }
 
 BOOST_AUTO_TEST_CASE(below_rounding_nothing_is_claimed) {
-  const Answer answer = measure::solve(drawn("orbit", {}), 1000, 1e-14);
+  const Answer answer = measure::solve(drawn("orbit"), 1000, 1e-14);
   BOOST_TEST(!answer.is_reached);
   // The remaining error is rounding, far below any requested accuracy.
   BOOST_TEST(answer.error_estimate > 1e-14);
@@ -231,7 +230,7 @@ BOOST_AUTO_TEST_CASE(what_rests_needs_no_run) {
 }
 
 BOOST_AUTO_TEST_CASE(what_makes_no_sense_is_refused) {
-  const Scene scene = drawn("orbit", {});
+  const Scene scene = drawn("orbit");
   for (const double accuracy : {0.0, -1.0, 1e-40, 1.0, 10.0, std::nan("")}) {
     BOOST_CHECK_THROW(measure::solve(scene, 1, accuracy), std::invalid_argument);
     BOOST_CHECK_THROW(advise(scene, 1, {1e-3, accuracy}), std::invalid_argument);
@@ -250,8 +249,8 @@ BOOST_AUTO_TEST_CASE(it_stops_when_its_time_is_up) {
 
 BOOST_AUTO_TEST_CASE(advice_holds_when_it_is_followed) {
   for (const auto& [scene, until] :
-       {std::pair(drawn("cloth", {{"nodes", 12}}), 0.1), std::pair(drawn("orbit", {}), 20.0),
-        std::pair(drawn("lattice", {}), 0.02), std::pair(drawn("pendulum", {}), 5.0),
+       {std::pair(drawn("cloth", {{"nodes", 12}}), 0.1), std::pair(drawn("orbit"), 20.0),
+        std::pair(drawn("lattice"), 0.02), std::pair(drawn("pendulum"), 5.0),
         std::pair(drawn("framed_cloth", {{"nodes", 8}}), 0.05)}) {
     const ReducedScene model(scene);
     const Reference reference = make_reference(model, until, 1);

@@ -1,9 +1,7 @@
-#include <cmath>
-
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/measure/motion/tolerance_scales.hpp"
-#include "qddot/scene/generators.hpp"
+#include "tests/measure/drawn_scenes.hpp"
 
 BOOST_AUTO_TEST_SUITE(tolerance_scales)
 
@@ -16,10 +14,6 @@ const auto within_rounding = boost::test_tools::tolerance(1e-12);
 
 Options scales_of(const Scene& scene, const Reductions& reductions = {}) {
   return with_tolerance_scales({}, ReducedScene(scene, reductions));
-}
-
-Scene drawn(const std::string& name, const GeneratorValues& values = {}) {
-  return generate(*find_generator(name), values, name);
 }
 
 // Three masses in a plane, none alike, on two springs under tension, all moving.
@@ -152,16 +146,6 @@ BOOST_AUTO_TEST_CASE(nothing_else_of_the_options_changes) {
   BOOST_TEST(after.step_size == before.step_size);
   BOOST_TEST(after.max_order == before.max_order);
   BOOST_TEST(after.stability_detection == before.stability_detection);
-}
-
-BOOST_AUTO_TEST_CASE(negative_control_another_scene_has_other_scales) {
-  const Options here = scales_of(falling_triangle());
-  Scene other = falling_triangle();
-  other.springs[0].law.stiffness *= 2;  // the spring pulls with twice as much
-  BOOST_TEST(scales_of(other).speed > 1.1 * here.speed);
-  other = falling_triangle();
-  other.nodes[1].position.x() *= 2;
-  BOOST_TEST(scales_of(other).length == 2 * here.length, within_rounding);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "qddot/model/mass_spring.hpp"
+#include "tests/problems.hpp"
 
 namespace qddot {
 inline namespace tests {
@@ -107,6 +107,23 @@ void for_random_images(const Check& check) {
         for (int sample = 0; sample < 3; ++sample) {
           check(random_images(random, dimension, stretch, on_planes));
         }
+      }
+    }
+  }
+}
+
+// Calls check(network, q) in each dimension, with all springs at the given stretches, for a network
+// of links and anchors, and with images, without and with planes.
+template <class Check>
+void for_networks(std::initializer_list<double> stretches, const Check& check) {
+  std::mt19937 random(17);
+  for (const int dimension : {1, 2, 3}) {
+    for (const double stretch : stretches) {
+      const Problem p = random_network(random, dimension, 6, stretch);
+      check(p.network, p.initial.q);
+      for (const bool on_planes : {false, true}) {
+        const ImageSample s = random_images(random, dimension, stretch, on_planes);
+        check(s.network, s.q);
       }
     }
   }

@@ -1,11 +1,8 @@
 #include <functional>
-#include <random>
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/block_diagonal_system.hpp"
 #include "qddot/model/constrained_system.hpp"
-#include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 
@@ -15,80 +12,7 @@ using namespace qddot;
 
 namespace {
 
-// A mass on a spring of V = q^2/2, by V and f alone.
-class Plain : public System {
- public:
-  Plain() : System(Vec::Ones(1)) {}
-  double potential(const ConstVec& q) const override { return 0.5 * q.squaredNorm(); }
-  void force(const ConstVec& q, MutableVec f) const override { f = -q; }
-};
-
-// The same with K.
-class WithStiffness : public Plain {
- public:
-  WithStiffness() : pattern_(1, 1) { pattern_.insert(0, 0) = 0; }
-  const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const ConstVec&, SymmetricMatrix& k) const override { k.coeffs()[0] = -1; }
-
- private:
-  SymmetricMatrix pattern_;
-};
-
-// The system with one more capability; a place that it reports is at q = 1.
-class WithSplitStiffness final : public WithStiffness, public SplitStiffness {
- public:
-  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override { stiffness(q, k); }
-  void weighted_stiffness(const ConstVec& q, double, SymmetricMatrix& k) const override {
-    stiffness(q, k);
-  }
-};
-class WithDiscreteGradient final : public Plain, public DiscreteGradient {
- public:
-  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
-    f = -(a + b) / 2;
-  }
-};
-class WithLaplacian final : public WithStiffness, public Laplacian {
- public:
-  void laplacian(SymmetricMatrix& l) const override { l.coeffs()[0] = 1; }
-  bool bounds_stiffness() const override { return true; }
-};
-class WithPieces final : public Plain, public PiecewiseLinear {
- public:
-  bool is_linear_at(const ConstVec& q) const override { return q[0] < 1; }
-};
-class WithValidity final : public Plain, public Validity {
- public:
-  bool is_valid_at(const ConstVec& q) const override { return q[0] < 1; }
-};
-class WithKink final : public Plain, public Kinks {
- public:
-  Index kinks() const override { return 1; }
-  void kink_lengths(const ConstVec& q, MutableVec lengths) const override { lengths[0] = q[0] - 1; }
-};
-class WithSplit final : public Plain, public SplitForces {
- public:
-  const Split& split() const override { return split_; }
-
- private:
-  Split split_{
-      std::make_shared<Plain>(), std::make_shared<Plain>(), std::make_shared<Plain>(), {0}};
-};
-
-// A class that implements a capability, whose objects have it or not.
-class Declines final : public Plain, public DiscreteGradient {
- public:
-  explicit Declines(bool offers) : offers_(offers) {}
-  bool offers(const std::type_info& type) const override {
-    return type != typeid(DiscreteGradient) || offers_;
-  }
-  void discrete_gradient(const ConstVec&, const ConstVec&, MutableVec) const override {}
-
- private:
-  bool offers_;
-};
-
-// The capabilities of a system, in a fixed order.
+// The capabilities of a system.
 struct Offers {
   bool stiffness = false, split_stiffness = false, discrete_gradient = false, laplacian = false,
        pieces = false, validity = false, kinks = false, blocks = false, split = false;
@@ -106,27 +30,79 @@ Offers offers_of(const System& s) {
           capability<SplitForces>(s) != nullptr};
 }
 
+// A mass on a spring of V = q^2/2, by V and f alone.
+class Plain : public System {
+ public:
+  Plain() : System(Vec::Ones(1)) {}
+  double potential(const ConstVec& q) const override { return 0.5 * q.squaredNorm(); }
+  void force(const ConstVec& q, MutableVec f) const override { f = -q; }
+};
+
+// The same with the capabilities that it is to offer; a place that it reports is at q = 1.
+class Offering final : public Plain,
+                       public SplitStiffness,
+                       public DiscreteGradient,
+                       public Laplacian,
+                       public PiecewiseLinear,
+                       public Validity,
+                       public Kinks,
+                       public SplitForces {
+ public:
+  explicit Offering(const Offers& offers) : offers_(offers) {
+    if (!offers.stiffness) return;
+    pattern_.resize(1, 1);
+    pattern_.insert(0, 0) = 0;
+  }
+  bool offers(const std::type_info& type) const override {
+    return (type == typeid(SplitStiffness) && offers_.split_stiffness) ||
+           (type == typeid(DiscreteGradient) && offers_.discrete_gradient) ||
+           (type == typeid(Laplacian) && offers_.laplacian) ||
+           (type == typeid(PiecewiseLinear) && offers_.pieces) ||
+           (type == typeid(Validity) && offers_.validity) ||
+           (type == typeid(Kinks) && offers_.kinks) ||
+           (type == typeid(SplitForces) && offers_.split);
+  }
+  const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
+  void stiffness(const ConstVec&, SymmetricMatrix& k) const override { k.coeffs()[0] = -1; }
+  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override { stiffness(q, k); }
+  void weighted_stiffness(const ConstVec& q, double, SymmetricMatrix& k) const override {
+    stiffness(q, k);
+  }
+  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
+    f = -(a + b) / 2;
+  }
+  void laplacian(SymmetricMatrix& l) const override { l.coeffs()[0] = 1; }
+  bool bounds_stiffness() const override { return true; }
+  bool is_linear_at(const ConstVec& q) const override { return q[0] < 1; }
+  bool is_valid_at(const ConstVec& q) const override { return q[0] < 1; }
+  Index kinks() const override { return 1; }
+  void kink_lengths(const ConstVec& q, MutableVec lengths) const override { lengths[0] = q[0] - 1; }
+  const Split& split() const override { return split_; }
+
+ private:
+  Offers offers_;
+  SymmetricMatrix pattern_;
+  Split split_{
+      std::make_shared<Plain>(), std::make_shared<Plain>(), std::make_shared<Plain>(), {0}};
+};
+
+// Nothing, each capability by itself, and those of networks.
 std::vector<std::function<std::unique_ptr<System>()>> kinds() {
-  return {[] { return std::make_unique<Plain>(); },
-          [] { return std::make_unique<WithStiffness>(); },
-          [] { return std::make_unique<WithSplitStiffness>(); },
-          [] { return std::make_unique<WithDiscreteGradient>(); },
-          [] { return std::make_unique<WithLaplacian>(); },
-          [] { return std::make_unique<WithPieces>(); },
-          [] { return std::make_unique<WithValidity>(); },
-          [] { return std::make_unique<WithKink>(); },
-          [] { return std::make_unique<WithSplit>(); },
-          [] { return std::make_unique<Declines>(true); },
-          [] { return std::make_unique<Declines>(false); },
-          [] {
-            Network network = with_split(hammock(1).network);
-            return make_mass_spring(network);
-          },
-          [] {
-            Network network{.dimension = 2, .node_mass = Vec::Ones(1)};
-            network.anchors = {{0, {0, 0, 0}, {1, 1}, Holds::in_tension}};
-            return make_mass_spring(network);
-          }};
+  std::vector<std::function<std::unique_ptr<System>()>> all = {
+      [] { return std::make_unique<Plain>(); }};
+  for (const Offers& offers :
+       {Offers{}, Offers{.stiffness = true}, Offers{.stiffness = true, .split_stiffness = true},
+        Offers{.discrete_gradient = true}, Offers{.stiffness = true, .laplacian = true},
+        Offers{.pieces = true}, Offers{.validity = true}, Offers{.kinks = true},
+        Offers{.split = true}})
+    all.push_back([=] { return std::make_unique<Offering>(offers); });
+  all.push_back([] { return make_mass_spring(with_split(hammock(1).network)); });
+  all.push_back([] {
+    Network network{.dimension = 2, .node_mass = Vec::Ones(1)};
+    network.anchors = {{0, {0, 0, 0}, {1, 1}, Holds::in_tension}};
+    return make_mass_spring(network);
+  });
+  return all;
 }
 
 }  // namespace
@@ -142,21 +118,10 @@ BOOST_AUTO_TEST_CASE(a_system_of_v_and_f_alone_has_none) {
   BOOST_CHECK_THROW(plain.stiffness(Vec::Zero(1), k), std::logic_error);
 }
 
-BOOST_AUTO_TEST_CASE(each_is_found_where_a_class_implements_it_and_nowhere_else) {
-  BOOST_TEST((offers_of(WithStiffness()) == Offers{.stiffness = true}));
-  BOOST_TEST(
-      (offers_of(WithSplitStiffness()) == Offers{.stiffness = true, .split_stiffness = true}));
-  BOOST_TEST((offers_of(WithDiscreteGradient()) == Offers{.discrete_gradient = true}));
-  BOOST_TEST((offers_of(WithLaplacian()) == Offers{.stiffness = true, .laplacian = true}));
-  BOOST_TEST((offers_of(WithPieces()) == Offers{.pieces = true}));
-  BOOST_TEST((offers_of(WithValidity()) == Offers{.validity = true}));
-  BOOST_TEST((offers_of(WithKink()) == Offers{.kinks = true}));
-  BOOST_TEST((offers_of(WithSplit()) == Offers{.split = true}));
-}
-
-BOOST_AUTO_TEST_CASE(an_object_may_decline_what_its_class_implements) {
-  BOOST_TEST(capability<DiscreteGradient>(Declines(true)));
-  BOOST_TEST(!capability<DiscreteGradient>(Declines(false)));
+BOOST_AUTO_TEST_CASE(each_is_found_where_an_object_offers_it_and_nowhere_else) {
+  const Offers some{.stiffness = true, .laplacian = true, .kinks = true};
+  BOOST_TEST((offers_of(Offering(some)) == some));
+  BOOST_TEST((offers_of(Offering({})) == Offers{}));
 }
 
 BOOST_AUTO_TEST_CASE(a_network_offers_what_it_has) {
@@ -238,9 +203,8 @@ BOOST_AUTO_TEST_CASE(blocks_offer_together_what_all_of_them_offer_and_exceptions
 
 BOOST_AUTO_TEST_CASE(exceptions_of_one_block_are_those_of_the_whole) {
   std::vector<std::unique_ptr<System>> blocks;
-  blocks.push_back(std::make_unique<Plain>());
-  blocks.push_back(std::make_unique<WithValidity>());
-  blocks.push_back(std::make_unique<WithKink>());
+  for (const Offers& offers : {Offers{}, Offers{.validity = true}, Offers{.kinks = true}})
+    blocks.push_back(std::make_unique<Offering>(offers));
   const BlockDiagonalSystem system(std::move(blocks));
   const Vec inside{{5, 0, 3}}, outside{{0, 2, 3}};
   const Validity& validity = offered<Validity>(system);

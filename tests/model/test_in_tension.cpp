@@ -1,8 +1,5 @@
-#include <random>
-
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/block_diagonal_system.hpp"
 #include "qddot/model/in_tension.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
@@ -14,10 +11,13 @@ using namespace qddot;
 namespace {
 
 // A spring of rest length 1 m and k = 1 N/m between a pin and a mass of 1 kg in 2D.
-std::unique_ptr<System> tether(double stiffness = 1) {
+Network tether_network(double stiffness = 1) {
   Network network{.dimension = 2, .node_mass = Vec::Ones(1)};
   network.anchors = {{0, {0, 0, 0}, {stiffness, 1}, Holds::in_tension}};
-  return make_mass_spring(network);
+  return network;
+}
+std::unique_ptr<System> tether(double stiffness = 1) {
+  return make_mass_spring(tether_network(stiffness));
 }
 
 State state(double t, double x, double y, double vx, double vy) {
@@ -90,10 +90,7 @@ BOOST_AUTO_TEST_CASE(speeds_along_a_stiff_spring_take_it_no_farther_than_it_can_
 }
 
 BOOST_AUTO_TEST_CASE(of_several_parts_the_first_counts) {
-  std::vector<std::unique_ptr<System>> parts;
-  parts.push_back(tether());
-  parts.push_back(tether());
-  const BlockDiagonalSystem both(std::move(parts));
+  const BlockDiagonalSystem both = in_parts(tether_network(), tether_network());
   const State from{0, Vec{{1.1, 0, 1.05, 0}}, Vec{{-1, 0, -1, 0}}};
   const State to{1, Vec{{1.1, 0, 1.05, 0}}, Vec{{1, 0, 1, 0}}};
   BOOST_REQUIRE(offered<Validity>(both).end_of_validity(from, to));

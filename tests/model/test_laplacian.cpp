@@ -1,13 +1,7 @@
-#include <limits>
-
-#include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/block_diagonal_system.hpp"
-#include "qddot/model/constrained_system.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
-#include "tests/problems.hpp"
 
 BOOST_AUTO_TEST_SUITE(laplacian)
 
@@ -15,46 +9,12 @@ using namespace qddot;
 
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-
-// The network with springs as they would be at rest lengths zero, without quartic parts.
-Network twin(Network network) {
-  const auto straighten = [](auto& springs) {
-    for (auto& spring : springs) spring.law.rest_length = spring.law.quartic = 0;
-  };
-  straighten(network.links);
-  straighten(network.image_links);
-  straighten(network.anchors);
-  return network;
-}
-
-Network without_quartic(Network network) {
-  const auto take_off = [](auto& springs) {
-    for (auto& spring : springs) spring.law.quartic = 0;
-  };
-  take_off(network.links);
-  take_off(network.image_links);
-  take_off(network.anchors);
-  return network;
-}
-
 SymmetricMatrix laplacian_of(const System& system) {
   SymmetricMatrix l = system.stiffness_pattern();
   l.coeffs().setConstant(NAN);  // whatever was in it before
   offered<Laplacian>(system).laplacian(l);
   return l;
 }
-
-SymmetricMatrix clamped_at(const System& system, const Vec& q) {
-  SymmetricMatrix k = system.stiffness_pattern();
-  offered<SplitStiffness>(system).weighted_stiffness(q, 0, k);
-  return k;
-}
-
-double smallest_eigenvalue(const Eigen::MatrixXd& a) {
-  return a.rows() == 0 ? 0 : Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a).eigenvalues()[0];
-}
-double largest_eigenvalue(const Eigen::MatrixXd& a) { return -smallest_eigenvalue(-a); }
 
 // Each entry is a sum of a dozen stiffnesses of up to 200 N/m, or 800 across a mirror. Eigenvalues
 // of up to 5000 N/m have errors of the same size.
@@ -71,7 +31,8 @@ Vec beside(const Vec& q, std::mt19937& random) {
 
 BOOST_AUTO_TEST_CASE(it_is_minus_the_stiffness_of_the_network_at_rest_lengths_zero) {
   for_random_images([](const ImageSample& s) {
-    const auto system = make_mass_spring(s.network), straight = make_mass_spring(twin(s.network));
+    const auto system = make_mass_spring(s.network),
+               straight = make_mass_spring(without_rest_lengths(s.network));
     const Eigen::MatrixXd l = dense(laplacian_of(*system));
     BOOST_TEST(distance(l, -dense(stiffness_at(*straight, s.q))) < rounding);
     // Without the rest lengths taken off it is another matrix.
@@ -114,57 +75,6 @@ BOOST_AUTO_TEST_CASE(nothing_in_it_couples_different_axes) {
     }
   }
   BOOST_TEST(l(0, 3) == -60);
-}
-
-BOOST_AUTO_TEST_CASE(that_of_held_unknowns_and_of_parts_is_that_of_their_stiffness) {
-  std::mt19937 random(5);
-  for (const int dimension : {1, 2, 3}) {
-    const Network a = random_network(random, dimension, 6, 1.2).network,
-                  b = without_quartic(random_network(random, dimension, 3, 0.8).network);
-    const auto parts_of = [](const Network& one, const Network& other) {
-      std::vector<std::unique_ptr<System>> parts;
-      parts.push_back(make_mass_spring(one));
-      parts.push_back(make_mass_spring(other));
-      return parts;
-    };
-    const BlockDiagonalSystem divided(parts_of(a, b)), straight(parts_of(twin(a), twin(b)));
-    const Vec q = Vec::LinSpaced(divided.size(), -1, 1);
-    BOOST_TEST(distance(dense(laplacian_of(divided)), -dense(stiffness_at(straight, q))) <
-               rounding);
-    BOOST_TEST(distance(dense(clamped_at(divided, q)), dense(stiffness_at(straight, q))) > 1);
-    BOOST_TEST(!divided.bounds_stiffness());
-    BOOST_TEST(BlockDiagonalSystem(parts_of(b, b)).bounds_stiffness());
-
-    std::vector<bool> is_held(static_cast<std::size_t>(6 * dimension));
-    for (std::size_t i = 0; i < is_held.size(); ++i) is_held[i] = random() % 3 == 0;
-    const ConstrainedSystem held(make_mass_spring(a), is_held),
-        held_twin(make_mass_spring(twin(a)), is_held);
-    const Vec at = Vec::LinSpaced(held.size(), -1, 1);
-    BOOST_TEST(distance(dense(laplacian_of(held)), -dense(stiffness_at(held_twin, at))) < rounding);
-    BOOST_TEST(!held.bounds_stiffness());
-  }
-}
-
-BOOST_AUTO_TEST_CASE(clamped_stiffness_is_that_of_stretched_springs_and_never_grows_anything) {
-  std::mt19937 random(9);
-  double worst = 0;
-  for_random_images([&](const ImageSample& s) {
-    const auto system = make_mass_spring(s.network);
-    const Eigen::MatrixXd k = dense(stiffness_at(*system, s.q)),
-                          clamped = dense(clamped_at(*system, s.q));
-    BOOST_TEST(largest_eigenvalue(clamped) < rounding);
-    // The part removed from compressed springs was positive.
-    BOOST_TEST(smallest_eigenvalue(k - clamped) > -rounding);
-    worst = std::max(worst, largest_eigenvalue(k));
-    const Vec q = beside(s.q, random);
-    BOOST_TEST(largest_eigenvalue(dense(clamped_at(*system, q))) < rounding);
-  });
-  BOOST_TEST(worst > 10);  // K itself does grow something
-  // Stretched springs keep all of it.
-  const Problem p = random_network(random, 3, 6, 1.3);
-  const auto system = make_mass_spring(p.network);
-  BOOST_TEST(
-      (dense(clamped_at(*system, p.initial.q)) == dense(stiffness_at(*system, p.initial.q))));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,16 +1,10 @@
 #include <algorithm>
-#include <limits>
-#include <random>
 
-#include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/block_diagonal_system.hpp"
 #include "qddot/model/constrained_system.hpp"
-#include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
-#include "tests/problems.hpp"
 
 BOOST_AUTO_TEST_SUITE(split)
 
@@ -18,19 +12,12 @@ using namespace qddot;
 
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-
 // Networks of all kinds of springs, some of them stiff, with loads, and a point of each.
 template <class Check>
 void for_split_networks(const Check& check) {
   std::mt19937 random(5);
-  const auto name_stiff = [&](auto& springs) {
-    for (auto& spring : springs) spring.stiff = random() % 3 == 0;
-  };
   const auto offer = [&](Network network, const Vec& q) {
-    name_stiff(network.links);
-    name_stiff(network.image_links);
-    name_stiff(network.anchors);
+    for_springs(network, [&](auto& spring) { spring.stiff = random() % 3 == 0; });
     network.offers_split = true;
     check(network, q);
   };
@@ -41,15 +28,6 @@ void for_split_networks(const Check& check) {
   }
 }
 
-template <class Keep>
-Network filtered(Network network, const Keep& keep) {
-  const auto is_out = [&](const auto& spring) { return !keep(spring); };
-  std::erase_if(network.links, is_out);
-  std::erase_if(network.image_links, is_out);
-  std::erase_if(network.anchors, is_out);
-  return network;
-}
-
 // The springs of one kind as a system of their own, which has no split.
 std::unique_ptr<System> alone(Network network, bool stiff) {
   network.offers_split = false;
@@ -58,15 +36,15 @@ std::unique_ptr<System> alone(Network network, bool stiff) {
     network.load.setZero();
     network.constant_energy = 0;
   }
-  return make_mass_spring(
-      filtered(network, [&](const auto& spring) { return spring.stiff == stiff; }));
+  const auto is_other = [&](const auto& spring) { return spring.stiff != stiff; };
+  std::erase_if(network.links, is_other);
+  std::erase_if(network.image_links, is_other);
+  std::erase_if(network.anchors, is_other);
+  return make_mass_spring(network);
 }
 
 bool same_pattern(const System& a, const System& b) {
-  const SymmetricMatrix &p = a.stiffness_pattern(), &r = b.stiffness_pattern();
-  return p.nonZeros() == r.nonZeros() &&
-         std::equal(p.outerIndexPtr(), p.outerIndexPtr() + p.cols() + 1, r.outerIndexPtr()) &&
-         std::equal(p.innerIndexPtr(), p.innerIndexPtr() + p.nonZeros(), r.innerIndexPtr());
+  return tests::same_pattern(a.stiffness_pattern(), b.stiffness_pattern());
 }
 
 // Whether f, K and V of the two add up to those of the whole. The tolerance is the rounding of some
@@ -89,21 +67,6 @@ BOOST_AUTO_TEST_CASE(stiff_and_soft_forces_stiffnesses_and_energies_are_those_of
     BOOST_TEST_REQUIRE(split);
     BOOST_TEST(adds_up(*whole, *split->stiff, *split->soft, q));
     BOOST_TEST(adds_up(*whole, *split->stiff, *split->soft, 1.3 * q));
-  });
-}
-
-BOOST_AUTO_TEST_CASE(a_spring_counted_twice_or_not_at_all_is_noticed) {
-  for_split_networks([](const Network& network, const Vec& q) {
-    const auto whole = make_mass_spring(network);
-    for (const bool stiff : {false, true}) {
-      Network other = network;
-      other.anchors.front().stiff = stiff;
-      const Split* split = split_of(*whole);
-      const auto changed = make_mass_spring(other);
-      const bool is_same = stiff == network.anchors.front().stiff;
-      BOOST_TEST(adds_up(*whole, *split_of(*changed)->stiff, *split->soft, q) == is_same);
-      BOOST_TEST(adds_up(*whole, *split->stiff, *split_of(*changed)->soft, q) == is_same);
-    }
   });
 }
 
@@ -169,12 +132,7 @@ BOOST_AUTO_TEST_CASE(a_split_is_there_where_it_is_asked_for_and_changes_nothing_
 BOOST_AUTO_TEST_CASE(either_may_be_without_springs) {
   for_split_networks([](Network network, const Vec& q) {
     for (const bool stiff : {true, false}) {
-      const auto name_all = [&](auto& springs) {
-        for (auto& spring : springs) spring.stiff = stiff;
-      };
-      name_all(network.links);
-      name_all(network.image_links);
-      name_all(network.anchors);
+      for_springs(network, [&](auto& spring) { spring.stiff = stiff; });
       const auto whole = make_mass_spring(network);
       const Split& split = *split_of(*whole);
       const System &all = stiff ? *split.stiff : *split.soft,
@@ -236,16 +194,6 @@ BOOST_AUTO_TEST_CASE(what_is_held_is_held_in_both) {
     network.offers_split = false;
     BOOST_TEST(!split_of(ConstrainedSystem(make_mass_spring(network), is_held)));
   });
-}
-
-BOOST_AUTO_TEST_CASE(parts_have_a_split_each_and_their_sum_has_none) {
-  std::vector<std::unique_ptr<System>> parts;
-  for (const int dimension : {2, 3}) {
-    parts.push_back(make_mass_spring(with_split(hammock(dimension).network)));
-  }
-  const BlockDiagonalSystem divided(std::move(parts));
-  BOOST_TEST(!split_of(divided));
-  for (const auto& part : divided.blocks()) BOOST_TEST(split_of(*part));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

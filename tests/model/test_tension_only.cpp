@@ -1,8 +1,5 @@
-#include <random>
-
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,6 +15,12 @@ inline namespace tests {
 
 inline Scene draw(const std::string& generator, const GeneratorValues& values = {}) {
   return generate(*find_generator(generator), values, "test");
+}
+
+// The scene with every spring at so many times its rest length.
+inline Scene stretched(Scene scene, double stretch) {
+  for (Spring& spring : scene.springs) spring.law.rest_length /= stretch;
+  return scene;
 }
 
 // The scene moved and turned in space as a whole.
@@ -59,6 +64,15 @@ inline Scene square(int dimension = 2) {
 inline bool has(const ReducedScene& scene, Reduction reduction) {
   return std::ranges::any_of(
       scene.findings(), [&](const Finding& finding) { return finding.reduction == reduction; });
+}
+
+// Another state of the reduced scene: every coordinate and velocity changed by up to `change`.
+inline State moved(const ReducedScene& reduced, double change, std::mt19937& random) {
+  std::uniform_real_distribution<double> part(-change, change);
+  State state = reduced.initial();
+  for (double& x : state.q) x += part(random);
+  for (double& v : state.v) v += part(random);
+  return state;
 }
 
 // V of all springs and of the weight of the free nodes, spring by spring over all nodes.

@@ -6,6 +6,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/scene/invalid_input.hpp"
+#include "tests/fragments.hpp"
 
 namespace qddot {
 inline namespace tests {
@@ -23,10 +24,7 @@ std::string refusal_of(const Reading& reading) {
 
 // Whether a refusal is one line that holds the fragments.
 inline bool names_all(const std::string& message, const std::vector<std::string>& fragments) {
-  for (const std::string& fragment : fragments) {
-    if (message.find(fragment) == message.npos) return false;
-  }
-  return !message.empty() && message.find('\n') == message.npos;
+  return contains(message, fragments) && !message.empty() && message.find('\n') == message.npos;
 }
 
 // `text` with the first `old_part`, which must be there, replaced.

@@ -10,8 +10,6 @@ using namespace qddot;
 
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-
 // A massless node between a pin and a mass, in space; drawn where it does not rest.
 Scene two_in_series(double length) {
   Scene scene;

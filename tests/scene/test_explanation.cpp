@@ -1,6 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/scene/explain.hpp"
+#include "tests/fragments.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(explanation)
@@ -25,10 +26,6 @@ Scene strut(double strain) {
   return scene;
 }
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != text.npos;
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(it_counts_unknowns_and_gives_the_stable_step) {
@@ -39,8 +36,8 @@ BOOST_AUTO_TEST_CASE(it_counts_unknowns_and_gives_the_stable_step) {
   BOOST_TEST(e.stiffness_is_constant);
   BOOST_TEST(e.omega_max == 5, boost::test_tools::tolerance(1e-4));
   BOOST_TEST(e.omega_bound >= 5 * (1 - 1e-15));
-  BOOST_TEST(contains(explanation_in_words(e, scene), "1 unknowns of 2"));
-  BOOST_TEST(contains(explanation_in_words(e, scene), "0.4 s"));
+  BOOST_TEST(contains(explanation_in_words(e, scene), {"1 unknowns of 2"}));
+  BOOST_TEST(contains(explanation_in_words(e, scene), {"0.4 s"}));
 }
 
 BOOST_AUTO_TEST_CASE(a_glance_at_a_large_scene_looks_for_no_eigenvalues) {
@@ -67,8 +64,8 @@ BOOST_AUTO_TEST_CASE(a_strut_that_may_buckle_out_of_its_line_is_told_so) {
   const double growth = std::sqrt(-tension / 0.5 * 4 * std::pow(std::sin(3 * M_PI / 8), 2));
   BOOST_TEST(e.growth == growth, boost::test_tools::tolerance(1e-6));
   const std::string words = explanation_in_words(e, strut(-0.1));
-  BOOST_TEST(contains(words, "indefinite"));
-  BOOST_TEST(contains(words, "--no-reduce dimension,mirror"));
+  BOOST_TEST(contains(words, {"indefinite"}));
+  BOOST_TEST(contains(words, {"--no-reduce dimension,mirror"}));
 }
 
 BOOST_AUTO_TEST_CASE(a_string_in_tension_has_nothing_to_tell) {
@@ -77,7 +74,7 @@ BOOST_AUTO_TEST_CASE(a_string_in_tension_has_nothing_to_tell) {
   BOOST_TEST(e.unstable_left_out == 0);
   BOOST_TEST(e.flat == 0);
   BOOST_TEST(
-      contains(explanation_in_words(e, strut(0.1)), "definite at the start: no direction grows"));
+      contains(explanation_in_words(e, strut(0.1)), {"definite at the start: no direction grows"}));
 }
 
 BOOST_AUTO_TEST_CASE(what_rounding_hides_is_told) {
@@ -88,7 +85,7 @@ BOOST_AUTO_TEST_CASE(what_rounding_hides_is_told) {
   // Some 100 roundings of 400 N/m, over 1 kg.
   BOOST_TEST(e.flat_rate < 1e-5);
   BOOST_TEST(
-      contains(explanation_in_words(e, strut(0)), "in 6 it is zero or its sign cannot be told"));
+      contains(explanation_in_words(e, strut(0)), {"in 6 it is zero or its sign cannot be told"}));
 }
 
 BOOST_AUTO_TEST_CASE(directions_that_are_kept_are_not_left_out) {
@@ -102,13 +99,13 @@ BOOST_AUTO_TEST_CASE(directions_that_are_kept_are_not_left_out) {
 BOOST_AUTO_TEST_CASE(scenes_without_unknowns_and_with_massless_nodes_are_explained) {
   Scene pinned = strut(0);
   for (Node& node : pinned.nodes) node.pinned = true;
-  BOOST_TEST(contains(explanation_in_words(explained(pinned), pinned), "nothing is left"));
+  BOOST_TEST(contains(explanation_in_words(explained(pinned), pinned), {"nothing is left"}));
   Scene massless = strut(0.1);
   massless.nodes[2].mass = 0;
   massless.springs[1].law.quartic = 1;
   const Explanation e = explained(massless);
   BOOST_TEST(std::isinf(e.omega_bound));
-  BOOST_TEST(contains(explanation_in_words(e, massless), "no explicit method"));
+  BOOST_TEST(contains(explanation_in_words(e, massless), {"no explicit method"}));
 }
 
 BOOST_AUTO_TEST_CASE(numbers_that_overflow_are_explained_too) {
@@ -118,20 +115,20 @@ BOOST_AUTO_TEST_CASE(numbers_that_overflow_are_explained_too) {
   for (Spring& spring : extreme.springs) spring.law.stiffness = 1e308;
   const Explanation e = explained(extreme);
   BOOST_TEST(!e.is_examined);
-  BOOST_TEST(contains(explanation_in_words(e, extreme), "not known"));
+  BOOST_TEST(contains(explanation_in_words(e, extreme), {"not known"}));
 }
 
 BOOST_AUTO_TEST_CASE(stiff_springs_are_counted_where_they_are_named) {
   Scene scene = strut(0.1);
-  BOOST_TEST(!contains(explanation_in_words(explained(scene), scene), "  stiff "));
+  BOOST_TEST(!contains(explanation_in_words(explained(scene), scene), {"  stiff "}));
   scene.springs[1].law.stiffness = 12345;
   scene.stiff_above = 234.56;
   BOOST_TEST(explained(scene).stiff_springs == 1u);
   BOOST_TEST(contains(explanation_in_words(explained(scene), scene),
-                      "  stiff               1 of 4 springs are stiff (above 234.6 N/m)\n"));
+                      {"  stiff               1 of 4 springs are stiff (above 234.6 N/m)\n"}));
   scene.stiff_above = 12345;
   BOOST_TEST(explained(scene).stiff_springs == 0u);
-  BOOST_TEST(contains(explanation_in_words(explained(scene), scene), "0 of 4 springs are stiff"));
+  BOOST_TEST(contains(explanation_in_words(explained(scene), scene), {"0 of 4 springs are stiff"}));
 }
 
 BOOST_AUTO_TEST_CASE(a_stiff_frame_alone_bounds_explicit_steps_some_eighty_times_below_the_cloth) {
@@ -149,7 +146,7 @@ BOOST_AUTO_TEST_CASE(every_generator_is_explained) {
     BOOST_TEST(std::isfinite(e.omega_max), generator.name);
     BOOST_TEST((e.unstable > 0) == (generator.name == "strut"), generator.name);
     for (const Finding& finding : e.findings) {
-      BOOST_TEST(contains(explanation_in_words(e, scene), finding.what));
+      BOOST_TEST(contains(explanation_in_words(e, scene), {finding.what}));
     }
   }
 }

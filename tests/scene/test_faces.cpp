@@ -1,7 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_file.hpp"
 #include "qddot/scene/settle.hpp"
 #include "tests/folder.hpp"

@@ -1,13 +1,10 @@
-#include <array>
-#include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
 
-#include "qddot/scene/mesh/mesh.hpp"
-#include "tests/folder.hpp"
+#include "tests/scene/edges.hpp"
 #include "tests/scene/refusal.hpp"
 
 BOOST_AUTO_TEST_SUITE(mesh_gmsh)
@@ -16,8 +13,6 @@ using namespace qddot;
 using namespace qddot::mesh;
 
 namespace {
-
-using Pairs = std::vector<std::array<std::size_t, 2>>;
 
 Mesh gmsh(const std::string& text) { return parse_mesh(text, "a.msh"); }
 std::string refusal(const std::string& text) {
@@ -74,38 +69,22 @@ BOOST_AUTO_TEST_CASE(both_versions_give_the_same_mesh) {
     BOOST_TEST((mesh.vertices[3] == Eigen::Vector3d(0, 1, 0.5)));
     BOOST_TEST((mesh.vertices[4] == Eigen::Vector3d(2, 0.1, -1e-3)));
     // The line from 7 to 8 is a side of the quadrangle.
-    BOOST_TEST((mesh.edges == Pairs{{0, 1}, {0, 2}, {0, 4}, {1, 3}, {2, 3}, {2, 4}}));
+    BOOST_TEST(edges_of(mesh) == "01 02 04 13 23 24");
     BOOST_TEST((mesh.triangles == std::vector<std::array<std::size_t, 3>>{{0, 4, 2}}));
   }
 }
 
 BOOST_AUTO_TEST_CASE(every_element_has_the_edges_of_its_kind) {
-  const std::map<int, Pairs> edges = {
-      {15, {}},
-      {1, {{0, 1}}},
-      {2, {{0, 1}, {0, 2}, {1, 2}}},
-      {3, {{0, 1}, {0, 3}, {1, 2}, {2, 3}}},
-      {4, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}},
-      {5,
-       {{0, 1},
-        {0, 3},
-        {0, 4},
-        {1, 2},
-        {1, 5},
-        {2, 3},
-        {2, 6},
-        {3, 7},
-        {4, 5},
-        {4, 7},
-        {5, 6},
-        {6, 7}}},
-      {6, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}}},
-      {7, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}}};
-  const std::map<int, int> corners = {{15, 1}, {1, 2}, {2, 3}, {3, 4},
-                                      {4, 4},  {5, 8}, {6, 6}, {7, 5}};
-  for (const auto& [type, count] : corners) {
-    const Mesh mesh = gmsh(one_element(type, count));
-    BOOST_TEST((mesh.edges == edges.at(type)), "type " << type);
+  for (const auto& [type, corners, edges] : {std::tuple(15, 1, ""),
+                                             {1, 2, "01"},
+                                             {2, 3, "01 02 12"},
+                                             {3, 4, "01 03 12 23"},
+                                             {4, 4, "01 02 03 12 13 23"},
+                                             {5, 8, "01 03 04 12 15 23 26 37 45 47 56 67"},
+                                             {6, 6, "01 02 03 12 14 25 34 35 45"},
+                                             {7, 5, "01 03 04 12 14 23 24 34"}}) {
+    const Mesh mesh = gmsh(one_element(type, corners));
+    BOOST_TEST(edges_of(mesh) == edges, "type " << type);
     BOOST_TEST(mesh.triangles.size() == (type == 2 ? 1u : 0u));
   }
 }
@@ -186,42 +165,9 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
   }
   BOOST_TEST(names_all(refusal(""), {"a.msh:1:", "$MeshFormat"}));
   BOOST_TEST(names_all(refusal("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"), {"no vertices"}));
-}
-
-BOOST_AUTO_TEST_CASE(line_ends_of_every_system_give_the_same_mesh) {
-  for (const std::string& text : {old_format, new_format}) {
-    const Mesh plain = gmsh(text);
-    for (const char* line_end : {"\r", "\r\n"}) {
-      std::string other;
-      for (const char c : text) other += c == '\n' ? line_end : std::string(1, c);
-      const Mesh mesh = gmsh(other);
-      BOOST_TEST((mesh.vertices == plain.vertices));
-      BOOST_TEST((mesh.edges == plain.edges));
-    }
-  }
-}
-
-BOOST_AUTO_TEST_CASE(a_vast_count_takes_no_memory) {
-  const std::string start = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1000000000\n1 0 0 0\n";
-  BOOST_TEST(names_all(refusal(start), {"node tag", "ends too early"}));
-}
-
-BOOST_AUTO_TEST_CASE(truncated_files_load_or_are_refused) {
-  for (const std::string& good : {old_format, new_format}) {
-    std::size_t loaded = 0;
-    for (std::size_t length = 0; length <= good.size(); ++length)
-      loaded += refusal(good.substr(0, length)).empty();
-    BOOST_TEST(loaded > 0u);
-    // A file cut between the ends of two sections cannot be loaded.
-    BOOST_TEST(loaded < good.size() / 4);
-  }
-}
-
-BOOST_AUTO_TEST_CASE(the_ending_of_the_file_chooses_the_format) {
-  const Folder folder;
-  BOOST_TEST(read_mesh(folder.write("a.msh", new_format)).vertices.size() == 5u);
-  BOOST_TEST(names_all(refusal_of([&] { read_mesh(folder.write("a.mesh", new_format)); }),
-                       {"a.mesh:1:", "MeshVersionFormatted"}));
+  // A vast count takes no memory.
+  const std::string vast = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1000000000\n1 0 0 0\n";
+  BOOST_TEST(names_all(refusal(vast), {"node tag", "ends too early"}));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,9 +1,9 @@
 // Scenes from arrays, against the same scenes from files.
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_arrays.hpp"
 #include "qddot/scene/scene_file.hpp"
+#include "tests/scene/refusal.hpp"
 
 BOOST_AUTO_TEST_SUITE(scene_arrays)
 
@@ -50,17 +50,6 @@ SceneArrays two_links() {
   return a;
 }
 
-// Whether the arrays are refused with these words.
-bool is_refused(const SceneArrays& a, const std::string& words) {
-  try {
-    scene_of(a);
-  } catch (const InvalidInput& error) {
-    BOOST_TEST_MESSAGE(error.what());
-    return std::string(error.what()).find(words) != std::string::npos;
-  }
-  return false;
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(a_scene_comes_back_from_its_arrays) {
@@ -86,31 +75,32 @@ BOOST_AUTO_TEST_CASE(one_value_serves_all_and_springs_are_as_long_as_given) {
 }
 
 BOOST_AUTO_TEST_CASE(arrays_that_do_not_fit_are_refused_by_name) {
-  SceneArrays a = two_links();
-  BOOST_TEST(!is_refused(a, ""));
-  a.mass = Eigen::VectorXd::Ones(2);
-  BOOST_TEST(is_refused(a, "mass: 2 entries; allowed are 1 or 3"));
-  a = two_links();
-  a.springs[1] = {1, 3};
-  BOOST_TEST(is_refused(a, "springs[1]: node 3 is none of the 3 nodes"));
-  a = two_links();
-  a.pinned = {7};
-  BOOST_TEST(is_refused(a, "pinned[0]: node 7"));
-  a = two_links();
-  a.gravity = Eigen::Vector3d(0, -9.81, 0);
-  BOOST_TEST(is_refused(a, "gravity: 3 entries; allowed are 2"));
-  a = two_links();
-  a.positions.resize(3, 4);
-  BOOST_TEST(is_refused(a, "positions: 4 columns"));
-  a = two_links();
-  a.velocities = Eigen::MatrixXd::Zero(3, 1);
-  BOOST_TEST(is_refused(a, "velocities: 3 entries"));
-  a = two_links();
-  a.stiffness[0] = -1;
-  BOOST_TEST(is_refused(a, "stiffness"));
-  a = two_links();
-  a.springs[0] = {1, 1};
-  BOOST_TEST(is_refused(a, "springs[0]"));
+  const auto refusal = [](const auto& change) {
+    SceneArrays a = two_links();
+    change(a);
+    return refusal_of([&] { scene_of(a); });
+  };
+  using A = SceneArrays;
+  BOOST_TEST(refusal([](A&) {}) == "");
+  for (const auto& [said, words] : std::vector<std::array<std::string, 2>>{
+           {refusal([](A& a) { a.mass = Eigen::VectorXd::Ones(2); }),
+            "mass: 2 entries; allowed are 1 or 3"},
+           {refusal([](A& a) {
+              a.springs[1] = {1, 3};
+            }),
+            "springs[1]: node 3 is none of the 3 nodes"},
+           {refusal([](A& a) { a.pinned = {7}; }), "pinned[0]: node 7"},
+           {refusal([](A& a) { a.gravity = Eigen::Vector3d(0, -9.81, 0); }),
+            "gravity: 3 entries; allowed are 2"},
+           {refusal([](A& a) { a.positions.resize(3, 4); }), "positions: 4 columns"},
+           {refusal([](A& a) { a.velocities = Eigen::MatrixXd::Zero(3, 1); }),
+            "velocities: 3 entries"},
+           {refusal([](A& a) { a.stiffness[0] = -1; }), "stiffness"},
+           {refusal([](A& a) {
+              a.springs[0] = {1, 1};
+            }),
+            "springs[0]"}})
+    BOOST_TEST(names_all(said, {words}), said);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -70,11 +70,6 @@ BOOST_AUTO_TEST_CASE(unusual_scenes_are_valid) {
   for (const std::string& text : texts) BOOST_TEST(refusal(text) == "");
 }
 
-BOOST_AUTO_TEST_CASE(names_are_in_any_alphabet) {
-  const std::string text = with(two_links, "name = 'two links'", "name = 'Brücke' # läuft");
-  BOOST_TEST(parsed(text).name == "Brücke");
-}
-
 BOOST_AUTO_TEST_CASE(every_kind_of_scene_may_start_at_equilibrium) {
   const std::string generated = "[generator]\nkind = 'orbit'\n";
   for (const std::string& text : {two_links, mesh_scene, generated}) {

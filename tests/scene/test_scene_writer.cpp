@@ -1,4 +1,3 @@
-#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -25,7 +24,7 @@ const std::vector<double> hard_numbers = {0,
                                           1,
                                           -1,
                                           0.1,
-                                          1.0 / 3,
+                                          0x1.5555555555555p-2,
                                           5e-324,
                                           123,
                                           -1e308,
@@ -33,12 +32,12 @@ const std::vector<double> hard_numbers = {0,
                                           1e15,
                                           1e16,
                                           1e-310,
-                                          std::nextafter(1, 2),
-                                          100,
                                           1e22,
                                           1e23,
-                                          -1e-300,
+                                          0x1.0000000000001p0,
+                                          100,
                                           4.1e-5,
+                                          -1e-300,
                                           9007199254740992.0,
                                           std::numeric_limits<double>::max()};
 
@@ -102,31 +101,12 @@ BOOST_AUTO_TEST_CASE(every_generator_is_read_back_to_the_bit) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(meshes_and_files_are_read_back_to_the_bit) {
-  const std::string bending = with(mesh_scene, "scale = 2", "scale = 0.3\nbending_stiffness = 2");
-  for (const std::string& text :
-       {two_links, mesh_scene, bending, "start = 'equilibrium'\n" + two_links,
-        "stiff_above = 1e3\n" + mesh_scene}) {
-    const Scene scene = parsed(text);
-    BOOST_TEST(first_difference(scene, read_back(scene)) == "", text);
-  }
-}
-
 BOOST_AUTO_TEST_CASE(random_scenes_are_read_back_to_the_bit) {
   for (unsigned seed = 0; seed < 2000; ++seed) {
     const Scene scene = random_scene(seed);
     validate(scene, "random scene");
     const std::string difference = first_difference(scene, read_back(scene));
     BOOST_TEST(difference == "", seed << ": " << to_toml(scene));
-  }
-}
-
-BOOST_AUTO_TEST_CASE(hard_numbers_are_read_back_to_the_bit) {
-  for (const double x : hard_numbers) {
-    Scene scene{.dimension = 2, .gravity = {x, -x, 0}};
-    scene.nodes = {{.position = {x, 1, 0}, .velocity = {-x, x, 0}, .mass = std::abs(x)},
-                   {.position = {x, 2, 0}, .mass = x < 0 ? 0 : x, .pinned = true}};
-    BOOST_TEST(first_difference(scene, read_back(scene)) == "", to_toml(scene));
   }
 }
 
@@ -191,21 +171,6 @@ BOOST_AUTO_TEST_CASE(a_written_scene_is_one_to_edit) {
              "stiffness = 1000.0\n"
              "rest_length = 0.5\n"
              "quartic = 7.0\n");
-}
-
-BOOST_AUTO_TEST_CASE(negative_control_one_bit_is_a_difference) {
-  const Scene scene = parsed(two_links);
-  const auto changed = [&](auto&& change) {
-    Scene other = scene;
-    change(other);
-    return first_difference(scene, other);
-  };
-  BOOST_TEST(changed([](Scene&) {}) == "");
-  BOOST_TEST(changed([](Scene& s) { s.gravity[0] = -0.0; }) == "gravity");
-  BOOST_TEST(changed([](Scene& s) { s.nodes[0].velocity[1] = 5e-324; }) == "velocity");
-  BOOST_TEST(changed([](Scene& s) { s.nodes[0].mass = std::nextafter(0.1, 1); }) == "mass");
-  BOOST_TEST(changed([](Scene& s) { s.stiff_above = 1; }) == "stiff_above");
-  BOOST_TEST(changed([](Scene& s) { s.springs[0].law.rest_length += 1e-16; }) == "rest_length");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,236 @@
+// Forces, stiffnesses and energies of springs by vectors, against the sums spring by spring.
+#include <algorithm>
+#include <numeric>
+#include <omp.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/model/kernels/neighbour_slices.hpp"
+#include "tests/measure.hpp"
+#include "tests/model/random_images.hpp"
+
+BOOST_AUTO_TEST_SUITE(spring_kernels)
+
+using namespace qddot;
+using namespace qddot::kernels;
+
+namespace {
+
+// The size that the rounding of a spring's force is relative to. The force itself is a difference.
+double size_of(const SpringLaw& law, double length) {
+  const double sum = length + law.rest_length;
+  return sum * (law.stiffness + law.quartic * sum * sum);
+}
+
+Vec mean_force(const System& system, const Vec& a, const Vec& b) {
+  Vec f(system.size());
+  offered<DiscreteGradient>(system).discrete_gradient(a, b, f);
+  return f;
+}
+
+// The entries that write(parts, K) writes.
+template <class Write>
+Vec entries(const System& system, const Write& write) {
+  SymmetricMatrix k = system.stiffness_pattern();
+  k.coeffs().setConstant(NAN);  // every one must be written
+  write(offered<SplitStiffness>(system), k);
+  return k.coeffs();
+}
+Vec weighted(const System& system, const Vec& q, double compression) {
+  return entries(system, [&](const SplitStiffness& parts, SymmetricMatrix& k) {
+    parts.weighted_stiffness(q, compression, k);
+  });
+}
+Vec material(const System& system, const Vec& q) {
+  return entries(system, [&](const SplitStiffness& parts, SymmetricMatrix& k) {
+    parts.material_stiffness(q, k);
+  });
+}
+
+// Each spring's force has some ten roundings, and the two sums add in different orders. A mean
+// force has twice as many. An energy has a few roundings of each spring's energy, or eps l^2 k if
+// that is less. tau/l of a spring at least 0.3 m long is rounded ten times in proportion to
+// (l + l0)/l <= 10.
+void check_against_plain(const Network& network, const Vec& q) {
+  const auto plain = make_mass_spring(network, Forces::spring_by_spring),
+             fast = make_mass_spring(network, Forces::by_vectors);
+  // Points are at most so far apart.
+  const double width =
+      network.image_links.empty() ? q.maxCoeff() - q.minCoeff() : 2 * q.lpNorm<Eigen::Infinity>();
+  const double extent = width + 2;
+  const double size =
+      sum_of_springs(network, [&](const SpringLaw& law) { return size_of(law, extent); });
+  BOOST_TEST(distance(force_at(*plain, q), force_at(*fast, q)) < eps * size);
+  const Vec other = q + 0.1 * Vec::LinSpaced(q.size(), 1, 9).array().sin().matrix();
+  BOOST_TEST(distance(mean_force(*plain, q, other), mean_force(*fast, q, other)) <= 2 * eps * size);
+
+  const double energy = sum_of_springs(network, [&](const SpringLaw& law) {
+    return size_of(law, extent) * (extent + law.rest_length);
+  });
+  BOOST_TEST(std::abs(plain->potential(q) - fast->potential(q)) <=
+             10 * eps * (energy + std::abs(network.constant_energy)));
+
+  const double stiffest = sum_of_springs(network, [&](const SpringLaw& law) {
+    return law.stiffness + 3 * law.quartic * std::pow(extent + law.rest_length, 2);
+  });
+  for (const double compression : {1.0, 0.3, 0.0}) {
+    BOOST_TEST(distance(weighted(*plain, q, compression), weighted(*fast, q, compression)) <=
+               100 * eps * stiffest);
+  }
+  BOOST_TEST(distance(material(*plain, q), material(*fast, q)) <= 100 * eps * stiffest);
+}
+
+// A grid of `nodes` a side, spacing 1 m, springs of 100 N/m along its lines and diagonals whose
+// rest lengths differ; its nodes in the order given.
+struct Grid {
+  Network network;
+  Vec q;
+};
+Grid grid(int dimension, int side, std::vector<int> place) {
+  Grid g{{.dimension = dimension, .node_mass = Vec::Ones(side * side)},
+         Vec::Zero(dimension * side * side)};
+  g.network.uses_constant_stiffness = false;
+  const auto join = [&](int i, int j, int i2, int j2) {
+    if (i2 >= side || j2 >= side || j2 < 0) return;
+    const double rest = 0.8 + 0.01 * ((i * 7 + j * 3) % 11);
+    g.network.links.push_back({place[i * side + j], place[i2 * side + j2], {100, rest}});
+  };
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      const double x[] = {i + 0.1 * std::sin(j), j + 0.1 * std::cos(3 * i), 0.2 * std::sin(i * j)};
+      std::copy_n(x, dimension, g.q.data() + dimension * place[i * side + j]);
+      join(i, j, i + 1, j);
+      join(i, j, i, j + 1);
+      join(i, j, i + 1, j + 1);
+      join(i, j, i + 1, j - 1);
+    }
+  }
+  return g;
+}
+
+std::vector<int> in_order(int count) {
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+std::vector<int> shuffled(int count) {
+  std::vector<int> order = in_order(count);
+  std::ranges::shuffle(order, std::mt19937(5));
+  return order;
+}
+
+std::vector<std::vector<Neighbour>> neighbours_in(const Network& network) {
+  std::vector<std::vector<Neighbour>> neighbours(network.node_mass.size());
+  for (const auto& link : network.links) {
+    neighbours[link.i].push_back({link.j, link.law});
+    neighbours[link.j].push_back({link.i, link.law});
+  }
+  return neighbours;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(they_are_the_plain_sums_on_networks_of_all_kinds) {
+  std::mt19937 random(3);
+  for (const int dimension : {1, 2, 3}) {
+    for (const double stretch : {0.7, 1.3}) {
+      for (const int nodes : {1, 2, 7, 8, 9, 40}) {
+        const Problem p = random_network(random, dimension, nodes, stretch);
+        check_against_plain(p.network, p.initial.q);
+      }
+    }
+  }
+  for_random_images([](const ImageSample& s) { check_against_plain(s.network, s.q); });
+}
+
+// Node by node: a node of a grid has eight springs of up to 100 N/m times 3 m, of ten roundings
+// each.
+BOOST_AUTO_TEST_CASE(they_are_the_plain_sums_on_grids_in_any_order_of_their_nodes) {
+  for (const int dimension : {2, 3}) {
+    for (const int side : {3, 8, 21}) {
+      for (const auto& order : {in_order(side * side), shuffled(side * side)}) {
+        const Grid g = grid(dimension, side, order);
+        const Vec plain = force_at(*make_mass_spring(g.network, Forces::spring_by_spring), g.q);
+        const Vec fast = force_at(*make_mass_spring(g.network, Forces::by_vectors), g.q);
+        BOOST_TEST(distance(plain, fast) < 8 * 300 * 10 * eps);
+        BOOST_TEST(plain.lpNorm<Eigen::Infinity>() > 1);
+        check_against_plain(g.network, g.q);
+      }
+    }
+  }
+}
+
+// Springs that join the same nodes, with images of them, share a block.
+BOOST_AUTO_TEST_CASE(springs_beside_each_other_add) {
+  Network network{.dimension = 2, .node_mass = Vec::Ones(20)};
+  Vec q = Vec::LinSpaced(40, 0, 13).array().sin() + Vec::LinSpaced(40, 0, 7).array();
+  for (int i = 0; i + 1 < 20; ++i) {
+    network.links.push_back({i, i + 1, {100, 0.3}});
+    if (i % 3 == 0) network.links.push_back({i + 1, i, {70, 0.2}});
+    if (i % 4 == 0) network.image_links.push_back({i, i + 1, {-1, 1, 1}, {50, 0.4}});
+    if (i % 5 == 0) network.links.push_back({i, i + 1, {0, 0.4}});
+  }
+  check_against_plain(network, q);
+}
+
+// It pulls nowhere and, as in spring.hpp, is stiff as along it in every direction.
+BOOST_AUTO_TEST_CASE(a_spring_of_no_length_has_no_direction) {
+  for (const int dimension : {1, 2, 3}) {
+    for (const double quartic : {0.0, 10.0}) {
+      for (const double rest : {0.0, 0.5}) {
+        Network network{.dimension = dimension, .node_mass = Vec::Ones(2)};
+        network.links = {{0, 1, {100, rest, quartic}}};
+        const Vec same = Vec::Constant(2 * dimension, 0.3);
+        BOOST_TEST(force_at(*make_mass_spring(network, Forces::by_vectors), same).norm() == 0);
+        check_against_plain(network, same);
+      }
+    }
+  }
+}
+
+// A spring whose length is exactly its rest length is without force, as drawn scenes at rest are.
+BOOST_AUTO_TEST_CASE(a_spring_at_rest_along_an_axis_has_no_force_at_all) {
+  for (const double length : {0.1, 1.0 / 3, 0.7, 1e-3, 123.456}) {
+    Network network{.dimension = 3, .node_mass = Vec::Ones(2)};
+    network.links = {{0, 1, {1e6, length}}};
+    Vec q = Vec::Zero(6);
+    q[4] = length;
+    BOOST_TEST(force_at(*make_mass_spring(network, Forces::by_vectors), q).norm() == 0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(they_are_the_same_to_the_bit_with_any_number_of_threads) {
+  const int before = omp_get_max_threads();
+  for (const auto& order : {in_order(150 * 150), shuffled(150 * 150)}) {
+    const Grid g = grid(3, 150, order);
+    const auto system = make_mass_spring(g.network, Forces::by_vectors);
+    omp_set_num_threads(1);
+    const Vec alone = force_at(*system, g.q), stiffness = weighted(*system, g.q, 0.5);
+    for (const int threads : {2, 3, 8}) {
+      omp_set_num_threads(threads);
+      BOOST_TEST((force_at(*system, g.q) == alone));
+      BOOST_TEST((weighted(*system, g.q, 0.5) == stiffness));
+    }
+  }
+  omp_set_num_threads(before);
+}
+
+// A grid's slots have one shift, except at the ends of its lines. If its nodes have no order, slots
+// gather; rows sorted by their number of springs leave hardly any slot half empty.
+BOOST_AUTO_TEST_CASE(slots_of_a_grid_are_of_one_shift_and_no_slot_is_wasted) {
+  constexpr int side = 64;
+  for (const bool is_grid : {true, false}) {
+    const auto order = is_grid ? in_order(side * side) : shuffled(side * side);
+    const Network network = grid(3, side, order).network;
+    constexpr int lanes = slice_rows;
+    const NeighbourSlices slices = slice_neighbours(neighbours_in(network), 0);
+    const double slots = static_cast<double>(slices.shifts.size()),
+                 gathers = static_cast<double>(slices.gathers.size()) / lanes;
+    const double least = 2.0 * static_cast<double>(network.links.size()) / lanes;
+    // Two of 64 nodes on each line have neighbours on one side only.
+    BOOST_TEST(slots + gathers < 1.05 * least);
+    BOOST_TEST((is_grid ? gathers : slots) < 0.05 * least);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
