@@ -29,7 +29,8 @@
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/local_global/step_tables.hpp"
+#include "experiments/local_global/cloth_runs.hpp"
+#include "experiments/local_global/iterated_steps.hpp"
 
 int main(int argc, char** argv) {
   using namespace qddot;
@@ -78,7 +79,34 @@ int main(int argc, char** argv) {
     return json;
   };
   const auto measure_steps = [&] {
-    StepTables tables(p);
+    const auto step_table = [&](const std::string& file, const std::string& varied,
+                                const Columns<StepRow>& last) -> RowTable<StepRow>& {
+      Columns<StepRow> columns = {};
+      if (!varied.empty()) columns += {{varied, &StepRow::varied}};
+      columns += {{"solver", &StepRow::solver},
+                  {"iteration", &StepRow::iteration},
+                  {"seconds", &StepRow::seconds}};
+      columns += last;
+      return p.table(file, columns);
+    };
+    const Columns<StepRow> error = {{"relative_error", &StepRow::relative_error}};
+    auto& convergence = step_table("convergence.csv", "", error);
+    auto& positions =
+        step_table("positions.csv", "",
+                   {{"distance_to_converged", &StepRow::distance}, {"step_error", &StepRow::own}});
+    auto& by_stiffness = step_table("stiffness.csv", "stiffness", error);
+    auto& by_resolution = step_table("resolution.csv", "nodes", error);
+    auto& run = p.table<RunRow>("run.csv", {{"solver", &RunRow::solver},
+                                            {"iterations", &RunRow::iterations},
+                                            {"seconds", &RunRow::seconds},
+                                            {"position_error", &RunRow::position_error},
+                                            {"energy_change", &RunRow::energy_change}});
+    // Adds one step of one cloth to a table, and its setup to the table's sidecar.
+    const auto add = [](RowTable<StepRow>& table, const Comparison& step,
+                        const nlohmann::json& setup) {
+      for (const StepRow& row : step.rows) table.add(row);
+      table.note({{"setup", setup}});
+    };
     const auto piece = [](Study& study, const std::string& name, const auto& make) {
       progress().now_at(name);
       const nlohmann::json made = study.piece(name, [&] { return nlohmann::json(make()); });
@@ -94,7 +122,7 @@ int main(int argc, char** argv) {
                        false);
       });
       setup[fmt::format("{:g}", value)] = cloth.setup;
-      StepTables::add(table, cloth, setup);
+      add(table, cloth, setup);
     };
     return p.study(
         origin().at("scene"),
@@ -104,8 +132,8 @@ int main(int argc, char** argv) {
           const Comparison step = piece(study, "step", [&] {
             return compare(SwingingCloth(nodes, stiffness, swing), h, iterations, repeats, 0, true);
           });
-          for (RowTable<StepRow>* table : {&tables.convergence, &tables.positions}) {
-            StepTables::add(*table, step, step.setup);
+          for (RowTable<StepRow>* table : {&convergence, &positions}) {
+            add(*table, step, step.setup);
             table->note({{"step_error", step.step_error}});
           }
           print(step, h);
@@ -114,9 +142,9 @@ int main(int argc, char** argv) {
 
           nlohmann::json setups, setups_of_sizes;
           for (const double k : *stiffnesses)
-            compare_cloth(study, tables.stiffness, "stiffness", k, nodes, k, setups);
+            compare_cloth(study, by_stiffness, "stiffness", k, nodes, k, setups);
           for (const int side : *resolutions) {
-            compare_cloth(study, tables.resolution, "resolution", side, side,
+            compare_cloth(study, by_resolution, "resolution", side, side,
                           stiffness * (side - 1) / (nodes - 1.0), setups_of_sizes);
           }
 
@@ -129,7 +157,7 @@ int main(int argc, char** argv) {
               if (!exact) exact = cloth.truth(cloth.start, until);
               return measured_run(cloth, *exact, *method, n, h, until);
             });
-            if (row.outcome == Outcome::reached_end) tables.run.add(row);
+            if (row.outcome == Outcome::reached_end) run.add(row);
             print(row);
           }
         },
