@@ -75,29 +75,6 @@ bool moves(const AmplitudeRow& row) {
   return row.omega_max > 0 && row.scene->energy(row.scene->initial()) > row.rest_energy;
 }
 
-// The rows of all values whose scenes exist and move.
-std::vector<AmplitudeRow> rows_where_possible(const std::vector<double>& values, const auto& make,
-                                              std::vector<std::string>* left_out) {
-  std::vector<AmplitudeRow> rows;
-  for (const double value : values) {
-    std::string why;
-    try {
-      AmplitudeRow row = make(value);
-      if (moves(row)) {
-        rows.push_back(std::move(row));
-        continue;
-      }
-      why = fmt::format("amplitude {:g}: nothing moves", value);
-    } catch (const InvalidInput& error) {
-      why = error.what();
-    } catch (const std::runtime_error& error) {  // numbers that overflow
-      why = fmt::format("amplitude {:g}: {}", value, error.what());
-    }
-    if (left_out) left_out->push_back(why);
-  }
-  return rows;
-}
-
 }  // namespace
 
 double omega_max_of(const ReducedScene& scene) {
@@ -105,46 +82,37 @@ double omega_max_of(const ReducedScene& scene) {
   return highest.squares.size() == 0 ? 0 : std::sqrt(std::max(0.0, highest.squares[0]));
 }
 
-std::vector<AmplitudeRow> scaled_rows(const Scene& start, const Scene& rest,
-                                      const std::vector<double>& amplitudes,
-                                      const Reductions& reductions,
-                                      std::vector<std::string>* left_out) {
-  return rows_where_possible(
-      amplitudes,
-      [&](double amplitude) {
-        return row_of(amplitude, scaled(start, rest, amplitude), energy_at_rest(rest), reductions);
-      },
-      left_out);
-}
-
-std::vector<AmplitudeRow> varied_rows(const std::string& generator, const std::string& vary,
-                                      const std::vector<double>& values,
-                                      const Reductions& reductions,
-                                      std::vector<std::string>* left_out) {
-  require_parameter(generator, vary);
-  std::vector<std::string> reasons;
-  auto rows = rows_where_possible(
-      values,
-      [&](double value) {
-        const Scene scene = drawn_with(generator, vary, value);
-        return row_of(value, scene, energy_at_rest(settled(scene, generator)), reductions);
-      },
-      &reasons);
-  if (rows.empty() && !reasons.empty()) throw InvalidInput(reasons.front());
-  if (left_out) *left_out = std::move(reasons);
-  return rows;
-}
-
 std::vector<AmplitudeRow> rows_of(const Subject& subject, const Reductions& reductions,
                                   const std::optional<Scene>& rest, const std::string& vary,
                                   const std::vector<double>& amplitudes) {
+  const bool is_varied = !vary.empty();
+  if (is_varied) require_parameter(subject.source, vary);
+  if (!is_varied && !rest) return {};
+  const auto make = [&](double amplitude) {
+    if (!is_varied) {
+      return row_of(amplitude, scaled(subject.start, *rest, amplitude), energy_at_rest(*rest),
+                    reductions);
+    }
+    const Scene scene = drawn_with(subject.source, vary, amplitude);
+    return row_of(amplitude, scene, energy_at_rest(settled(scene, subject.source)), reductions);
+  };
   std::vector<std::string> left_out;
   std::vector<AmplitudeRow> rows;
-  if (!vary.empty()) {
-    rows = varied_rows(subject.source, vary, amplitudes, reductions, &left_out);
-  } else if (rest) {
-    rows = scaled_rows(subject.start, *rest, amplitudes, reductions, &left_out);
+  for (const double amplitude : amplitudes) {
+    try {
+      AmplitudeRow row = make(amplitude);
+      if (moves(row)) {
+        rows.push_back(std::move(row));
+      } else {
+        left_out.push_back(fmt::format("amplitude {:g}: nothing moves", amplitude));
+      }
+    } catch (const InvalidInput& error) {
+      left_out.emplace_back(error.what());
+    } catch (const std::runtime_error& error) {  // numbers that overflow
+      left_out.push_back(fmt::format("amplitude {:g}: {}", amplitude, error.what()));
+    }
   }
+  if (is_varied && rows.empty() && !left_out.empty()) throw InvalidInput(left_out.front());
   for (const std::string& why : left_out)
     say(in_one_line("stability_map: warning: " + why + "; its row is left out"));
   return rows;

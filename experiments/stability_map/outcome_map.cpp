@@ -109,26 +109,6 @@ void run_outcomes(Study& study, const std::vector<Cell>& cells, const MapSetting
   });
 }
 
-const std::vector<std::string>& map_columns() {
-  static const std::vector<std::string> columns = {"method",
-                                                   "h",
-                                                   "h_omega",
-                                                   "amplitude",
-                                                   "outcome",
-                                                   "growth_rate",
-                                                   "predicted_growth_rate",
-                                                   "t_reached",
-                                                   "energy_end",
-                                                   "energy_max",
-                                                   "steps",
-                                                   "rejected",
-                                                   "knob",
-                                                   "value",
-                                                   "omega_max",
-                                                   "buckling_rate"};
-  return columns;
-}
-
 void tabulate(Csv& csv, const std::vector<Cell>& cells, const Outcomes& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!all[i]) continue;

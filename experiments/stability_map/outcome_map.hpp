@@ -44,8 +44,7 @@ using Outcomes = std::vector<std::optional<RunOutcome>>;
 void run_outcomes(Study& study, const std::vector<Cell>& cells, const MapSettings& settings,
                   Outcomes& all);
 
-// The columns and rows of map.csv.
-const std::vector<std::string>& map_columns();
+// Writes map.csv.
 void tabulate(Csv& csv, const std::vector<Cell>& cells, const Outcomes& all);
 // Prints the number of runs of each method by outcome.
 void print(const std::vector<Cell>& cells, const Outcomes& all);
