@@ -2,6 +2,7 @@
 
 import math
 
+from measurements import optional
 from style import COOL, FAINT, INK, WARM, number
 
 TABLE_LEFT, TABLE_WIDTH = 7.55, 4.9
@@ -20,11 +21,6 @@ FATES = {
     "blows_up": ("blows up", "when", WARM[1]),
     "unknown": ("too short to tell", "", FAINT),
 }
-
-
-def optional(text):
-    """A number, or no number where the field is empty."""
-    return float(text) if text else math.nan
 
 
 def label(row):

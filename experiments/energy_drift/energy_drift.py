@@ -7,22 +7,17 @@ of the adaptive methods over their tolerance. The right one shows the verdict on
 verdict has one colour in all three.
 """
 
-import csv
-import json
 import sys
-from pathlib import Path
 
 import numpy as np
-from matplotlib import ticker
 from matplotlib.lines import Line2D
-from matplotlib.text import Text
 
-from chart import move_label
-from drift_table import FATES, draw_table, label, optional, table_height
-from labels import Ink, line_label, place_labels
+from drift_table import FATES, draw_table, label, table_height
+from labels import Ink, label_lines
+from measurements import optional, read_facts, read_table
 from names import shown
-from sheet import Sheet
-from style import FAINT, GRID, INK, number, power_of_ten, use_style
+from sheet import Sheet, main
+from style import FAINT, GRID, log_ticks, number
 
 WIDTH = 12.6
 LEFT, PANEL_WIDTH, LABELS = 0.75, 4.75, 1.6
@@ -51,12 +46,6 @@ TELLING = (
     "semi_implicit_euler",
     "exact",
 )
-
-
-def read(path):
-    """The rows of a table."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def key(row):
@@ -143,23 +132,8 @@ def label_paths(sheet, axes, lines, others):
         extent = text.get_window_extent()
         for height in np.linspace(extent.y0, extent.y1, 5):
             ink.add_line((extent.x0, height), (extent.x1, height), 20.0)
-    texts, anchors = [], []
-    for name, color, xs, ys in lines:
-        pixels = [tuple(axes.transData.transform(point)) for point in zip(xs, ys)]
-        for start, end in zip(pixels, pixels[1:]):
-            ink.add_line(start, end, 2.0)
-        anchors.append(pixels[-3:])
-        texts.append(line_label(axes, name, color, color, SMALL, on_white=True))
-    sizes = [Text.get_window_extent(text).size for text in texts]
-    for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
-        move_label(text, axes.transData.inverted().transform(place.anchor), place)
-
-
-def log_ticks(axis):
-    """Decades in few characters."""
-    axis.set_major_locator(ticker.LogLocator(numticks=8))
-    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: power_of_ten(value)))
-    axis.set_minor_locator(ticker.NullLocator())
+    named = [(name, color, color, list(zip(xs, ys))) for name, color, xs, ys in lines]
+    label_lines(axes, named, lambda pixels: pixels[-3:], ink, size=SMALL, on_white=True)
 
 
 def telling(rows):
@@ -265,14 +239,12 @@ def draw_tolerances(sheet, top, summary):
     label_ends(sheet, axes, box, ends)
 
 
-def main(folder):
+def draw(folder):
     """Draws the picture."""
-    use_style()
-    folder = Path(folder)
-    origin = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    summary = read(folder / "summary.csv")
+    origin = read_facts(folder / "summary.json")
+    summary = read_table(folder / "summary.csv")
     drift = {}
-    for row in read(folder / "drift.csv"):
+    for row in read_table(folder / "drift.csv"):
         point = (float(row["t"]), optional(row["relative_error"]))
         drift.setdefault(key(row), []).append(point)
     drift = {run: np.array(path) for run, path in drift.items()}
@@ -282,27 +254,19 @@ def main(folder):
     sheet = Sheet(WIDTH, max(panels, TOP + table_height(rows)))
     until, h = origin["until"], origin["step_size"]
     title = f"{shown(origin['scene']['name'])}: where the energy goes"
-    sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center", color=INK)
     words = (
         f"{number(until / h)} steps of h = {number(h)} s, to t = {number(until)} s; "
         "errors E(t) − E(0) as parts of the largest kinetic energy, "
         f"{number(origin['energy_scale'])} J"
     )
-    sheet.text(0.15, 0.52, words, size=10, color=FAINT, va="center")
+    sheet.head(0.15, (0.25, 14, title), (0.52, 10, words))
     sheet.rule(0.7)
     draw_paths(sheet, rows, drift)
     if has_tolerances:
         draw_tolerances(sheet, TOP + PANEL_HEIGHT + DOWN, summary)
     draw_table(sheet, TOP - 0.3, rows, until)
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"energy_drift.{extension}"))
+    sheet.save_as(folder, "energy_drift")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("Usage: energy_drift.py DIR")
-    try:
-        main(sys.argv[1])
-    except OSError as error:
-        print(f"{error.filename} cannot be read: {error.strerror}.", file=sys.stderr)
-        sys.exit(2)
+    main(draw)

@@ -5,9 +5,8 @@ from itertools import groupby
 from matplotlib import ticker
 from matplotlib.text import Text
 
-from labels import LEADER_FROM, Ink, place_labels
+from labels import Ink, move_label, place_labels
 from record import sweeps
-from sheet import DPI
 from style import FAINT, FRONT, power_of_ten, seconds, widened
 
 FONT_SIZE = 9.5
@@ -271,11 +270,3 @@ class Chart:
                 "shrinkB": 4,
             },
         )
-
-
-def move_label(text, position, place):
-    """Puts a label into its place, with a leader where it stands apart from its line."""
-    text.xy = position
-    offset = [(c - a) * 72 / DPI for c, a in zip(place.center, place.anchor)]
-    text.set_position(offset)
-    text.arrow_patch.set_visible(place.length > LEADER_FROM)

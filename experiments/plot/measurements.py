@@ -33,6 +33,25 @@ def read_rows(path, columns):
         raise BadInput(f"{path} cannot be read: {reason}.") from error
 
 
+def read_table(path):
+    """The rows of a CSV file, as texts by column."""
+    return [row for _, row in read_rows(path, ())]
+
+
+def read_facts(path):
+    """The content of a table's sidecar."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            return json.load(file)
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path} cannot be read: {error}.") from error
+
+
+def optional(text):
+    """The number in a cell; NaN where it is empty."""
+    return float(text) if text else math.nan
+
+
 def parse(path, line, row, column, required):
     """The number in a cell: NaN for an empty cell, and required ones are positive and finite."""
     text = row[column] or ""

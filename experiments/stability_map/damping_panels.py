@@ -6,13 +6,11 @@ from dataclasses import dataclass
 
 from matplotlib import ticker
 from matplotlib.lines import Line2D
-from matplotlib.text import Text
 
-from chart import move_label
-from labels import Ink, line_label, place_labels
+from labels import ink_within, label_lines
 from names import shown
 from sheet import Sheet
-from style import COOL, FAINT, GRID, INK, MARKERS, WARM, Family, Look, number, power_of_ten
+from style import COOL, FAINT, GRID, INK, MARKERS, WARM, Family, Look, log_ticks, number
 from style import short_names
 
 WIDTH = 12.85
@@ -103,9 +101,7 @@ def style_axes(axes):
     axes.set_ylim(-1.6, 1.6)
     axes.set_yticks(TICKS, [f"{tick:g}" for tick in TICKS])
     axes.yaxis.set_minor_locator(ticker.NullLocator())
-    axes.xaxis.set_major_locator(ticker.LogLocator(numticks=9))
-    axes.xaxis.set_minor_locator(ticker.NullLocator())
-    axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda v, _: f"{v:g}"))
+    log_ticks(axes.xaxis, 9, "{:g}".format)
     axes.tick_params(length=3, color=FAINT, labelsize=9)
     for words, low, high, color in ZONES:
         axes.axhspan(low, high, facecolor=color, zorder=0)
@@ -134,23 +130,14 @@ def anchors_of(axes, pixels):
 def label_curves(axes, named, marks=()):
     """Names each list of points near one of them, off the others and off the marks; named:
     (words, look, points)."""
-    box = axes.bbox
-    bounds = (box.x0 + 4, box.y0 + 4, box.x1 - 4, box.y1 - 4)
-    ink = Ink(bounds)
+    ink = ink_within(axes)
+    left, _, right, _ = ink.bounds
     zero = axes.transData.transform((axes.get_xlim()[0], 0))[1]
-    ink.add_line((bounds[0], zero), (bounds[2], zero), 3.0)
+    ink.add_line((left, zero), (right, zero), 3.0)
     for mark in marks:
         ink.add_marker(axes.transData.transform(mark))
-    texts, anchors = [], []
-    for words, look, points in named:
-        pixels = [tuple(axes.transData.transform(point)) for point in points]
-        for start, end in zip(pixels, pixels[1:]):
-            ink.add_line(start, end, 2.0)
-        anchors.append(anchors_of(axes, pixels))
-        texts.append(line_label(axes, words, look.color, look.text_color))
-    sizes = [Text.get_window_extent(text).size for text in texts]
-    for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
-        move_label(text, axes.transData.inverted().transform(place.anchor), place)
+    lines = [(words, look.color, look.text_color, points) for words, look, points in named]
+    label_lines(axes, lines, lambda pixels: anchors_of(axes, pixels), ink)
 
 
 def line_style(curve):
@@ -177,12 +164,11 @@ class DampingSheet:
         """Everything."""
         scene = self.origin.get("scene", {}).get("name", "the scene")
         title = f"{shown(scene)}: what methods do to vibrations, by linear theory and measured"
-        self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
         words = (
             "killed: loses nine tenths of its amplitude in a period; lives: keeps half of its energy "
             "for ten periods and more; blows up: grows"
         )
-        self.sheet.text(0.15, 0.53, words, size=9.5, color=FAINT, va="center")
+        self.sheet.head(0.15, (0.25, 14, title), (0.53, 9.5, words))
         self.sheet.rule(0.72)
         self.draw_linear()
         self.draw_table()
@@ -264,7 +250,7 @@ class DampingSheet:
         axes.set_xlim(min(frequencies) / 1.4, max(frequencies) * 1.4)
         style_axes(axes)
         if max(frequencies) < 30 * min(frequencies):
-            axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5), numticks=9))
+            log_ticks(axes.xaxis, 9, "{:g}".format, subs=(1, 2, 5))
         axes.set_xlabel("natural frequency in Hz", fontsize=10, labelpad=2)
         named, all_marks, apart, unmeasured = [], [], 0.0, {}
         for curve in self.curves:
@@ -330,9 +316,7 @@ class DampingSheet:
         axes.set_yticks(range(len(methods)), methods, size=SIZE)
         axes.tick_params(axis="y", length=0)
         axes.tick_params(axis="x", length=3, color=FAINT, labelsize=9)
-        axes.xaxis.set_major_locator(ticker.LogLocator(numticks=8))
-        axes.xaxis.set_minor_locator(ticker.NullLocator())
-        axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda v, _: power_of_ten(v)))
+        log_ticks(axes.xaxis)
         axes.grid(True, axis="x")
         axes.spines["left"].set_visible(False)
         words = "mean h ω of a fast vibration, hardly excited, beside a slow one"

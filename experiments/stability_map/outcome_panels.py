@@ -232,7 +232,6 @@ class OutcomeSheet:
         scene = self.origin.get("scene", {}).get("name", "the scene")
         until, tolerated = self.origin.get("until"), self.origin.get("tolerated")
         title = f"{shown(scene)}: outcome of a run, by method, step size and amplitude"
-        self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
         length = f"each cell one run of {number(until)} s or 100 steps" if until else ""
         across = f"to the right h ω_max{self.fastest()}"
         up = "upwards the amplitude: 1 is the scene, 0.01 nearly linear"
@@ -242,7 +241,7 @@ class OutcomeSheet:
         if tolerated:
             words.append(f"bounded: energy within {100 * tolerated:.3g} %")
         words = "; ".join(word for word in words if word)
-        self.sheet.text(0.15, 0.53, words, size=9.5, color=FAINT, va="center")
+        self.sheet.head(0.15, (0.25, 14, title), (0.53, 9.5, words))
         self.draw_key()
         self.sheet.rule(TOP - 0.12)
 

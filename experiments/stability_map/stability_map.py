@@ -5,16 +5,13 @@ map.csv. Writes DIR/stability_map.png and .svg with the outcomes of whole runs. 
 DIR/stability_modes.png and .svg with the damping of an oscillator and of the scene's natural modes.
 """
 
-import json
 import math
-import sys
-from pathlib import Path
 
 from damping_panels import DampingSheet
 from outcome_panels import OutcomeSheet
 from outcomes import Run
-from measurements import BadInput, parse, read_rows
-from style import use_style
+from measurements import parse, read_facts, read_rows
+from sheet import main
 
 RUN_NUMBERS = ("value", "h", "h_omega", "amplitude", "growth_rate", "omega_max", "buckling_rate")
 
@@ -70,53 +67,24 @@ def read_table(path, texts, numbers, needed):
     return rows
 
 
-def read_origin(folder):
-    """The sidecar of the map."""
-    path = folder / "map.json"
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{path} cannot be read: {error}.") from error
-
-
-def save(sheet, folder, name):
-    """Writes a picture in both formats."""
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"{name}.{extension}"))
-
-
 def draw(folder):
     """Draws both pictures."""
-    origin = read_origin(folder)
-    limits = read_limits(str(folder / "limits.csv"))
-    runs = read_runs(str(folder / "map.csv"))
+    origin = read_facts(folder / "map.json")
+    limits = read_limits(folder / "limits.csv")
+    runs = read_runs(folder / "map.csv")
     if runs:
         panels = OutcomeSheet(runs, {m: predicted for m, (predicted, _) in limits.items()}, origin)
         panels.draw()
-        save(panels.sheet, folder, "stability_map")
-    linear = read_linear(str(folder / "linear.csv"))
+        panels.sheet.save_as(folder, "stability_map")
+    linear = read_linear(folder / "linear.csv")
     if linear:
-        modes = read_table(str(folder / "modal.csv"), ("method", "verdict"), MODE_NUMBERS, "omega")
+        modes = read_table(folder / "modal.csv", ("method", "verdict"), MODE_NUMBERS, "omega")
         texts = ("method", "outcome")
-        chosen = read_table(str(folder / "adaptive.csv"), texts, STEP_NUMBERS, "rtol")
+        chosen = read_table(folder / "adaptive.csv", texts, STEP_NUMBERS, "rtol")
         damping = DampingSheet(linear, limits, modes, chosen, origin)
         damping.draw()
-        save(damping.sheet, folder, "stability_modes")
-
-
-def main(arguments):
-    """Draws the pictures of the directory named on the command line; returns the exit status."""
-    if len(arguments) != 1:
-        print("Usage: stability_map.py DIR", file=sys.stderr)
-        return 2
-    use_style()
-    try:
-        draw(Path(arguments[0]))
-    except BadInput as error:
-        print(error, file=sys.stderr)
-        return 2
-    return 0
+        damping.sheet.save_as(folder, "stability_modes")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(draw)
