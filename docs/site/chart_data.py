@@ -101,6 +101,3 @@ def crossing(study, accuracy, fast="implicit", slow="explicit"):
         return high
     share = lead_low / (lead_low - lead_high)
     return low * (high / low) ** share
-
-
-FUNCTIONS = {"crossing": crossing, "fastest": fastest, "ratio": ratio, "runs": runs}

@@ -5,7 +5,7 @@
 //   symmetric_roots --samples 20000 --at 0.3 --out results/finer
 //
 // A formula of k steps has order k and is made from the cosines of its k/2 - 1 pairs of spurious
-// roots (formula_of_cosines.cpp). roots.csv is for k = 4, 6, 8, 10 and 12. It has a row for each
+// roots (formula.cpp). roots.csv is for k = 4, 6, 8, 10 and 12. It has a row for each
 // sampled set of cosines, and one for each of the registry's formulas, with its name:
 //   limit         the least h w at which a vibration grows
 //   phase_error   relative error of the phase of a vibration at h w = --at, in each period
