@@ -133,7 +133,7 @@ def label_paths(sheet, axes, lines, others):
         for height in np.linspace(extent.y0, extent.y1, 5):
             ink.add_line((extent.x0, height), (extent.x1, height), 20.0)
     named = [(name, color, color, list(zip(xs, ys))) for name, color, xs, ys in lines]
-    label_lines(axes, named, lambda pixels: pixels[-3:], ink, size=SMALL, on_white=True)
+    label_lines(axes, named, lambda pixels: pixels[-3:], ink, size=SMALL, white=0.85)
 
 
 def telling(rows):

@@ -78,7 +78,7 @@ def name_lines(axes, lines, ink):
     for name, points in lines.items():
         words, look = SOLVERS[name]
         named.append((words, look.color, look.text_color, points))
-    label_lines(axes, named, lambda p: p[1:] or p, ink, size=FONT_SIZE, on_white=True)
+    label_lines(axes, named, lambda p: p[1:] or p, ink, size=FONT_SIZE, white=0.85)
 
 
 def draw_own_error(axes, own, words, place):

@@ -167,22 +167,25 @@ def place_labels(anchors, sizes, bounds, ink):
     return [chosen[i] for i in range(len(places))]
 
 
-def line_label(axes, words, color, text_color, size=9, on_white=False):
-    """The label of a line, still at the origin of the axes, with a leader in the line's colour."""
-    box = {"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.8}
+def line_label(axes, words, color, text_color, size=9, white=0, alpha=None, leader=None):
+    """The label of a line, still at the origin of the axes, with a leader in the line's colour, on
+    white of this opacity."""
+    box = {"facecolor": "white", "alpha": white, "edgecolor": "none", "pad": 0.8}
+    line = {"arrowstyle": "-", "color": color, "lw": 0.8, "shrinkA": 0}
     return axes.annotate(
         words,
         (0, 0),
         (0, 0),
         textcoords="offset points",
         size=size,
+        alpha=alpha,
         color=text_color,
         ha="center",
         va="center",
         zorder=6,
         annotation_clip=False,
-        bbox=box if on_white else None,
-        arrowprops={"arrowstyle": "-", "color": color, "lw": 0.8, "shrinkA": 0},
+        bbox=box if white else None,
+        arrowprops=line | (leader or {}),
     )
 
 

@@ -1,7 +1,7 @@
 """The methods of a study as the page shows them: colours, marks, families and the line on each."""
 
 from prominent import looks_by_prominence, strong_methods
-from style import STOCK, family_look
+from style import STOCK
 from study_folder import look
 
 
