@@ -20,7 +20,6 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
-#include "experiments/stability_map/amplitude_rows.hpp"
 #include "experiments/stability_map/linear_tables.hpp"
 #include "experiments/stability_map/outcome_map.hpp"
 #include "qddot/scene/invalid_input.hpp"
