@@ -164,10 +164,23 @@ def draw_guides(axes, low, high, bottom):
     return names
 
 
+def panel(sheet, box, title, across):
+    """The axes of a panel, both logarithmic, with its words."""
+    left, top, _, _ = box
+    sheet.text(left - 0.5, top - 0.17, title, weight="bold", size=10)
+    axes = sheet.axes(*box)
+    axes.set(xscale="log", yscale="log")
+    axes.grid(True)
+    log_ticks(axes.xaxis)
+    log_ticks(axes.yaxis)
+    axes.set_xlabel(across, labelpad=2)
+    return axes
+
+
 def draw_paths(sheet, rows, drift):
     """The errors over time."""
     box = (LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT)
-    axes = sheet.axes(*box)
+    axes = panel(sheet, box, "Size of the energy error over time", "t in s")
     lines = []
     for row in telling(rows):
         path = drift.get(key(row))
@@ -178,8 +191,6 @@ def draw_paths(sheet, rows, drift):
             lines.append((row, times, errors))
     if not lines:
         sys.exit("energy_drift.py: no run came far enough to be drawn")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
     low = min(times[0] for _, times, _ in lines)
     high = max(times[-1] for _, times, _ in lines)
     least = min(errors.min() for _, _, errors in lines)
@@ -193,11 +204,6 @@ def draw_paths(sheet, rows, drift):
         if times[-1] < 0.8 * high:
             axes.plot(times[-1:], errors[-1:], "o", color=color, markersize=3.5)
         named.append((label(row), color, times, errors))
-    axes.grid(True)
-    log_ticks(axes.xaxis)
-    log_ticks(axes.yaxis)
-    axes.set_xlabel("t in s", labelpad=2)
-    sheet.text(LEFT - 0.5, TOP - 0.17, "Size of the energy error over time", weight="bold", size=10)
     label_paths(sheet, axes, named, guides)
 
 
@@ -211,11 +217,8 @@ def draw_tolerances(sheet, top, summary):
     if not runs:
         return
     title = "Energy error of adaptive methods at their end, over rtol"
-    sheet.text(LEFT - 0.5, top - 0.17, title, weight="bold", size=10)
     box = (LEFT, top, PANEL_WIDTH, TOLERANCE_HEIGHT)
-    axes = sheet.axes(*box)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes = panel(sheet, box, title, "rtol (finer to the right)")
     ends = []
     for name, rows in runs.items():
         rows.sort(key=lambda row: -float(row["value"]))
@@ -228,10 +231,6 @@ def draw_tolerances(sheet, top, summary):
             axes.plot([value], [error], "o", color=FATES[row["fate"]][2], markersize=3.8)
         ends.append((name, color, values[-1], errors[-1]))
     axes.invert_xaxis()
-    axes.grid(True)
-    log_ticks(axes.xaxis)
-    log_ticks(axes.yaxis)
-    axes.set_xlabel("rtol (finer to the right)", labelpad=2)
     ends.sort(key=lambda end: -end[3])
     if len(ends) > MOST_TOLERANCE_LABELS:  # the ends of the list and some between
         places = np.linspace(0, len(ends) - 1, MOST_TOLERANCE_LABELS).round().astype(int)
