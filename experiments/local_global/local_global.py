@@ -54,12 +54,10 @@ def curves(table, across, up, least):
     """The points of each solver, up to where it has come to `least`."""
     lines = {}
     for name, rows in table.items():
-        points = []
-        for row in rows:
-            points.append((float(row[across]), max(float(row[up]), least)))
-            if points[-1][1] <= least:
-                break
-        lines[name] = points
+        errors = [float(row[up]) for row in rows]
+        end = next((i + 1 for i, error in enumerate(errors) if error <= least), len(rows))
+        points = zip((float(row[across]) for row in rows[:end]), errors)
+        lines[name] = [(place, max(error, least)) for place, error in points]
     return lines
 
 
@@ -70,15 +68,6 @@ def draw_lines(axes, lines):
         style = look.marker_style(4.2) | {"markevery": max(1, len(points) // 12)}
         line = {"color": look.color, "linestyle": look.family.line, "linewidth": 1.6}
         axes.plot(*zip(*points), zorder=3, **line, **style)
-
-
-def name_lines(axes, lines, ink):
-    """Names every line near one of its points but the first."""
-    named = []
-    for name, points in lines.items():
-        words, look = SOLVERS[name]
-        named.append((words, look.color, look.text_color, points))
-    label_lines(axes, named, lambda p: p[1:] or p, ink, size=FONT_SIZE, white=0.85)
 
 
 def draw_own_error(axes, own, words, place):
@@ -113,15 +102,16 @@ def draw_row(sheet, top, table, up, words, limits, own=None):
             axes.tick_params(labelleft=False)
         else:
             axes.set_ylabel(words, fontsize=10)
-        name_lines(axes, lines, ink)
+        looks = ((*SOLVERS[name], points) for name, points in lines.items())
+        named = [(said, look.color, look.text_color, points) for said, look, points in looks]
+        label_lines(axes, named, lambda p: p[1:] or p, ink, size=FONT_SIZE, white=0.85)
 
 
 def length(value):
     """A length with its unit."""
-    for unit, scale in (("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6)):
-        if value >= scale or unit == "µm":
-            return f"{value / scale:.2g} {unit}"
-    return ""
+    units = (("m", 1.0), ("cm", 1e-2), ("mm", 1e-3))
+    unit, scale = next((pair for pair in units if value >= pair[1]), ("µm", 1e-6))
+    return f"{value / scale:.2g} {unit}"
 
 
 def reach(table, across):

@@ -49,6 +49,11 @@ class Formula:
         """The colour of all formulas of as many steps."""
         return COLORS[self.steps]
 
+    @property
+    def marker(self):
+        """That of the registry's formula of as many steps."""
+        return MARKERS[self.steps // 2 - 2]
+
 
 def read_formulas(path):
     """Those of the table that are stable where their phase was measured."""
@@ -71,15 +76,12 @@ def front(formulas, is_better, value):
 
 def draw_dots(axes, formulas, apart, across, up):
     """A dot a formula, fainter where its roots come near each other."""
-    for alpha, chosen in (
-        (NEAR, [f for f in formulas if f.gap < apart]),
-        (APART, [f for f in formulas if f.gap >= apart]),
-    ):
-        points = [(across(f), up(f)) for f in chosen]
-        colors = [f.color for f in chosen]
-        if points:
+    for alpha, is_apart in ((NEAR, False), (APART, True)):
+        chosen = [f for f in formulas if (f.gap >= apart) == is_apart]
+        if chosen:
+            places = [across(f) for f in chosen], [up(f) for f in chosen]
             style = {"s": 5, "alpha": alpha, "linewidths": 0, "rasterized": True}
-            axes.scatter(*zip(*points), c=colors, zorder=2, **style)
+            axes.scatter(*places, c=[f.color for f in chosen], zorder=2, **style)
 
 
 def draw_fronts(axes, formulas, is_better, up):
@@ -97,8 +99,7 @@ def draw_methods(axes, formulas, across, up):
     for f in formulas:
         if f.method:
             style = {"markeredgecolor": INK, "markeredgewidth": 1.1, "linewidth": 0, "zorder": 5}
-            marker = marker_of(f.method, formulas)
-            axes.plot(across(f), up(f), marker, markersize=8.5, color=f.color, **style)
+            axes.plot(across(f), up(f), f.marker, markersize=8.5, color=f.color, **style)
 
 
 def name_methods(axes, formulas, across, up):
@@ -121,26 +122,20 @@ def name_methods(axes, formulas, across, up):
             )
 
 
-def marker_of(method, formulas):
-    """The marker of one of the registry's formulas."""
-    names = sorted({f.method for f in formulas if f.method}, key=lambda name: (len(name), name))
-    return MARKERS[names.index(method) % len(MARKERS)]
-
-
 def draw_legend(sheet, formulas, top):
     """A line of words: the colours, and the marks of the registry's formulas."""
     left = SIDE
     size = {"size": 10, "va": "center"}
     for steps, color in COLORS.items():
-        named = sorted({f.method for f in formulas if f.method and f.steps == steps})
+        named = {f.method: f.marker for f in formulas if f.method and f.steps == steps}
         words = f"order {steps}" + "".join(f": {name}" for name in named)
         axes = sheet.axes(left, top - 0.12, 0.24, 0.24)
         axes.set_axis_off()
         axes.set(xlim=(-1, 1), ylim=(-1, 1))
         axes.plot((-0.95, 0.95), (0, 0), color=color, linewidth=2.2)
-        for name in named:
+        for marker in named.values():
             edge = {"markeredgecolor": INK, "markeredgewidth": 1.1}
-            axes.plot(0, 0, marker_of(name, formulas), markersize=8.5, color=color, **edge)
+            axes.plot(0, 0, marker, markersize=8.5, color=color, **edge)
         text = sheet.text(left + 0.32, top, words, color=INK, **size)
         left += 0.32 + sheet.text_width(text) + 0.35
 
