@@ -27,11 +27,11 @@ struct AmplitudeRow {
 double omega_max_of(const ReducedScene& scene);
 
 // The scenes that the scene's generator draws with its parameter `vary` at each of the amplitudes.
-// Throws InvalidInput if there is no such generator or parameter, or no amplitude is possible. If
-// `vary` is empty: the scene with each node's distance from its place at rest multiplied by each of
-// them, velocities likewise, so that 1 is the scene itself; none without an equilibrium `rest`.
-// Rows in which nothing moves or vibrates, or whose scene cannot exist or has no equilibrium, are
-// left out, which stderr says.
+// Throws InvalidInput if there is no such generator or parameter, or no amplitude is possible.
+// If `vary` is empty, each node's distance from its place at rest is multiplied by an amplitude,
+// and velocities likewise: 1 is the scene itself. Without an equilibrium `rest` there are no rows.
+// Rows in which nothing moves or vibrates are left out, and those whose scene cannot exist or has
+// no equilibrium; stderr says which.
 std::vector<AmplitudeRow> rows_of(const Subject& subject, const Reductions& reductions,
                                   const std::optional<Scene>& rest, const std::string& vary,
                                   const std::vector<double>& amplitudes);
