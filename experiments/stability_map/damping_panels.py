@@ -51,6 +51,11 @@ class Curve:
     look: Look
 
     @property
+    def line(self):
+        """How it is drawn."""
+        return {"color": self.look.color, "linewidth": 1.7, "zorder": 3}
+
+    @property
     def name(self):
         """The first method and how many others there are."""
         others = len(self.methods) - 1
@@ -58,8 +63,9 @@ class Curve:
 
     def is_like(self, points, limits):
         """Whether another method's curve and limit are the same."""
-        return same(self.limits[0][0], limits[0]) and all(
-            math.isclose(x, u) and near(y, v) for (x, y), (u, v) in zip(self.points, points)
+        return alike(self.limits[0][0], limits[0], rel_tol=1e-6) and all(
+            math.isclose(x, u) and alike(y, v, rel_tol=0, abs_tol=SAME)
+            for (x, y), (u, v) in zip(self.points, points)
         )
 
     def between(self, low, high):
@@ -67,14 +73,9 @@ class Curve:
         return [(x, y) for x, y in self.points if low <= x <= high and not math.isnan(y)]
 
 
-def near(a, b):
-    """Whether two damping ratios are drawn at one place."""
-    return abs(a - b) <= SAME or math.isnan(a) and math.isnan(b)
-
-
-def same(a, b):
-    """Whether two limits are one."""
-    return a == b or math.isclose(a, b, rel_tol=1e-6) or math.isnan(a) and math.isnan(b)
+def alike(a, b, **tolerance):
+    """Whether two numbers are one, or neither is known."""
+    return math.isclose(a, b, **tolerance) or math.isnan(a) and math.isnan(b)
 
 
 def curves_of(linear, limits):
@@ -140,11 +141,6 @@ def label_curves(axes, named, marks=()):
     label_lines(axes, lines, lambda pixels: anchors_of(axes, pixels), ink)
 
 
-def line_style(curve):
-    """How a curve is drawn."""
-    return {"color": curve.look.color, "linewidth": 1.7, "zorder": 3}
-
-
 class DampingSheet:
     """The picture. modes: the rows of modal.csv, chosen: those of adaptive.csv, as dictionaries."""
 
@@ -197,7 +193,7 @@ class DampingSheet:
             points = curve.between(0, math.inf)
             if not points:
                 continue
-            axes.plot(*zip(*points), **line_style(curve))
+            axes.plot(*zip(*points), **curve.line)
             limit = curve.limits[0][0]
             if axes.get_xlim()[0] < limit < axes.get_xlim()[1]:
                 style = {"markerfacecolor": "white", "markeredgecolor": curve.look.color}
@@ -258,12 +254,13 @@ class DampingSheet:
             if not rows:
                 continue
             points = self.predicted(curve, rows, h)
-            axes.plot(*zip(*points), **line_style(curve))
+            axes.plot(*zip(*points), **curve.line)
             seen = [row for row in rows if not math.isnan(row["damping_ratio_measured"])]
             for row in rows:
                 if row not in seen:
                     unmeasured[row["method"]] = row["verdict"]
-            apart = max([apart, *(distance(row) for row in seen)])
+            ends = ((r["damping_ratio_measured"], r["damping_ratio_predicted"]) for r in seen)
+            apart = max([apart, *(abs(measured - predicted) for measured, predicted in ends)])
             marks = [(row["omega"] / (2 * math.pi), row["damping_ratio_measured"]) for row in seen]
             all_marks += marks
             if marks:
@@ -332,11 +329,6 @@ def draw_dot(axes, row, height, color):
     face = "white" if is_held else color
     style = {"markerfacecolor": face, "markeredgecolor": color, "mew": 1.5}
     axes.plot([row["h_omega_mean"]], [height], "o", markersize=5, zorder=3, **style)
-
-
-def distance(row):
-    """The difference of a mode's predicted and measured damping."""
-    return abs(row["damping_ratio_measured"] - row["damping_ratio_predicted"])
 
 
 def difference(curve):
