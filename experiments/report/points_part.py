@@ -80,6 +80,7 @@ def points_part(study):
         "method": [places[run.method] for run in study.runs],
         "value": [run.value for run in study.runs],
         "knob": [run.knob for run in study.runs],
+        "knob_words": [run.knob_words for run in study.runs],
         "outcome": [run.outcome for run in study.runs],
         # In a sentence, why a run is no point by the error that judges it.
         "cause": [
