@@ -9,38 +9,23 @@ from dataclasses import dataclass
 from page_data import DATA, NOTHING, ROOT, BadPage, record, rows, seconds, small, times
 
 sys.path.append(str(ROOT / "experiments/plot"))
-from record import Run, read_record  # noqa: E402 (the pictures' own reader of work_precision's record)
+from record import read_record  # noqa: E402 (the pictures' own reader of work_precision's record)
 
 
 @dataclass(frozen=True)
 class Fastest:
-    """The fastest run to an accuracy, or none (then all is a dash)."""
+    """The fastest run to an accuracy, or none (then all is a dash); the value of its knob is the step
+    size in s, or the relative tolerance."""
 
-    run: Run | None
-
-    @property
-    def method(self):
-        return self.run.method if self.run else NOTHING
-
-    @property
-    def time(self):
-        return seconds(self.run.time) if self.run else NOTHING
-
-    @property
-    def seconds(self):
-        return self.run.time if self.run else math.nan
-
-    @property
-    def error(self):
-        return small(self.run.error) if self.run else NOTHING
-
-    @property
-    def value(self):
-        """The step size in s, or the relative tolerance."""
-        return small(self.run.value) if self.run else NOTHING
+    method: str = NOTHING
+    time: str = NOTHING
+    error: str = NOTHING
+    value: str = NOTHING
+    seconds: float = math.nan
+    knob: str = NOTHING
 
     def __bool__(self):
-        return self.run is not None
+        return self.method != NOTHING
 
 
 @functools.cache
@@ -72,7 +57,10 @@ def fastest(study, accuracy, of=None, but=()):
         for run in ranked(study, accuracy)
         if (names is None or run.family in names or run.method in names) and run.method not in but
     )
-    return Fastest(next(wanted, None))
+    for run in wanted:
+        words = seconds(run.time), small(run.error), small(run.value)
+        return Fastest(run.method, *words, run.time, run.knob)
+    return Fastest()
 
 
 def ratio(slow, fast):
@@ -101,6 +89,3 @@ def crossing(study, accuracy, fast="implicit", slow="explicit"):
         return high
     share = lead_low / (lead_low - lead_high)
     return low * (high / low) ** share
-
-
-FUNCTIONS = {"crossing": crossing, "fastest": fastest, "ratio": ratio, "runs": runs}

@@ -1,6 +1,7 @@
 """The formula of a method: the first comment of the file that defines it, as Markdown."""
 
 import functools
+import itertools
 import re
 
 import page_data
@@ -30,12 +31,8 @@ def file_of(name):
 
 def first_comment(text):
     """The lines of the comment that a file begins with, without slashes."""
-    lines = []
-    for line in text.splitlines():
-        if not line.startswith("//"):
-            break
-        lines.append(line[2:])
-    return lines
+    comment = itertools.takewhile(lambda line: line.startswith("//"), text.splitlines())
+    return [line[2:] for line in comment]
 
 
 def escaped(text):

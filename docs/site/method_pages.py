@@ -4,29 +4,84 @@ A study without rows of a method gives an empty list or None. The page then says
 yet.
 """
 
+import collections
 import functools
 import itertools
 from dataclasses import dataclass
 
-import method_charts as charts
+import chart_data
 import method_formula
 import page_data
 from method_formula import escaped
 
-STANDARD = ("cloth", "chain", "framed_cloth")
+CHARTS = ("cloth", "chain", "framed_cloth", "pendulum", "lattice", "fpu", "stiff_frame")
+ACCURACIES = tuple(10.0**-digit for digit in range(1, 9))
+# A method that takes at most so many times as long as the fastest one is near it.
+NEAR = 1.5
 DRIFTS = ("drift_fpu", "drift_orbit", "drift_cloth")
 NEEDS = ("needs_stiffness", "needs_constant_stiffness", "needs_split", "needs_laplacian")
 VERDICTS = ("lives", "is damped", "is killed", "blows up")
 
 
+def is_measured(study):
+    """Whether docs/data has the study."""
+    return (page_data.DATA / study / "study.json").exists()
+
+
+@functools.cache
+def runs_of(chart):
+    """All runs of a chart by method."""
+    runs = {}
+    for run in chart_data.runs(chart) if is_measured(chart) else ():
+        runs.setdefault(run.method, []).append(run)
+    return runs
+
+
+@functools.cache
+def fastest_of(chart):
+    """For each accuracy the time of each method that reaches it, the fastest first."""
+    if not is_measured(chart):
+        return {accuracy: {} for accuracy in ACCURACIES}
+    return {
+        accuracy: {run.method: run.time for run in chart_data.ranked(chart, accuracy)}
+        for accuracy in ACCURACIES
+    }
+
+
 def rows_of(study, table, method):
     """The rows of a method; none where the study is not measured."""
-    return page_data.rows(study, table, method=method) if charts.is_measured(study) else []
+    return page_data.rows(study, table, method=method) if is_measured(study) else []
 
 
 def cell(text):
     """A text for a cell of a table."""
     return escaped(text).replace("|", "\\|")
+
+
+def ranges(accuracies):
+    """Accuracies in words, neighbours together: 1e-1 to 1e-3, 1e-6; a dash for none."""
+    words = []
+    places = sorted(ACCURACIES.index(accuracy) for accuracy in accuracies)
+    for _, group in itertools.groupby(enumerate(places), lambda pair: pair[1] - pair[0]):
+        own = [page_data.accuracy(ACCURACIES[place]) for _, place in group]
+        words.append(own[0] if len(own) == 1 else f"{own[0]} to {own[-1]}")
+    return ", ".join(words) or "–"
+
+
+@dataclass(frozen=True)
+class Place:
+    """The accuracies at which a method is the fastest on a chart, near the fastest, and out of reach
+    though other methods get there; and how many any method reaches."""
+
+    chart: str
+    fastest: list
+    near: list
+    missed: list
+    reached: int
+
+    def words(self, which):
+        """The accuracies of one of the lists in words."""
+        return ranges(getattr(self, which))
 
 
 @dataclass(frozen=True)
@@ -54,7 +109,7 @@ class Method:
     def lacks_scenes(self):
         """Whether the scenes that do not have it lack what it needs, and it is not just new."""
         has_needs = self.has("needs_split") or self.has("needs_constant_stiffness")
-        is_new = not self.places and any(self.is_missing(chart) for chart in charts.CHARTS)
+        is_new = not self.places and any(self.is_missing(chart) for chart in CHARTS)
         return has_needs and not is_new
 
     @property
@@ -159,41 +214,73 @@ class Method:
         def needs(method):
             return [method.has(need) for need in NEEDS]
 
-        runs = charts.runs_of(chart)
+        runs = runs_of(chart)
         others = [m for m in all_methods() if needs(m) == needs(self) and m.name in runs]
         return not runs or (self.name not in runs and bool(others))
 
     def runs(self, chart):
         """All its runs on a chart."""
-        return charts.runs_of(chart).get(self.name, [])
+        return runs_of(chart).get(self.name, [])
 
     def time(self, chart, accuracy):
-        """(Its time, how many times the fastest's) to an accuracy; None where it is not reached."""
-        return charts.time_to(self.name, chart, accuracy)
+        """Its time in s to an accuracy, and how many times that of the fastest method; None where it
+        is not reached."""
+        times = fastest_of(chart)[accuracy]
+        own = times.get(self.name)
+        return None if own is None else (own, own / next(iter(times.values())))
 
     def failures(self, chart):
         """Why its runs failed, each reason with how many."""
-        return charts.failures(self.name, chart)
+        return collections.Counter(run.failure for run in self.runs(chart) if run.failure)
 
     @property
     def places(self):
         """Its place on each chart that has it."""
-        return [charts.place(self.name, chart) for chart in charts.CHARTS if self.runs(chart)]
+        return [self.place(chart) for chart in CHARTS if self.runs(chart)]
+
+    def place(self, chart):
+        """Its place on a chart."""
+        own = {a: self.time(chart, a) for a in ACCURACIES if fastest_of(chart)[a]}
+        return Place(
+            chart,
+            fastest=[a for a, time in own.items() if time and time[1] == 1],
+            near=[a for a, time in own.items() if time and 1 < time[1] <= NEAR],
+            missed=[a for a, time in own.items() if not time],
+            reached=len(own),
+        )
 
     @property
     def wins(self):
         """The rows of the study of many scenes where it is the fastest, or the next one and near."""
-        return charts.wins(self.name)
+        if not is_measured("many_scenes"):
+            return []
+        return [
+            row
+            for row in page_data.rows("many_scenes", "fastest.csv")
+            if row["method"] == self.name
+            or (row["runner_up"] == self.name and float(row["margin"]) <= NEAR)
+        ]
 
     @property
     def example(self):
-        """A run to repeat; None where there is none."""
-        return charts.example(self.name)
+        """Its fastest run to 1e-3 on the cloth, or the framed one, else its most accurate one there;
+        None where it has none."""
+        for chart in ("cloth", "framed_cloth"):
+            good = [run for run in self.runs(chart) if not run.failure]
+            if good:
+                to_it = (run for run in chart_data.ranked(chart, 1e-3) if run.method == self.name)
+                return next(to_it, None) or min(good, key=lambda run: run.at_most)
+        return None
 
     @property
     def work(self):
         """The forces and the linear solves that the example takes for each of its steps."""
-        return charts.work(self.example) if self.example else None
+        run = self.example
+        if not run:
+            return None
+        rows = page_data.rows(run.scene, "points.csv", method=run.method, value=run.value)
+        row = next(row for row in rows if row["outcome"] == run.outcome)
+        return [float(row[what]) / float(row["steps"]) for what in ("force_evaluations", "solves")]
 
 
 @functools.cache

@@ -178,12 +178,3 @@ def sample(path, begin=None, end=None):
 def version():
     """The project's version, as CMake has it."""
     return re.search(r"VERSION ([\d.]+)", sample("CMakeLists.txt", "project(qddot"))[1]
-
-
-FUNCTIONS = {
-    call.__name__: call
-    for call in (
-        accuracy, command, facts, figures, made, percent, processor, record, row, rows, sample,
-        seconds, small, text, times, version,
-    )
-}  # fmt: skip

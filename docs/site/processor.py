@@ -1,5 +1,6 @@
 """Which processor measures: figures name it, since they hold on no other."""
 
+import re
 from pathlib import Path
 
 # Generations of AMD's by family and models: virtual machines hide the model's name.
@@ -15,12 +16,8 @@ GENERATIONS = (
 def processor():
     """The name that the processor gives itself and, where that hides it, its generation: AMD EPYC
     (Zen 4)."""
-    facts = {}
-    for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-        if not line:
-            break
-        key, _, value = line.partition(":")
-        facts[key.strip()] = value.strip()
+    first = Path("/proc/cpuinfo").read_text(encoding="utf-8").partition("\n\n")[0]
+    facts = dict(re.split(r"\s*:\s*", line, maxsplit=1) for line in first.splitlines())
     name = facts.get("model name", "unknown processor")
     if facts.get("vendor_id") == "AuthenticAMD":
         for family, models, generation in GENERATIONS:

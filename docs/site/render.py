@@ -9,20 +9,26 @@ A template is Markdown with {{ ... }} and {% ... %} of Jinja. It can call what p
 chart_data.py offer, and what a Python file of its own name beside it defines.
 """
 
-import importlib.util
+import inspect
+import runpy
 import sys
 
 import jinja2
 
 import chart_data
+import energy_words
 import method_pages
 import page_data
-from energy_words import energy_in_words
 from page_data import ROOT
 
 PAGES = ROOT / "docs/pages"
 # The functions that a template can call.
-CALLS = {**page_data.FUNCTIONS, **chart_data.FUNCTIONS, "energy_in_words": energy_in_words}
+CALLS = {
+    name: call
+    for module in (page_data, chart_data, energy_words)
+    for name, call in vars(module).items()
+    if inspect.isroutine(call) or hasattr(call, "cache_clear")
+}
 NOTICE = "<!-- Made by ./run docs from {source}. Change that file, not this one. -->\n\n"
 
 
@@ -35,10 +41,7 @@ def environment():
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.globals.update(
-        CALLS,
-        methods=method_pages.all_methods,
-    )
+    made.globals.update(CALLS, methods=method_pages.all_methods)
     made.filters.update(CALLS)
     return made
 
@@ -46,12 +49,8 @@ def environment():
 def own_calls(template):
     """What the Python file beside a template defines, by name."""
     file = (PAGES / template).with_suffix(".py")
-    if not file.exists():
-        return {}
-    described = importlib.util.spec_from_file_location(f"page_{file.stem}", file)
-    module = importlib.util.module_from_spec(described)
-    described.loader.exec_module(module)
-    return {name: value for name, value in vars(module).items() if not name.startswith("_")}
+    defined = runpy.run_path(str(file)) if file.exists() else {}
+    return {name: value for name, value in defined.items() if not name.startswith("_")}
 
 
 def render_page(template, **values):
@@ -83,24 +82,13 @@ def rendered():
     return pages
 
 
-class NotMeasured:
+class NotMeasured(jinja2.ChainableUndefined):
     """Stands in a draft for what is not measured, whatever is asked of it."""
-
-    def __getattr__(self, name):
-        if name.startswith("__"):
-            raise AttributeError(name)
-        return self
-
-    def __getitem__(self, key):
-        return self
 
     def __call__(self, *_, **__):
         return self
 
     __truediv__ = __rtruediv__ = __mul__ = __rmul__ = __call__
-
-    def __iter__(self):
-        return iter(())
 
     def __float__(self):
         return float("nan")

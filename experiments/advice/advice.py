@@ -9,17 +9,14 @@ Three panels show ratios for all cases:
 - the time of everything over that of the best run.
 """
 
-import json
 import math
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 from matplotlib.ticker import FixedLocator, NullFormatter
 
-from measurements import parse, read_rows
-from sheet import Sheet
-from style import FAINT, GRID, INK, use_style
+from measurements import parse, read_facts, read_rows
+from sheet import Sheet, main
+from style import FAINT, GRID, INK
 
 WIDTH, HEIGHT = 14.0, 5.6
 SIDE, TOP, BOTTOM, GAP = 0.75, 1.3, 0.75, 0.85
@@ -162,20 +159,17 @@ def draw_total(sheet, cases):
         lines(axes, counted, "from 20 ms on: ")
 
 
-def main(folder):
+def draw(folder):
     """Draws the picture."""
-    use_style()
-    folder = Path(folder)
-    origin = json.loads((folder / "cases.json").read_text(encoding="utf-8"))
+    origin = read_facts(folder / "cases.json")
     cases = read_cases(folder / "cases.csv")
     sheet = Sheet(WIDTH, HEIGHT)
     title = "Motions asked for by their accuracy: how good are the answers?"
-    sheet.text(SIDE, 0.32, title, size=15, weight="bold", va="center", color=INK)
     words = (
         f"{len(cases)} drawn cases, {origin.get('cpu', 'unknown processor')}; dashed: median, "
         "dotted: nine in ten; grey: error bars that did not hold"
     )
-    sheet.text(SIDE, 0.64, words, size=10, color=FAINT, va="center")
+    sheet.head(SIDE, (0.32, 15, title), (0.64, 10, words))
     place = SIDE
     for name, color in KINDS.items():
         label = sheet.text(
@@ -185,11 +179,8 @@ def main(folder):
     draw_bars(sheet, cases)
     draw_choice(sheet, cases)
     draw_total(sheet, cases)
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"advice.{extension}"))
+    sheet.save_as(folder, "advice")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("Usage: advice.py DIR")
-    main(sys.argv[1])
+    main(draw)

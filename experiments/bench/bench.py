@@ -6,15 +6,12 @@ with their own f. Dashed lines are the same peers with our f. The wide stroke is
 methods.
 """
 
-import csv
-import sys
-from pathlib import Path
-
 from matplotlib.lines import Line2D
 
+from measurements import read_table
 from names import shown
-from sheet import Sheet
-from style import COOL, FAINT, FRONT, INK, WARM, decades, power_of_ten, seconds, use_style, widened
+from sheet import Sheet, main
+from style import COOL, FAINT, FRONT, INK, WARM, decades, power_of_ten, seconds, widened
 
 WIDTH, PANEL_WIDTH, PANEL_HEIGHT = 11.6, 4.95, 3.6
 LEFT, TOP, ACROSS, DOWN = 0.85, 1.75, 0.75, 0.95
@@ -38,14 +35,13 @@ FORCES = {"plain": "-", "its own": "-", "ours": (0, (4, 1.8))}
 def read(path):
     """The good points by scene, in the order of the table."""
     scenes = {}
-    with open(path, newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            points = scenes.setdefault((row["scene"], float(row["until"])), [])
-            if row["outcome"] != "reached_end":
-                continue
-            row["error"], row["time"] = float(row["error_position"]), float(row["time_s"])
-            if LEAST_ERROR <= row["error"] <= MOST_ERROR:
-                points.append(row)
+    for row in read_table(path):
+        points = scenes.setdefault((row["scene"], float(row["until"])), [])
+        if row["outcome"] != "reached_end":
+            continue
+        row["error"], row["time"] = float(row["error_position"]), float(row["time_s"])
+        if LEAST_ERROR <= row["error"] <= MOST_ERROR:
+            points.append(row)
     return scenes
 
 
@@ -121,10 +117,9 @@ def key(sheet, names):
     )
 
 
-def main(folder):
+def draw(folder):
     """Draws bench.csv."""
-    use_style()
-    scenes = read(Path(folder) / "bench.csv")
+    scenes = read(folder / "bench.csv")
     rows = (len(scenes) + 1) // 2
     sheet = Sheet(WIDTH, TOP + rows * (PANEL_HEIGHT + DOWN))
     sheet.text(LEFT, 0.15, "Other solvers beside our methods", size=15, weight="bold", va="top")
@@ -148,9 +143,8 @@ def main(folder):
         )
         draw_scene(axes, points)
         style_axes(axes, f"{shown(scene)}, {until:g} s", column == 0, row == rows - 1)
-    for ending in ("png", "svg"):
-        sheet.save(Path(folder) / f"bench.{ending}")
+    sheet.save_as(folder, "bench")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(draw)

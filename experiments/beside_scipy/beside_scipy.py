@@ -6,16 +6,13 @@ Solvers with several methods are drawn by their lower envelope: the shortest tim
 smaller one.
 """
 
-import csv
-import json
-import os
-import sys
 from collections import defaultdict
 
 from matplotlib import ticker
 
-from sheet import Sheet
-from style import COOL, FAINT, WARM, power_of_ten, seconds, use_style
+from measurements import read_facts, read_table
+from sheet import Sheet, main
+from style import COOL, FAINT, WARM, power_of_ten, seconds
 
 # (force, way): words, colour, line, marker.
 LOOKS = {
@@ -33,11 +30,10 @@ PANEL, GAP, LEFT, TOP, BOTTOM, HEIGHT = 5.2, 0.95, 0.95, 1.35, 0.7, 4.3
 def read(folder):
     """Pairs (error, time) by problem and way."""
     runs = defaultdict(lambda: defaultdict(list))
-    with open(os.path.join(folder, "runs.csv"), newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            way = "accuracy" if row["method"] == "accuracy=" else row["way"]
-            pair = float(row["error_position"]), float(row["time_s"])
-            runs[row["problem"], int(row["unknowns"])][row["force"], way].append(pair)
+    for row in read_table(folder / "runs.csv"):
+        way = "accuracy" if row["method"] == "accuracy=" else row["way"]
+        pair = float(row["error_position"]), float(row["time_s"])
+        runs[row["problem"], int(row["unknowns"])][row["force"], way].append(pair)
     return runs
 
 
@@ -53,10 +49,9 @@ def envelope(pairs):
 
 
 def draw(folder):
-    """The sheet of all panels."""
+    """The picture of all panels."""
     runs = read(folder)
-    with open(os.path.join(folder, "runs.json"), encoding="utf-8") as file:
-        about = json.load(file)
+    about = read_facts(folder / "runs.json")
     sheet = Sheet(LEFT + len(runs) * PANEL + (len(runs) - 1) * GAP + 0.25, TOP + HEIGHT + BOTTOM)
     sheet.text(0.25, 0.28, "How long a Python user waits, to the same error", size=14, weight="bold",
                va="center")  # fmt: skip
@@ -81,20 +76,8 @@ def draw(folder):
     sheet.figure.legend(handles=list(lines.values()), loc="center left", ncol=4, frameon=False,
                         bbox_to_anchor=(0.25 / sheet.width, 1 - 0.88 / sheet.height),
                         borderaxespad=0, borderpad=0, fontsize=9.5)  # fmt: skip
-    return sheet
-
-
-def main(arguments):
-    """Draws the picture of the directory named on the command line; returns the exit status."""
-    if len(arguments) != 1:
-        print("Usage: beside_scipy.py DIR", file=sys.stderr)
-        return 2
-    use_style()
-    sheet = draw(arguments[0])
-    for extension in ("png", "svg"):
-        sheet.save(os.path.join(arguments[0], f"beside_scipy.{extension}"))
-    return 0
+    sheet.save_as(folder, "beside_scipy")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(draw)

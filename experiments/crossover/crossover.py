@@ -9,20 +9,17 @@ explicit and the fastest implicit method take the same time; log time is interpo
 log ratio.
 """
 
-import json
 import math
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 from matplotlib import patheffects
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from measurements import BadInput, parse, read_rows
-from sheet import Sheet
-from style import FAINT, INK, number, power_of_ten, use_style
+from measurements import parse, read_facts, read_rows
+from sheet import Sheet, main
+from style import FAINT, INK, number, power_of_ten
 
 KINDS = {"explicit": "#D55E00", "implicit": "#0072B2", "split": "#009E73"}
 TITLES = {
@@ -314,23 +311,11 @@ def draw_header(sheet, family, until, kinds):
     )
 
 
-def main(arguments):
-    """Draws the map of the directory named on the command line; returns the exit status."""
-    if len(arguments) != 1:
-        print("Usage: crossover.py DIR", file=sys.stderr)
-        return 2
-    folder = Path(arguments[0])
-    try:
-        kinds = read_kinds(str(folder / "kinds.csv"))
-        cells = read_cells(str(folder / "crossover.csv"), kinds)
-        origin = json.loads((folder / "crossover.json").read_text(encoding="utf-8"))
-    except BadInput as error:
-        print(error, file=sys.stderr)
-        return 2
-    except (OSError, ValueError) as error:
-        print(f"{folder / 'crossover.json'} cannot be read: {error}.", file=sys.stderr)
-        return 2
-    use_style()
+def draw(folder):
+    """Draws the map."""
+    kinds = read_kinds(folder / "kinds.csv")
+    cells = read_cells(folder / "crossover.csv", kinds)
+    origin = read_facts(folder / "crossover.json")
     columns = len({ratio for ratio, _ in cells})
     rows = len({accuracy for _, accuracy in cells})
     width = max(9.0, LEFT + columns * CELL_WIDTH + RIGHT)
@@ -338,10 +323,8 @@ def main(arguments):
     family = origin.get("family", folder.name)
     Map(sheet, cells, kinds).draw(FAMILIES.get(family, ("", family))[1])
     draw_header(sheet, family, origin.get("until"), kinds)
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"crossover.{extension}"))
-    return 0
+    sheet.save_as(folder, "crossover")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(draw)

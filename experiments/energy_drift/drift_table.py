@@ -2,29 +2,26 @@
 
 import math
 
+from measurements import optional
 from style import COOL, FAINT, INK, WARM, number
 
 TABLE_LEFT, TABLE_WIDTH = 7.55, 4.9
 ROW, HEADING, GROUP_GAP = 0.172, 0.26, 0.1
 FONT_SIZE = 9
 
-# The fates in the order of the table: title, what the number beside a method is, colour.
+# The fates in the order of the table: title, what the number beside a method is, colour, the column
+# of that number.
 FATES = {
-    "round_off": ("nothing but round-off", "error at the end", COOL[3]),
-    "bounded": ("bounded: no drift", "oscillation", COOL[0]),
-    "undecided": ("undecided: may wander", "oscillation", COOL[2]),
-    "widens": ("oscillates ever more widely", "1/s", WARM[3]),
-    "drifts": ("drifts", "1/s", WARM[2]),
-    "dissipates": ("dissipates", "damping ratio", WARM[4]),
-    "grows": ("gains energy", "rate in 1/s", WARM[0]),
-    "blows_up": ("blows up", "when", WARM[1]),
-    "unknown": ("too short to tell", "", FAINT),
+    "round_off": ("nothing but round-off", "error at the end", COOL[3], "energy_error_end"),
+    "bounded": ("bounded: no drift", "oscillation", COOL[0], "oscillation"),
+    "undecided": ("undecided: may wander", "oscillation", COOL[2], "oscillation"),
+    "widens": ("oscillates ever more widely", "1/s", WARM[3], "widening"),
+    "drifts": ("drifts", "1/s", WARM[2], "drift_rate"),
+    "dissipates": ("dissipates", "damping ratio", WARM[4], "damping_ratio"),
+    "grows": ("gains energy", "rate in 1/s", WARM[0], "exponential_rate"),
+    "blows_up": ("blows up", "when", WARM[1], "blow_up_time"),
+    "unknown": ("too short to tell", "", FAINT, None),
 }
-
-
-def optional(text):
-    """A number, or no number where the field is empty."""
-    return float(text) if text else math.nan
 
 
 def label(row):
@@ -35,16 +32,7 @@ def label(row):
 
 def measure(row):
     """The number that says most of a run of its fate."""
-    column = {
-        "round_off": "energy_error_end",
-        "bounded": "oscillation",
-        "undecided": "oscillation",
-        "widens": "widening",
-        "drifts": "drift_rate",
-        "dissipates": "damping_ratio",
-        "grows": "exponential_rate",
-        "blows_up": "blow_up_time",
-    }.get(row["fate"])
+    column = FATES[row["fate"]][3]
     return optional(row[column]) if column else math.nan
 
 
@@ -86,7 +74,7 @@ def draw_table(sheet, top, rows, until):
     """The verdicts."""
     middle = {"va": "center", "size": FONT_SIZE}
     for fate, own in groups_of(rows):
-        title, meaning, color = FATES[fate]
+        title, meaning, color, _ = FATES[fate]
         bar = sheet.axes(TABLE_LEFT, top, 0.07, HEADING + ROW * len(own))
         bar.set_axis_off()
         bar.axvspan(0, 1, color=color)
@@ -105,16 +93,12 @@ def draw_table(sheet, top, rows, until):
         top += GROUP_GAP
 
 
-def settled(row):
-    """Whether the trend is that of the last part of the run."""
-    return row["has_settled"] == "yes"
-
-
 def remark(row, until):
     """How far the run came, where that is not the end."""
     outcome = row["outcome"]
     if outcome == "reached_end" or row["fate"] == "blows_up":
-        return f"from {number(float(row['settled_from']))} s on" if settled(row) else ""
+        settled = row["has_settled"] == "yes"
+        return f"from {number(float(row['settled_from']))} s on" if settled else ""
     part = float(row["t_reached"]) / until
     percent = f"{100 * part:.2g} %"
     if row["fate"] == "unknown" and row["fate_so_far"] != "unknown":

@@ -52,75 +52,14 @@ Columns<SummaryRow> momentum(const std::string& name, std::optional<Trend> Drift
   return columns;
 }
 
-Columns<SummaryRow> make_summary_columns() {
-  using Row = SummaryRow;
-  Columns<Row> all = {{"method", [](const Row& row) { return row.run.method->name; }},
-                      {"outcome", [](const Row& row) { return name(row.run.summary.outcome); }}};
-  all += interval<Row>("drift_rate", energy_drift);
-  all += {{"oscillation",
-           [](const Row& row) { return is_known(row.run) ? row.run.energy.oscillation : nothing; }},
-          {"verdict", [](const Row& row) { return verdict(row.run, row.until); }},
-          {"knob", [](const Row& row) { return knob_name(row.run.method->knob); }},
-          {"value", [](const Row& row) { return row.run.value; }},
-          {"fate", [](const Row& row) { return verdict_name(verdict_at(row.run, row.until)); }},
-          {"t_reached", [](const Row& row) { return row.run.summary.t_reached; }},
-          {"steps", [](const Row& row) { return row.run.summary.counts.steps; }},
-          {"energy_error_end", [](const Row& row) { return row.run.path.back().error; }},
-          {"random_walk",
-           [](const Row& row) { return is_known(row.run) ? row.run.energy.walk : nothing; }}};
-  all += interval<Row>("late_drift", late_drift);
-  all += {{"has_settled", [](const Row& row) { return yes_or_no(row.run.energy.steady_from > 0); }},
-          {"exponential_rate",
-           [](const Row& row) {
-             const double rate = row.run.energy.rate.value;
-             return rate != 0 ? rate : nothing;
-           }},
-          {"damping_ratio",
-           [](const Row& row) {
-             const Trend& energy = row.run.energy;
-             return energy.verdict == Verdict::dissipates ? energy.damping_ratio : nothing;
-           }},
-          {"blow_up_time", [](const Row& row) {
-             const Trend& energy = row.run.energy;
-             return energy.verdict == Verdict::blows_up ? energy.blow_up_time : nothing;
-           }}};
-  all += momentum("momentum", &DriftRun::linear);
-  all += momentum("angular_momentum", &DriftRun::angular);
-  all +=
-      {{"compensated",
-        [](const Row& row) {
-          return yes_or_no(row.compensated && row.run.method->listens_to(Option::compensated));
-        }},
-       {"time_s", [](const Row& row) { return row.run.seconds; }},
-       {"fate_so_far", [](const Row& row) { return verdict_name(row.run.energy.verdict); }},
-       {"settled_from", [](const Row& row) { return row.run.energy.steady_from; }},
-       {"wave_period", [](const Row& row) { return if_positive(row.run.energy.period); }},
-       {"memory_low",
-        [](const Row& row) {
-          const Trend& energy = row.run.energy;
-          return energy.colour == Colour::undecided ? if_positive(energy.memory) : nothing;
-        }},
-       {"slow_period_low", [](const Row& row) { return if_positive(row.run.energy.slow_period); }}};
-  all += interval<Row>("widening", widening);
-  all += {{"needed", [](const Row& row) { return if_positive(row.run.energy.needed); }}};
-  return all;
-}
-
-Columns<ToleranceRow> make_tolerance_columns() {
-  using Row = ToleranceRow;
-  Columns<Row> all = {{"method", [](const Row& row) { return row.run.method->name; }},
-                      {"rtol", [](const Row& row) { return row.run.value; }},
-                      {"periods",
-                       [](const Row& row) {
-                         return row.run.summary.t_reached * row.scales.frequency / (2 * M_PI);
-                       }},
-                      {"outcome", [](const Row& row) { return name(row.run.summary.outcome); }}};
-  all += interval<Row>("drift_rate", energy_drift);
-  all += {{"energy_error_end", [](const Row& row) { return row.run.path.back().error; }},
-          {"steps", [](const Row& row) { return row.run.summary.counts.steps; }},
-          {"time_s", [](const Row& row) { return row.run.seconds; }}};
-  return all;
-}
+// Values of columns that more than one table has.
+const auto method_name = [](const auto& row) { return row.run.method->name; };
+const auto knob = [](const auto& row) { return knob_name(row.run.method->knob); };
+const auto value = [](const auto& row) { return row.run.value; };
+const auto outcome = [](const auto& row) { return name(row.run.summary.outcome); };
+const auto error_end = [](const auto& row) { return row.run.path.back().error; };
+const auto steps = [](const auto& row) { return row.run.summary.counts.steps; };
+const auto seconds = [](const auto& row) { return row.run.seconds; };
 
 // The root mean square of the errors from 0.9 t to t.
 double error_near(const DriftRun& run, double t) {
@@ -153,26 +92,81 @@ std::optional<double> tolerance_exponent(const std::vector<const DriftRun*>& run
 
 }  // namespace
 
-const Columns<PathPoint>& path_columns() {
+Columns<PathPoint> path_columns() {
   using Row = PathPoint;
-  static const Columns<Row> columns = {
-      {"method", [](const Row& row) { return row.run.method->name; }},
-      {"t", [](const Row& row) { return row.point.t; }},
-      {"energy", [](const Row& row) { return row.point.energy; }},
-      {"relative_error", [](const Row& row) { return row.point.error; }},
-      {"knob", [](const Row& row) { return knob_name(row.run.method->knob); }},
-      {"value", [](const Row& row) { return row.run.value; }}};
-  return columns;
+  return {{"method", method_name},
+          {"t", [](const Row& row) { return row.point.t; }},
+          {"energy", [](const Row& row) { return row.point.energy; }},
+          {"relative_error", [](const Row& row) { return row.point.error; }},
+          {"knob", knob},
+          {"value", value}};
 }
 
-const Columns<SummaryRow>& summary_columns() {
-  static const Columns<SummaryRow> columns = make_summary_columns();
-  return columns;
+Columns<SummaryRow> summary_columns() {
+  using Row = SummaryRow;
+  Columns<Row> all = {{"method", method_name}, {"outcome", outcome}};
+  all += interval<Row>("drift_rate", energy_drift);
+  all += {{"oscillation",
+           [](const Row& row) { return is_known(row.run) ? row.run.energy.oscillation : nothing; }},
+          {"verdict", [](const Row& row) { return verdict(row.run, row.until); }},
+          {"knob", knob},
+          {"value", value},
+          {"fate", [](const Row& row) { return verdict_name(verdict_at(row.run, row.until)); }},
+          {"t_reached", [](const Row& row) { return row.run.summary.t_reached; }},
+          {"steps", steps},
+          {"energy_error_end", error_end},
+          {"random_walk",
+           [](const Row& row) { return is_known(row.run) ? row.run.energy.walk : nothing; }}};
+  all += interval<Row>("late_drift", late_drift);
+  all += {{"has_settled", [](const Row& row) { return yes_or_no(row.run.energy.steady_from > 0); }},
+          {"exponential_rate",
+           [](const Row& row) {
+             const double rate = row.run.energy.rate.value;
+             return rate != 0 ? rate : nothing;
+           }},
+          {"damping_ratio",
+           [](const Row& row) {
+             const Trend& energy = row.run.energy;
+             return energy.verdict == Verdict::dissipates ? energy.damping_ratio : nothing;
+           }},
+          {"blow_up_time", [](const Row& row) {
+             const Trend& energy = row.run.energy;
+             return energy.verdict == Verdict::blows_up ? energy.blow_up_time : nothing;
+           }}};
+  all += momentum("momentum", &DriftRun::linear);
+  all += momentum("angular_momentum", &DriftRun::angular);
+  all +=
+      {{"compensated",
+        [](const Row& row) {
+          return yes_or_no(row.compensated && row.run.method->listens_to(Option::compensated));
+        }},
+       {"time_s", seconds},
+       {"fate_so_far", [](const Row& row) { return verdict_name(row.run.energy.verdict); }},
+       {"settled_from", [](const Row& row) { return row.run.energy.steady_from; }},
+       {"wave_period", [](const Row& row) { return if_positive(row.run.energy.period); }},
+       {"memory_low",
+        [](const Row& row) {
+          const Trend& energy = row.run.energy;
+          return energy.colour == Colour::undecided ? if_positive(energy.memory) : nothing;
+        }},
+       {"slow_period_low", [](const Row& row) { return if_positive(row.run.energy.slow_period); }}};
+  all += interval<Row>("widening", widening);
+  all += {{"needed", [](const Row& row) { return if_positive(row.run.energy.needed); }}};
+  return all;
 }
 
-const Columns<ToleranceRow>& tolerance_columns() {
-  static const Columns<ToleranceRow> columns = make_tolerance_columns();
-  return columns;
+Columns<ToleranceRow> tolerance_columns() {
+  using Row = ToleranceRow;
+  Columns<Row> all = {{"method", method_name},
+                      {"rtol", value},
+                      {"periods",
+                       [](const Row& row) {
+                         return row.run.summary.t_reached * row.scales.frequency / (2 * M_PI);
+                       }},
+                      {"outcome", outcome}};
+  all += interval<Row>("drift_rate", energy_drift);
+  all += {{"energy_error_end", error_end}, {"steps", steps}, {"time_s", seconds}};
+  return all;
 }
 
 void print_verdicts(const std::vector<DriftRun>& runs, double until) {

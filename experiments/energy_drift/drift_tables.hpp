@@ -13,7 +13,7 @@ struct PathPoint {
   const DriftRun& run;
   const DriftPoint& point;
 };
-const Columns<PathPoint>& path_columns();
+Columns<PathPoint> path_columns();
 
 // The row of a run. `until`: its asked end [s]; `compensated`: whether methods that can were asked
 // for compensated sums.
@@ -22,14 +22,14 @@ struct SummaryRow {
   double until;
   bool compensated;
 };
-const Columns<SummaryRow>& summary_columns();
+Columns<SummaryRow> summary_columns();
 
 // How an adaptive method did at its tolerance, one row.
 struct ToleranceRow {
   const DriftRun& run;
   const MotionScales& scales;
 };
-const Columns<ToleranceRow>& tolerance_columns();
+Columns<ToleranceRow> tolerance_columns();
 
 // Prints the verdict on each run. Then prints, for each adaptive method, the exponent of rtol by
 // which its error goes, at the time that all its runs reached.

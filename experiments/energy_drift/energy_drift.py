@@ -7,22 +7,17 @@ of the adaptive methods over their tolerance. The right one shows the verdict on
 verdict has one colour in all three.
 """
 
-import csv
-import json
 import sys
-from pathlib import Path
 
 import numpy as np
-from matplotlib import ticker
 from matplotlib.lines import Line2D
-from matplotlib.text import Text
 
-from chart import move_label
-from drift_table import FATES, draw_table, label, optional, table_height
-from labels import Ink, line_label, place_labels
+from drift_table import FATES, draw_table, label, table_height
+from labels import Ink, label_lines
+from measurements import optional, read_facts, read_table
 from names import shown
-from sheet import Sheet
-from style import FAINT, GRID, INK, number, power_of_ten, use_style
+from sheet import Sheet, main
+from style import FAINT, GRID, log_ticks, number
 
 WIDTH = 12.6
 LEFT, PANEL_WIDTH, LABELS = 0.75, 4.75, 1.6
@@ -51,12 +46,6 @@ TELLING = (
     "semi_implicit_euler",
     "exact",
 )
-
-
-def read(path):
-    """The rows of a table."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def key(row):
@@ -143,23 +132,8 @@ def label_paths(sheet, axes, lines, others):
         extent = text.get_window_extent()
         for height in np.linspace(extent.y0, extent.y1, 5):
             ink.add_line((extent.x0, height), (extent.x1, height), 20.0)
-    texts, anchors = [], []
-    for name, color, xs, ys in lines:
-        pixels = [tuple(axes.transData.transform(point)) for point in zip(xs, ys)]
-        for start, end in zip(pixels, pixels[1:]):
-            ink.add_line(start, end, 2.0)
-        anchors.append(pixels[-3:])
-        texts.append(line_label(axes, name, color, color, SMALL, on_white=True))
-    sizes = [Text.get_window_extent(text).size for text in texts]
-    for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
-        move_label(text, axes.transData.inverted().transform(place.anchor), place)
-
-
-def log_ticks(axis):
-    """Decades in few characters."""
-    axis.set_major_locator(ticker.LogLocator(numticks=8))
-    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: power_of_ten(value)))
-    axis.set_minor_locator(ticker.NullLocator())
+    named = [(name, color, color, list(zip(xs, ys))) for name, color, xs, ys in lines]
+    label_lines(axes, named, lambda pixels: pixels[-3:], ink, size=SMALL, white=0.85)
 
 
 def telling(rows):
@@ -190,10 +164,23 @@ def draw_guides(axes, low, high, bottom):
     return names
 
 
+def panel(sheet, box, title, across):
+    """The axes of a panel, both logarithmic, with its words."""
+    left, top, _, _ = box
+    sheet.text(left - 0.5, top - 0.17, title, weight="bold", size=10)
+    axes = sheet.axes(*box)
+    axes.set(xscale="log", yscale="log")
+    axes.grid(True)
+    log_ticks(axes.xaxis)
+    log_ticks(axes.yaxis)
+    axes.set_xlabel(across, labelpad=2)
+    return axes
+
+
 def draw_paths(sheet, rows, drift):
     """The errors over time."""
     box = (LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT)
-    axes = sheet.axes(*box)
+    axes = panel(sheet, box, "Size of the energy error over time", "t in s")
     lines = []
     for row in telling(rows):
         path = drift.get(key(row))
@@ -204,8 +191,6 @@ def draw_paths(sheet, rows, drift):
             lines.append((row, times, errors))
     if not lines:
         sys.exit("energy_drift.py: no run came far enough to be drawn")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
     low = min(times[0] for _, times, _ in lines)
     high = max(times[-1] for _, times, _ in lines)
     least = min(errors.min() for _, _, errors in lines)
@@ -219,11 +204,6 @@ def draw_paths(sheet, rows, drift):
         if times[-1] < 0.8 * high:
             axes.plot(times[-1:], errors[-1:], "o", color=color, markersize=3.5)
         named.append((label(row), color, times, errors))
-    axes.grid(True)
-    log_ticks(axes.xaxis)
-    log_ticks(axes.yaxis)
-    axes.set_xlabel("t in s", labelpad=2)
-    sheet.text(LEFT - 0.5, TOP - 0.17, "Size of the energy error over time", weight="bold", size=10)
     label_paths(sheet, axes, named, guides)
 
 
@@ -237,11 +217,8 @@ def draw_tolerances(sheet, top, summary):
     if not runs:
         return
     title = "Energy error of adaptive methods at their end, over rtol"
-    sheet.text(LEFT - 0.5, top - 0.17, title, weight="bold", size=10)
     box = (LEFT, top, PANEL_WIDTH, TOLERANCE_HEIGHT)
-    axes = sheet.axes(*box)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes = panel(sheet, box, title, "rtol (finer to the right)")
     ends = []
     for name, rows in runs.items():
         rows.sort(key=lambda row: -float(row["value"]))
@@ -254,10 +231,6 @@ def draw_tolerances(sheet, top, summary):
             axes.plot([value], [error], "o", color=FATES[row["fate"]][2], markersize=3.8)
         ends.append((name, color, values[-1], errors[-1]))
     axes.invert_xaxis()
-    axes.grid(True)
-    log_ticks(axes.xaxis)
-    log_ticks(axes.yaxis)
-    axes.set_xlabel("rtol (finer to the right)", labelpad=2)
     ends.sort(key=lambda end: -end[3])
     if len(ends) > MOST_TOLERANCE_LABELS:  # the ends of the list and some between
         places = np.linspace(0, len(ends) - 1, MOST_TOLERANCE_LABELS).round().astype(int)
@@ -265,14 +238,12 @@ def draw_tolerances(sheet, top, summary):
     label_ends(sheet, axes, box, ends)
 
 
-def main(folder):
+def draw(folder):
     """Draws the picture."""
-    use_style()
-    folder = Path(folder)
-    origin = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    summary = read(folder / "summary.csv")
+    origin = read_facts(folder / "summary.json")
+    summary = read_table(folder / "summary.csv")
     drift = {}
-    for row in read(folder / "drift.csv"):
+    for row in read_table(folder / "drift.csv"):
         point = (float(row["t"]), optional(row["relative_error"]))
         drift.setdefault(key(row), []).append(point)
     drift = {run: np.array(path) for run, path in drift.items()}
@@ -282,27 +253,19 @@ def main(folder):
     sheet = Sheet(WIDTH, max(panels, TOP + table_height(rows)))
     until, h = origin["until"], origin["step_size"]
     title = f"{shown(origin['scene']['name'])}: where the energy goes"
-    sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center", color=INK)
     words = (
         f"{number(until / h)} steps of h = {number(h)} s, to t = {number(until)} s; "
         "errors E(t) − E(0) as parts of the largest kinetic energy, "
         f"{number(origin['energy_scale'])} J"
     )
-    sheet.text(0.15, 0.52, words, size=10, color=FAINT, va="center")
+    sheet.head(0.15, (0.25, 14, title), (0.52, 10, words))
     sheet.rule(0.7)
     draw_paths(sheet, rows, drift)
     if has_tolerances:
         draw_tolerances(sheet, TOP + PANEL_HEIGHT + DOWN, summary)
     draw_table(sheet, TOP - 0.3, rows, until)
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"energy_drift.{extension}"))
+    sheet.save_as(folder, "energy_drift")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("Usage: energy_drift.py DIR")
-    try:
-        main(sys.argv[1])
-    except OSError as error:
-        print(f"{error.filename} cannot be read: {error.strerror}.", file=sys.stderr)
-        sys.exit(2)
+    main(draw)

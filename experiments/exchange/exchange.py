@@ -5,17 +5,15 @@ DIR/exchange.png and DIR/exchange.svg. A row is a method, a column a step size. 
 energies of the springs over time, those of the reference in grey, and a verdict.
 """
 
-import csv
-import json
 import sys
 from collections import defaultdict
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 
+from measurements import read_facts, read_table
 from names import shown
-from sheet import Sheet
-from style import COOL, FAINT, GRID, INK, WARM, number, use_style
+from sheet import Sheet, main
+from style import COOL, FAINT, GRID, INK, WARM, number
 
 PANEL_WIDTH, PANEL_HEIGHT, ACROSS, DOWN = 2.45, 0.86, 0.12, 0.12
 RIGHT, TOP, BOTTOM = 0.25, 1.0, 0.55
@@ -47,13 +45,12 @@ MEANINGS = (
 def read(folder):
     """Times and energies by run and spring, and the summary's rows by run: (method, h w)."""
     courses = defaultdict(lambda: defaultdict(lambda: ([], [])))
-    with open(folder / "exchange.csv", newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            times, energies = courses[row["method"], row["h_omega"]][row["spring"]]
-            times.append(float(row["t"]))
-            energies.append(float(row["energy"] or "inf"))
-    with open(folder / "summary.csv", newline="", encoding="utf-8") as file:
-        summary = {(row["method"], row["h_omega"]): row for row in csv.DictReader(file)}
+    for row in read_table(folder / "exchange.csv"):
+        times, energies = courses[row["method"], row["h_omega"]][row["spring"]]
+        times.append(float(row["t"]))
+        energies.append(float(row["energy"] or "inf"))
+    rows = read_table(folder / "summary.csv")
+    summary = {(row["method"], row["h_omega"]): row for row in rows}
     return courses, summary
 
 
@@ -139,13 +136,11 @@ def forces(method, summary):
     return f"{count} force{'' if count == 1 else 's'} a step"
 
 
-def main(folder):
+def draw(folder):
     """Draws the picture."""
-    use_style()
     plt.rcParams["path.simplify_threshold"] = 0.6
-    folder = Path(folder)
     courses, summary = read(folder)
-    origin = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    origin = read_facts(folder / "summary.json")
     runs = [run for run in summary if run[0] != "reference"]
     if not runs:
         sys.exit(f"exchange.py: {folder} has no run to draw")
@@ -162,13 +157,12 @@ def main(folder):
     title = (
         f"{shown(origin['scene']['name'])}: which method lets stiff springs exchange their energy?"
     )
-    sheet.text(0.2, 0.3, title, size=15, weight="bold", va="center", color=INK)
     words = (
         f"energies of stiff springs over time, in parts of their sum at the start; "
         f"ω = {number(origin['omega'])} rad/s, that of the stiff springs alone; grey: the exact "
         "motion"
     )
-    sheet.text(0.2, 0.62, words, size=10, color=FAINT, va="center")
+    sheet.head(0.2, (0.3, 15, title), (0.62, 10, words))
     sheet.rule(0.82)
     axes = panels.axes(start, TOP, PANEL_WIDTH, REFERENCE_HEIGHT, True)
     panels.draw_reference(axes)
@@ -193,11 +187,8 @@ def main(folder):
             if row + 1 == len(methods):
                 axes.set_xlabel("t in s", fontsize=9, labelpad=1)
             panels.draw(axes, courses[method, step], summary[method, step]["verdict"])
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"exchange.{extension}"))
+    sheet.save_as(folder, "exchange")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("Usage: exchange.py DIR")
-    main(sys.argv[1])
+    main(draw)

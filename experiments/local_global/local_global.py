@@ -7,19 +7,12 @@ converged step. A line shows the distance of the converged step to the true moti
 it do not matter.
 """
 
-import csv
-import json
-import sys
 from itertools import groupby
-from pathlib import Path
 
-from matplotlib.text import Text
-
-from chart import move_label
-from labels import Ink, line_label, place_labels
-from sheet import Sheet
-from style import COOL, FAINT, FRONT, INK, WARM, Family, Look, decades, power_of_ten, seconds
-from style import use_style
+from labels import ink_within, label_lines
+from measurements import read_facts, read_table
+from sheet import Sheet, main
+from style import COOL, FRONT, INK, WARM, Family, Look, decades, power_of_ten, seconds
 
 WIDTH, HEIGHT = 11.6, 8.6
 LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.85, 1.2, 5.0, 3.05
@@ -53,8 +46,7 @@ SOLVERS = {
 
 def read(path):
     """The rows of a table by solver, without the starts: iterations, seconds and the rest."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if int(row["iteration"]) > 0]
+    rows = [row for row in read_table(path) if int(row["iteration"]) > 0]
     return {name: list(own) for name, own in groupby(rows, key=lambda row: row["solver"])}
 
 
@@ -62,12 +54,10 @@ def curves(table, across, up, least):
     """The points of each solver, up to where it has come to `least`."""
     lines = {}
     for name, rows in table.items():
-        points = []
-        for row in rows:
-            points.append((float(row[across]), max(float(row[up]), least)))
-            if points[-1][1] <= least:
-                break
-        lines[name] = points
+        errors = [float(row[up]) for row in rows]
+        end = next((i + 1 for i, error in enumerate(errors) if error <= least), len(rows))
+        points = zip((float(row[across]) for row in rows[:end]), errors)
+        lines[name] = [(place, max(error, least)) for place, error in points]
     return lines
 
 
@@ -78,28 +68,6 @@ def draw_lines(axes, lines):
         style = look.marker_style(4.2) | {"markevery": max(1, len(points) // 12)}
         line = {"color": look.color, "linestyle": look.family.line, "linewidth": 1.6}
         axes.plot(*zip(*points), zorder=3, **line, **style)
-
-
-def label_lines(axes, lines, taken):
-    """Names every line near one of its points, off the others and off the pixels taken."""
-    box = axes.bbox
-    bounds = (box.x0 + 4, box.y0 + 4, box.x1 - 4, box.y1 - 4)
-    ink = Ink(bounds)
-    for extent in taken:
-        for y in range(int(extent.y0), int(extent.y1), 4):
-            ink.add_line((extent.x0, y), (extent.x1, y), 3.0)
-    texts, anchors = [], []
-    for name, points in lines.items():
-        pixels = [tuple(axes.transData.transform(point)) for point in points]
-        for start, end in zip(pixels, pixels[1:]):
-            ink.add_line(start, end, 2.0)
-        anchors.append(pixels[1:] if len(pixels) > 1 else pixels)
-        words, look = SOLVERS[name]
-        label = line_label(axes, words, look.color, look.text_color, FONT_SIZE, on_white=True)
-        texts.append(label)
-    sizes = [Text.get_window_extent(text).size for text in texts]
-    for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
-        move_label(text, axes.transData.inverted().transform(place.anchor), place)
 
 
 def draw_own_error(axes, own, words, place):
@@ -125,24 +93,25 @@ def draw_row(sheet, top, table, up, words, limits, own=None):
         draw_lines(axes, lines)
         axes.set_ylim(bottom=least)
         axes.set_xlim(*limits[i])
-        taken = []
+        ink = ink_within(axes)
         if own:
             said, place = OWN_ERROR[i]
-            taken.append(draw_own_error(axes, own, said.format(length(own)), place))
+            ink.add_box(draw_own_error(axes, own, said.format(length(own)), place), 3.0)
             axes.set_xlabel(f"{name} of one step", fontsize=10)
         if i:
             axes.tick_params(labelleft=False)
         else:
             axes.set_ylabel(words, fontsize=10)
-        label_lines(axes, lines, taken)
+        looks = ((*SOLVERS[name], points) for name, points in lines.items())
+        named = [(said, look.color, look.text_color, points) for said, look, points in looks]
+        label_lines(axes, named, lambda p: p[1:] or p, ink, size=FONT_SIZE, white=0.85)
 
 
 def length(value):
     """A length with its unit."""
-    for unit, scale in (("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6)):
-        if value >= scale or unit == "µm":
-            return f"{value / scale:.2g} {unit}"
-    return ""
+    units = (("m", 1.0), ("cm", 1e-2), ("mm", 1e-3))
+    unit, scale = next((pair for pair in units if value >= pair[1]), ("µm", 1e-6))
+    return f"{value / scale:.2g} {unit}"
 
 
 def reach(table, across):
@@ -151,28 +120,30 @@ def reach(table, across):
     return min(values) / 1.35, max(values) * 1.35
 
 
-def main(folder):
+def draw(folder):
     """Draws the picture."""
-    use_style()
-    folder = Path(folder)
-    origin = json.loads((folder / "positions.json").read_text(encoding="utf-8"))
-    sheet = Sheet(WIDTH, HEIGHT)
-    title = "What the iterations of one implicit step gain"
-    sheet.text(0.2, 0.3, title, size=15, weight="bold", va="center", color=INK)
+    origin = read_facts(folder / "positions.json")
     scene = origin["scene"]
-    words = (
-        f"cloth of {scene['nodes']} nodes and {scene['springs']} springs of "
-        f"up to {origin['stiffness']:g} N/m, after {origin['swing']:g} s of swinging; one step of "
-        f"h = {seconds(origin['step_size'])}, backward Euler, one core"
+    setup = origin["setup"]["local_global"]
+    once = setup["analysis_s"] + setup["factorization_s"]
+    sheet = Sheet(WIDTH, HEIGHT)
+    sheet.head(
+        0.2,
+        (0.3, 15, "What the iterations of one implicit step gain"),
+        (
+            0.6,
+            10,
+            f"cloth of {scene['nodes']} nodes and {scene['springs']} springs of "
+            f"up to {origin['stiffness']:g} N/m, after {origin['swing']:g} s of swinging; one step of "
+            f"h = {seconds(origin['step_size'])}, backward Euler, one core",
+        ),
+        (
+            0.84,
+            10,
+            f"solid: one constant matrix, made once in {seconds(once)} (not in the times below); "
+            "dashed: a new matrix at each iteration, in the times",
+        ),
     )
-    sheet.text(0.2, 0.6, words, size=10, color=FAINT, va="center")
-    setup = origin["setup"]
-    once = setup["local_global"]["analysis_s"] + setup["local_global"]["factorization_s"]
-    words = (
-        f"solid: one constant matrix, made once in {seconds(once)} (not in the times below); "
-        "dashed: a new matrix at each iteration, in the times"
-    )
-    sheet.text(0.2, 0.84, words, size=10, color=FAINT, va="center")
     sheet.rule(1.02)
     energy = read(folder / "convergence.csv")
     limits = [reach(energy, across) for across in ("iteration", "seconds")]
@@ -181,11 +152,8 @@ def main(folder):
     positions = read(folder / "positions.csv")
     words = "farthest node from the converged step in m"
     draw_row(sheet, below, positions, "distance_to_converged", words, limits, origin["step_error"])
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"local_global.{extension}"))
+    sheet.save_as(folder, "local_global")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("Usage: local_global.py DIR")
-    main(sys.argv[1])
+    main(draw)

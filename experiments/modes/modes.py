@@ -5,18 +5,16 @@ DIR/modes.svg. Up to six modes are drawn: first the growing ones, then the vibra
 lowest on. Modes of frequency zero are drawn if there are no others.
 """
 
-import csv
-import json
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from matplotlib.collections import LineCollection
 
+from measurements import read_facts, read_table
 from names import shown
-from sheet import Sheet
-from style import COOL, FAINT, INK, WARM, number, use_style
+from sheet import Sheet, main
+from style import COOL, WARM, number
 
 MOST_PANELS = 6
 COLUMNS = 3
@@ -59,8 +57,8 @@ class Mode:
 
 def read_modes(folder):
     """Positions by node and axis, and the modes whose shapes are there."""
-    with open(folder / "modes.csv", newline="", encoding="utf-8") as file:
-        omegas = {int(row["mode"]): float(row["omega"]) for row in csv.DictReader(file)}
+    rows = read_table(folder / "modes.csv")
+    omegas = {int(row["mode"]): float(row["omega"]) for row in rows}
     table = np.loadtxt(folder / "shapes.csv", delimiter=",", skiprows=1, ndmin=2)
     if table.size == 0:
         sys.exit(f"modes.py: {folder} has no mode to draw: nothing in the scene can move")
@@ -134,11 +132,9 @@ def frame(points):
     return middle - half, middle + half, PANEL * ratio
 
 
-def main(folder):
+def draw(folder):
     """Draws the picture."""
-    use_style()
-    folder = Path(folder)
-    origin = json.loads((folder / "modes.json").read_text(encoding="utf-8"))
+    origin = read_facts(folder / "modes.json")
     positions, modes = read_modes(folder)
     modes = chosen(modes)
     springs = np.loadtxt(folder / "springs.csv", delimiter=",", skiprows=1, dtype=int, ndmin=2)
@@ -153,7 +149,6 @@ def main(folder):
     sheet = Sheet(2 * SIDE + COLUMNS * PANEL + (COLUMNS - 1) * GAP, height)
     place = {"drawn": "as drawn", "equilibrium": "at equilibrium"}[origin["at"]]
     title = f"{shown(origin['scene']['name'])}: natural modes {place}"
-    sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center", color=INK)
     words = [f"modes of finite frequency: {origin['finite_modes']}"]
     if origin["unstable_directions"] > 0:
         words.append(f"unstable: {origin['unstable_directions']}")
@@ -162,7 +157,7 @@ def main(folder):
     words.append("grey: at rest" if origin["at"] == "equilibrium" else "grey: as drawn")
     if positions.shape[1] == 1:
         words.append("displacements drawn across the line")
-    sheet.text(0.15, 0.54, ", ".join(words), size=10, color=FAINT, va="center")
+    sheet.head(0.15, (0.25, 14, title), (0.54, 10, ", ".join(words)))
     sheet.rule(0.75)
     for i, (mode, shape) in enumerate(zip(modes, shapes)):
         left = SIDE + (i % COLUMNS) * (PANEL + GAP)
@@ -174,11 +169,8 @@ def main(folder):
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         draw_springs(axes, rest, springs, REST, 1)
         draw_springs(axes, shape, springs, mode.color, 2)
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"modes.{extension}"))
+    sheet.save_as(folder, "modes")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("Usage: modes.py DIR")
-    main(sys.argv[1])
+    main(draw)

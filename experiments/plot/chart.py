@@ -5,9 +5,8 @@ from itertools import groupby
 from matplotlib import ticker
 from matplotlib.text import Text
 
-from labels import LEADER_FROM, Ink, place_labels
+from labels import Ink, line_label, move_label, place_labels
 from record import sweeps
-from sheet import DPI
 from style import FAINT, FRONT, power_of_ten, seconds, widened
 
 FONT_SIZE = 9.5
@@ -113,28 +112,14 @@ class Chart:
         self.axes.axvspan(
             left, self.view.floor, facecolor="none", edgecolor="#BBBBBB", hatch="////", linewidth=0
         )
-        self.axes.axvline(self.view.floor, color=FAINT, linewidth=1.0)
+        self.draw_upright(words, self.view.floor)
+
+    def draw_upright(self, words, error, linestyle="-", zorder=3):
+        """A line at an error, with words beside its foot."""
+        self.axes.axvline(error, color=FAINT, linewidth=1.0, linestyle=linestyle)
         self.axes.annotate(
             words,
-            (self.view.floor, 0),
-            (-8, 6),
-            xycoords=("data", "axes fraction"),
-            textcoords="offset points",
-            rotation=90,
-            va="bottom",
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
-            **style,
-        )
-
-    def draw_chaos(self):
-        """The line below which errors depend on how a method rounds, where the motion is
-        chaotic."""
-        if not self.view.chaotic_below:
-            return
-        self.axes.axvline(self.view.chaotic_below, color=FAINT, linewidth=1.0, linestyle=":")
-        self.axes.annotate(
-            "chaotic: rounding decides",
-            (self.view.chaotic_below, 0),
+            (error, 0),
             (-8, 6),
             xycoords=("data", "axes fraction"),
             textcoords="offset points",
@@ -143,9 +128,15 @@ class Chart:
             color=FAINT,
             ha="right",
             va="bottom",
-            zorder=4,
+            zorder=zorder,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
         )
+
+    def draw_chaos(self):
+        """The line below which errors depend on how a method rounds, where the motion is
+        chaotic."""
+        if self.view.chaotic_below:
+            self.draw_upright("chaotic: rounding decides", self.view.chaotic_below, ":", 4)
 
     def front_corners(self):
         """The staircase of the shortest time that reaches each error or a smaller one."""
@@ -237,45 +228,14 @@ class Chart:
         for sweep in lines:
             good = [self.position(run) for run in sweep if not run.failure]
             ends.append({self.pixels(end): end for end in (good[0], good[-1])})
-            texts.append(self.draw_label(sweep, good[0]))
+            look, stroke = self.looks[sweep[0].method], self.stroke(sweep)
+            style = {"white": 0.8, "alpha": stroke.label_alpha}
+            style["leader"] = {"alpha": stroke.alpha, "shrinkB": 4}
+            size, colors = stroke.label_size, (look.color, look.text_color)
+            texts.append(line_label(self.axes, self.label_of(sweep), *colors, size, **style))
         # The extent of an annotation counts its leader in; that of its text is wanted here.
-        extents = [Text.get_window_extent(text) for text in texts]
-        sizes = [(extent.width, extent.height) for extent in extents]
+        sizes = [Text.get_window_extent(text).size for text in texts]
         bounds = self.label_bounds()
         places = place_labels([list(end) for end in ends], sizes, bounds, self.ink(bounds))
         for text, end, place in zip(texts, ends, places):
             move_label(text, end[place.anchor], place)
-
-    def draw_label(self, sweep, end):
-        """The name of a line on one of its ends, not yet in its place."""
-        look = self.looks[sweep[0].method]
-        stroke = self.stroke(sweep)
-        return self.axes.annotate(
-            self.label_of(sweep),
-            end,
-            (0, 0),
-            textcoords="offset points",
-            size=stroke.label_size,
-            alpha=stroke.label_alpha,
-            color=look.text_color,
-            ha="center",
-            va="center",
-            zorder=6,
-            bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.8},
-            arrowprops={
-                "arrowstyle": "-",
-                "color": look.color,
-                "alpha": stroke.alpha,
-                "linewidth": 0.8,
-                "shrinkA": 0,
-                "shrinkB": 4,
-            },
-        )
-
-
-def move_label(text, position, place):
-    """Puts a label into its place, with a leader where it stands apart from its line."""
-    text.xy = position
-    offset = [(c - a) * 72 / DPI for c, a in zip(place.center, place.anchor)]
-    text.set_position(offset)
-    text.arrow_patch.set_visible(place.length > LEADER_FROM)

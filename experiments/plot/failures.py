@@ -1,8 +1,6 @@
 """The strip under a work-precision chart that shows the runs which are no points of it."""
 
-from matplotlib import ticker
-
-from style import FAINT, GRID, number, power_of_ten, widened
+from style import FAINT, GRID, log_ticks, number, widened
 
 KNOBS = {"step_size": ("step size h", "h"), "rtol": ("tolerance rtol", "rtol")}
 TITLE = 0.36
@@ -112,9 +110,7 @@ def draw_group(sheet, top, knob, group, looks):
     axes.spines[["left", "bottom"]].set_visible(False)
     axes.grid(True, axis="x")
     axes.xaxis.tick_top()
-    axes.xaxis.set_major_locator(ticker.LogLocator(numticks=7))
-    axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: power_of_ten(value)))
-    axes.xaxis.set_minor_locator(ticker.NullLocator())
+    log_ticks(axes.xaxis, 7)
     axes.tick_params(axis="x", length=0, pad=1, labelsize=FONT_SIZE, labelcolor=FAINT)
 
 

@@ -4,6 +4,9 @@ import math
 from itertools import product
 
 import numpy as np
+from matplotlib.text import Text
+
+from sheet import DPI
 
 CELL = 4
 GAP = 4
@@ -22,6 +25,7 @@ class Ink:
     """How much is drawn where: a coarse image of the lines and markers labels should not hide."""
 
     def __init__(self, bounds):
+        self.bounds = bounds
         self.left, self.bottom, right, top = bounds
         shape = (int((top - self.bottom) / CELL) + 2, int((right - self.left) / CELL) + 2)
         self.cells = np.zeros(shape)
@@ -40,6 +44,11 @@ class Ink:
     def add_line(self, start, end, weight=1.0):
         """Inks a straight line."""
         self.cells[self.index(*points_between(start, end))] += weight
+
+    def add_box(self, box, weight):
+        """Inks a box of matplotlib's, which is to stay readable."""
+        for y in range(int(box.y0), int(box.y1), CELL):
+            self.add_line((box.x0, y), (box.x1, y), weight)
 
     def in_box(self, box):
         """The ink under a box (left, bottom, right, top)."""
@@ -158,20 +167,53 @@ def place_labels(anchors, sizes, bounds, ink):
     return [chosen[i] for i in range(len(places))]
 
 
-def line_label(axes, words, color, text_color, size=9, on_white=False):
-    """The label of a line, still at the origin of the axes, with a leader in the line's colour."""
-    box = {"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.8}
+def line_label(axes, words, color, text_color, size=9, white=0, alpha=None, leader=None):
+    """The label of a line, still at the origin of the axes, with a leader in the line's colour, on
+    white of this opacity."""
+    box = {"facecolor": "white", "alpha": white, "edgecolor": "none", "pad": 0.8}
+    line = {"arrowstyle": "-", "color": color, "lw": 0.8, "shrinkA": 0}
     return axes.annotate(
         words,
         (0, 0),
         (0, 0),
         textcoords="offset points",
         size=size,
+        alpha=alpha,
         color=text_color,
         ha="center",
         va="center",
         zorder=6,
         annotation_clip=False,
-        bbox=box if on_white else None,
-        arrowprops={"arrowstyle": "-", "color": color, "lw": 0.8, "shrinkA": 0},
+        bbox=box if white else None,
+        arrowprops=line | (leader or {}),
     )
+
+
+def move_label(text, position, place):
+    """Puts a label into its place, with a leader where it stands apart from its line."""
+    text.xy = position
+    offset = [(c - a) * 72 / DPI for c, a in zip(place.center, place.anchor)]
+    text.set_position(offset)
+    text.arrow_patch.set_visible(place.length > LEADER_FROM)
+
+
+def ink_within(axes):
+    """No ink yet, in all of the axes but their edges."""
+    box = axes.bbox
+    return Ink((box.x0 + 4, box.y0 + 4, box.x1 - 4, box.y1 - 4))
+
+
+def label_lines(axes, lines, anchors_of, ink, **style):
+    """Names each of the lines (words, colour, colour of the words, points) near one of the places
+    that anchors_of makes of its pixels, off the others and off the ink."""
+    texts, anchors = [], []
+    for words, color, text_color, points in lines:
+        pixels = [tuple(axes.transData.transform(point)) for point in points]
+        for start, end in zip(pixels, pixels[1:]):
+            ink.add_line(start, end, 2.0)
+        anchors.append(anchors_of(pixels))
+        texts.append(line_label(axes, words, color, text_color, **style))
+    # The extent of an annotation counts its leader in; that of its text is wanted here.
+    sizes = [Text.get_window_extent(text).size for text in texts]
+    for text, place in zip(texts, place_labels(anchors, sizes, ink.bounds, ink)):
+        move_label(text, axes.transData.inverted().transform(place.anchor), place)

@@ -3,34 +3,54 @@
 import csv
 import json
 import math
+from contextlib import contextmanager
 
 
 class BadInput(Exception):
     """A measurement file that cannot be read; the message is one sentence."""
 
 
-def read_header(path):
-    """The names of a CSV file's columns."""
+@contextmanager
+def reading(path):
+    """An open file; what is wrong with it or its content becomes a BadInput."""
     try:
         with open(path, newline="", encoding="utf-8") as file:
-            return next(csv.reader(file), [])
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+            yield file
+    except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise BadInput(f"{path} cannot be read: {reason}.") from error
+
+
+def read_header(path):
+    """The names of a CSV file's columns."""
+    with reading(path) as file:
+        return next(csv.reader(file), [])
 
 
 def read_rows(path, columns):
     """The rows of a CSV file with a header, each with its line number."""
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            reader = csv.DictReader(file)
-            missing = [name for name in columns if name not in (reader.fieldnames or [])]
-            if missing:
-                raise BadInput(f"{path} has no column {missing[0]}.")
-            return [(reader.line_num, row) for row in reader]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise BadInput(f"{path} cannot be read: {reason}.") from error
+    with reading(path) as file:
+        reader = csv.DictReader(file)
+        missing = [name for name in columns if name not in (reader.fieldnames or [])]
+        if missing:
+            raise BadInput(f"{path} has no column {missing[0]}.")
+        return [(reader.line_num, row) for row in reader]
+
+
+def read_table(path):
+    """The rows of a CSV file, as texts by column."""
+    return [row for _, row in read_rows(path, ())]
+
+
+def read_facts(path):
+    """The content of a table's sidecar."""
+    with reading(path) as file:
+        return json.load(file)
+
+
+def optional(text):
+    """The number in a cell; NaN where it is empty."""
+    return float(text) if text else math.nan
 
 
 def parse(path, line, row, column, required):

@@ -1,10 +1,13 @@
 """A figure laid out in inches from its upper left corner, and its writing to files."""
 
 import os
+import sys
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from style import GRID
+from measurements import BadInput
+from style import FAINT, GRID, INK, use_style
 
 DPI = 160
 
@@ -59,6 +62,17 @@ class Sheet:
         line = plt.Line2D((0.015, 0.985), (height, height), color=GRID, linewidth=1.0)
         self.figure.add_artist(line)
 
+    def head(self, left, *lines):
+        """What stands above all: the title and lines below it, each (top, size, words)."""
+        for number, (top, size, words) in enumerate(lines):
+            style = {"color": FAINT} if number else {"color": INK, "weight": "bold"}
+            self.text(left, top, words, size=size, va="center", **style)
+
+    def save_as(self, folder, name):
+        """Writes the figure into a folder, in both formats."""
+        for extension in ("png", "svg"):
+            self.save(os.path.join(folder, f"{name}.{extension}"))
+
     def save(self, path):
         """Writes the figure to path, whole or not at all; the extension gives the format."""
         extension = os.path.splitext(path)[1]
@@ -71,3 +85,18 @@ class Sheet:
         finally:
             if os.path.exists(temporary):
                 os.remove(temporary)
+
+
+def main(draw):
+    """The call of a script that draws what lies in a folder: draw(folder) of the one that the command
+    line names. Ends the process, with status 2 where a file cannot be read."""
+    script = os.path.basename(sys.argv[0])
+    problem = f"Usage: {script} DIR"
+    if len(sys.argv) == 2:
+        use_style()
+        try:
+            sys.exit(draw(Path(sys.argv[1])))
+        except BadInput as error:
+            problem = error
+    print(problem, file=sys.stderr)
+    sys.exit(2)

@@ -134,14 +134,21 @@ def use_style():
     matplotlib.rcParams.update(SETTINGS)
 
 
+def log_ticks(axis, most=8, words=None, **places):
+    """Ticks at the decades of a logarithmic axis or at these places between them, no more than so
+    many; words make words of numbers, by default powers of ten."""
+    words = words or power_of_ten
+    axis.set_major_locator(ticker.LogLocator(numticks=most, **places))
+    axis.set_minor_locator(ticker.NullLocator())
+    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: words(value)))
+
+
 def decades(axes, across, up, font_size):
     """Logarithmic axes with a light grid; across and up make words of the numbers on them."""
     axes.set_xscale("log")
     axes.set_yscale("log")
-    for axis, words in ((axes.xaxis, across), (axes.yaxis, up)):
-        axis.set_major_locator(ticker.LogLocator(numticks=14))
-        axis.set_minor_locator(ticker.NullLocator())
-        axis.set_major_formatter(ticker.FuncFormatter(lambda v, _, words=words: words(v)))
+    log_ticks(axes.xaxis, 14, across)
+    log_ticks(axes.yaxis, 14, up)
     axes.grid(True, color=GRID)
     axes.tick_params(length=3, color=FAINT, labelsize=font_size)
 

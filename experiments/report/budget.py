@@ -1,14 +1,12 @@
 """Which runs and frames of a motion a page has room for."""
 
+import bisect
+
 import numpy as np
 
 # While what is shown is too large, frames are dropped down to the first number and then runs down
 # to the second, then both to the next pair.
 LEAST_FRAMES_AND_RUNS = ((60, 20), (30, 8), (16, 4), (8, 2), (2, 1))
-# The bytes of a few frames, far apart, give those of a frame and of a whole run. Each of many
-# frames near to each other takes less, but by experience not below this part.
-SAMPLE_FRAMES = 4
-NEAR_FRAMES_TAKE = 0.5
 
 
 def kept_frames(count, longest, limit):
@@ -50,21 +48,9 @@ def fit(counts, room, encode):
     def size_of(runs, limit):
         return sum(encoded(run, limit).size for run in range(runs))
 
-    few, more = min(2, longest), min(SAMPLE_FRAMES, longest)
-    least = size_of(len(counts), few)
-    a_frame = (size_of(len(counts), more) - least) / max(more - few, 1)
-
-    def expected(runs, frames):
-        changes = a_frame * NEAR_FRAMES_TAKE * max(frames - few, 0)
-        return (least + changes) * runs / len(counts)
-
-    too_low = 1.0  # by what factor sizes were larger than expected
     choices = ladder(len(counts), longest)
-    for runs, frames in choices:
-        if too_low * expected(runs, frames) > room and (runs, frames) != choices[-1]:
-            continue
-        size = size_of(runs, frames)
-        if size <= room:
-            return [encoded(run, frames) for run in range(runs)]
-        too_low = size / max(expected(runs, frames), 1e-9)
-    return None
+    first = bisect.bisect_left(choices, True, key=lambda choice: size_of(*choice) <= room)
+    if first == len(choices):
+        return None
+    runs, frames = choices[first]
+    return [encoded(run, frames) for run in range(runs)]

@@ -1,22 +1,17 @@
 """The methods of a study as the page shows them: colours, marks, families and the line on each."""
 
 from prominent import looks_by_prominence, strong_methods
-from style import STOCK, family_look
+from style import STOCK
 from study_folder import look
 
 
-def dash(family):
-    """The dashes and gaps of a family's line in pixels; none for a solid one."""
-    line = family.line
-    return [] if isinstance(line, str) else [family.width * length for length in line[1]]
-
-
 def family_entry(name, family):
-    """One entry of the page's `families`."""
+    """One entry of the page's `families`; `dash`: dashes and gaps in pixels, none for a solid line."""
+    lengths = () if isinstance(family.line, str) else family.line[1]
     return {
         "name": name,
         "title": family.title,
-        "dash": dash(family),
+        "dash": [family.width * length for length in lengths],
         "filled": family.filled,
         "width": family.width,
     }

@@ -3,7 +3,6 @@
 import base64
 import io
 import os
-from dataclasses import dataclass
 
 from PIL import Image
 
@@ -13,39 +12,28 @@ SMALL = 150_000  # bytes of a file that is taken as it is
 MOST = 2_500_000  # bytes of all pictures in a page
 
 
-@dataclass(frozen=True)
-class Picture:
-    """A picture that a study may leave: the file's name, its title and what it shows in words."""
-
-    file: str
-    title: str
-    alt: str
-
-
-CHART = Picture("chart.png", "Time against error", "time of a run against its error, by method")
-PICTURES = (
-    Picture(
-        "stability_map.png",
+CHART = "chart.png"
+# The pictures that a study may leave: the file's name, its title and what it shows in words.
+PICTURES = {
+    CHART: ("Time against error", "time of a run against its error, by method"),
+    "stability_map.png": (
         "Where each method is stable",
         "outcome of whole runs by method and step size",
     ),
-    Picture(
-        "stability_modes.png",
+    "stability_modes.png": (
         "Which natural modes grow",
         "growth of the natural modes by method and step size",
     ),
-    Picture("modes.png", "The lowest natural modes", "shapes of the scene's lowest natural modes"),
-    Picture(
-        "energy_drift.png",
+    "modes.png": ("The lowest natural modes", "shapes of the scene's lowest natural modes"),
+    "energy_drift.png": (
         "Where the energy goes over a long run",
         "energy error over time, by method",
     ),
-    Picture(
-        "exchange.png",
+    "exchange.png": (
         "The energy that stiff springs exchange",
         "energies of stiff springs over time, by method and step size",
     ),
-)
+}
 
 
 def reduced(data):
@@ -62,10 +50,10 @@ def reduced(data):
         return min(data, buffer.getvalue(), key=len)
 
 
-def data_uri(directory, picture):
+def data_uri(directory, name):
     """The picture as a data URI; None where there is no such file. Raises OSError where it is no
     picture."""
-    path = os.path.join(directory, picture.file)
+    path = os.path.join(directory, name)
     if not os.path.exists(path):
         return None
     with open(path, "rb") as file:
@@ -76,21 +64,21 @@ def data_uri(directory, picture):
 def pictures_part(directory):
     """The page's `pictures`, the chart's data URI or None, and sentences on pictures left out."""
     entries, notes, chart, size = [], [], None, 0
-    for picture in (CHART, *PICTURES):
+    for name, (title, alt) in PICTURES.items():
         try:
-            uri = data_uri(directory, picture)
+            uri = data_uri(directory, name)
         # Pillow raises these for a file that is no whole picture.
         except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
-            notes.append(f"{picture.file} is no picture that can be read.")
+            notes.append(f"{name} is no picture that can be read.")
             continue
         if uri is None:
             continue
         if size + len(uri) > MOST:
-            notes.append(f"{picture.file} is too large for this page; it lies in the folder.")
+            notes.append(f"{name} is too large for this page; it lies in the folder.")
             continue
         size += len(uri)
-        if picture is CHART:
+        if name == CHART:
             chart = uri
         else:
-            entries.append({"title": picture.title, "alt": picture.alt, "src": uri})
+            entries.append({"title": title, "alt": alt, "src": uri})
     return entries, chart, notes

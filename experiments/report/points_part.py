@@ -62,14 +62,6 @@ def whole(values):
     return [int(value) if value is not None and value.is_integer() else value for value in values]
 
 
-def cause(run, sentences):
-    """Why a run, with the error that it is judged by, is no point of the chart, in a sentence; None
-    for a good run."""
-    if not run.failure:
-        return None
-    return sentences.get(run.outcome) or run.failure
-
-
 def outcome_sentences(sidecar):
     """What points.json says of each outcome, {name: sentence}."""
     outcomes = sidecar.get("outcomes")
@@ -88,8 +80,13 @@ def points_part(study):
         "method": [places[run.method] for run in study.runs],
         "value": [run.value for run in study.runs],
         "knob": [run.knob for run in study.runs],
+        "knob_words": [run.knob_words for run in study.runs],
         "outcome": [run.outcome for run in study.runs],
-        "cause": [cause(run, sentences) for run in study.runs],
+        # In a sentence, why a run is no point by the error that judges it.
+        "cause": [
+            (sentences.get(run.outcome) or run.failure) if run.failure else None
+            for run in study.runs
+        ],
     }
     points |= {name: read_column(study, name) for name in NUMBERS}
     points |= {name: whole(read_column(study, name)) for name in ("timed_runs", *counts)}

@@ -6,13 +6,11 @@ from dataclasses import dataclass
 
 from matplotlib import ticker
 from matplotlib.lines import Line2D
-from matplotlib.text import Text
 
-from chart import move_label
-from labels import Ink, line_label, place_labels
+from labels import ink_within, label_lines
 from names import shown
 from sheet import Sheet
-from style import COOL, FAINT, GRID, INK, MARKERS, WARM, Family, Look, number, power_of_ten
+from style import COOL, FAINT, GRID, INK, MARKERS, WARM, Family, Look, log_ticks, number
 from style import short_names
 
 WIDTH = 12.85
@@ -53,6 +51,11 @@ class Curve:
     look: Look
 
     @property
+    def line(self):
+        """How it is drawn."""
+        return {"color": self.look.color, "linewidth": 1.7, "zorder": 3}
+
+    @property
     def name(self):
         """The first method and how many others there are."""
         others = len(self.methods) - 1
@@ -60,8 +63,9 @@ class Curve:
 
     def is_like(self, points, limits):
         """Whether another method's curve and limit are the same."""
-        return same(self.limits[0][0], limits[0]) and all(
-            math.isclose(x, u) and near(y, v) for (x, y), (u, v) in zip(self.points, points)
+        return alike(self.limits[0][0], limits[0], rel_tol=1e-6) and all(
+            math.isclose(x, u) and alike(y, v, rel_tol=0, abs_tol=SAME)
+            for (x, y), (u, v) in zip(self.points, points)
         )
 
     def between(self, low, high):
@@ -69,14 +73,9 @@ class Curve:
         return [(x, y) for x, y in self.points if low <= x <= high and not math.isnan(y)]
 
 
-def near(a, b):
-    """Whether two damping ratios are drawn at one place."""
-    return abs(a - b) <= SAME or math.isnan(a) and math.isnan(b)
-
-
-def same(a, b):
-    """Whether two limits are one."""
-    return a == b or math.isclose(a, b, rel_tol=1e-6) or math.isnan(a) and math.isnan(b)
+def alike(a, b, **tolerance):
+    """Whether two numbers are one, or neither is known."""
+    return math.isclose(a, b, **tolerance) or math.isnan(a) and math.isnan(b)
 
 
 def curves_of(linear, limits):
@@ -103,9 +102,7 @@ def style_axes(axes):
     axes.set_ylim(-1.6, 1.6)
     axes.set_yticks(TICKS, [f"{tick:g}" for tick in TICKS])
     axes.yaxis.set_minor_locator(ticker.NullLocator())
-    axes.xaxis.set_major_locator(ticker.LogLocator(numticks=9))
-    axes.xaxis.set_minor_locator(ticker.NullLocator())
-    axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda v, _: f"{v:g}"))
+    log_ticks(axes.xaxis, 9, "{:g}".format)
     axes.tick_params(length=3, color=FAINT, labelsize=9)
     for words, low, high, color in ZONES:
         axes.axhspan(low, high, facecolor=color, zorder=0)
@@ -134,28 +131,14 @@ def anchors_of(axes, pixels):
 def label_curves(axes, named, marks=()):
     """Names each list of points near one of them, off the others and off the marks; named:
     (words, look, points)."""
-    box = axes.bbox
-    bounds = (box.x0 + 4, box.y0 + 4, box.x1 - 4, box.y1 - 4)
-    ink = Ink(bounds)
+    ink = ink_within(axes)
+    left, _, right, _ = ink.bounds
     zero = axes.transData.transform((axes.get_xlim()[0], 0))[1]
-    ink.add_line((bounds[0], zero), (bounds[2], zero), 3.0)
+    ink.add_line((left, zero), (right, zero), 3.0)
     for mark in marks:
         ink.add_marker(axes.transData.transform(mark))
-    texts, anchors = [], []
-    for words, look, points in named:
-        pixels = [tuple(axes.transData.transform(point)) for point in points]
-        for start, end in zip(pixels, pixels[1:]):
-            ink.add_line(start, end, 2.0)
-        anchors.append(anchors_of(axes, pixels))
-        texts.append(line_label(axes, words, look.color, look.text_color))
-    sizes = [Text.get_window_extent(text).size for text in texts]
-    for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
-        move_label(text, axes.transData.inverted().transform(place.anchor), place)
-
-
-def line_style(curve):
-    """How a curve is drawn."""
-    return {"color": curve.look.color, "linewidth": 1.7, "zorder": 3}
+    lines = [(words, look.color, look.text_color, points) for words, look, points in named]
+    label_lines(axes, lines, lambda pixels: anchors_of(axes, pixels), ink)
 
 
 class DampingSheet:
@@ -177,12 +160,11 @@ class DampingSheet:
         """Everything."""
         scene = self.origin.get("scene", {}).get("name", "the scene")
         title = f"{shown(scene)}: what methods do to vibrations, by linear theory and measured"
-        self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
         words = (
             "killed: loses nine tenths of its amplitude in a period; lives: keeps half of its energy "
             "for ten periods and more; blows up: grows"
         )
-        self.sheet.text(0.15, 0.53, words, size=9.5, color=FAINT, va="center")
+        self.sheet.head(0.15, (0.25, 14, title), (0.53, 9.5, words))
         self.sheet.rule(0.72)
         self.draw_linear()
         self.draw_table()
@@ -211,7 +193,7 @@ class DampingSheet:
             points = curve.between(0, math.inf)
             if not points:
                 continue
-            axes.plot(*zip(*points), **line_style(curve))
+            axes.plot(*zip(*points), **curve.line)
             limit = curve.limits[0][0]
             if axes.get_xlim()[0] < limit < axes.get_xlim()[1]:
                 style = {"markerfacecolor": "white", "markeredgecolor": curve.look.color}
@@ -264,7 +246,7 @@ class DampingSheet:
         axes.set_xlim(min(frequencies) / 1.4, max(frequencies) * 1.4)
         style_axes(axes)
         if max(frequencies) < 30 * min(frequencies):
-            axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5), numticks=9))
+            log_ticks(axes.xaxis, 9, "{:g}".format, subs=(1, 2, 5))
         axes.set_xlabel("natural frequency in Hz", fontsize=10, labelpad=2)
         named, all_marks, apart, unmeasured = [], [], 0.0, {}
         for curve in self.curves:
@@ -272,12 +254,13 @@ class DampingSheet:
             if not rows:
                 continue
             points = self.predicted(curve, rows, h)
-            axes.plot(*zip(*points), **line_style(curve))
+            axes.plot(*zip(*points), **curve.line)
             seen = [row for row in rows if not math.isnan(row["damping_ratio_measured"])]
             for row in rows:
                 if row not in seen:
                     unmeasured[row["method"]] = row["verdict"]
-            apart = max([apart, *(distance(row) for row in seen)])
+            ends = ((r["damping_ratio_measured"], r["damping_ratio_predicted"]) for r in seen)
+            apart = max([apart, *(abs(measured - predicted) for measured, predicted in ends)])
             marks = [(row["omega"] / (2 * math.pi), row["damping_ratio_measured"]) for row in seen]
             all_marks += marks
             if marks:
@@ -330,9 +313,7 @@ class DampingSheet:
         axes.set_yticks(range(len(methods)), methods, size=SIZE)
         axes.tick_params(axis="y", length=0)
         axes.tick_params(axis="x", length=3, color=FAINT, labelsize=9)
-        axes.xaxis.set_major_locator(ticker.LogLocator(numticks=8))
-        axes.xaxis.set_minor_locator(ticker.NullLocator())
-        axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda v, _: power_of_ten(v)))
+        log_ticks(axes.xaxis)
         axes.grid(True, axis="x")
         axes.spines["left"].set_visible(False)
         words = "mean h ω of a fast vibration, hardly excited, beside a slow one"
@@ -348,11 +329,6 @@ def draw_dot(axes, row, height, color):
     face = "white" if is_held else color
     style = {"markerfacecolor": face, "markeredgecolor": color, "mew": 1.5}
     axes.plot([row["h_omega_mean"]], [height], "o", markersize=5, zorder=3, **style)
-
-
-def distance(row):
-    """The difference of a mode's predicted and measured damping."""
-    return abs(row["damping_ratio_measured"] - row["damping_ratio_predicted"])
 
 
 def difference(curve):

@@ -6,6 +6,7 @@
 #include "experiments/kit/csv.hpp"
 #include "experiments/kit/study.hpp"
 #include "qddot/integrators/method.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot::stability_map {
 
@@ -33,8 +34,16 @@ void print(const std::vector<Limit>& limits);
 
 // Writes linear.csv: the spectral radius, damping ratio and period error of each linear step.
 void tabulate_linear(Csv& csv, const std::vector<const Method*>& methods);
-// Writes adaptive.csv: the steps that adaptive methods choose (see chosen_steps.hpp). The row of
-// each method, tolerance and frequency is a piece of the study.
+// Writes adaptive.csv: the steps that adaptive methods choose. The row of each method, tolerance
+// and frequency is a piece of the study.
 void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>& methods);
+
+// Writes modal.csv: a row for each method that has a step of its own and each of a dozen natural
+// modes of the scene at rest. A row has the damping ratio, period error and spectral radius,
+// predicted on an oscillator and measured by exciting the mode, and the verdict. If a method fails
+// to make the steps, the reason replaces the verdict. h = `step_size` [s], or 1/w_max if that is 0.
+// Runs on all cores (OpenMP); the rows of a method are a piece of the study.
+void tabulate_modes(Study& study, Csv& csv, const std::vector<const Method*>& methods,
+                    const ReducedScene& rest, double step_size);
 
 }  // namespace qddot::stability_map

@@ -1,14 +1,40 @@
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "experiments/kit/csv.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "experiments/kit/study.hpp"
-#include "experiments/stability_map/amplitude_rows.hpp"
 #include "experiments/stability_map/run_outcome.hpp"
+#include "qddot/measure/motion/vibrating_modes.hpp"
 
 namespace qddot::stability_map {
+
+// A scene at one amplitude of its motion, and its properties by linear theory.
+struct AmplitudeRow {
+  double amplitude;
+  std::unique_ptr<ReducedScene> scene;
+  double rest_energy;       // V at rest [J]
+  double omega_max;         // at the start [rad/s]
+  double buckling_rate;     // likewise [1/s], zero if no spring pushes sideways
+  std::vector<Mode> modes;  // about the start
+};
+
+// The largest natural frequency [rad/s] at the start; zero if nothing vibrates.
+double omega_max_of(const ReducedScene& scene);
+
+// The scenes that the scene's generator draws with its parameter `vary` at each of the amplitudes.
+// Throws InvalidInput if there is no such generator or parameter, or no amplitude is possible.
+// If `vary` is empty, each node's distance from its place at rest is multiplied by an amplitude,
+// and velocities likewise: 1 is the scene itself. Without an equilibrium `rest` there are no rows.
+// Rows in which nothing moves or vibrates are left out, and those whose scene cannot exist or has
+// no equilibrium; stderr says which.
+std::vector<AmplitudeRow> rows_of(const Subject& subject, const Reductions& reductions,
+                                  const std::optional<Scene>& rest, const std::string& vary,
+                                  const std::vector<double>& amplitudes);
 
 // One run of the map.
 struct Cell {
@@ -44,8 +70,7 @@ using Outcomes = std::vector<std::optional<RunOutcome>>;
 void run_outcomes(Study& study, const std::vector<Cell>& cells, const MapSettings& settings,
                   Outcomes& all);
 
-// The columns and rows of map.csv.
-const std::vector<std::string>& map_columns();
+// Writes map.csv.
 void tabulate(Csv& csv, const std::vector<Cell>& cells, const Outcomes& all);
 // Prints the number of runs of each method by outcome.
 void print(const std::vector<Cell>& cells, const Outcomes& all);

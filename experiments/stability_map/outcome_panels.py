@@ -232,9 +232,9 @@ class OutcomeSheet:
         scene = self.origin.get("scene", {}).get("name", "the scene")
         until, tolerated = self.origin.get("until"), self.origin.get("tolerated")
         title = f"{shown(scene)}: outcome of a run, by method, step size and amplitude"
-        self.sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
         length = f"each cell one run of {number(until)} s or 100 steps" if until else ""
-        across = f"to the right h ω_max{self.fastest()}"
+        omega = self.origin.get("omega_max")
+        across = "to the right h ω_max" + (f" (ω_max {number(omega)} rad/s)" if omega else "")
         up = "upwards the amplitude: 1 is the scene, 0.01 nearly linear"
         if self.origin.get("vary"):
             up = f"upwards {self.origin['vary'].replace('_', ' ')}"
@@ -242,14 +242,9 @@ class OutcomeSheet:
         if tolerated:
             words.append(f"bounded: energy within {100 * tolerated:.3g} %")
         words = "; ".join(word for word in words if word)
-        self.sheet.text(0.15, 0.53, words, size=9.5, color=FAINT, va="center")
+        self.sheet.head(0.15, (0.25, 14, title), (0.53, 9.5, words))
         self.draw_key()
         self.sheet.rule(TOP - 0.12)
-
-    def fastest(self):
-        """The highest frequency in brackets, where the file says it."""
-        omega = self.origin.get("omega_max")
-        return f" (ω_max {number(omega)} rad/s)" if omega else ""
 
     def draw_key(self):
         """The key of all colours and lines that appear."""
@@ -271,24 +266,14 @@ class OutcomeSheet:
         if any(run.buckling_rate > 0 for run in self.runs):
             words = "h × buckling rate = 1, at the start"
             lines.append(Line2D([], [], label=words, **BUCKLING))
+        style = {"loc": "center left", "frameon": False, "fontsize": 9.5, "handlelength": 1.7}
+        style |= {"columnspacing": 1.4, "borderaxespad": 0, "borderpad": 0}
         for top, handles in ((0.82, keys[:KEYS]), (1.09, keys[KEYS:] + lines)):
             if handles:
-                self.draw_key_line(top, handles)
-
-    def draw_key_line(self, top, handles):
-        """One line of the key."""
-        self.sheet.figure.legend(
-            handles=handles,
-            loc="center left",
-            bbox_to_anchor=(0.15 / self.sheet.width, 1 - top / self.sheet.height),
-            ncol=len(handles),
-            frameon=False,
-            fontsize=9.5,
-            handlelength=1.7,
-            columnspacing=1.4,
-            borderaxespad=0,
-            borderpad=0,
-        )
+                place = (0.15 / self.sheet.width, 1 - top / self.sheet.height)
+                self.sheet.figure.legend(
+                    handles=handles, bbox_to_anchor=place, ncol=len(handles), **style
+                )
 
 
 def ticks_between(low, high):

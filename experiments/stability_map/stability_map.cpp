@@ -8,7 +8,7 @@
 //     matrix (linear_step.hpp). They have its spectral radius, damping ratio and period error for
 //     h w from 0.01 to 100. They also have the h w at which it starts to grow, predicted and found
 //     by bisection (linear_limit.hpp), and h as that h w over w_max of the scene at its start.
-//     adaptive.csv: the steps of methods that choose them (chosen_steps.hpp).
+//     adaptive.csv: the steps of methods that choose them (linear_tables.hpp).
 //  2. modal.csv: the same in natural modes of the scene about its equilibrium at one h
 //     (modal_step.hpp), predicted as in 1 and measured by exciting the mode.
 //  3. map.csv: outcomes of whole runs over h w_max and amplitude (run_outcome.hpp). A run of
@@ -20,9 +20,7 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
-#include "experiments/stability_map/amplitude_rows.hpp"
 #include "experiments/stability_map/linear_tables.hpp"
-#include "experiments/stability_map/modal_table.hpp"
 #include "experiments/stability_map/outcome_map.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/settle.hpp"
@@ -88,8 +86,14 @@ int main(int argc, char** argv) {
       p.table("adaptive.csv",
               {"method", "rtol", "omega_fast", "outcome", "h_omega_mean", "rejected_share",
                "energy_fast", "energy_error", "steps", "rejected", "stability_limited_steps"});
-  auto& modal_csv = p.table("modal.csv", modal_columns());
-  auto& map_csv = p.table("map.csv", map_columns());
+  auto& modal_csv = p.table(
+      "modal.csv", {"method", "h", "mode", "omega", "h_omega", "damping_ratio_predicted",
+                    "damping_ratio_measured", "period_error_predicted", "period_error_measured",
+                    "spectral_radius_predicted", "spectral_radius_measured", "verdict"});
+  auto& map_csv =
+      p.table("map.csv", {"method", "h", "h_omega", "amplitude", "outcome", "growth_rate",
+                          "predicted_growth_rate", "t_reached", "energy_end", "energy_max", "steps",
+                          "rejected", "knob", "value", "omega_max", "buckling_rate"});
   return p.run(argc, argv, [&] {
     if (*high < *low) {
       throw InvalidInput(

@@ -5,19 +5,16 @@ map.csv. Writes DIR/stability_map.png and .svg with the outcomes of whole runs. 
 DIR/stability_modes.png and .svg with the damping of an oscillator and of the scene's natural modes.
 """
 
-import json
 import math
-import sys
-from pathlib import Path
 
 from damping_panels import DampingSheet
 from outcome_panels import OutcomeSheet
 from outcomes import Run
-from measurements import BadInput, parse, read_rows
-from style import use_style
+from measurements import parse, read_facts, read_rows
+from sheet import main
 
 RUN_NUMBERS = ("value", "h", "h_omega", "amplitude", "growth_rate", "omega_max", "buckling_rate")
-
+LIMITS = ("h_omega_limit_predicted", "h_omega_limit_measured")
 MODE_NUMBERS = ("h", "omega", "h_omega", "damping_ratio_predicted", "damping_ratio_measured")
 STEP_NUMBERS = (
     "rtol",
@@ -29,94 +26,62 @@ STEP_NUMBERS = (
 )
 
 
+def read_numbers(path, texts, numbers):
+    """The rows of a file as dictionaries, with these of its columns as numbers."""
+    return [
+        row | {name: parse(path, line, row, name, False) for name in numbers}
+        for line, row in read_rows(path, (*texts, *numbers))
+    ]
+
+
 def read_limits(path):
     """The limit of h w of each method, predicted and measured; infinite if there is none."""
-    limits = {}
-    columns = ("h_omega_limit_predicted", "h_omega_limit_measured")
-    for line, row in read_rows(path, ("method", *columns)):
-        values = [parse(path, line, row, column, False) for column in columns]
-        limits[row["method"]] = tuple(math.inf if math.isnan(v) else v for v in values)
-    return limits
+    return {
+        row["method"]: tuple(math.inf if math.isnan(row[name]) else row[name] for name in LIMITS)
+        for row in read_numbers(path, ("method",), LIMITS)
+    }
 
 
 def read_runs(path):
     """The runs of the map that have a place in it."""
-    runs = []
-    for line, row in read_rows(path, ("method", "knob", "outcome", *RUN_NUMBERS)):
-        numbers = {name: parse(path, line, row, name, False) for name in RUN_NUMBERS}
-        place = numbers["h_omega" if row["knob"] == "step_size" else "value"]
-        if place > 0 and math.isfinite(numbers["amplitude"]):
-            runs.append(Run(row["method"], row["knob"], outcome=row["outcome"], **numbers))
-    return runs
+    texts = ("method", "knob", "outcome")
+    rows = read_numbers(path, texts, RUN_NUMBERS)
+    runs = [Run(**{name: row[name] for name in (*texts, *RUN_NUMBERS)}) for row in rows]
+    places = ((run, run.h_omega if run.knob == "step_size" else run.value) for run in runs)
+    return [run for run, place in places if place > 0 and math.isfinite(run.amplitude)]
 
 
 def read_linear(path):
     """The points (h w, damping ratio) of each method; the ratio is NaN if a step overflows."""
     linear = {}
-    for line, row in read_rows(path, ("method", "h_omega", "damping_ratio")):
-        h_omega = parse(path, line, row, "h_omega", True)
-        point = (h_omega, parse(path, line, row, "damping_ratio", False))
-        linear.setdefault(row["method"], []).append(point)
+    for row in read_numbers(path, ("method",), ("h_omega", "damping_ratio")):
+        linear.setdefault(row["method"], []).append((row["h_omega"], row["damping_ratio"]))
     return linear
 
 
 def read_table(path, texts, numbers, needed):
-    """The rows of a file as dictionaries, those where `needed` is a positive number."""
-    rows = []
-    for line, row in read_rows(path, (*texts, *numbers)):
-        row.update({name: parse(path, line, row, name, False) for name in numbers})
-        if row[needed] > 0:
-            rows.append(row)
-    return rows
-
-
-def read_origin(folder):
-    """The sidecar of the map."""
-    path = folder / "map.json"
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{path} cannot be read: {error}.") from error
-
-
-def save(sheet, folder, name):
-    """Writes a picture in both formats."""
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"{name}.{extension}"))
+    """The rows of a file, those where `needed` is a positive number."""
+    return [row for row in read_numbers(path, texts, numbers) if row[needed] > 0]
 
 
 def draw(folder):
     """Draws both pictures."""
-    origin = read_origin(folder)
-    limits = read_limits(str(folder / "limits.csv"))
-    runs = read_runs(str(folder / "map.csv"))
+    origin = read_facts(folder / "map.json")
+    limits = read_limits(folder / "limits.csv")
+    runs = read_runs(folder / "map.csv")
     if runs:
         panels = OutcomeSheet(runs, {m: predicted for m, (predicted, _) in limits.items()}, origin)
         panels.draw()
-        save(panels.sheet, folder, "stability_map")
-    linear = read_linear(str(folder / "linear.csv"))
+        panels.sheet.save_as(folder, "stability_map")
+    linear = read_linear(folder / "linear.csv")
     if linear:
-        modes = read_table(str(folder / "modal.csv"), ("method", "verdict"), MODE_NUMBERS, "omega")
+        modes = read_table(folder / "modal.csv", ("method", "verdict"), MODE_NUMBERS, "omega")
         texts = ("method", "outcome")
-        chosen = read_table(str(folder / "adaptive.csv"), texts, STEP_NUMBERS, "rtol")
+        chosen = read_table(folder / "adaptive.csv", texts, STEP_NUMBERS, "rtol")
         damping = DampingSheet(linear, limits, modes, chosen, origin)
         damping.draw()
-        save(damping.sheet, folder, "stability_modes")
-
-
-def main(arguments):
-    """Draws the pictures of the directory named on the command line; returns the exit status."""
-    if len(arguments) != 1:
-        print("Usage: stability_map.py DIR", file=sys.stderr)
-        return 2
-    use_style()
-    try:
-        draw(Path(arguments[0]))
-    except BadInput as error:
-        print(error, file=sys.stderr)
-        return 2
-    return 0
+        damping.sheet.save_as(folder, "stability_modes")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(draw)

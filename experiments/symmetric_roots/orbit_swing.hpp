@@ -1,8 +1,9 @@
 #pragma once
 
+#include <complex>
 #include <vector>
 
-#include "experiments/symmetric_roots/formula_of_cosines.hpp"
+#include "experiments/symmetric_roots/formula.hpp"
 
 namespace qddot::spurious_roots {
 
@@ -11,6 +12,8 @@ namespace qddot::spurious_roots {
 // the exact positions of the first steps cost more than a run.
 class OrbitSwing {
  public:
+  using Point = std::complex<double>;  // x + i y
+
   // Runs will be of `steps` steps at eight h w from h_omega/2 to h_omega, by formulas of up to
   // `most_steps` steps.
   OrbitSwing(double h_omega, int steps, int most_steps);
@@ -20,14 +23,10 @@ class OrbitSwing {
   double operator()(const Coefficients& formula) const;
 
  private:
-  struct Point {
-    double x, y;
-  };
   struct Start {
     double h;
     std::vector<Point> positions;  // at 0, h, 2 h, ...
   };
-  static Point acceleration(const Point& q);
   double swing(const Coefficients& formula, const Start& start) const;
 
   int steps_;

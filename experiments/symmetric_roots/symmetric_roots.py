@@ -7,16 +7,14 @@ roots over the same limit, the right one the energy error of an orbit over the g
 best of all formulas with that limit or a larger one; in the left panel, of those with a large gap.
 """
 
-import csv
-import json
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+from matplotlib.ticker import FixedLocator
 
-from sheet import Sheet
-from style import COOL, FAINT, GRID, INK, MARKERS, WARM, number, power_of_ten, use_style
+from measurements import read_facts, read_table
+from sheet import Sheet, main
+from style import COOL, FAINT, GRID, INK, MARKERS, WARM, log_ticks, number
 
 LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.85, 1.6, 3.55, 4.2
 ACROSS, SIDE, BELOW = 0.85, 0.2, 0.75
@@ -51,16 +49,20 @@ class Formula:
         """The colour of all formulas of as many steps."""
         return COLORS[self.steps]
 
+    @property
+    def marker(self):
+        """That of the registry's formula of as many steps."""
+        return MARKERS[self.steps // 2 - 2]
+
 
 def read_formulas(path):
     """Those of the table that are stable where their phase was measured."""
     names = ("limit", "phase_error", "gap", "energy_swing")
-    with open(path, newline="", encoding="utf-8") as file:
-        return [
-            Formula(int(row["steps"]), row["method"], *(float(row[name]) for name in names))
-            for row in csv.DictReader(file)
-            if row["gap"]
-        ]
+    return [
+        Formula(int(row["steps"]), row["method"], *(float(row[name]) for name in names))
+        for row in read_table(path)
+        if row["gap"]
+    ]
 
 
 def front(formulas, is_better, value):
@@ -74,15 +76,12 @@ def front(formulas, is_better, value):
 
 def draw_dots(axes, formulas, apart, across, up):
     """A dot a formula, fainter where its roots come near each other."""
-    for alpha, chosen in (
-        (NEAR, [f for f in formulas if f.gap < apart]),
-        (APART, [f for f in formulas if f.gap >= apart]),
-    ):
-        points = [(across(f), up(f)) for f in chosen]
-        colors = [f.color for f in chosen]
-        if points:
+    for alpha, is_apart in ((NEAR, False), (APART, True)):
+        chosen = [f for f in formulas if (f.gap >= apart) == is_apart]
+        if chosen:
+            places = [across(f) for f in chosen], [up(f) for f in chosen]
             style = {"s": 5, "alpha": alpha, "linewidths": 0, "rasterized": True}
-            axes.scatter(*zip(*points), c=colors, zorder=2, **style)
+            axes.scatter(*places, c=[f.color for f in chosen], zorder=2, **style)
 
 
 def draw_fronts(axes, formulas, is_better, up):
@@ -100,8 +99,7 @@ def draw_methods(axes, formulas, across, up):
     for f in formulas:
         if f.method:
             style = {"markeredgecolor": INK, "markeredgewidth": 1.1, "linewidth": 0, "zorder": 5}
-            marker = marker_of(f.method, formulas)
-            axes.plot(across(f), up(f), marker, markersize=8.5, color=f.color, **style)
+            axes.plot(across(f), up(f), f.marker, markersize=8.5, color=f.color, **style)
 
 
 def name_methods(axes, formulas, across, up):
@@ -124,26 +122,20 @@ def name_methods(axes, formulas, across, up):
             )
 
 
-def marker_of(method, formulas):
-    """The marker of one of the registry's formulas."""
-    names = sorted({f.method for f in formulas if f.method}, key=lambda name: (len(name), name))
-    return MARKERS[names.index(method) % len(MARKERS)]
-
-
 def draw_legend(sheet, formulas, top):
     """A line of words: the colours, and the marks of the registry's formulas."""
     left = SIDE
     size = {"size": 10, "va": "center"}
     for steps, color in COLORS.items():
-        named = sorted({f.method for f in formulas if f.method and f.steps == steps})
+        named = {f.method: f.marker for f in formulas if f.method and f.steps == steps}
         words = f"order {steps}" + "".join(f": {name}" for name in named)
         axes = sheet.axes(left, top - 0.12, 0.24, 0.24)
         axes.set_axis_off()
         axes.set(xlim=(-1, 1), ylim=(-1, 1))
         axes.plot((-0.95, 0.95), (0, 0), color=color, linewidth=2.2)
-        for name in named:
+        for marker in named.values():
             edge = {"markeredgecolor": INK, "markeredgewidth": 1.1}
-            axes.plot(0, 0, marker_of(name, formulas), markersize=8.5, color=color, **edge)
+            axes.plot(0, 0, marker, markersize=8.5, color=color, **edge)
         text = sheet.text(left + 0.32, top, words, color=INK, **size)
         left += 0.32 + sheet.text_width(text) + 0.35
 
@@ -160,19 +152,13 @@ def new_axes(sheet, panel, title, across, up):
     return axes
 
 
-def set_decades(axis, words=power_of_ten):
-    """A logarithmic axis with a tick a decade."""
-    axis.set_minor_locator(NullLocator())
-    axis.set_major_formatter(FuncFormatter(lambda value, _: words(value)))
-
-
 def draw_accuracy(sheet, formulas, at, apart):
     """The phase error over the limit."""
     axes = new_axes(
         sheet, 0, "larger steps cost accuracy …", LIMIT, f"phase error at hω = {at}, relative"
     )
     axes.set_yscale("log")
-    set_decades(axes.yaxis)
+    log_ticks(axes.yaxis, None)
     coordinates = (lambda f: f.limit, lambda f: f.phase_error)
     draw_dots(axes, formulas, apart, *coordinates)
     well_apart = [f for f in formulas if f.gap >= apart]
@@ -206,39 +192,33 @@ def draw_orbit(sheet, formulas, apart):
     axes.set_xlim(LEAST_GAP, LARGEST_GAP)
     ended = {"size": FONT_SIZE, "ha": "right", "va": "top", "color": FAINT}
     axes.text(0.95 * LARGEST_GAP, 0.88, "1: ended", **ended)
-    set_decades(axes.yaxis)
-    set_decades(axes.xaxis, lambda value: f"{value:g}")
+    log_ticks(axes.yaxis, None)
+    log_ticks(axes.xaxis, None, "{:g}".format)
     axes.xaxis.set_major_locator(FixedLocator((0.01, 0.03, 0.1, 0.3, 1)))
 
 
-def main(folder):
+def draw(folder):
     """Draws the picture."""
-    use_style()
-    folder = Path(folder)
-    origin = json.loads((folder / "roots.json").read_text(encoding="utf-8"))
+    origin = read_facts(folder / "roots.json")
     formulas = read_formulas(folder / "roots.csv")
     if not formulas:
         sys.exit(f"symmetric_roots.py: {folder} has no formula that is stable at {origin['at']:g}")
     at, apart = number(origin["at"]), origin["well_apart"]
     sheet = Sheet(WIDTH, HEIGHT)
     title = "What the spurious roots of symmetric multistep formulas trade"
-    sheet.text(SIDE, 0.3, title, size=15, weight="bold", va="center", color=INK)
     words = (
         f"a dot is a formula, one force a step; strong dots: no two roots come nearer than "
         f"{number(apart)} rad up to hω = {at}; lines: the best at that limit or a larger one, to "
         "the left of strong dots"
     )
-    sheet.text(SIDE, 0.6, words, size=10, color=FAINT, va="center")
+    sheet.head(SIDE, (0.3, 15, title), (0.6, 10, words))
     draw_legend(sheet, formulas, 0.9)
     sheet.rule(1.12)
     draw_accuracy(sheet, formulas, at, apart)
     draw_distance(sheet, formulas, apart)
     draw_orbit(sheet, formulas, apart)
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"symmetric_roots.{extension}"))
+    sheet.save_as(folder, "symmetric_roots")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("Usage: symmetric_roots.py DIR")
-    main(sys.argv[1])
+    main(draw)

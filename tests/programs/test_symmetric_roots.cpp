@@ -2,9 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/symmetric_roots/formula_of_cosines.hpp"
+#include "experiments/symmetric_roots/formula.hpp"
 #include "experiments/symmetric_roots/orbit_swing.hpp"
-#include "experiments/symmetric_roots/recurrence.hpp"
 #include "qddot/integrators/base/symmetric_formula.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"

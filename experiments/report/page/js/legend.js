@@ -1,7 +1,7 @@
 // The list of methods beside the chart: which are drawn strongly.
 import { button, byId, element } from "./element.js";
 import { swatch } from "./marks.js";
-import { choose, familiesWithMethods, methods, onChoice, state } from "./report.js";
+import { choose, families, methods, onChoice, state } from "./report.js";
 
 const strong = [...state.shown];
 const show = (chosen) => choose({ shown: new Set(chosen) });
@@ -42,7 +42,7 @@ const familyGroup = ({ title, members }) =>
   );
 
 const noHit = element("p.quiet", { role: "status", hidden: true }, "No method has it.");
-const groups = familiesWithMethods.map(familyGroup);
+const groups = families.map(familyGroup);
 
 function search({ target }) {
   const wanted = target.value.trim().toLowerCase();

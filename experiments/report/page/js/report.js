@@ -17,13 +17,11 @@ export const runsOf = methods.map((_, method) =>
     .sort((a, b) => points.value[b] - points.value[a]),
 );
 
-/** The families that have methods, as {title, members}. */
-export const familiesWithMethods = report.families
-  .map(({ title }, family) => ({
-    title,
-    members: [...methods.keys()].filter((method) => methods[method].family === family),
-  }))
-  .filter(({ members }) => members.length);
+/** The families as {title, members}. */
+export const families = report.families.map(({ title }, family) => ({
+  title,
+  members: [...methods.keys()].filter((method) => methods[method].family === family),
+}));
 
 // The kind of error in a column.
 const quantityOf = (column) => report.quantities.find((one) => one.column === column);
@@ -40,7 +38,7 @@ export function whyNot(point, column) {
 }
 
 /** The knob of a run with its value: "h = 0.0005 s". */
-export const knobOf = (point) => words.knob(points.knob[point], points.value[point]);
+export const knobOf = (point) => points.knob_words[point];
 
 const motions = report.motion?.runs ?? [];
 

@@ -5,7 +5,7 @@ import {
   choose,
   chosenQuantity,
   countsOf,
-  familiesWithMethods,
+  families,
   keptMotion,
   knobOf,
   methods,
@@ -27,7 +27,7 @@ const TIMES = { time_s: "time of a run, median", time_min_s: "fastest of them", 
 
 const methodMenu = menuOf([], (method) => choose({ run: middleRun(Number(method)) }));
 methodMenu.append(
-  ...familiesWithMethods.map(({ title: label, members }) =>
+  ...families.map(({ title: label, members }) =>
     element("optgroup", { label }, options(members.map((one) => [one, methods[one].name]))),
   ),
 );

@@ -61,12 +61,6 @@ function ratio(value) {
   return isKnown(value) ? `${value < 10 ? value.toPrecision(3) : count(Math.round(value))} ×` : "–";
 }
 
-/** The knob of a run with its value: "h = 0.0005 s", "rtol = 1e-7". */
-function knob(name, value) {
-  if (name === "step_size") return `h = ${exact(value)} s`;
-  return `${name.replaceAll("_", " ")} = ${exact(value)}`;
-}
-
 /** A column's or an outcome's name in words: "force evaluations". */
 const plain = (name) => name.replaceAll("_", " ");
 
@@ -81,7 +75,6 @@ export const words = {
   count,
   things,
   ratio,
-  knob,
   knobTitle,
   plain,
 };
