@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     }
     std::vector<CaseResult> results;
     return p.study(
-        {{"code", code_hash()}}, shares,
+        {{"code", build_info::source_hash}}, shares,
         [&](Study& study) {
           std::erase_if(numbers, [&](std::uint64_t n) { return !study.takes(std::to_string(n)); });
           results.resize(numbers.size());

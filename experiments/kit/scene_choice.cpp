@@ -11,8 +11,8 @@
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/catalogue.hpp"
 #include "experiments/kit/memory.hpp"
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/program.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_file.hpp"
@@ -22,11 +22,7 @@ namespace qddot::inline kit {
 
 Scene load(const SceneChoice& choice) {
   require_given(choice.name, "--scene", "a generator's name or a scene file");
-  return load(choice.name);
-}
-
-Scene load(const std::string& name) {
-  Scene scene = load_scene(name,
+  Scene scene = load_scene(choice.name,
                            [](const std::string& path) {
                              protect_input(path);
                              return read_text(path);

@@ -19,7 +19,6 @@ struct SceneChoice {
 
 // Loads the scene of that name, a generator's or a file's, and prints its warnings to stderr.
 // Throws InvalidInput if there is none or it is wrong.
-Scene load(const std::string& name);
 Scene load(const SceneChoice& choice);
 
 // The scene as its motion starts: at its equilibrium, if the scene says so. Throws InvalidInput if

@@ -19,7 +19,7 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/interruptible.hpp"
-#include "experiments/kit/measured_points.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "experiments/motion_files/motion_file.hpp"

@@ -43,6 +43,9 @@ class Outputs {
   std::optional<BackgroundObserver> behind_;  // writes while the run goes on
 };
 
+// Writes the scene where --write-scene asks for it.
+void write_scene(const Arguments& a, const Scene& drawn);
+
 // The counts of a run in words.
 std::string counts_in_words(const Counts& counts);
 

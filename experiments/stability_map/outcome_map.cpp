@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/stability_map/linear_tables.hpp"
 #include "qddot/measure/stability/linear_step.hpp"

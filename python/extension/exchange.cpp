@@ -22,9 +22,11 @@ py::array_t<double> energies_of(const EnergyCourse& course) {
 py::dict run_record(const std::string& method, double h, double h_omega, const ExchangeRun& run,
                     const EnergyCourse& exact, const ExchangeComparison& own, double window) {
   py::dict record(arg("method") = method, arg("step_size") = h, arg("h_omega") = h_omega,
-                  arg("summary") = record_of(run.summary), arg("t") = array_of(run.course.times),
+                  arg("outcome") = name(run.summary.outcome), arg("t") = array_of(run.course.times),
                   arg("energies") = energies_of(run.course),
-                  arg("sum_deviation") = run.sum_deviation, arg("energy_error") = run.energy_error);
+                  arg("sum_deviation") = run.sum_deviation, arg("energy_error") = run.energy_error,
+                  arg("exchange_error") = py::none(), arg("tempo") = py::none(),
+                  arg("misfit") = py::none());
   if (run.summary.outcome != Outcome::reached_end) {
     record["verdict"] = verdict_on(run.summary);
     return record;

@@ -8,12 +8,12 @@ namespace qddot::python {
 namespace {
 
 template <class Kind, std::size_t count>
-Names names_in(const SetOf<Kind>& set, const std::array<const char*, count>& names) {
-  Names held;
+py::tuple names_in(const SetOf<Kind>& set, const std::array<const char*, count>& names) {
+  py::list held;
   for (std::size_t i = 0; i < count; ++i) {
-    if (set.has(static_cast<Kind>(i))) held.emplace_back(names[i]);
+    if (set.has(static_cast<Kind>(i))) held.append(names[i]);
   }
-  return held;
+  return py::tuple(held);
 }
 
 // These have the order of the enumerations in method.hpp.
@@ -68,12 +68,6 @@ Options options_of(const py::dict& given) {
   return options;
 }
 
-void add_methods(py::module_& module) {
-  module.def("methods", &records);
-  module.def("advice", [](const std::string& outcome) {
-    if (const auto found = find_outcome(outcome)) return advice(*found);
-    throw std::invalid_argument(outcome + " is no outcome");
-  });
-}
+void add_methods(py::module_& module) { module.def("methods", &records); }
 
 }  // namespace qddot::python

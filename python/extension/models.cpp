@@ -27,13 +27,12 @@ Reductions reductions_without(const Names& kept) {
 // The smallest system of a scene as it starts (see reduced_for), for a method or for none.
 Model model_of(const std::shared_ptr<Scene>& start, const std::optional<std::string>& name,
                const Names& kept) {
-  Model model{.reduced = nullptr, .start = start};
   const Reductions reductions = reductions_without(kept);
-  outside(1, [&](const std::stop_token&) {
-    model.reduced = std::make_shared<const ReducedScene>(
+  auto reduced = made_outside([&] {
+    return std::make_shared<const ReducedScene>(
         name ? reduced_for(method(*name), *start, reductions) : ReducedScene(*start, reductions));
   });
-  return model;
+  return {std::move(reduced), start};
 }
 
 OwnForces::Force force_of(const py::object& given) {
@@ -113,7 +112,7 @@ py::dict explanation_of(const Model& model) {
   for (const Finding& finding : e.findings)
     findings.append(py::make_tuple(std::string(name(finding.reduction)), finding.what));
   return py::dict(arg("text") = in_python(words), arg("drawn_unknowns") = e.drawn_unknowns,
-                  arg("unknowns") = e.unknowns, arg("left_out") = findings,
+                  arg("unknowns") = e.unknowns, arg("left_out") = py::tuple(findings),
                   arg("stiffness_is_constant") = e.stiffness_is_constant,
                   arg("omega_max") = e.omega_max, arg("omega_bound") = e.omega_bound,
                   arg("unstable") = e.unstable, arg("flat") = e.flat, arg("growth") = e.growth);

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
 from html import escape
-from typing import Any, Callable
+from typing import Any, Callable, Iterable, Sequence
 
 from qddot._arrays import Floats
 
@@ -141,3 +141,10 @@ def table(rows: list[tuple[str, str]]) -> str:
         for name, value in rows
     )
     return f"<table>{cells}</table>"
+
+
+def table_with_head(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Rows below the titles of their columns as HTML."""
+    titles = "".join(f"<th>{title}</th>" for title in head)
+    cells = (f"<tr>{''.join(f'<td>{escape(c)}</td>' for c in row)}</tr>" for row in rows)
+    return f"<table><tr>{titles}</tr>{''.join(cells)}</table>"

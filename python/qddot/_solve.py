@@ -206,16 +206,9 @@ def _answer(
 ) -> Solution:
     model = start.model()
     record = _qddot.answer(model, end, accuracy, accuracy_of, seconds, threads)
-    about: dict[str, Any] = dict(
-        accuracy=accuracy,
-        is_reached=record["is_reached"],
-        error_estimate=record["error_estimate"],
-        error_estimate_kind=record["error_estimate_kind"],
-        horizon=record["horizon"],
-        runs=record["runs"],
-        seconds_in_all=record["seconds_in_all"],
-        seconds=record["seconds"],
-    )
+    names = "is_reached error_estimate error_estimate_kind horizon runs seconds_in_all seconds"
+    about: dict[str, Any] = {name: record[name] for name in names.split()}
+    about["accuracy"] = accuracy
     if "method" not in record:  # no run was begun
         state = State(0.0, *model.nodes_at(model.q, model.v, 0.0))
         about.update(method="", knob="", value=math.nan)
