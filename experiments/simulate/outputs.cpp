@@ -12,7 +12,7 @@
 
 namespace qddot::simulate {
 
-Outputs::Outputs(const Arguments& a, const Every& every, const Scene& start,
+Outputs::Outputs(const Arguments& a, const Every& every, const Scene& drawn, const Scene& start,
                  const ReducedScene& scene, double until)
     : scene_(scene),
       trajectory_times_(samples(every.trajectory, until)),
@@ -35,6 +35,10 @@ Outputs::Outputs(const Arguments& a, const Every& every, const Scene& start,
             ? motion_files::Fields{}
             : motion_files::fields_named(a.motion_fields, a.motion_path, "--motion-fields");
     motion_ = motion_files::open_motion(a.motion_path, start, scene, false, fields);
+  }
+  if (!a.written_scene_path->empty()) {
+    WholeFile file(a.written_scene_path);
+    write_scene(file, drawn);
   }
   if (looks_on_the_way()) behind_.emplace([this](const State& state) { see(state); });
 }
@@ -74,9 +78,7 @@ void Outputs::finish(const State& state, const nlohmann::json& origin) {
   if (motion_) motion_->commit();
 }
 
-void write_scene(const Arguments& a, const Scene& drawn) {
-  if (a.written_scene_path->empty()) return;
-  WholeFile file(a.written_scene_path);
+void write_scene(WholeFile& file, const Scene& drawn) {
   file.write(signed_text(to_toml(drawn)));
   file.commit();
 }

@@ -118,8 +118,7 @@ int answer(const Arguments& a) {
   const auto model = std::make_shared<const ReducedScene>(std::move(subject.reduced));
   const double until = subject.until;
 
-  Outputs output(a, every, subject.start, *model, until);
-  write_scene(a, subject.drawn);
+  Outputs output(a, every, subject.drawn, subject.start, *model, until);
   wait_for_answer(patience_with_an_answer);
   progress().stage("looking for the fastest run");
   const Answer answer = solve(*model, until, {.accuracy = a.accuracy, .of = of});
@@ -164,7 +163,8 @@ int simulate(const Arguments& a) {
   require_given(a.scene->name, "--scene", "a generator's name or a scene file");
   if (only_writes_scene(a.p)) {
     require_distinct_outputs(a);
-    write_scene(a, load(a.scene));
+    WholeFile file(a.written_scene_path);  // may be the scene's own, which is read after this
+    write_scene(file, load(a.scene));
     return done;
   }
   if (a.explain) {
@@ -191,8 +191,7 @@ int simulate(const Arguments& a) {
   Simulation run(model, method, options);
   require_atol(run.options());
 
-  Outputs output(a, every, start, scene, until);
-  write_scene(a, drawn);
+  Outputs output(a, every, drawn, start, scene, until);
   output.see(run.state());
   const auto warn = [](const std::string& warning) {
     if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);

@@ -122,23 +122,17 @@ py::dict explanation_of(const Model& model) {
 
 void add_models(py::module_& module) {
   py::class_<Model> model(module, "Model");
-  model.def_property_readonly("nodes", [](const Model& self) {
-    return self.reduced->expand(self.reduced->initial()).size();
-  });
-  model.def_property_readonly("dimension",
-                              [](const Model& self) { return self.reduced->dimension(); });
-  model.def_property_readonly("size",
-                              [](const Model& self) { return self.reduced->system().size(); });
-  model.def_property_readonly(
-      "mass", [](const Model& self) { return array_of(self.reduced->system().mass()); });
-  model.def_property_readonly(
-      "q", [](const Model& self) { return array_of(self.reduced->initial().q); });
-  model.def_property_readonly(
-      "v", [](const Model& self) { return array_of(self.reduced->initial().v); });
-  model.def_property_readonly(
-      "has_potential", [](const Model& self) { return self.reduced->system().has_potential(); });
-  model.def_property_readonly(
-      "has_stiffness", [](const Model& self) { return self.reduced->system().has_stiffness(); });
+  const auto has = [&](const char* name, const auto& get) {
+    model.def_property_readonly(name, get);
+  };
+  has("nodes", [](const Model& m) { return m.reduced->expand(m.reduced->initial()).size(); });
+  has("dimension", [](const Model& m) { return m.reduced->dimension(); });
+  has("size", [](const Model& m) { return m.reduced->system().size(); });
+  has("mass", [](const Model& m) { return array_of(m.reduced->system().mass()); });
+  has("q", [](const Model& m) { return array_of(m.reduced->initial().q); });
+  has("v", [](const Model& m) { return array_of(m.reduced->initial().v); });
+  has("has_potential", [](const Model& m) { return m.reduced->system().has_potential(); });
+  has("has_stiffness", [](const Model& m) { return m.reduced->system().has_stiffness(); });
   model.def("force", &force_at);
   model.def("stiffness", &stiffness_at);
   model.def("potential", [](const Model& self, const Doubles& q) {

@@ -124,26 +124,25 @@ void add_scenes(py::module_& module) {
   scene.def_readonly("stiff_above", &Scene::stiff_above);
   scene.def_readonly("starts_at_equilibrium", &Scene::starts_at_equilibrium);
   scene.def_readonly("warnings", &Scene::warnings);
-  scene.def_property_readonly("positions", [](const Scene& self) {
-    return array_of(self.nodes, &Node::position, self.dimension);
+  const auto has = [&](const char* name, const auto& get) {
+    scene.def_property_readonly(name, get);
+  };
+  const auto of_nodes = [=](const char* name, Eigen::Vector3d Node::*which) {
+    has(name, [which](const Scene& s) { return array_of(s.nodes, which, s.dimension); });
+  };
+  of_nodes("positions", &Node::position);
+  of_nodes("velocities", &Node::velocity);
+  has("gravity", [](const Scene& s) { return array_of(Vec(s.gravity.head(s.dimension))); });
+  has("mass", [](const Scene& s) {
+    return column<double>(s.nodes, [](const Node& node) { return node.mass; });
   });
-  scene.def_property_readonly("velocities", [](const Scene& self) {
-    return array_of(self.nodes, &Node::velocity, self.dimension);
+  has("pinned", [](const Scene& s) {
+    return column<bool>(s.nodes, [](const Node& node) { return node.pinned; });
   });
-  scene.def_property_readonly("gravity", [](const Scene& self) {
-    return array_of(Vec(self.gravity.head(self.dimension)));
-  });
-  scene.def_property_readonly("mass", [](const Scene& self) {
-    return column<double>(self.nodes, [](const Node& node) { return node.mass; });
-  });
-  scene.def_property_readonly("pinned", [](const Scene& self) {
-    return column<bool>(self.nodes, [](const Node& node) { return node.pinned; });
-  });
-  scene.def_property_readonly("springs", &ends_of);
-  const auto of_springs = [&](const char* name, double SpringLaw::*which) {
-    scene.def_property_readonly(name, [which](const Scene& self) {
-      return column<double>(self.springs,
-                            [which](const Spring& spring) { return spring.law.*which; });
+  has("springs", &ends_of);
+  const auto of_springs = [=](const char* name, double SpringLaw::*which) {
+    has(name, [which](const Scene& s) {
+      return column<double>(s.springs, [which](const Spring& one) { return one.law.*which; });
     });
   };
   of_springs("stiffness", &SpringLaw::stiffness);
