@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "experiments/kit/catalogue.hpp"
 #include "experiments/kit/program.hpp"
 #include "qddot/integrators/base/step_times.hpp"
 #include "qddot/integrators/registry.hpp"

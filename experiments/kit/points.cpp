@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/kit/csv.hpp"
 #include "experiments/kit/progress.hpp"
-#include "experiments/kit/written_table.hpp"
 #include "qddot/integrators/integrator.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/judgement.hpp"

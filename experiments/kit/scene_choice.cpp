@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/allowed_options.hpp"
-#include "experiments/kit/catalogue.hpp"
 #include "experiments/kit/memory.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/whole_file.hpp"
@@ -170,6 +169,18 @@ std::vector<const Method*> fixed_step_among(const std::vector<std::string>& list
                method->name);
   }
   return selected;
+}
+
+std::string method_names() {
+  return names_where([](const Method&) { return true; });
+}
+
+std::string names_where(const std::function<bool(const Method&)>& has) {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) {
+    if (has(method)) names.push_back(method.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::vector<std::string> names_of(const std::vector<const Method*>& methods) {

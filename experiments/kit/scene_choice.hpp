@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,10 @@ std::vector<const Method*> select_fixed_step(const std::vector<std::string>& lis
 // Throws InvalidInput if none is left.
 std::vector<const Method*> fixed_step_among(const std::vector<std::string>& list,
                                             const Subject& subject);
+
+// The names of all methods, as "a, b, c", or of those that have the given property.
+std::string method_names();
+std::string names_where(const std::function<bool(const Method&)>& has);
 
 // The methods' names.
 std::vector<std::string> names_of(const std::vector<const Method*>& methods);

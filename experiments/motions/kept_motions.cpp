@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/kit/csv.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/whole_file.hpp"
-#include "experiments/kit/written_table.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/timing.hpp"

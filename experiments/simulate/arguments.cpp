@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "experiments/kit/catalogue.hpp"
 #include "experiments/motion_files/motion_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/catalogue.hpp"
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
@@ -31,6 +30,7 @@
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/measure/stability/diagnosis.hpp"
 #include "qddot/scene/explain.hpp"
+#include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::simulate {
@@ -38,6 +38,51 @@ namespace {
 
 // The time [s] for explaining why a run failed: some twenty times the run's, between these limits.
 constexpr double shortest_patience = 1, longest_patience = 5;
+
+const char* yes(bool holds) { return holds ? "yes" : "no"; }
+
+// Print the methods, or the scene generators with their parameters, as a table or as CSV.
+void print_methods(bool as_csv) {
+  if (as_csv) {
+    Csv csv({"name", "order", "family", "knob", "implicit", "symplectic", "needs_stiffness",
+             "accepts_massless", "needs_constant_stiffness", "needs_split", "needs_laplacian",
+             "takes_iterations", "summary", "source", "stock_of"});
+    for (const Method& m : methods()) {
+      csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.is(Trait::implicit)),
+              yes(m.is(Trait::symplectic)),
+              yes(m.asks(Need::stiffness) || m.is(Trait::bounds_steps)),
+              yes(m.is(Trait::accepts_massless)), yes(m.asks(Need::constant_stiffness)),
+              yes(m.asks(Need::split_forces)), yes(m.asks(Need::laplacian)),
+              yes(m.listens_to(Option::iterations)), m.summary, m.source, m.stock_of);
+    }
+    fmt::print("{}", csv.text());
+    return;
+  }
+  fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", "name", "order", "family", "knob", "what it is");
+  for (const Method& m : methods()) {
+    fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", m.name, m.order, family_name(m.family),
+               knob_name(m.knob), m.summary);
+  }
+}
+
+void print_generators(bool as_csv) {
+  if (as_csv) {
+    Csv csv({"scene", "parameter", "standard", "low", "high", "meaning", "summary"});
+    for (const Generator& g : generators()) {
+      for (const GeneratorParameter& p : g.parameters) {
+        csv.row(g.name, p.name, p.standard, p.low, p.high, p.meaning, g.summary);
+      }
+    }
+    fmt::print("{}", csv.text());
+    return;
+  }
+  for (const Generator& g : generators()) {
+    fmt::print("{:<12} {}\n", g.name, g.summary);
+    for (const GeneratorParameter& p : g.parameters) {
+      fmt::print("  {:<22} {:>8}  {}\n", p.name, p.standard, p.meaning);
+    }
+  }
+}
 
 // The time [s] that an interruption waits for the present step.
 constexpr double patience_with_a_step = 60;

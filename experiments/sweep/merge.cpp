@@ -13,7 +13,6 @@
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/study.hpp"
-#include "experiments/kit/written_table.hpp"
 #include "experiments/sweep/machines.hpp"
 #include "experiments/sweep/results.hpp"
 #include "experiments/sweep/scene_folder.hpp"

@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/kit/csv.hpp"
 #include "experiments/kit/points.hpp"
 #include "experiments/kit/reference_file.hpp"
-#include "experiments/kit/written_table.hpp"
 #include "experiments/record/chart_record.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/reference/reference.hpp"

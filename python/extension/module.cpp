@@ -63,5 +63,4 @@ PYBIND11_MODULE(_qddot, module) {
   python::add_runs(module);
   python::add_analyses(module);
   python::add_measures(module);
-  python::add_exchange(module);
 }

@@ -27,8 +27,7 @@ from qddot._methods import Method, method, methods
 from qddot._qddot import InvalidInput, NoReference, __version__
 from qddot._reference import Errors, Reference, reference
 from qddot._scene import Explanation, Scene
-from qddot._solution import Counts, Energy, RunFailed, Solution, State
-from qddot._solve import solve
+from qddot._solve import Counts, Energy, RunFailed, Solution, State, solve
 from qddot._studies import (
     Convergence,
     EnergyTrend,

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from qddot import _qddot
 from qddot._arrays import number
 from qddot._scene import Scene
-from qddot._solution import table_with_head
+from qddot._solve import table_with_head
 from qddot._starts import end_of, model_of, require_measurable
 from qddot._system import System
 

@@ -20,7 +20,7 @@ from qddot._arrays import count
 from qddot._methods import method as method_named
 from qddot._reference import Reference, reference as make_reference
 from qddot._scene import Scene
-from qddot._solution import table_with_head
+from qddot._solve import table_with_head
 from qddot._starts import end_of, require_measurable, require_offered, seconds_of
 from qddot._system import System
 

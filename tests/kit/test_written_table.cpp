@@ -4,7 +4,6 @@
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/kit/csv.hpp"
-#include "experiments/kit/written_table.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "tests/folder.hpp"
 
