@@ -17,14 +17,14 @@ py::tuple names_in(const SetOf<Kind>& set, const std::array<const char*, count>&
 }
 
 // These have the order of the enumerations in method.hpp.
-constexpr std::array traits = {"implicit",        "linearly_implicit", "symplectic",
-                               "cancels_torques", "accepts_massless",  "interpolates",
-                               "bounds_steps"};
-constexpr std::array needs = {"stiffness", "constant_stiffness", "split_forces",
-                              "discrete_gradient", "laplacian"};
-constexpr std::array options = {"max_order",       "stability_detection", "iterations",
-                                "solve_tolerance", "spectral_radius",     "solver",
-                                "compensated"};
+constexpr std::array trait_names = {"implicit",        "linearly_implicit", "symplectic",
+                                    "cancels_torques", "accepts_massless",  "interpolates",
+                                    "bounds_steps"};
+constexpr std::array need_names = {"stiffness", "constant_stiffness", "split_forces",
+                                   "discrete_gradient", "laplacian"};
+constexpr std::array option_names = {"max_order",       "stability_detection", "iterations",
+                                     "solve_tolerance", "spectral_radius",     "solver",
+                                     "compensated"};
 
 py::dict method_record(const Method& method) {
   using py::arg;
@@ -32,8 +32,9 @@ py::dict method_record(const Method& method) {
       arg("name") = method.name, arg("summary") = method.summary, arg("source") = method.source,
       arg("order") = method.order, arg("family") = family_name(method.family),
       arg("knob") = knob_name(method.knob), arg("stability_limit") = method.stability_limit,
-      arg("traits") = names_in(method.traits, traits), arg("needs") = names_in(method.needs, needs),
-      arg("takes") = names_in(method.takes, options), arg("stock_of") = method.stock_of);
+      arg("traits") = names_in(method.traits, trait_names),
+      arg("needs") = names_in(method.needs, need_names),
+      arg("takes") = names_in(method.takes, option_names), arg("stock_of") = method.stock_of);
 }
 
 py::list records() {
