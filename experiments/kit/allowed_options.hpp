@@ -17,6 +17,7 @@ namespace qddot::inline kit {
 class Program;
 template <class T>
 class Argument;
+
 // Throws InvalidInput unless `value` is finite and greater than zero.
 void require_positive(double value, const std::string& option, const std::string& meaning);
 

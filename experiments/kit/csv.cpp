@@ -14,6 +14,7 @@
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::inline kit {
+
 Csv::Csv(const std::vector<std::string>& header) {
   for (const auto& name : header) field(name);
   end_row();

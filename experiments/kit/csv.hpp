@@ -15,6 +15,7 @@
 #include "experiments/kit/whole_file.hpp"
 
 namespace qddot::inline kit {
+
 // A table in CSV (RFC 4180), with lines ended by a line feed and one header row. Numbers have 17
 // significant digits, enough to read back the same double; fields of numbers that are not finite
 // are empty.

@@ -28,6 +28,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PathErrors, energy, momentum, modal_shares)
 }  // namespace qddot::inline measure
 
 namespace qddot::inline kit {
+
 nlohmann::json record_of(const Point& p) {
   return {{"method", p.method->name},
           {"value", p.value},

@@ -6,6 +6,7 @@
 #include <string_view>
 
 namespace qddot::inline kit {
+
 // The files that outputs may replace. A file that the program has read is never replaced, and a
 // file that qddot did not write only with --force.
 

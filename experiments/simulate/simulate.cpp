@@ -39,6 +39,12 @@ namespace {
 // The time [s] for explaining why a run failed: some twenty times the run's, between these limits.
 constexpr double shortest_patience = 1, longest_patience = 5;
 
+// The time [s] that an interruption waits for the present step.
+constexpr double patience_with_a_step = 60;
+
+// The time [s] that an interruption waits for the results found so far.
+constexpr double patience_with_an_answer = 60;
+
 const char* yes(bool holds) { return holds ? "yes" : "no"; }
 
 // Print the methods, or the scene generators with their parameters, as a table or as CSV.
@@ -83,12 +89,6 @@ void print_generators(bool as_csv) {
     }
   }
 }
-
-// The time [s] that an interruption waits for the present step.
-constexpr double patience_with_a_step = 60;
-
-// The time [s] that an interruption waits for the results found so far.
-constexpr double patience_with_an_answer = 60;
 
 void refuse_choices(const Program& program) {
   for (const char* option :
