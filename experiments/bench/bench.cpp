@@ -24,7 +24,6 @@
 #include "experiments/bench/comparison.hpp"
 #include "experiments/bench/peer_choice.hpp"
 #include "experiments/bench/tables.hpp"
-#include "experiments/kit/catalogue.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "qddot/integrators/registry.hpp"

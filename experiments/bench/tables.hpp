@@ -5,7 +5,7 @@
 
 #include "experiments/bench/ratios.hpp"
 #include "experiments/bench/same_steps.hpp"
-#include "experiments/kit/columns.hpp"
+#include "experiments/kit/csv.hpp"
 
 namespace qddot::bench {
 

@@ -33,7 +33,7 @@
 
 #include "experiments/crossover/crossover_tables.hpp"
 #include "experiments/crossover/stiff_scenes.hpp"
-#include "experiments/kit/named_choice.hpp"
+#include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/program.hpp"
 
 namespace qddot::crossover {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/kit/point_table.hpp"
+#include "experiments/kit/points.hpp"
 
 namespace qddot::crossover {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/reference_file.hpp"

@@ -1,6 +1,6 @@
 #include "experiments/crossover/stiff_scenes.hpp"
 
-#include "experiments/kit/named_choice.hpp"
+#include "experiments/kit/allowed_options.hpp"
 #include "qddot/scene/generators.hpp"
 
 namespace qddot::crossover {

@@ -31,7 +31,7 @@
 
 #include "experiments/exchange/exchange_record.hpp"
 #include "experiments/exchange/exchange_tables.hpp"
-#include "experiments/kit/named_choice.hpp"
+#include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/reference_file.hpp"

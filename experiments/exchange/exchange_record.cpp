@@ -1,6 +1,6 @@
 #include "experiments/exchange/exchange_record.hpp"
 
-#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/points.hpp"
 
 namespace qddot::exchange {
 

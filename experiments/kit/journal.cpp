@@ -17,7 +17,6 @@
 #include <boost/crc.hpp>
 #include <fmt/format.h>
 
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

@@ -86,7 +86,7 @@ void be_quiet() {
 Handle new_file(const std::string& path) {
   const Handle access = new_properties(H5P_FILE_ACCESS);
   checked(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110));
-  // The file is already locked (see unfinished.hpp), and HDF5's own lock would conflict.
+  // The file is already locked (see WholeFile), and HDF5's own lock would conflict.
   checked(H5Pset_file_locking(access.id(), false, true));
   return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose};
 }

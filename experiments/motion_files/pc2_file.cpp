@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/csv.hpp"
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "experiments/motion_files/frame.hpp"
 #include "experiments/motion_files/motion_formats.hpp"

@@ -26,7 +26,6 @@
 
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/memory.hpp"
-#include "experiments/kit/named_choice.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/scaling/scaling_tables.hpp"
 #include "qddot/measure/speed/machine_limits.hpp"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "experiments/kit/columns.hpp"
+#include "experiments/kit/csv.hpp"
 #include "experiments/scaling/scaling_run.hpp"
 
 namespace qddot::scaling {

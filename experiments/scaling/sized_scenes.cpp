@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/kit/named_choice.hpp"
+#include "experiments/kit/allowed_options.hpp"
 #include "qddot/scene/generators.hpp"
 
 namespace qddot::scaling {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/points.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/study.hpp"

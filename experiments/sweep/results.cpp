@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "experiments/kit/csv.hpp"
-#include "experiments/kit/measured_points.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/chart.hpp"

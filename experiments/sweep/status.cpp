@@ -10,7 +10,7 @@
 
 #include "experiments/kit/csv.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress_words.hpp"
+#include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/study.hpp"
 #include "experiments/sweep/machines.hpp"

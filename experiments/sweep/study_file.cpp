@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/kit/catalogue.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "experiments/sweep/scene_entries.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/generators.hpp"
