@@ -4,7 +4,7 @@
 //   crossover --family frame --out results/frame
 //   crossover --family chain --ratios 1,1e3,1e6 --methods verlet,ida --out results/chain
 //
-//  1. Each ratio has a scene (stiff_scenes.hpp) and a reference (agreed_reference) that is good to
+//  1. Each ratio has a scene and a reference (agreed_reference) that is good to
 //     a tenth of the finest accuracy. It is kept in ratio_R/reference.json for the next time.
 //  2. Methods are measured as in work_precision, those first that were fast at the former ratio.
 //     SUNDIALS' stock variants are left out: they are slower than the same methods with the
@@ -27,17 +27,205 @@
 // steps stay at their limit. The formula fails if vibrations of stiff springs are part of the
 // motion: an implicit method then has to resolve them too.
 #include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/crossover/crossover_tables.hpp"
-#include "experiments/crossover/stiff_scenes.hpp"
+#include "experiments/crossover/ratio_race.hpp"
 #include "experiments/kit/named_choice.hpp"
+#include "experiments/kit/point_table.hpp"
 #include "experiments/kit/program.hpp"
+#include "qddot/scene/generators.hpp"
+#include "qddot/scene/scene.hpp"
 
 namespace qddot::crossover {
 namespace {
+
+// Scenes that are the same but for how much stiffer some springs are than what sets the motion.
+struct StiffFamily {
+  std::string name;
+  std::string summary;
+  int nodes;     // along a side or in a row, where none are asked for
+  double until;  // [s], likewise: the fall is then about a third of the scene's size
+  Scene (*draw)(int nodes, double until, double ratio);
+};
+
+// As the generators have them [m/s^2].
+constexpr double gravity = 9.81;
+
+Scene drawn(const char* generator, const GeneratorValues& values, const std::string& name) {
+  Scene scene = generate(*find_generator(generator), values, name);
+  scene.name = name;
+  return scene;
+}
+
+Scene frame(int nodes, double until, double ratio) {
+  constexpr double cloth = 1000;  // [N/m]
+  Scene scene = drawn("framed_cloth",
+                      {{"nodes", nodes},
+                       {"until", until},
+                       {"structural_stiffness", cloth},
+                       {"frame_stiffness", cloth * ratio}},
+                      "frame");
+  if (ratio == 1) scene.stiff_above.reset();
+  return scene;
+}
+
+Scene whole(int nodes, double until, double ratio) {
+  constexpr double mass = 0.5, side = 1;  // [kg], [m]
+  const double k = ratio * mass * gravity / side;
+  return drawn("cloth",
+               {{"nodes", nodes},
+                {"until", until},
+                {"mass", mass},
+                {"side", side},
+                {"structural_stiffness", k},
+                {"shear_stiffness", k / 2},
+                {"bending_stiffness", k / 10}},
+               "whole");
+}
+
+Scene chain(int nodes, double until, double ratio) {
+  constexpr double mass = 1, length = 1;  // [kg], [m]
+  const double soft = 1000 * (nodes - 1) * mass * gravity / length;
+  Scene scene = drawn(
+      "chain",
+      {{"nodes", nodes}, {"until", until}, {"mass", mass}, {"length", length}, {"stiffness", soft}},
+      "chain");
+  const std::size_t count = scene.springs.size();
+  for (std::size_t i = count / 3; i < count - count / 3; ++i) {
+    scene.springs[i].law.stiffness = soft * ratio;
+  }
+  if (ratio > 1) scene.stiff_above = soft + 0.5 * (soft * ratio - soft);
+  return scene;
+}
+
+//   frame  framed_cloth, its frame `ratio` times as stiff as its cloth;
+//   whole  cloth, all of it stiff against its weight: k = ratio m g / L between neighbours, so that
+//          its weight stretches it by about 1 / ratio of its size;
+//   chain  chain on one pinned end, the springs of its middle third `ratio` times as stiff as the
+//          others, of which k_soft = 1000 N m g / L for N springs.
+// frame and chain name their stiff springs where ratio > 1. All else is as the generators have it.
+const std::vector<StiffFamily>& stiff_families() {
+  static const std::vector<StiffFamily> all = {
+      {"frame", "a soft cloth in a stiff frame", 12, 0.25, frame},
+      {"whole", "a cloth that is stiff against its weight", 12, 0.25, whole},
+      {"chain", "a chain with a stiff middle third", 30, 0.25, chain}};
+  return all;
+}
+
+// The family of that name; throws InvalidInput where there is none.
+const StiffFamily& stiff_family(const std::string& name) {
+  return named(name, stiff_families(), &StiffFamily::name, "--family", "a family");
+}
+
+// Rows of crossover.csv and kinds.csv.
+struct WinnerRow {
+  double ratio;
+  Placing placing;
+};
+struct KindRow {
+  double ratio, accuracy;
+  Kind kind;
+  const Point* fastest;
+};
+
+std::string name_of(const Point* point) { return point ? point->method->name : ""; }
+double time_of(const Point* point) {
+  return point ? point->time : std::numeric_limits<double>::quiet_NaN();
+}
+
+Columns<WinnerRow> winner_columns() {
+  using Row = const WinnerRow&;
+  return {
+      {"stiffness_ratio", &WinnerRow::ratio},
+      {"accuracy", [](Row r) { return r.placing.accuracy; }},
+      {"method", [](Row r) { return name_of(r.placing.fastest); }},
+      {"time_s", [](Row r) { return time_of(r.placing.fastest); }},
+      {"runner_up", [](Row r) { return name_of(r.placing.runner_up); }},
+      {"margin", [](Row r) { return time_of(r.placing.runner_up) / time_of(r.placing.fastest); }}};
+}
+
+Columns<KindRow> kind_columns() {
+  return {{"stiffness_ratio", &KindRow::ratio},
+          {"accuracy", &KindRow::accuracy},
+          {"kind", [](const KindRow& r) { return kind_name(r.kind); }},
+          {"method", [](const KindRow& r) { return name_of(r.fastest); }},
+          {"time_s", [](const KindRow& r) { return time_of(r.fastest); }}};
+}
+
+std::vector<std::string> point_columns_with_ratio() {
+  std::vector<std::string> columns = point_columns().header();
+  columns.insert(columns.begin(), "stiffness_ratio");
+  return columns;
+}
+
+// Writes what was measured at one ratio; kinds without a method among `competing` have no rows.
+void tabulate(const AtRatio& one, const std::vector<const Method*>& competing,
+              RowTable<WinnerRow>& winners, RowTable<KindRow>& of_kinds, Table& points) {
+  for (const Placing& placing : one.placings) {
+    winners.add({one.ratio, placing});
+    for (const Kind kind : kinds) {
+      if (std::ranges::none_of(competing, [&](auto m) { return kind_of(*m) == kind; })) continue;
+      of_kinds.add(
+          {one.ratio, placing.accuracy, kind, placing.of_kind[static_cast<std::size_t>(kind)]});
+    }
+  }
+  for (const Point& point : one.points) {
+    points->field(one.ratio);
+    point_columns().write_row(*points,
+                              {one.subject.drawn.name, point, one.reference->certified.position});
+  }
+}
+
+// How the tables were made: the scenes and their references.
+nlohmann::json origin_of(const Program& p, const std::vector<AtRatio>& all) {
+  nlohmann::json origin = p.origin();
+  origin["family"] = all.front().subject.source;
+  origin["until"] = all.front().subject.until;
+  for (const AtRatio& one : all) {
+    const auto whole = p.origin(one.subject);
+    nlohmann::json entry = {{"stiffness_ratio", one.ratio},
+                            {"scene", whole.at("scene")},
+                            {"reduced", whole.at("reduced")},
+                            {"certified_position", nullptr},
+                            {"reference_made_by", nullptr}};
+    if (one.reference) {
+      entry["certified_position"] = one.reference->certified.position;
+      entry["reference_made_by"] = one.reference->made_by;
+    }
+    origin["scenes"].push_back(entry);
+  }
+  return origin;
+}
+
+// Prints the fastest methods for each accuracy, with their ranges of ratios.
+void print_winners(const std::vector<AtRatio>& all) {
+  for (std::size_t row = 0; row < Pruning::accuracies.size(); ++row) {
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < all.size();) {
+      const std::string name = name_of(all[i].placings[row].fastest);
+      std::size_t last = i;
+      while (last + 1 < all.size() && name_of(all[last + 1].placings[row].fastest) == name) ++last;
+      const std::string what = name.empty() ? "nothing" : name;
+      words.push_back(i == last
+                          ? fmt::format("{} at {:g}", what, all[i].ratio)
+                          : fmt::format("{} {:g} to {:g}", what, all[i].ratio, all[last].ratio));
+      i = last + 1;
+    }
+    fmt::print("{:.0e}  {}\n", Pruning::accuracies[row], fmt::join(words, ", "));
+  }
+  for (const AtRatio& one : all) {
+    if (!one.reference || one.reference->certified.position <= Pruning::accuracies.back()) continue;
+    fmt::print(
+        "at ratio {:g} the reference is certified to {:.1e}: smaller accuracies have no fastest "
+        "method\n",
+        one.ratio, one.reference->certified.position);
+  }
+}
 
 constexpr double largest_ratio = 1e9;  // beyond it rounding of stiff forces is felt
 

@@ -12,7 +12,6 @@
 #include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "experiments/motion_files/frame.hpp"
-#include "experiments/motion_files/motion_formats.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::motion_files {

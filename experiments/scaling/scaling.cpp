@@ -22,18 +22,88 @@
 //                 of 95 % and what theory gives at the same sizes; `fill` is of the factors' bytes
 //  roofline.csv   evaluations of f alone; the triad's bandwidth over arrays of the same size, and
 //                 the peak of multiplications and additions
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/columns.hpp"
 #include "experiments/kit/memory.hpp"
 #include "experiments/kit/named_choice.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/scaling/scaling_tables.hpp"
+#include "experiments/scaling/scaling_run.hpp"
 #include "qddot/measure/speed/machine_limits.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::scaling {
 namespace {
+
+// A row of roofline.csv: f at one size, beside the peak of the machine [operations/s].
+struct RooflineRow {
+  ScalingSize size;
+  double peak;
+};
+
+Columns<PhaseCost> cost_columns() {
+  return {{"scene", &PhaseCost::scene},     {"nodes", &PhaseCost::nodes},
+          {"springs", &PhaseCost::springs}, {"method", &PhaseCost::method},
+          {"phase", &PhaseCost::phase},     {"seconds", &PhaseCost::seconds},
+          {"bytes", &PhaseCost::bytes}};
+}
+
+Columns<Exponent> exponent_columns() {
+  return {{"scene", &Exponent::scene},
+          {"method", &Exponent::method},
+          {"phase", &Exponent::phase},
+          {"exponent", [](const Exponent& e) { return e.fit.exponent; }},
+          {"low", [](const Exponent& e) { return e.fit.low; }},
+          {"high", [](const Exponent& e) { return e.fit.high; }},
+          {"theory", &Exponent::theory},
+          {"nodes_from", &Exponent::nodes_from},
+          {"nodes_to", &Exponent::nodes_to}};
+}
+
+Columns<RooflineRow> roofline_columns() {
+  using Row = const RooflineRow&;
+  return {{"scene", [](Row r) { return r.size.scene; }},
+          {"nodes", [](Row r) { return r.size.nodes; }},
+          {"springs", [](Row r) { return r.size.springs; }},
+          {"seconds", [](Row r) { return r.size.force.seconds; }},
+          {"springs_per_second", [](Row r) { return r.size.springs / r.size.force.seconds; }},
+          {"bytes_per_spring", [](Row r) { return r.size.force.bytes / r.size.springs; }},
+          {"flops_per_spring", [](Row r) { return r.size.force.flops / r.size.springs; }},
+          {"working_set_bytes", [](Row r) { return r.size.force.bytes; }},
+          {"triad_bytes_per_second", [](Row r) { return r.size.triad; }},
+          {"peak_flops_per_second", &RooflineRow::peak}};
+}
+
+void print(const std::vector<Exponent>& exponents) {
+  fmt::print("\n{:<8} {:<20} {:<14} {:>8}   {:<14} {:>6}\n", "scene", "method", "phase", "exponent",
+             "95 %", "theory");
+  for (const Exponent& e : exponents) {
+    fmt::print("{:<8} {:<20} {:<14} {:>8.2f}   {:.2f} to {:.2f}   {:>6.2f}\n", e.scene, e.method,
+               e.phase, e.fit.exponent, e.fit.low, e.fit.high, e.theory);
+  }
+}
+
+void print(const std::vector<RooflineRow>& roofline, double peak) {
+  fmt::print("\nf: {:.3g} GFlop/s is the peak\n{:<8} {:>9} {:>12} {:>8} {:>8} {:>8}\n", 1e-9 * peak,
+             "scene", "nodes", "M springs/s", "GB/s", "triad", "GFlop/s");
+  for (const RooflineRow& row : roofline) {
+    const ScalingSize& size = row.size;
+    const auto& [seconds, bytes, flops] = size.force;
+    fmt::print("{:<8} {:>9} {:>12.4g} {:>8.3g} {:>8.3g} {:>8.3g}\n", size.scene, size.nodes,
+               1e-6 * size.springs / seconds, 1e-9 * bytes / seconds, 1e-9 * size.triad,
+               1e-9 * flops / seconds);
+  }
+}
+
+void print(const std::vector<LeftOut>& left_out) {
+  for (const auto& [scene, method, nodes, why] : left_out) {
+    fmt::print("left out: {}{}{} from {:.0f} nodes on: {}\n", scene, method.empty() ? "" : " with ",
+               method, nodes, why);
+  }
+}
 
 constexpr double gigabyte = 1e9;
 constexpr double taken_of_free = 0.8;   // the fraction of free memory that is used by default
@@ -46,19 +116,16 @@ void require_nodes(double nodes, const std::string& option) {
 }
 
 // Adds the scenes that were measured, and what was not, to the record of the tables.
-nlohmann::json noted(nlohmann::json origin, const ScalingRun& run) {
-  origin["scenes"] = origin["left_out"] = nlohmann::json::array();
-  for (const ScalingSize& size : run.sizes()) {
+nlohmann::json noted(nlohmann::json origin, const ScalingResults& results) {
+  origin["scenes"] = nlohmann::json::array();
+  for (const ScalingSize& size : results.sizes) {
     origin["scenes"].push_back({{"name", size.scene},
                                 {"hash", size.hash},
                                 {"nodes", size.nodes},
                                 {"springs", size.springs},
                                 {"unknowns", size.unknowns}});
   }
-  for (const auto& [scene, method, nodes, why] : run.left_out()) {
-    origin["left_out"].push_back(
-        {{"scene", scene}, {"method", method}, {"nodes", nodes}, {"why", why}});
-  }
+  origin["left_out"] = results.left_out;
   return origin;
 }
 
@@ -123,20 +190,21 @@ int main(int argc, char** argv) {
             run.measure(study, find_sized_scenes((*names)[i]), sizes_between(least, most, sizes),
                         solved[i]);
           }
-          if (run.has_failed()) study.fall_short();
+          if (run.results().has_failed) study.fall_short();
         },
         [&] {
-          const auto fits = exponents_of(run.costs());
-          std::vector<RooflineRow> rows;
+          const ScalingResults& results = run.results();
           const double peak = peak_flops(look_for_peak);
-          for (const ScalingSize& size : run.sizes()) rows.push_back({size, peak});
-          for (const PhaseCost& cost : run.costs()) costs.add(cost);
+          const auto fits = exponents_of(results.costs);
+          std::vector<RooflineRow> rows;
+          for (const ScalingSize& size : results.sizes) rows.push_back({size, peak});
+          for (const PhaseCost& cost : results.costs) costs.add(cost);
           for (const Exponent& exponent : fits) exponents.add(exponent);
           for (const RooflineRow& row : rows) roofline.add(row);
           print(fits);
           print(rows, peak);
-          print(run.left_out());
-          nlohmann::json origin = noted(p.origin(), run);
+          print(results.left_out);
+          nlohmann::json origin = noted(p.origin(), results);
           origin["step_size"] = *step_size;
           origin["no_reduce"] = *no_reduce;
           return origin;

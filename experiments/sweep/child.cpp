@@ -1,6 +1,5 @@
 #include "experiments/sweep/child.hpp"
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -10,6 +9,7 @@
 #include <stdexcept>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,18 +46,20 @@ class Output {
   int file_;
 };
 
-// Waits until nobody holds the other end of the pipe, which is when the child has ended.
-void wait_for_end(int pipe, pid_t child) {
+// Waits for the end of the child, which is asked for it if this process is interrupted.
+void wait_for_end(pid_t child) {
+  const auto end = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
   bool is_told = false;
-  for (int waited = 0; waited < patience;) {
-    pollfd end{pipe, POLLIN, 0};
-    if (::poll(&end, 1, pause) > 0) return;
+  for (int waited = 0; end >= 0 && waited < patience;) {
+    pollfd ended{end, POLLIN, 0};
+    if (::poll(&ended, 1, pause) > 0) break;
     if (!interrupted()) continue;
     if (!is_told) ::kill(child, SIGTERM);
     is_told = true;
     waited += pause;
+    if (waited >= patience) ::kill(child, SIGKILL);
   }
-  ::kill(child, SIGKILL);
+  ::close(end);
 }
 
 }  // namespace
@@ -87,8 +89,6 @@ ChildEnd run_child(const Command& command) {
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const Output out, err;
-  std::array<int, 2> pipe{};
-  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe can be opened");
   const pid_t self = ::getpid(), child = ::fork();
   if (child == 0) {  // only what a child of a process with threads may call
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -98,17 +98,11 @@ ChildEnd run_child(const Command& command) {
     ::dup2(nothing, STDIN_FILENO);
     ::dup2(out.file(), STDOUT_FILENO);
     ::dup2(err.file(), STDERR_FILENO);
-    ::fcntl(pipe[1], F_SETFD, 0);
     ::execv(argv[0], argv.data());
     ::_exit(127);
   }
-  ::close(pipe[1]);
-  if (child < 0) {
-    ::close(pipe[0]);
-    throw std::runtime_error("no process can be started");
-  }
-  wait_for_end(pipe[0], child);
-  ::close(pipe[0]);
+  if (child < 0) throw std::runtime_error("no process can be started");
+  wait_for_end(child);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }

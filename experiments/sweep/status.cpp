@@ -8,12 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/kit/csv.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress_words.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/study.hpp"
-#include "experiments/sweep/machines.hpp"
 
 namespace qddot::sweep {
 namespace {
@@ -96,6 +92,35 @@ Missing missing(const std::string& folder, const Task& task, const TaskState& st
 }
 
 }  // namespace
+
+std::vector<MachineShare> machines_of(const std::vector<Task>& tasks,
+                                      const std::vector<TaskState>& states, bool as_one) {
+  std::vector<MachineShare> machines;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (tasks[i].stage != points || states[i].kind != TaskState::whole) continue;
+    auto own = as_one ? machines.begin()
+                      : std::ranges::find(machines, states[i].machine, &MachineShare::machine);
+    if (own == machines.end()) own = machines.insert(own, {.machine = states[i].machine});
+    own->tasks.push_back(i);
+  }
+  return machines;
+}
+
+std::string in_words(const std::vector<MachineShare>& machines) {
+  std::vector<std::string> all;
+  for (const MachineShare& one : machines) {
+    std::vector<std::string> words = {one.machine.value("cpu", "an unknown processor")};
+    for (const auto& entry : one.machine.items()) {
+      const bool differs = std::ranges::any_of(machines, [&](const MachineShare& other) {
+        return other.machine.value(entry.key(), nlohmann::json()) != entry.value();
+      });
+      if (differs && entry.key() != "cpu")
+        words.push_back(fmt::format("{} {}", entry.key(), entry.value().dump()));
+    }
+    all.push_back(fmt::format("{} ({} tasks)", fmt::join(words, ", "), one.tasks.size()));
+  }
+  return fmt::format("{}", fmt::join(all, " and "));
+}
 
 int print_status(const std::string& folder) {
   const std::vector<Task> tasks = read_tasks(folder);

@@ -3,9 +3,24 @@
 #include <string>
 #include <vector>
 
-#include "experiments/sweep/task_files.hpp"
+#include "experiments/sweep/task.hpp"
 
 namespace qddot::sweep {
+
+// A kind of machine, and which tasks were measured on it.
+struct MachineShare {
+  nlohmann::json machine;
+  std::vector<std::size_t> tasks{};
+};
+
+// The kinds of machines on which the points among the tasks were measured, each once; the times of
+// references count nowhere. `as_one`: all count as the first.
+std::vector<MachineShare> machines_of(const std::vector<Task>& tasks,
+                                      const std::vector<TaskState>& states, bool as_one = false);
+
+// The machines in words, each with its tasks: its processor and whatever else is not the same on
+// all.
+std::string in_words(const std::vector<MachineShare>& machines);
 
 // Prints by stage how many tasks of a sweep are done, running, begun but ended, failed and missing.
 // Prints which failed and why, and the expected time of the rest. Returns the exit status.

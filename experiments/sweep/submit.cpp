@@ -1,13 +1,10 @@
-#include "experiments/sweep/submit.hpp"
-
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <sys/wait.h>
 
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
+#include "experiments/sweep/actions.hpp"
 #include "experiments/sweep/task.hpp"
 
 namespace qddot::sweep {
@@ -91,11 +88,6 @@ std::string parallel_lines(const std::string& folder, const Submission& how) {
   std::string lines;
   if (division.references > 0) lines += line(references, division.references) + " &&\n";
   return lines + line(points, division.points) + "\n" + merge_of(folder) + "\n";
-}
-
-int go(const std::string& lines) {
-  const int status = std::system(lines.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : failed;
 }
 
 }  // namespace qddot::sweep

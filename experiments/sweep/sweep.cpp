@@ -17,17 +17,15 @@
 //     a process was killed, and two processes that measure the same task do no harm.
 //  3. merge gives each scene's files to the program, which makes its tables as if it had measured
 //     them by itself. Times of unlike machines are never compared.
-#include <algorithm>
+#include <cstdlib>
 #include <map>
+#include <sys/wait.h>
 
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
-#include "experiments/sweep/merge.hpp"
-#include "experiments/sweep/plan.hpp"
-#include "experiments/sweep/run.hpp"
+#include "experiments/sweep/actions.hpp"
 #include "experiments/sweep/status.hpp"
-#include "experiments/sweep/submit.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
@@ -144,6 +142,7 @@ int main(int argc, char** argv) {
     fmt::print("{}", lines);
     if (!go_on) return static_cast<int>(done);
     std::fflush(stdout);
-    return go(lines);
+    const int status = std::system(lines.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : failed;
   });
 }
