@@ -2,25 +2,14 @@
 
 #include <cstddef>
 #include <deque>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "experiments/motion_files/deflate.hpp"
 #include "experiments/motion_files/hdf5.hpp"
 
 namespace qddot::motion_files {
-
-// Chunks of an HDF5 dataset go through its filters shuffle and deflate, which any reader undoes.
-using Bytes = std::vector<unsigned char>;
-
-// Shuffle: byte k of number i goes to `to`[k stride + i]. Bytes of one place are alike and are
-// small together. `to` must be zero: places where all numbers have zero are left alone.
-void shuffle(std::span<const float> from, unsigned char* to, std::size_t stride);
-
-// Deflate: the bytes as one zlib stream (RFC 1950). Does not call HDF5, so that several threads may
-// each compress a chunk.
-Bytes deflated(std::span<const unsigned char> bytes);
 
 // Consecutive rows of one column of a dataset.
 struct Chunk {

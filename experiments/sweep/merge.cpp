@@ -44,8 +44,7 @@ struct SceneTasks {
 };
 
 // The scenes' parts in the order of the plan, made of the complete ones among these tasks.
-std::vector<SceneTasks> parts_of(const std::vector<Task>& tasks,
-                                 const std::vector<TaskState>& states, const MachineShare& share,
+std::vector<SceneTasks> parts_of(const std::vector<Task>& tasks, const MachineShare& share,
                                  const std::string& folder) {
   std::vector<SceneTasks> parts;
   std::map<std::string, std::size_t> numbers;
@@ -54,11 +53,11 @@ std::vector<SceneTasks> parts_of(const std::vector<Task>& tasks,
     if (is_new) parts.push_back({.out = folder + "/" + task.folder, .machine = share.machine});
     parts[own->second].tasks.push_back(task);
   };
-  for (const std::size_t i : share.tasks) add(tasks[i]);
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (tasks[i].stage == references && states[i].kind == TaskState::whole &&
-        numbers.contains(tasks[i].folder))
-      add(tasks[i]);
+  for (const Task* task : share.tasks) add(*task);
+  for (const Task& task : tasks) {
+    if (task.stage == references && task.state.kind == TaskState::whole &&
+        numbers.contains(task.folder))
+      add(task);
   }
   return parts;
 }
@@ -278,10 +277,9 @@ int merge(const std::string& folder, const Merging& how) {
                                    tasks.front().program));
   }
   const TaskFiles files(folder, /*makes_folders=*/true);
-  std::vector<TaskState> states;
-  for (const Task& task : tasks) states.push_back(files.state(task));
+  for (Task& task : tasks) task.state = files.state(task);
   // Times that are computed are measured on none of them.
-  const std::vector<MachineShare> machines = machines_of(tasks, states, how.by_work);
+  const std::vector<MachineShare> machines = machines_of(tasks, how.by_work);
   if (machines.size() > 1 && !how.per_machine) {
     throw InvalidInput(
         fmt::format("{}: its seconds were measured on unlike machines, {}, and do not compare; "
@@ -295,10 +293,9 @@ int merge(const std::string& folder, const Merging& how) {
       out = fmt::format("{}/machines/{}", folder, k + 1);
       fmt::print("{}: {}\n", out, in_words({machines[k]}));
     }
-    is_good &=
-        merge_machine(files, out, parts_of(tasks, states, machines[k], out), machines[k], how);
+    is_good &= merge_machine(files, out, parts_of(tasks, machines[k], out), machines[k], how);
   }
-  const bool is_complete = report_missing(folder, tasks, states);
+  const bool is_complete = report_missing(folder, tasks);
   return is_good && is_complete ? done : end_not_reached;
 }
 

@@ -14,6 +14,24 @@ namespace qddot::sweep {
 
 using kit::Journal;
 
+// The state of a task.
+struct TaskState {
+  enum Kind {
+    whole,              // it is measured
+    without_reference,  // and there is no reference, which `cause` says
+    running,            // a process measures it, `where`
+    begun,              // one did, and was ended: some of its pieces are kept
+    failed,             // for a cause that may go away
+    missing,
+  };
+  Kind kind = missing;
+  std::string cause{}, where{};
+  double seconds = 0;        // that a whole one took
+  nlohmann::json machine{};  // that it was measured on
+
+  bool is_done() const { return kind == whole || kind == without_reference; }
+};
+
 // A share of the study of one scene, which one process measures by itself.
 struct Task {
   std::string id;       // 16 hexadecimal digits, see id_of
@@ -26,6 +44,7 @@ struct Task {
   std::map<std::string, double> varied{};  // what tells the scene from others of its entry
   std::size_t entry = 0;                   // of the list of scenes
   std::size_t order = 0;                   // scene by scene and, of each, as its program says
+  TaskState state{};                       // where somebody has looked; not kept
 };
 
 inline const std::string references = "references", points = "points";
@@ -51,24 +70,6 @@ Command command_of(const std::string& program, const std::vector<std::string>& a
 // Writes a file that appears whole or not at all; see WholeFile for `beginning`.
 void write_whole(const std::string& path, const std::string& text,
                  const std::string& beginning = {});
-
-// The state of a task.
-struct TaskState {
-  enum Kind {
-    whole,              // it is measured
-    without_reference,  // and there is no reference, which `cause` says
-    running,            // a process measures it, `where`
-    begun,              // one did, and was ended: some of its pieces are kept
-    failed,             // for a cause that may go away
-    missing,
-  };
-  Kind kind = missing;
-  std::string cause{}, where{};
-  double seconds = 0;        // that a whole one took
-  nlohmann::json machine{};  // that it was measured on
-
-  bool is_done() const { return kind == whole || kind == without_reference; }
-};
 
 // The files of the tasks of a sweep, in its folder:
 //   tasks/whole/ID.journal           what a task measured, never written again

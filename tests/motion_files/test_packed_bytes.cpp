@@ -4,7 +4,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/motion_files/row_stream.hpp"
+#include "experiments/motion_files/deflate.hpp"
 
 #ifdef __x86_64__
 #include <cpuid.h>
