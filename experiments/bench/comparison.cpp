@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::bench {

@@ -7,7 +7,6 @@
 
 #include "experiments/kit/point_record.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/reference/reference.hpp"

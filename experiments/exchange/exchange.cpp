@@ -30,15 +30,12 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "experiments/kit/csv.hpp"
 #include "experiments/kit/named_choice.hpp"
 #include "experiments/kit/point_record.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/reference_file.hpp"
-#include "qddot/integrators/registry.hpp"
 #include "qddot/measure/exchange/energy_exchange.hpp"
 #include "qddot/measure/exchange/excitation.hpp"
 #include "qddot/scene/invalid_input.hpp"

@@ -106,6 +106,7 @@ Framing::Framing(const Scene& start, const ReducedScene& scene, const Fields& wa
 }
 
 const Frame* Framing::of(const State& state, const State* reference) {
+  if (has_ended_) return nullptr;
   scene_.expand(state, nodes_);
   if (reference) scene_.expand(*reference, exact_nodes_);
   frame_.time = state.t;
@@ -122,7 +123,8 @@ const Frame* Framing::of(const State& state, const State* reference) {
     overflows |= is_of_nodes ? take_nodes(first, std::min(nodes, first + slab))
                              : take_strains(first, std::min(springs, first + slab));
   });
-  return std::isfinite(state.t) && overflows >> 31 == 0 ? &frame_ : nullptr;
+  has_ended_ = !std::isfinite(state.t) || overflows >> 31 != 0;
+  return has_ended_ ? nullptr : &frame_;
 }
 
 std::uint32_t Framing::take_nodes(std::size_t first, std::size_t end) {

@@ -43,7 +43,7 @@ class Framing {
   Framing(const Scene& start, const ReducedScene& scene, const Fields& wanted);
 
   // The frame of the state, with distances if there is a reference; the next call overwrites it.
-  // nullptr if a number is not finite or beyond 32-bit floats.
+  // nullptr if a number is not finite or beyond 32-bit floats, and from then on.
   const Frame* of(const State& state, const State* reference);
   const Fields& wanted() const { return wanted_; }
   // All nodes of the last frame.
@@ -63,6 +63,7 @@ class Framing {
   std::vector<double> lengths_;
   std::size_t first_line_, cells_;
   Frame frame_;
+  bool has_ended_ = false;
 };
 
 // The formats of motions (see open_motion). `framing` has framed the start.

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
@@ -184,12 +183,8 @@ class VtkhdfFile final : public MotionFile {
   }
 
   bool add(const State& state, const State* reference) override {
-    const Frame* frame =
-        has_ended_ ? nullptr : framing_.of(state, has_reference_ ? reference : nullptr);
-    if (!frame) {
-      has_ended_ = true;
-      return false;
-    }
+    const Frame* frame = framing_.of(state, has_reference_ ? reference : nullptr);
+    if (!frame) return false;
     trying([&] {
       std::vector<std::pair<RowStream*, const std::vector<float>*>> rows;
       for (Stream& stream : streams_) rows.emplace_back(&stream.out, &(frame->*stream.numbers));
@@ -306,7 +301,7 @@ class VtkhdfFile final : public MotionFile {
 
   Framing framing_;
   WholeFile file_, xdmf_, sidecar_;
-  bool has_reference_, has_ended_ = false;
+  bool has_reference_;
   Handle hdf5_, root_, frames_, fields_of_nodes_, fields_of_cells_;
   std::vector<Stream> streams_;  // closed before the file, as it is declared after it
   std::vector<double> times_;    // [s]

@@ -26,8 +26,6 @@
 
 #include <fmt/format.h>
 
-#include "experiments/kit/allowed_options.hpp"
-#include "experiments/kit/columns.hpp"
 #include "experiments/kit/memory.hpp"
 #include "experiments/kit/named_choice.hpp"
 #include "experiments/kit/program.hpp"

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "experiments/kit/csv.hpp"
 #include "experiments/kit/point_table.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"

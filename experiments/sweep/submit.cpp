@@ -12,17 +12,14 @@ namespace {
 
 // How many shards each stage is divided into: no more than it has tasks.
 struct Division {
+  Division(const std::string& folder, std::size_t most) {
+    for (const Task& task : read_tasks(folder)) {
+      std::size_t& shards = task.stage == sweep::references ? references : points;
+      shards = std::min(shards + 1, most);
+    }
+  }
   std::size_t references = 0, points = 0;
 };
-
-Division division_of(const std::string& folder, std::size_t shards) {
-  Division division;
-  for (const Task& task : read_tasks(folder))
-    ++(task.stage == references ? division.references : division.points);
-  division.references = std::min(division.references, shards);
-  division.points = std::min(division.points, shards);
-  return division;
-}
 
 std::string absolute(const std::string& folder) {
   return std::filesystem::absolute(folder).lexically_normal().string();
@@ -62,7 +59,7 @@ std::string array_script(const std::string& folder, const std::string& stage, st
 }  // namespace
 
 std::string slurm_lines(const std::string& folder, const Submission& how) {
-  const Division division = division_of(folder, how.shards);
+  const Division division(folder, how.shards);
   kit::require_folder(folder + "/log");
   std::string lines, after;
   if (division.references > 0) {
@@ -78,7 +75,7 @@ std::string slurm_lines(const std::string& folder, const Submission& how) {
 }
 
 std::string parallel_lines(const std::string& folder, const Submission& how) {
-  const Division division = division_of(folder, how.shards);
+  const Division division(folder, how.shards);
   const auto line = [&](const std::string& stage, std::size_t count) {
     return fmt::format(
         "seq {0} | parallel --use-cores-instead-of-threads --line-buffer{1} {2}", count,
